@@ -1,0 +1,190 @@
+"""The scene file: TOML in, `Scene` or one clear line out."""
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from .arrays import Array
+from .bond import Bond, Ends, FirstCourse, course_pattern, running_bond
+from .drawing import METRES, read_drawing
+from .loads import Lateral, Load, PointLoad
+from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
+from .refusal import SceneError
+from .supports import SUPPORT_KINDS, SupportKind
+from .table import Table
+from .wall import Scene, build_scene
+
+
+def read_scene(path: str | Path) -> Scene:
+    """Read a scene file.
+
+    Parameters
+    ----------
+    path
+        A TOML file; drawings it names are looked up beside it.
+
+    Raises
+    ------
+    SceneError
+        For a file that is missing, is no TOML or describes no wall: one line that names the key,
+        the value and what would be right.
+    """
+    path = Path(path)
+    try:
+        content = tomllib.loads(path.read_bytes().decode("utf-8"))
+    except OSError as error:
+        raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise SceneError(str(path), "is no scene file: it is not UTF-8 text") from error
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(str(path), f"is no valid TOML: {error}") from error
+    except (RecursionError, ValueError) as error:
+        raise SceneError(str(path), f"is no valid TOML: {error}") from error
+    return scene_from_dict(content, folder=path.parent, default_title=path.stem)
+
+
+def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_title: str = "untitled") -> Scene:
+    """Build a scene from the tables of a scene file.
+
+    Parameters
+    ----------
+    content
+        The file as nested dictionaries.
+    folder
+        Where drawings are looked up.
+    default_title
+        Title of a scene that has none.
+    """
+    top = Table("", content)
+    title = " ".join(top.text("title", default_title).split())
+    wall, block, joint, support, load = (top.table(key) for key in ("wall", "block", "joint", "support", "load"))
+    top.finish()
+    block_material = _block_material(block)
+    joint_material = _joint_material(joint)
+    kind = cast(SupportKind, support.choice("kind", SUPPORT_KINDS))
+    support.finish()
+    loads = _load(load)
+    thickness = wall.number("thickness", above=0.0)
+    polygons, ground, bond = _blocks(wall, folder)
+    wall.finish()
+    if ground is not None and kind in ("corners", "pinned-corners"):
+        raise SceneError("support.kind", 'a drawing brings its ground; use "base" or "fixed-first-course"', kind)
+    return build_scene(
+        title,
+        polygons,
+        thickness=thickness,
+        block=block_material,
+        joint=joint_material,
+        load=loads,
+        support=kind,
+        ground=ground,
+        bond=bond,
+    )
+
+
+def _blocks(wall: Table, folder: Path) -> tuple[list[Array], Array | None, Bond | None]:
+    ways = [key for key in ("length", "courses", "drawing") if key in wall]
+    if len(ways) > 1:
+        raise SceneError(f"wall.{ways[1]}", f"does not go with wall.{ways[0]}; describe the wall in one way")
+    if "drawing" in wall:
+        path = folder / wall.text("drawing")
+        blocks, ground = read_drawing(path, wall.choice("units", METRES))
+        return blocks, ground, None
+    bond = Bond(wall.number("block_width", above=0.0), wall.number("block_height", above=0.0))
+    if "courses" in wall:
+        return course_pattern(bond, wall.rows("courses")), None, bond
+    length, height = wall.number("length", above=0.0), wall.number("height", above=0.0)
+    first = cast(FirstCourse, wall.choice("first_course", get_args(FirstCourse), "full"))
+    ends = cast(Ends, wall.choice("ends", get_args(Ends), "flush"))
+    return running_bond(bond, length, height, first, ends), None, bond
+
+
+def _block_material(block: Table) -> BlockMaterial:
+    material = BlockMaterial(
+        density=block.number("density", above=0.0),
+        young=block.optional_number("young", above=0.0),
+        poisson=block.number("poisson", 0.0, above=-1.0, most=0.5),
+    )
+    block.finish()
+    return material
+
+
+def _joint_material(joint: Table) -> JointMaterial:
+    friction = _friction(joint)
+    cohesion = joint.number("cohesion", 0.0, least=0.0)
+    material = JointMaterial(
+        friction=friction,
+        cohesion=cohesion,
+        tensile_strength=_tensile_strength(joint, friction, cohesion),
+        elasticity=_elasticity(joint),
+        inset=joint.number("inset", 0.0, least=0.0),
+        fracture_energy_1=joint.optional_number("fracture_energy_1", least=0.0),
+        fracture_energy_2=joint.optional_number("fracture_energy_2", least=0.0),
+    )
+    joint.finish()
+    return material
+
+
+def _friction(joint: Table) -> float:
+    angle = joint.optional_number("friction_angle", least=0.0, below=90.0)
+    if angle is None:
+        return joint.number("friction", least=0.0)
+    if "friction" in joint:
+        raise SceneError("joint.friction_angle", "does not go with joint.friction; give one of them", angle)
+    return math.tan(math.radians(angle))
+
+
+def _tensile_strength(joint: Table, friction: float, cohesion: float) -> float:
+    """Tension cut-off, by default the apex of the cone."""
+    given = joint.optional_number("tensile_strength", least=0.0)
+    if friction == 0.0:
+        if given is None and cohesion > 0.0:
+            raise SceneError(
+                "joint.tensile_strength", "is missing; with friction 0 its default, cohesion / friction, does not exist"
+            )
+        return given or 0.0
+    apex = cohesion / friction
+    if given is None:
+        if not math.isfinite(apex):
+            raise SceneError("joint.friction", "is so small that cohesion / friction is infinite", friction)
+        return apex
+    if given > apex * (1 + 1e-3):
+        raise SceneError(
+            "joint.tensile_strength",
+            f"must be at most cohesion / friction = {apex:.6g}, the apex of the Coulomb cone",
+            given,
+        )
+    return min(given, apex)
+
+
+def _elasticity(joint: Table) -> Mortar | Stiffness | None:
+    direct = [key for key in ("normal_stiffness", "shear_stiffness") if key in joint]
+    if "mortar" in joint:
+        if direct:
+            raise SceneError(f"joint.{direct[0]}", "does not go with joint.mortar; give one of them")
+        mortar = joint.table("mortar")
+        layer = Mortar(
+            mortar.number("young", above=0.0),
+            mortar.number("poisson", least=0.0, below=0.5),
+            mortar.number("thickness", above=0.0),
+        )
+        mortar.finish()
+        return layer
+    if direct:
+        return Stiffness(joint.number("normal_stiffness", above=0.0), joint.number("shear_stiffness", above=0.0))
+    return None
+
+
+def _load(load: Table) -> Load:
+    gravity = load.number("gravity", least=0.0)
+    live = load.table("live")
+    kind = live.choice("kind", ("lateral", "point"))
+    action: Lateral | PointLoad = Lateral()
+    if kind == "point":
+        action = PointLoad(live.vector("at"), live.vector("force"))
+        if not any(action.force):
+            raise SceneError("load.live.force", "must not be zero", list(action.force))
+    live.finish()
+    load.finish()
+    return Load((0.0, -gravity), action)

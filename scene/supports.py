@@ -1,0 +1,72 @@
+"""Supports: which blocks are held, and where."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from .arrays import Array, Indices, Mask, frozen
+from .blocks import Blocks
+
+SupportKind: TypeAlias = Literal["base", "fixed-first-course", "corners", "pinned-corners"]
+SUPPORT_KINDS: tuple[str, ...] = get_args(SupportKind)
+
+
+@dataclass(frozen=True, eq=False)
+class Pins:
+    """Points of blocks held in one direction each, in both senses.
+
+    Parameters
+    ----------
+    block : (n,) int
+        The block held.
+    point : (n, 2) float
+        Where [m].
+    direction : (n, 2) float
+        Unit vector along which the displacement of that point is zero.
+    """
+
+    block: Indices
+    point: Array
+    direction: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "block", frozen(self.block, np.int64))
+        object.__setattr__(self, "point", frozen(np.reshape(self.point, (-1, 2))))
+        object.__setattr__(self, "direction", frozen(np.reshape(self.direction, (-1, 2))))
+
+    def __len__(self) -> int:
+        return len(self.block)
+
+
+NO_PINS = Pins(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros((0, 2)))
+
+
+def first_course(blocks: Blocks, wall: Mask) -> Mask:
+    """Blocks of the wall whose lowest corner is level with the lowest of all, ``(nb,)``."""
+    lowest = np.minimum.reduceat(blocks.vertices[:, 1], blocks.first[:-1])
+    level: Mask = lowest <= lowest[wall].min() + blocks.tolerance
+    return wall & level
+
+
+def corner_pins(blocks: Blocks, wall: Mask, *, roller: bool) -> Pins:
+    """Hold the outer bottom corners of the first course.
+
+    Parameters
+    ----------
+    blocks, wall
+        The blocks, and which of them belong to the wall.
+    roller
+        Whether the right-hand corner is free to move horizontally.
+    """
+    members = first_course(blocks, wall)
+    corner = np.flatnonzero(
+        members[blocks.owner] & (blocks.vertices[:, 1] <= blocks.extent(members)[0][1] + blocks.tolerance)
+    )
+    left = corner[np.argmin(blocks.vertices[corner, 0])]
+    right = corner[np.argmax(blocks.vertices[corner, 0])]
+    held = [(left, (1, 0)), (left, (0, 1)), (right, (0, 1))]
+    if not roller:
+        held.append((right, (1, 0)))
+    vertex = np.array([vertex for vertex, _ in held])
+    return Pins(blocks.owner[vertex], blocks.vertices[vertex], np.array([d for _, d in held], dtype=float))
