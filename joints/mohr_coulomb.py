@@ -1,0 +1,56 @@
+"""The Mohr–Coulomb joint with a tension cut-off, as the set of forces that a joint point can carry.
+
+Per unit area, with σ the normal traction (tension positive) and τ the tangential one,
+
+    |τ| ≤ c − σ tan φ,    σ ≤ f_t ≤ c / tan φ.
+
+Written from its vertex this truncated cone is the sum of a cone and a segment,
+
+    σ = f_t − p,    |τ| ≤ s + p tan φ,    p ≥ 0,    s = c − f_t tan φ ≥ 0,
+
+which needs neither a division by tan φ nor one by c: dry (c = 0) and frictionless (tan φ = 0) joints are
+ordinary cases.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene import Array, JointMaterial
+
+
+@dataclass(frozen=True, eq=False)
+class PointStrength:
+    """Forces that joint points can carry.
+
+    Parameters
+    ----------
+    friction
+        tan φ.
+    tension : (np,) float
+        Largest tensile force f_t A [N].
+    shear : (np,) float
+        Shear force that the point carries at that tension, s A [N].
+    """
+
+    friction: float
+    tension: Array
+    shear: Array
+
+    def violation(self, normal: Array, tangential: Array) -> Array:
+        """Force [N] by which point forces ``(np,)`` lie outside the set; not positive inside it."""
+        pressure = self.tension - normal
+        return np.maximum(-pressure, np.abs(tangential) - self.shear - self.friction * pressure)
+
+    def dissipation(self, opening: Array, slip: Array) -> Array:
+        """Largest power [W] of admissible point forces on jump rates ``(np,)`` [m/s].
+
+        The support function of the set, for jumps in its normal cone: opening ≥ tan φ |slip|.
+        """
+        return self.tension * opening + self.shear * np.abs(slip)
+
+
+def point_strength(material: JointMaterial, area: Array) -> PointStrength:
+    """Strength of joint points that each stand for an area ``(np,)`` [m²]."""
+    shear = max(0.0, material.cohesion - material.tensile_strength * material.friction)
+    return PointStrength(material.friction, material.tensile_strength * area, shear * area)
