@@ -1,0 +1,32 @@
+"""Rigid blocks: kinematics and limit analysis."""
+
+from .equilibrium import Equilibrium, equilibrium
+from .kinematics import (
+    Jump,
+    dead_load,
+    jump_operator,
+    live_load,
+    mass_matrix_diagonal,
+    movable_freedoms,
+    pin_operator,
+    point_operator,
+)
+from .limit import LimitState, limit, limit_state
+from .nonassociated import limit_nonassociated
+
+__all__ = [
+    "Equilibrium",
+    "Jump",
+    "LimitState",
+    "dead_load",
+    "equilibrium",
+    "jump_operator",
+    "limit",
+    "limit_nonassociated",
+    "limit_state",
+    "live_load",
+    "mass_matrix_diagonal",
+    "movable_freedoms",
+    "pin_operator",
+    "point_operator",
+]

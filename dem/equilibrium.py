@@ -1,0 +1,120 @@
+"""Equilibrium of rigid blocks, without dimensions.
+
+    B_nᵀ f_n + B_tᵀ f_t + Cᵀ r − λ f_live = f_dead
+
+with point forces f (tension positive) and reactions r of pinned points. Lengths are measured in the root mean
+square block size, forces in the largest dead load (for a weightless wall, in the strongest joint point), and
+the live load in its largest entry, so that a wall of any size, density and unit of load gives the same numbers.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse import csc_array, csr_array
+
+from joints import JointPoints, PointStrength, joint_points, point_strength
+from scene import Array, Scene
+
+from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibrium:
+    """The equilibrium equations of a scene's movable blocks, scaled.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    points
+        Contact points: the ends of every joint, moved in by the scene's inset.
+    strength
+        Strength of those points, in force units.
+    opening, slip : (nd, np) sparse array
+        Transposed jump operators of the movable degrees of freedom.
+    reaction : (nd, n_pins) sparse array
+        Transposed pin operator.
+    dead, live : (nd,) float
+        Loads.
+    force_unit : float
+        Force [N] that counts as 1.
+    live_unit : float
+        Multiplier λ that counts as 1.
+    length_unit : float
+        Length [m] that counts as 1.
+    """
+
+    scene: Scene
+    points: JointPoints
+    strength: PointStrength
+    opening: csc_array
+    slip: csc_array
+    reaction: csc_array
+    dead: Array
+    live: Array
+    force_unit: float
+    live_unit: float
+    length_unit: float
+
+    @property
+    def freedoms(self) -> int:
+        """Number of movable degrees of freedom."""
+        return len(self.dead)
+
+    def motion(self, multipliers: Array) -> Array:
+        """Motion of all blocks ``(nb, 3)`` [m, m, rad], its fastest corner moving by one metre.
+
+        Parameters
+        ----------
+        multipliers : (nd,) float
+            Multipliers of the equilibrium equations.
+        """
+        blocks = self.scene.blocks
+        motion = np.zeros(3 * len(blocks))
+        motion[movable_freedoms(self.scene)] = multipliers
+        motion = motion.reshape(-1, 3) / [1.0, 1.0, self.length_unit]
+        arm = blocks.vertices - blocks.centroid[blocks.owner]
+        u, v, spin = motion[blocks.owner].T
+        fastest = float(np.hypot(u - spin * arm[:, 1], v + spin * arm[:, 0]).max())
+        return motion / fastest if fastest > 0 else motion
+
+    def point_forces(self, pressure: Array, tangential: Array) -> Array:
+        """Normal and tangential force at each point ``(np, 2)`` [N] from scaled ones, tension positive."""
+        return self.force_unit * np.column_stack([self.strength.tension - pressure, tangential])
+
+    def without_strength(self, load: Array) -> "Equilibrium":
+        """The same blocks under another dead load, their joints dry."""
+        nothing = np.zeros(len(self.points))
+        return replace(self, dead=load, strength=PointStrength(self.strength.friction, nothing, nothing))
+
+
+def equilibrium(scene: Scene) -> Equilibrium:
+    """Set up the equilibrium equations of a scene."""
+    points = joint_points(scene.joints, scene.thickness, inset=scene.joint.inset)
+    strength = point_strength(scene.joint, points.area)
+    jump = jump_operator(points, scene.blocks.centroid)
+    free = movable_freedoms(scene)
+    length_unit = float(np.sqrt(scene.blocks.area[~scene.fixed].mean()))
+    moments = np.tile([1.0, 1.0, 1.0 / length_unit], len(free) // 3)
+
+    dead, live = dead_load(scene)[free] * moments, live_load(scene)[free] * moments
+    live_size = float(np.abs(live).max())
+    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
+    force_unit = float(np.abs(dead).max()) or strongest or live_size
+
+    def rows(operator: csr_array) -> csc_array:
+        return csc_array(operator[:, free].T * moments[:, None])
+
+    return Equilibrium(
+        scene,
+        points,
+        PointStrength(strength.friction, strength.tension / force_unit, strength.shear / force_unit),
+        rows(jump.opening),
+        rows(jump.slip),
+        rows(pin_operator(scene)),
+        dead / force_unit,
+        live / live_size,
+        force_unit,
+        force_unit / live_size,
+        length_unit,
+    )

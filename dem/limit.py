@@ -1,0 +1,206 @@
+"""Associated limit analysis: the largest load multiplier that admissible joint forces can balance.
+
+Static and kinematic theorems hold for an associated joint (slip opens it by tan φ times the slip), so the
+program's optimum and its dual, the collapse mechanism, bracket one number (Livesley 1978). For true, zero
+dilatancy friction that number is an upper bound.
+"""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from results import Outcome, Status
+from scene import Array, Scene
+
+from .equilibrium import Equilibrium, equilibrium
+from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+
+FALLS = "falls under its dead load: no admissible forces balance it"
+SOUND = 1e-6
+"""Largest relative residual, violation or duality gap with which a program's answer is believed."""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitState:
+    """The optimum of a scene's limit analysis, with the measures by which it is believed.
+
+    Parameters
+    ----------
+    system
+        The equilibrium equations.
+    forces
+        The solution of the linear program.
+    """
+
+    system: Equilibrium
+    forces: ForceSolution
+
+    @property
+    def residual(self) -> float:
+        """Largest unbalanced force or moment, relative to the largest force."""
+        system, forces = self.system, self.forces
+        normal = system.strength.tension - forces.pressure
+        unbalanced = (
+            system.opening @ normal
+            + system.slip @ forces.tangential
+            + system.reaction @ forces.reaction
+            - forces.multiplier * system.live
+            - system.dead
+        )
+        return float(np.abs(unbalanced).max() / self._largest_force)
+
+    @property
+    def violation(self) -> float:
+        """Largest excess of a point force over its strength, relative to the largest force."""
+        normal = self.system.strength.tension - self.forces.pressure
+        excess = self.system.strength.violation(normal, self.forces.tangential)
+        return float(excess.max(initial=0.0) / self._largest_force)
+
+    @property
+    def jumps(self) -> tuple[Array, Array]:
+        """Opening and slip rates of the mechanism at each point, two ``(np,)``."""
+        return self.system.opening.T @ self.forces.motion, self.system.slip.T @ self.forces.motion
+
+    @property
+    def penetration(self) -> float:
+        """Largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest jump."""
+        opening, slip = self.jumps
+        largest = max(np.abs(opening).max(initial=0.0), np.abs(slip).max(initial=0.0))
+        short = self.system.strength.friction * np.abs(slip) - opening
+        return float(short.max(initial=0.0) / largest) if largest > 0 else 0.0
+
+    @property
+    def kinematic_multiplier(self) -> float:
+        """Multiplier at which the mechanism's loads do the work that its joints dissipate, in scaled units."""
+        system, motion = self.system, self.forces.motion
+        dissipated = system.strength.dissipation(*self.jumps).sum()
+        return float((dissipated - system.dead @ motion) / (system.live @ motion))
+
+    @property
+    def complementarity(self) -> float:
+        """Power of the forces short of the dissipation, point by point; zero at an optimum. Relative."""
+        opening, slip = self.jumps
+        strength, forces = self.system.strength, self.forces
+        power = (strength.tension - forces.pressure) * opening + forces.tangential * slip
+        short = np.abs(strength.dissipation(opening, slip) - power)
+        scale = np.abs(self.system.live @ forces.motion) * max(1.0, forces.multiplier)
+        return float(short.max(initial=0.0) / scale)
+
+    @property
+    def gap(self) -> float:
+        """Distance between static and kinematic multiplier, relative to the larger of them and 1."""
+        static, kinematic = self.forces.multiplier, self.kinematic_multiplier
+        return abs(kinematic - static) / max(1.0, abs(static))
+
+    @property
+    def sound(self) -> bool:
+        """Whether forces and mechanism prove each other right."""
+        return max(self.measures.values()) <= SOUND
+
+    @property
+    def measures(self) -> dict[str, float]:
+        """Everything that is zero for an exact answer."""
+        return {
+            "residual": self.residual,
+            "violation": self.violation,
+            "penetration": self.penetration,
+            "gap": self.gap,
+            "complementarity": self.complementarity,
+        }
+
+    @property
+    def _largest_force(self) -> float:
+        system, forces = self.system, self.forces
+        largest = max(np.abs(forces.pressure).max(initial=0.0), np.abs(forces.tangential).max(initial=0.0))
+        return float(max(largest, np.abs(system.dead).max(initial=0.0), forces.multiplier))
+
+
+def limit_state(system: Equilibrium) -> LimitState:
+    """Solve the associated limit analysis of a scene; its status may be other than optimal."""
+    return LimitState(system, solve_forces(system, coulomb(system.strength)))
+
+
+def stands_under_dead_load(system: Equilibrium) -> bool:
+    """Whether admissible forces balance the dead load alone.
+
+    Normal forces nearly always suffice and make a much smaller program; the friction cones are tried
+    only where they do not.
+    """
+    if not system.dead.any():
+        return True
+    dry = system.without_strength(system.dead)
+    if solve_forces(dry, frozen_friction(dry.strength, np.zeros(len(dry.points))), "zero").status != "optimal":
+        return solve_forces(system, coulomb(system.strength), "zero").status == "optimal"
+    return True
+
+
+def locks(system: Equilibrium) -> bool:
+    """Whether forces that no strength limits balance the live load alone, so that every λ is carried."""
+    dry = system.without_strength(system.live)
+    return solve_forces(dry, coulomb(dry.strength), "zero").status == "optimal"
+
+
+def judge(state: LimitState) -> tuple[Status, str]:
+    """Status of a limit analysis, and a line that says why.
+
+    An answer is believed only with its proof: an optimum with matching forces and mechanism, a dead
+    load that no forces balance, or forces that lock.
+    """
+    system, program = state.system, state.forces.status
+    if program == "optimal":
+        if not stands_under_dead_load(system):
+            return "infeasible", FALLS
+        if not state.sound:
+            return "failed", f"forces and mechanism disagree: {state.measures}"
+        return "collapse", "static and kinematic bound, associated joints; true friction may collapse earlier"
+    if program == "budget":
+        return "undecided", "the linear program ran out of iterations"
+    if not stands_under_dead_load(system):
+        return "infeasible", FALLS
+    if locks(system):
+        return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
+    return "failed", f"the linear program solver gave up: {program}"
+
+
+def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
+    """Associated limit analysis of a scene.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    tolerance
+        Relative width of the bracket asked for; strong duality closes it to about 1e-9.
+
+    Returns
+    -------
+    Outcome
+        `lower` from the forces, `upper` from the mechanism; `motion` is the mechanism, `force` the forces.
+    """
+    start = time.perf_counter()
+    system = equilibrium(scene)
+    state = limit_state(system)
+    status, message = judge(state)
+    found = Outcome(
+        scene.title, "limit", "undecided", dofs=system.freedoms, steps=state.forces.iterations, message=message
+    )
+    found = _bracketed(found, state, tolerance) if status == "collapse" else replace(found, status=status)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def _bracketed(found: Outcome, state: LimitState, tolerance: float) -> Outcome:
+    system, forces = state.system, state.forces
+    static, kinematic = system.live_unit * forces.multiplier, system.live_unit * state.kinematic_multiplier
+    lower, upper = min(static, kinematic), max(static, kinematic)
+    if upper - lower > tolerance * upper:
+        return replace(found, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
+    return replace(
+        found,
+        status="collapse",
+        multiplier=static,
+        lower=lower,
+        upper=upper,
+        motion=system.motion(forces.motion),
+        force=system.point_forces(forces.pressure, forces.tangential),
+    )

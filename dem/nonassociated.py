@@ -1,0 +1,198 @@
+"""Limit analysis with true Coulomb friction: slip without dilatancy.
+
+Static and kinematic theorems no longer hold and the collapse load need not be unique. After Gilbert,
+Casapulla & Ahmed (2006) a sequence of linear programs freezes each point's shear resistance at μ times a
+pressure that is brought up to date between programs. Here the pressure is averaged with weights
+(k + 1)^(−1/2) in program k, which settles where fixed weights keep wandering. What the sequence finds is only
+believed with a certificate: for the mechanism of one of its programs, forces under the full Coulomb law that
+vanish where the mechanism opens and are at the limit, against the motion, where it slides. The multipliers of
+such forces are an interval, every point of which is a load at which the wall can collapse.
+"""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from results import Outcome
+from scene import Array, Scene
+
+from .equilibrium import Equilibrium, equilibrium
+from .force_program import ForceSet, ForceSolution, coulomb, frozen_friction, solve_forces
+from .limit import judge, limit_state
+
+MOST_PROGRAMS = 40
+"""Programs of the sequence after which an uncertified collapse is given up."""
+
+ENOUGH = 2
+"""Certificates in a row that end the sequence."""
+
+STILL = 1e-7
+"""Jump rate, relative to the mechanism's largest, that counts as none."""
+
+PENETRATION = 1e-6
+"""Closing rate, relative to the mechanism's largest jump, that rules a mechanism out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """Proof that a wall can collapse: a mechanism and the interval of loads that drive it.
+
+    Parameters
+    ----------
+    motion : (nd,) float
+        The mechanism, scaled.
+    least, most
+        Forces at the smallest and the largest multiplier.
+    """
+
+    motion: Array
+    least: ForceSolution
+    most: ForceSolution
+
+
+def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
+    """Forces that obey Coulomb's law on a mechanism: none where it opens, at the limit where it slides.
+
+    Parameters
+    ----------
+    system
+        The equilibrium equations.
+    motion : (nd,) float
+        The mechanism.
+
+    Returns
+    -------
+    ForceSet or None
+        None for a mechanism whose blocks run into each other.
+    """
+    opening, slip = system.opening.T @ motion, system.slip.T @ motion
+    largest = max(np.abs(opening).max(initial=0.0), np.abs(slip).max(initial=0.0))
+    if largest == 0.0 or opening.min(initial=0.0) < -PENETRATION * largest:
+        return None
+    opens, forward, backward = opening > STILL * largest, slip > STILL * largest, slip < -STILL * largest
+    cone = coulomb(system.strength)
+    up, down = cone.most
+    return ForceSet(
+        cone.slopes,
+        (np.where(opens | backward, 0.0, up), np.where(opens | forward, 0.0, down)),
+        np.where(forward, cone.shear_high, cone.shear_low),
+        np.where(backward, cone.shear_low, cone.shear_high),
+    )
+
+
+def certify(system: Equilibrium, motion: Array) -> Certificate | None:
+    """Look for the loads that drive a mechanism; None where there are none."""
+    forces = driving_forces(system, motion)
+    if forces is None:
+        return None
+    least = solve_forces(system, forces, "smallest")
+    if least.status != "optimal":
+        return None
+    most = solve_forces(system, forces, "largest")
+    return Certificate(motion, least, most) if most.status == "optimal" else None
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """What the sequence of programs came to.
+
+    Parameters
+    ----------
+    certificates
+        Every collapse that was proved.
+    programs
+        Number of programs solved in the sequence.
+    frictionless
+        Whether normal forces alone carry any multiple of the live load.
+    """
+
+    certificates: list[Certificate]
+    programs: int
+    frictionless: bool = False
+
+
+def search(system: Equilibrium, pressure: Array) -> Search:
+    """Run the sequence from a first pressure ``(np,)``, certifying every second program."""
+    certificates: list[Certificate] = []
+    in_a_row = 0
+    for k in range(MOST_PROGRAMS):
+        program = solve_forces(system, frozen_friction(system.strength, pressure))
+        if program.status == "unbounded":
+            return Search(certificates, k + 1, frictionless=True)
+        if program.status != "optimal":
+            return Search(certificates, k + 1)
+        if k % 2:
+            certificate = certify(system, program.motion)
+            if certificate is not None:
+                certificates.append(certificate)
+            in_a_row = in_a_row + 1 if certificate is not None else 0
+            if in_a_row == ENOUGH:
+                return Search(certificates, k + 1)
+        weight = (k + 1.0) ** -0.5
+        pressure = (1 - weight) * pressure + weight * program.pressure
+    return Search(certificates, MOST_PROGRAMS)
+
+
+def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
+    """Limit analysis of a scene with true Coulomb friction.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    tolerance
+        Relative width of the interval asked for. A wider one is reported as it is, for the load itself
+        is not unique.
+
+    Returns
+    -------
+    Outcome
+        `lower` and `upper` are the smallest and largest load at which a collapse was certified, and
+        `multiplier` is the smallest; smaller ones are not excluded. `motion` and `force` belong to it.
+        Without a certificate the status is ``undecided`` and `upper` the associated load, which no true
+        collapse load exceeds.
+    """
+    start = time.perf_counter()
+    system = equilibrium(scene)
+    associated = limit_state(system)
+    status, message = judge(associated)
+    found = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=system.freedoms, steps=1, message=message)
+    if status in ("collapse", "unbounded"):
+        found = _collapse(found, system, associated.forces, tolerance)
+    else:
+        found = replace(found, status=status)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def _collapse(found: Outcome, system: Equilibrium, associated: ForceSolution, tolerance: float) -> Outcome:
+    bounded = associated.status == "optimal"
+    first = associated if bounded else solve_forces(system, coulomb(system.strength), "zero")
+    searched = search(system, first.pressure)
+    found = replace(found, steps=1 + searched.programs)
+    if not searched.certificates:
+        if searched.frictionless:
+            return replace(
+                found, status="unbounded", message="self-locking: normal forces carry any multiple of the live load"
+            )
+        given_up = f"no collapse certified in {searched.programs} programs; "
+        if not bounded:
+            return replace(found, message=given_up + "with associated joints the wall locks")
+        upper = system.live_unit * associated.multiplier
+        return replace(found, upper=upper, message=given_up + "upper is the associated bound")
+    worst = min(searched.certificates, key=lambda certificate: certificate.least.multiplier)
+    lower = system.live_unit * worst.least.multiplier
+    upper = system.live_unit * max(certificate.most.multiplier for certificate in searched.certificates)
+    message = "collapse is certified at every load of the interval; smaller ones are not excluded"
+    if upper - lower > tolerance * upper:
+        message += "; wider than the tolerance because the load of these mechanisms is not unique"
+    return replace(
+        found,
+        status="collapse",
+        multiplier=lower,
+        lower=lower,
+        upper=max(lower, upper),
+        message=message,
+        motion=system.motion(worst.motion),
+        force=system.point_forces(worst.least.pressure, worst.least.tangential),
+    )
