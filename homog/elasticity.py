@@ -1,0 +1,44 @@
+"""Elastic moduli of running bond with rigid blocks and elastic joints (Cecchi & Sab 2004)."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Moduli:
+    """In-plane moduli per unit thickness [Pa]: σ11 = a1111 E11, σ22 = a2222 E22, σ12 = 2 a1212 E12.
+
+    There is no coupling between the two normal strains (a1122 = 0), because the blocks are rigid.
+    """
+
+    a1111: float
+    a2222: float
+    a1212: float
+
+
+def elastic_moduli(
+    block_width: float,
+    block_height: float,
+    *,
+    bed_normal: float,
+    bed_shear: float,
+    head_normal: float,
+    head_shear: float,
+) -> Moduli:
+    """Moduli of the infinite wall.
+
+    Parameters
+    ----------
+    block_width, block_height
+        b and a [m].
+    bed_normal, bed_shear, head_normal, head_shear
+        Joint stiffness per unit area [Pa/m] of bed (h) and head (v) joints.
+    """
+    b, a = block_width, block_height
+    # Shear strain tilts the bond against the heads' shear and the beds' normal stiffness, in series with bed shear.
+    tilting = b * head_shear + bed_normal * b**2 / (4 * a)
+    sliding = a * bed_shear
+    return Moduli(
+        b * head_normal + bed_shear * b**2 / (4 * a),
+        a * bed_normal,
+        tilting * sliding / (tilting + sliding),
+    )

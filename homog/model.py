@@ -1,0 +1,91 @@
+"""Model ``homog``: the closed-form multiplier of a scene, where the scene is what the closed form is about."""
+
+import time
+
+import numpy as np
+
+from results import Outcome
+from scene import Lateral, Scene, SceneError
+
+from .collapse import crack_slope, lateral_multiplier
+
+
+def homog(scene: Scene) -> Outcome:
+    """Collapse multiplier of a dry running-bond panel under lateral load, as a homogenised continuum.
+
+    Parameters
+    ----------
+    scene
+        A full rectangular panel on a frictional base or a fixed first course, whose height then counts
+        from there.
+
+    Returns
+    -------
+    Outcome
+        `upper` equals the multiplier: a mechanism of the continuum proves it for the continuum. For the
+        wall of blocks it is an estimate, on either side.
+
+    Raises
+    ------
+    SceneError
+        For a scene to which the closed form does not apply.
+    """
+    start = time.perf_counter()
+    reason = _why_not(scene)
+    if reason or scene.bond is None:
+        raise SceneError("model homog", f"has no closed form for this scene: {reason}")
+    low, high = scene.blocks.extent(~scene.fixed)
+    length, height = high - low
+    friction = scene.joint.friction
+    slope = crack_slope(scene.bond.width, scene.bond.height, friction)
+    multiplier = lateral_multiplier(height / length, slope, friction)
+    sliding = "sliding" if multiplier == friction else "turning about a crack"
+    return Outcome(
+        scene.title,
+        "homog",
+        "collapse",
+        multiplier=multiplier,
+        upper=multiplier,
+        seconds=time.perf_counter() - start,
+        message=f"homogenised continuum, {sliding}; upper bound of the continuum, an estimate for the blocks",
+    )
+
+
+def _why_not(scene: Scene) -> str:
+    """The first assumption of the closed form that a scene breaks, or nothing."""
+    if scene.bond is None:
+        return "it needs a block width and height, not a drawing"
+    if not isinstance(scene.load.live, Lateral):
+        return 'it needs load.live.kind = "lateral"'
+    if len(scene.pins):
+        return 'it needs support.kind = "base" or "fixed-first-course"'
+    if scene.joint.cohesion > 0:
+        return "it needs dry joints, joint.cohesion = 0"
+    movable = ~scene.fixed
+    low, high = scene.blocks.extent(movable)
+    area = scene.blocks.area[movable].sum()
+    if not np.isclose(area, np.prod(high - low), rtol=1e-6):
+        return "it needs a full rectangular panel with flush ends and no openings"
+    if not _is_running_bond(scene):
+        return "it needs running bond, every course half a block off its neighbours"
+    return ""
+
+
+def _is_running_bond(scene: Scene) -> bool:
+    """Whether the head joints are those of running bond: one at every second half block, shifted course by course."""
+    bond, movable = scene.bond, ~scene.fixed
+    if bond is None:
+        return False
+    low, high = scene.blocks.extent(movable)
+    ends = scene.joints.ends[movable[scene.joints.block].all(axis=1)]
+    rise = np.abs(ends[:, 1] - ends[:, 0])
+    middle = (ends[rise[:, 1] > rise[:, 0]].mean(axis=1) - low) / [bond.width / 2, bond.height]
+    column, course = np.rint(middle[:, 0]).astype(int), np.floor(middle[:, 1]).astype(int)
+    if not np.allclose(column, middle[:, 0], rtol=0, atol=1e-3):
+        return False
+    columns, courses = np.rint((high - low) / [bond.width / 2, bond.height]).astype(int)
+    found = set(zip(column.tolist(), course.tolist(), strict=True))
+    return any(
+        found == {(x, y) for y in range(courses) for x in range(1, columns) if (x + y) % 2 == parity}
+        for parity in (0, 1)
+    )
