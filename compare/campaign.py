@@ -1,0 +1,146 @@
+"""Campaigns: every model on every scene, one process a case, each result kept as soon as it is there."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TypeAlias
+
+from joblib import Parallel, delayed, parallel_config
+
+from results import Outcome, StoreError, load_outcome, save_outcome
+from scene import Scene, SceneError
+
+from .fingerprint import fingerprint
+from .models import MODELS, TOLERANCE, check_model, check_tolerance
+
+Cell: TypeAlias = tuple[str, str]
+"""Name of a scene and of a model."""
+
+
+@dataclass
+class Campaign:
+    """What a campaign has so far.
+
+    Parameters
+    ----------
+    outcomes
+        Outcome of each cell.
+    inapplicable
+        Why a model says nothing about a scene.
+    reused
+        Cells whose outcome was found in the folder.
+    """
+
+    outcomes: dict[Cell, Outcome] = field(default_factory=dict)
+    inapplicable: dict[Cell, str] = field(default_factory=dict)
+    reused: set[Cell] = field(default_factory=set)
+
+    def __len__(self) -> int:
+        return len(self.outcomes) + len(self.inapplicable)
+
+
+class Interrupted(Exception):
+    """A campaign stopped by Ctrl-C; what it has is in the folder."""
+
+    def __init__(self, campaign: Campaign) -> None:
+        super().__init__("interrupted")
+        self.campaign = campaign
+
+
+@dataclass(frozen=True)
+class _Answer:
+    cell: Cell
+    outcome: Outcome | None
+    reason: str = ""
+    reused: bool = False
+
+
+def run_campaign(
+    scenes: Mapping[str, Scene],
+    models: Sequence[str] = tuple(MODELS),
+    *,
+    folder: Path,
+    tolerance: float = TOLERANCE,
+    jobs: int = -1,
+    fresh: bool = False,
+    progress: Callable[[Cell], None] = lambda cell: None,
+) -> Campaign:
+    """Run models on scenes.
+
+    Parameters
+    ----------
+    scenes
+        Scenes by name.
+    models
+        Names of models.
+    folder
+        Where outcomes are kept, as ``folder/scene/model/``. A whole outcome computed from the same scene,
+        tolerance and code is reused.
+    tolerance
+        Relative width of the bracket asked for.
+    jobs
+        Number of processes; −1 is one a core.
+    fresh
+        Compute everything again.
+    progress
+        Called with each cell that is done.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C, with what there is. Running the same campaign again goes on from there.
+    """
+    for model in models:
+        check_model(model, "--models")
+    check_tolerance(tolerance)
+    largest_first = sorted(scenes, key=lambda name: -len(scenes[name].blocks))
+    # Dear models stand last in the registry; started first, they do not leave one process working alone.
+    cells = [(name, model) for model in reversed(models) for name in largest_first]
+    campaign = Campaign()
+    try:
+        with parallel_config(backend="loky", inner_max_num_threads=1):
+            for answer in _answers(cells, scenes, folder, tolerance, jobs, fresh):
+                if answer.outcome is None:
+                    campaign.inapplicable[answer.cell] = answer.reason
+                else:
+                    campaign.outcomes[answer.cell] = answer.outcome
+                if answer.reused:
+                    campaign.reused.add(answer.cell)
+                progress(answer.cell)
+    except KeyboardInterrupt:
+        raise Interrupted(campaign) from None
+    return campaign
+
+
+def _answers(
+    cells: Sequence[Cell], scenes: Mapping[str, Scene], folder: Path, tolerance: float, jobs: int, fresh: bool
+) -> Iterator[_Answer]:
+    tasks = (delayed(_run_cell)(cell, scenes[cell[0]], folder, tolerance, fresh) for cell in cells)
+    yield from Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)(tasks)
+
+
+def _run_cell(cell: Cell, scene: Scene, folder: Path, tolerance: float, fresh: bool) -> _Answer:
+    """Run one model on one scene, or find its outcome; called in a process of its own."""
+    name, model = cell
+    place = folder / name / model
+    key = fingerprint(scene, model, tolerance)
+    if not fresh:
+        found = _find(place, key)
+        if found is not None:
+            return _Answer(cell, found, reused=True)
+    try:
+        outcome = MODELS[model](scene, tolerance)
+    except SceneError as reason:
+        return _Answer(cell, None, str(reason))
+    except Exception as error:  # one broken case must not lose a campaign; it is reported, and not kept
+        return _Answer(cell, Outcome(scene.title, model, "failed", message=f"{type(error).__name__}: {error}"))
+    save_outcome(outcome, place, key)
+    return _Answer(cell, outcome)
+
+
+def _find(place: Path, key: str) -> Outcome | None:
+    try:
+        outcome, stored_key = load_outcome(place)
+    except StoreError:
+        return None
+    return outcome if stored_key == key else None

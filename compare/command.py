@@ -1,0 +1,207 @@
+"""The command line: ``runningbond run`` and ``runningbond compare``."""
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import App, CycloptsError, Parameter
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from results import Outcome, save_outcome, write_atomically
+from scene import Scene, SceneError, read_scene
+
+from .campaign import Campaign, Cell, Interrupted, run_campaign
+from .figures import draw_figures
+from .fingerprint import fingerprint
+from .models import MODELS, TOLERANCE, check_model, check_tolerance, run_model
+from .published import PUBLISHED, find_scene
+from .table import cost_sheets, csv_text, multiplier_sheets
+
+DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
+UNDECIDED = ("undecided", "failed")
+
+app = App(
+    name="runningbond",
+    help="From the description of a masonry wall to its collapse.",
+    version=lambda: version("runningbond"),
+    result_action="return_value",
+)
+
+
+@app.command
+def run(
+    scene: str,
+    /,
+    *,
+    model: str,
+    tolerance: float = TOLERANCE,
+    json: Annotated[bool, Parameter(negative="")] = False,
+    out: Path | None = None,
+) -> int:
+    """Run one model on one scene.
+
+    Parameters
+    ----------
+    scene
+        Scene file, or the name of a published scene such as panel-01.
+    model
+        homog, limit or limit-nonassociated.
+    tolerance
+        Relative width of the bracket asked for.
+    json
+        Print one JSON object and nothing else.
+    out
+        Folder in which to keep the result.
+    """
+    check_model(model)
+    check_tolerance(tolerance)
+    wall = read_scene(find_scene(scene))
+    outcome = run_model(model, wall, tolerance)
+    if out is not None:
+        save_outcome(outcome, out, fingerprint(wall, model, tolerance))
+    print(_as_json(outcome) if json else _as_text(outcome))
+    return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+@app.command
+def compare(
+    *scenes: str,
+    models: str = ",".join(MODELS),
+    tolerance: float = TOLERANCE,
+    out: Path = Path("comparison"),
+    jobs: int = -1,
+    fresh: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Run models on scenes and tabulate them beside the published values.
+
+    Results are kept as they come: an interrupted comparison goes on where it was.
+
+    Parameters
+    ----------
+    scenes
+        Scene files or names; all published walls where none is given.
+    models
+        Names of models, separated by commas.
+    tolerance
+        Relative width of the bracket asked for.
+    out
+        Folder for results, tables and charts.
+    jobs
+        Number of processes; -1 is one a core.
+    fresh
+        Compute again what is already there.
+    """
+    chosen = [model.strip() for model in models.split(",")]
+    for model in chosen:
+        check_model(model, "--models")
+    check_tolerance(tolerance)
+    if jobs == 0 or jobs < -1:
+        raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+    walls = _read_all(scenes or [case.name for case in PUBLISHED])
+    out.mkdir(parents=True, exist_ok=True)
+    console = Console(stderr=True)
+    try:
+        campaign = _run_with_progress(walls, chosen, out, tolerance, jobs, fresh, console)
+    except Interrupted as stopped:
+        total = len(walls) * len(chosen)
+        console.print(
+            f"Interrupted: {len(stopped.campaign)} of {total} cases are kept in {out}; the same command goes on."
+        )
+        return STOPPED
+    _report(walls, chosen, campaign, out)
+    failed = [cell for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
+    for name, model in failed:
+        console.print(f"{name}, {model}: {campaign.outcomes[name, model].message}")
+    return NO_ANSWER if failed else DONE
+
+
+def _read_all(scenes: Sequence[str]) -> dict[str, Scene]:
+    walls: dict[str, Scene] = {}
+    for scene in scenes:
+        path = find_scene(scene)
+        if path.stem in walls:
+            raise SceneError(scene, f'is the second scene called "{path.stem}"; results are kept by file name')
+        walls[path.stem] = read_scene(path)
+    return walls
+
+
+def _run_with_progress(
+    walls: Mapping[str, Scene],
+    models: Sequence[str],
+    out: Path,
+    tolerance: float,
+    jobs: int,
+    fresh: bool,
+    console: Console,
+) -> Campaign:
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console) as bar:
+        task = bar.add_task("comparing", total=len(walls) * len(models))
+
+        def advance(cell: Cell) -> None:
+            bar.update(task, advance=1, description=f"{cell[0]}, {cell[1]}")
+
+        return run_campaign(walls, models, folder=out, tolerance=tolerance, jobs=jobs, fresh=fresh, progress=advance)
+
+
+def _report(walls: Mapping[str, Scene], models: Sequence[str], campaign: Campaign, out: Path) -> None:
+    sheets = multiplier_sheets(walls, models, campaign)
+    costs = cost_sheets(walls, models, campaign)
+    write_atomically(out / "table.csv", csv_text(walls, models, campaign).encode())
+    markdown = "\n".join(sheet.markdown() for sheet in [*sheets, *costs])
+    write_atomically(out / "table.md", markdown.encode())
+    charts = draw_figures(campaign, out)
+    console = Console() if sys.stdout.isatty() else Console(width=160)
+    for sheet in [*sheets, *costs]:
+        console.print(sheet.terminal())
+    console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them found in {out}")
+    console.print("written: " + ", ".join(str(path) for path in [out / "table.csv", out / "table.md", *charts]))
+
+
+def _as_json(outcome: Outcome) -> str:
+    return json.dumps(outcome.summary(), allow_nan=False)
+
+
+def _as_text(outcome: Outcome) -> str:
+    bracket = ", ".join(
+        f"{name} {value:.6g}"
+        for name, value in (("λ", outcome.multiplier), ("lower", outcome.lower), ("upper", outcome.upper))
+        if value is not None
+    )
+    size = "" if outcome.dofs is None else f"{outcome.dofs} degrees of freedom, {outcome.steps} steps, "
+    return "\n".join(
+        [
+            f"{outcome.scene}: {outcome.model}",
+            f"  {outcome.status}{': ' + bracket if bracket else ''}",
+            f"  {outcome.message}",
+            f"  {size}{outcome.seconds:.3g} s",
+        ]
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and leave with its exit code."""
+    sys.exit(command(arguments))
+
+
+def command(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; bad input is one line on standard error and exit code 2."""
+    tokens = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        result = app(tokens, exit_on_error=False, print_error=False)
+    except (SceneError, CycloptsError) as error:
+        return _refuse(str(error))
+    except OSError as error:
+        return _refuse(f"{error.filename or 'output'}: {error.strerror or error}")
+    except KeyboardInterrupt:
+        return STOPPED
+    return result if isinstance(result, int) else DONE
+
+
+def _refuse(message: str) -> int:
+    print("runningbond: " + " ".join(message.split()), file=sys.stderr)
+    return BAD_INPUT

@@ -1,0 +1,58 @@
+"""The models that exist, by the names the command line knows them by."""
+
+import difflib
+import math
+from collections.abc import Callable
+from typing import TypeAlias
+
+from dem import limit, limit_nonassociated
+from homog import homog
+from results import Outcome
+from scene import Scene, SceneError
+
+Model: TypeAlias = Callable[[Scene, float], Outcome]
+"""From a scene and the relative width of the bracket asked for to an outcome."""
+
+MODELS: dict[str, Model] = {
+    "homog": lambda scene, tolerance: homog(scene),
+    "limit": limit,
+    "limit-nonassociated": limit_nonassociated,
+}
+
+TOLERANCE = 0.01
+
+
+def check_model(name: str, option: str = "--model") -> None:
+    """Refuse a name that is no model's."""
+    if name not in MODELS:
+        likely = difflib.get_close_matches(name, MODELS, n=1)
+        hint = f'; did you mean "{likely[0]}"?' if likely else ""
+        raise SceneError(option, f"must be one of {', '.join(MODELS)}{hint}", name)
+
+
+def check_tolerance(tolerance: float) -> None:
+    """Refuse a tolerance that is no relative width."""
+    if not (math.isfinite(tolerance) and 0 < tolerance < 1):
+        raise SceneError("--tolerance", "must be a number above 0 and below 1", tolerance)
+
+
+def run_model(name: str, scene: Scene, tolerance: float = TOLERANCE) -> Outcome:
+    """Run a model by name.
+
+    Parameters
+    ----------
+    name
+        A key of `MODELS`.
+    scene
+        The scene.
+    tolerance
+        Relative width of the bracket asked for.
+
+    Raises
+    ------
+    SceneError
+        For an unknown model, or one that does not apply to the scene.
+    """
+    check_model(name)
+    check_tolerance(tolerance)
+    return MODELS[name](scene, tolerance)

@@ -1,0 +1,171 @@
+"""Tables of a campaign: printed values beside every model's bracket, for the terminal, Markdown and CSV."""
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from rich.table import Table as RichTable
+
+from homog import homog
+from results import Outcome
+from scene import Scene, SceneError
+
+from .campaign import Campaign
+from .published import BARALDI, PUBLISHED
+
+OWN = "Your scenes"
+CORRECTED = "HOMO corrected, tan 30°"
+ALIKE = 1e-3
+"""Relative width below which a bracket is printed as one number."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One table: a title, column heads and rows of cells."""
+
+    title: str
+    heads: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+    def markdown(self) -> str:
+        """The table in Markdown, under its title."""
+        lines = [f"### {self.title}", "", _line(self.heads), _line(["---"] * len(self.heads))]
+        return "\n".join([*lines, *map(_line, self.rows), ""])
+
+    def terminal(self) -> RichTable:
+        """The table for rich's console."""
+        table = RichTable(title=self.title, title_justify="left")
+        for head in self.heads:
+            table.add_column(head)
+        for row in self.rows:
+            table.add_row(*row)
+        return table
+
+
+def _line(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
+def multiplier_sheets(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Campaign) -> list[Sheet]:
+    """Printed values and brackets, one table a source."""
+    sheets = []
+    for source, names in _by_source(scenes).items():
+        printed = list(dict.fromkeys(label for name in names for label in _printed(name, scenes[name])))
+        heads = ["scene", "title", *(f"printed {label}" if label != CORRECTED else label for label in printed), *models]
+        rows = []
+        for name in names:
+            values = _printed(name, scenes[name])
+            cells = [_printed_number(label, values) for label in printed]
+            rows.append([name, scenes[name].title, *cells, *(_cell(campaign, name, model) for model in models)])
+        sheets.append(Sheet(source, heads, rows))
+    return sheets
+
+
+def cost_sheets(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Campaign) -> list[Sheet]:
+    """Degrees of freedom, steps and seconds, one table a source."""
+    return [
+        Sheet(
+            f"{source}: degrees of freedom / steps / seconds",
+            ["scene", "blocks", *models],
+            [
+                [name, str(int(scenes[name].wall.sum())), *(_cost(campaign, name, model) for model in models)]
+                for name in names
+            ],
+        )
+        for source, names in _by_source(scenes).items()
+    ]
+
+
+def csv_text(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Campaign) -> str:
+    """One row a scene and model, with the printed values of the scene."""
+    labels = list(dict.fromkeys(label for name in scenes for label in _printed(name, scenes[name])))
+    scalars = [key for key in Outcome("", "", "undecided").summary() if key not in ("scene", "model")]
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(["scene", "title", "source", "blocks", "model", *scalars, *(f"printed {x}" for x in labels)])
+    for source, names in _by_source(scenes).items():
+        for name in names:
+            scene, printed = scenes[name], _printed(name, scenes[name])
+            for model in models:
+                outcome = campaign.outcomes.get((name, model))
+                found = outcome.summary() if outcome else _nothing(campaign, name, model)
+                writer.writerow(
+                    [name, scene.title, source, int(scene.wall.sum()), model]
+                    + [found.get(key) for key in scalars]
+                    + [printed.get(label) for label in labels]
+                )
+    return buffer.getvalue()
+
+
+def _nothing(campaign: Campaign, name: str, model: str) -> dict[str, str]:
+    reason = campaign.inapplicable.get((name, model))
+    return {"status": "not run"} if reason is None else {"status": "not applicable", "message": reason}
+
+
+def _by_source(scenes: Mapping[str, Scene]) -> dict[str, list[str]]:
+    sources = {case.name: case.source for case in PUBLISHED}
+    groups: dict[str, list[str]] = {}
+    for name in scenes:
+        groups.setdefault(sources.get(name, OWN), []).append(name)
+    return groups
+
+
+def _printed(name: str, scene: Scene) -> dict[str, float]:
+    """Values printed for a scene, and the homogenised one as its formula should read."""
+    for case in PUBLISHED:
+        if case.name == name:
+            return {**case.printed, **({CORRECTED: corrected_homo(scene)} if case.source == BARALDI else {})}
+    return {}
+
+
+def corrected_homo(scene: Scene) -> float:
+    """Homogenised multiplier by the corrected Eq. (6), with the tan 30° the paper's column was computed with."""
+    friction = math.tan(math.radians(30))
+    multiplier = homog(replace(scene, joint=replace(scene.joint, friction=friction))).multiplier
+    if multiplier is None:  # pragma: no cover - homog answers or refuses
+        raise SceneError("model homog", "found no multiplier")
+    return multiplier
+
+
+def _printed_number(label: str, values: Mapping[str, float]) -> str:
+    """A printed value with the three decimals that papers give, or nothing."""
+    if label not in values:
+        return ""
+    return _number(values[label]) if label == CORRECTED else f"{values[label]:.3f}"
+
+
+def _cell(campaign: Campaign, name: str, model: str) -> str:
+    if (name, model) in campaign.inapplicable:
+        return "n/a"
+    outcome = campaign.outcomes.get((name, model))
+    if outcome is None:
+        return "not run"
+    bracket = _bracket(outcome)
+    return bracket if outcome.status == "collapse" else f"{outcome.status} {bracket}".strip()
+
+
+def _bracket(outcome: Outcome) -> str:
+    lower, upper, multiplier = outcome.lower, outcome.upper, outcome.multiplier
+    if lower is not None and upper is not None and upper - lower > ALIKE * abs(upper):
+        return f"{_number(lower)} – {_number(upper)}"
+    if multiplier is not None:
+        return _number(multiplier)
+    if upper is not None:
+        return f"≤ {_number(upper)}"
+    return "" if lower is None else f"≥ {_number(lower)}"
+
+
+def _cost(campaign: Campaign, name: str, model: str) -> str:
+    outcome = campaign.outcomes.get((name, model))
+    if outcome is None:
+        return "n/a" if (name, model) in campaign.inapplicable else "not run"
+    dofs = "–" if outcome.dofs is None else str(outcome.dofs)
+    steps = "–" if outcome.steps is None else str(outcome.steps)
+    return f"{dofs} / {steps} / {outcome.seconds:.2g}"
+
+
+def _number(value: float) -> str:
+    """Four decimals for a multiplier of order one, whole newtons for a force."""
+    return f"{value:.4f}" if abs(value) < 100 else f"{value:,.0f}"
