@@ -1,5 +1,6 @@
 """Campaigns: every model on every scene, one process a case, each result kept as soon as it is there."""
 
+import signal
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -98,7 +99,7 @@ def run_campaign(
     cells = [(name, model) for model in reversed(models) for name in largest_first]
     campaign = Campaign()
     try:
-        with parallel_config(backend="loky", inner_max_num_threads=1):
+        with parallel_config(backend="loky", inner_max_num_threads=1, initializer=_leave_interrupts_to_the_parent):
             for answer in _answers(cells, scenes, folder, tolerance, jobs, fresh):
                 if answer.outcome is None:
                     campaign.inapplicable[answer.cell] = answer.reason
@@ -117,6 +118,11 @@ def _answers(
 ) -> Iterator[_Answer]:
     tasks = (delayed(_run_cell)(cell, scenes[cell[0]], folder, tolerance, fresh) for cell in cells)
     yield from Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)(tasks)
+
+
+def _leave_interrupts_to_the_parent() -> None:
+    """Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _run_cell(cell: Cell, scene: Scene, folder: Path, tolerance: float, fresh: bool) -> _Answer:

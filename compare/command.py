@@ -109,7 +109,8 @@ def compare(
     except Interrupted as stopped:
         total = len(walls) * len(chosen)
         console.print(
-            f"Interrupted: {len(stopped.campaign)} of {total} cases are kept in {out}; the same command goes on."
+            f"Interrupted: {len(stopped.campaign)} of {total} cases are kept in {out}; the same command goes on.",
+            soft_wrap=True,
         )
         return STOPPED
     _report(walls, chosen, campaign, out)

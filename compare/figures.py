@@ -29,7 +29,7 @@ OURS = {
 }
 
 
-def figure_6_data(points: int = 121) -> tuple[Array, Array]:
+def figure_6_data(points: int = 120) -> tuple[Array, Array]:
     """Multiplier of the homogenised panel against its slenderness.
 
     Returns

@@ -113,7 +113,7 @@ class LimitState:
     def _largest_force(self) -> float:
         system, forces = self.system, self.forces
         largest = max(np.abs(forces.pressure).max(initial=0.0), np.abs(forces.tangential).max(initial=0.0))
-        return float(max(largest, np.abs(system.dead).max(initial=0.0), forces.multiplier))
+        return float(max(largest, np.abs(system.dead).max(initial=0.0), forces.multiplier)) or 1.0
 
 
 def limit_state(system: Equilibrium) -> LimitState:

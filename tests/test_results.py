@@ -1,0 +1,123 @@
+"""An outcome is consistent, and comes back from disk as it went, or not at all."""
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from results import Outcome, StoreError, load_outcome, save_outcome, write_atomically
+
+numbers = st.floats(0, 1e6)
+
+
+@given(
+    bracket=st.lists(numbers, min_size=3, max_size=3).map(sorted),
+    dofs=st.none() | st.integers(0, 10**6),
+    message=st.text(max_size=50),
+    rows=st.integers(0, 5),
+)
+def test_an_outcome_comes_back_from_disk_as_it_went(
+    tmp_path_factory: pytest.TempPathFactory, bracket: list[float], dofs: int | None, message: str, rows: int
+) -> None:
+    folder = tmp_path_factory.mktemp("outcome")
+    motion = np.arange(3.0 * rows).reshape(rows, 3) / 7
+    lower, multiplier, upper = bracket
+    outcome = Outcome(
+        "wall", "limit", "collapse", multiplier, lower, upper, dofs, 3, 0.1, message, motion, motion[:, :2]
+    )
+    save_outcome(outcome, folder, "key")
+    back, key = load_outcome(folder)
+    assert key == "key"
+    assert back.summary() == outcome.summary()
+    assert np.array_equal(back.motion, motion)
+    assert np.array_equal(back.force, motion[:, :2])
+
+
+@pytest.mark.parametrize(
+    "contents",
+    [
+        {"status": "collapse"},  # a collapse has a multiplier
+        {"status": "undecided", "multiplier": 0.3},  # and nothing else has
+        {"status": "collapse", "multiplier": 0.3, "lower": 0.4},
+        {"status": "collapse", "multiplier": 0.3, "upper": 0.2},
+        {"status": "collapse", "multiplier": math.nan},
+        {"status": "undecided", "upper": math.inf},
+        {"status": "fine"},
+    ],
+)
+def test_an_inconsistent_outcome_cannot_be_made(contents: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="bracket|multiplier|status"):
+        Outcome("wall", "limit", **contents)
+
+
+def test_arrays_of_an_outcome_cannot_be_changed() -> None:
+    outcome = Outcome("wall", "limit", "undecided", motion=np.ones((2, 3)))
+    with pytest.raises(ValueError, match="read-only"):
+        outcome.motion[0, 0] = 2
+
+
+def stored(folder: Path) -> Path:
+    save_outcome(Outcome("wall", "limit", "collapse", 0.5, motion=np.ones((4, 3))), folder, "key")
+    return folder
+
+
+def test_nothing_but_the_record_and_its_arrays_is_left_behind(tmp_path: Path) -> None:
+    stored(stored(tmp_path))
+    save_outcome(Outcome("wall", "limit", "collapse", 0.6, motion=np.zeros((4, 3))), tmp_path, "key")
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".json", ".npz"]
+
+
+def test_every_truncation_is_noticed(tmp_path: Path) -> None:
+    """A file cut off at any length is never read as whole."""
+    stored(tmp_path)
+    for path in sorted(tmp_path.iterdir()):
+        whole = path.read_bytes()
+        for length in range(0, len(whole) - 2, 7):
+            path.write_bytes(whole[:length])
+            with pytest.raises(StoreError):
+                load_outcome(tmp_path)
+        path.write_bytes(whole)
+    load_outcome(tmp_path)
+
+
+def test_a_flipped_bit_in_the_arrays_is_noticed(tmp_path: Path) -> None:
+    stored(tmp_path)
+    arrays = next(tmp_path.glob("*.npz"))
+    content = bytearray(arrays.read_bytes())
+    content[len(content) // 2] ^= 1
+    arrays.write_bytes(content)
+    with pytest.raises(StoreError, match="vouches"):
+        load_outcome(tmp_path)
+
+
+@pytest.mark.parametrize("record", ["", "[]", "{}", "null", '{"key": 1}', '{"arrays": "x.npz", "sha256": ""}'])
+def test_a_record_of_something_else_is_noticed(tmp_path: Path, record: str) -> None:
+    stored(tmp_path)
+    (tmp_path / "outcome.json").write_text(record)
+    with pytest.raises(StoreError):
+        load_outcome(tmp_path)
+
+
+def test_a_write_that_fails_leaves_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "table.csv"
+    write_atomically(path, b"before")
+
+    def broken(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", broken)
+    with pytest.raises(OSError, match="space"):
+        write_atomically(path, b"after")
+    assert path.read_bytes() == b"before"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_the_record_is_json_that_anyone_can_read(tmp_path: Path) -> None:
+    record = json.loads((stored(tmp_path) / "outcome.json").read_text())
+    assert record["multiplier"] == 0.5
+    assert record["lower"] is None
