@@ -68,7 +68,8 @@ def _figure_6(campaign: Campaign, slenderness: Array, multiplier: Array) -> Figu
     figure = Figure(figsize=(7, 4.6), layout="constrained")
     axes = figure.add_subplot()
     for (label, _), colour, column in zip(TEXTURES, COLOURS, multiplier.T, strict=True):
-        axes.plot(slenderness, column, color=colour, label=f"b/a = {label}")
+        axes.plot(slenderness, column, color=colour)
+        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va="center", color=colour, annotation_clip=False)
     panels = [case for case in PUBLISHED if case.source == BARALDI]
     for i, case in enumerate(panels):
         outcome = campaign.outcomes.get((case.name, "limit"))
@@ -79,7 +80,7 @@ def _figure_6(campaign: Campaign, slenderness: Array, multiplier: Array) -> Figu
     axes.annotate("sliding, tan φ", (2.98, FRICTION), ha="right", va="bottom", color="0.4", fontsize=9)
     axes.set(xlabel="slenderness H / L", ylabel="collapse multiplier λ", xlim=(0, 3), ylim=(0, 0.66))
     axes.set_title("Homogenised collapse multiplier, tan φ = 0.6 (cf. Baraldi et al., Fig. 6)", fontsize=10)
-    axes.legend(frameon=False, fontsize=9, loc="upper right", bbox_to_anchor=(1, 0.9))
+    axes.legend(frameon=False, fontsize=9, loc="upper right", bbox_to_anchor=(1, 0.88))
     _bare(axes)
     return figure
 
