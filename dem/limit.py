@@ -191,7 +191,7 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
 
 def _bracketed(found: Outcome, state: LimitState, tolerance: float) -> Outcome:
     system, forces = state.system, state.forces
-    static, kinematic = system.live_unit * forces.multiplier, system.live_unit * state.kinematic_multiplier
+    static, kinematic = (system.live_unit * max(0.0, x) for x in (forces.multiplier, state.kinematic_multiplier))
     lower, upper = min(static, kinematic), max(static, kinematic)
     if upper - lower > tolerance * upper:
         return replace(found, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")

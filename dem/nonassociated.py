@@ -181,7 +181,7 @@ def _collapse(found: Outcome, system: Equilibrium, associated: ForceSolution, to
         upper = system.live_unit * associated.multiplier
         return replace(found, upper=upper, message=given_up + "upper is the associated bound")
     worst = min(searched.certificates, key=lambda certificate: certificate.least.multiplier)
-    lower = system.live_unit * worst.least.multiplier
+    lower = system.live_unit * max(0.0, worst.least.multiplier)
     upper = system.live_unit * max(certificate.most.multiplier for certificate in searched.certificates)
     message = "collapse is certified at every load of the interval; smaller ones are not excluded"
     if upper - lower > tolerance * upper:

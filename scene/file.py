@@ -32,7 +32,7 @@ def read_scene(path: str | Path) -> Scene:
     """
     path = Path(path)
     try:
-        content = tomllib.loads(path.read_bytes().decode("utf-8"))
+        content = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
@@ -84,9 +84,7 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
 
 
 def _blocks(wall: Table, folder: Path) -> tuple[list[Array], Array | None, Bond | None]:
-    ways = [key for key in ("length", "courses", "drawing") if key in wall]
-    if len(ways) > 1:
-        raise SceneError(f"wall.{ways[1]}", f"does not go with wall.{ways[0]}; describe the wall in one way")
+    _refuse_mixed_descriptions(wall)
     if "drawing" in wall:
         path = folder / wall.text("drawing")
         blocks, ground = read_drawing(path, wall.choice("units", METRES))
@@ -98,6 +96,21 @@ def _blocks(wall: Table, folder: Path) -> tuple[list[Array], Array | None, Bond 
     first = cast(FirstCourse, wall.choice("first_course", get_args(FirstCourse), "full"))
     ends = cast(Ends, wall.choice("ends", get_args(Ends), "flush"))
     return running_bond(bond, length, height, first, ends), None, bond
+
+
+def _refuse_mixed_descriptions(wall: Table) -> None:
+    """A wall is a drawing, a list of courses, or a length and height; the keys of two ways do not mix."""
+    by_size = ("length", "height", "first_course", "ends")
+    for way, strangers in (
+        ("drawing", ("courses", *by_size, "block_width", "block_height")),
+        ("courses", ("units", *by_size)),
+        ("length", ("units",)),
+    ):
+        if way in wall:
+            for key in strangers:
+                if key in wall:
+                    raise SceneError(f"wall.{key}", f"does not go with wall.{way}; describe the wall in one way")
+            return
 
 
 def _block_material(block: Table) -> BlockMaterial:

@@ -423,4 +423,6 @@ def test_the_associated_bound_can_lock_where_true_friction_gives_way() -> None:
 
 
 def test_no_friction_and_no_strength_hold_nothing_sideways() -> None:
-    assert multiplier(panel(joint__friction=0.0)) == pytest.approx(0, abs=1e-12)
+    zero = multiplier(panel(joint__friction=0.0))
+    assert zero == pytest.approx(0, abs=1e-12)
+    assert math.copysign(1.0, zero) == 1.0

@@ -248,6 +248,12 @@ def test_tensile_strength_is_the_apex_unless_given() -> None:
     assert panel(joint__cohesion=1e5, joint__tensile_strength=3e4).joint.tensile_strength == 3e4
 
 
+def test_a_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
+    path = write_toml(content(), tmp_path / "wall.toml")
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert read_scene(path).wall.sum() == 78
+
+
 def test_title_is_the_file_name_where_there_is_none(tmp_path: Path) -> None:
     assert read_scene(write_toml(content(title=None), tmp_path / "tower.toml")).title == "tower"
 
