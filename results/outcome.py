@@ -48,6 +48,10 @@ class Outcome:
         moving by one metre. Empty without one.
     force : (np, 2) float
         Normal and tangential force at each contact point [N], tension positive. Empty without them.
+    curve : (n, 2) float
+        Pushover curve: displacement of the control point along the live load [m], and λ. Empty for models
+        that follow no path. The control point is where a point load acts, or the wall's highest corner that
+        lies farthest along a lateral load.
     """
 
     scene: str
@@ -62,6 +66,7 @@ class Outcome:
     message: str = ""
     motion: Array = field(default_factory=lambda: _no_rows(3))
     force: Array = field(default_factory=lambda: _no_rows(2))
+    curve: Array = field(default_factory=lambda: _no_rows(2))
 
     def __post_init__(self) -> None:
         for name, columns in ARRAYS.items():
@@ -82,5 +87,5 @@ class Outcome:
 
 
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")
-ARRAYS = {"motion": 3, "force": 2}
+ARRAYS = {"motion": 3, "force": 2, "curve": 2}
 """Array fields and their number of columns."""
