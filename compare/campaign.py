@@ -1,6 +1,8 @@
 """Campaigns: every model on every scene, one process a case, each result kept as soon as it is there."""
 
+import multiprocessing
 import signal
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -99,8 +101,8 @@ def run_campaign(
     cells = [(name, model) for model in reversed(models) for name in largest_first]
     campaign = Campaign()
     try:
-        with parallel_config(backend="loky", inner_max_num_threads=1, initializer=_leave_interrupts_to_the_parent):
-            for answer in _answers(cells, scenes, folder, tolerance, jobs, fresh):
+        with _processes(jobs):
+            for answer in _answers(cells, scenes, folder, tolerance, fresh):
                 if answer.outcome is None:
                     campaign.inapplicable[answer.cell] = answer.reason
                 else:
@@ -113,11 +115,28 @@ def run_campaign(
     return campaign
 
 
+def _processes(jobs: int) -> parallel_config:
+    """Where tasks run: in processes of their own, or in this one where there is to be only one."""
+    if jobs == 1 or not _can_have_processes():
+        return parallel_config(backend="sequential")
+    return parallel_config(backend="loky", n_jobs=jobs, initializer=_leave_interrupts_to_the_parent)
+
+
+def _can_have_processes() -> bool:
+    """Whether this machine lets processes share a lock; some containers have no usable /dev/shm."""
+    try:
+        multiprocessing.Lock()
+    except OSError as error:
+        warnings.warn(f"cases run one after another, for processes cannot share a lock: {error}", stacklevel=2)
+        return False
+    return True
+
+
 def _answers(
-    cells: Sequence[Cell], scenes: Mapping[str, Scene], folder: Path, tolerance: float, jobs: int, fresh: bool
+    cells: Sequence[Cell], scenes: Mapping[str, Scene], folder: Path, tolerance: float, fresh: bool
 ) -> Iterator[_Answer]:
     tasks = (delayed(_run_cell)(cell, scenes[cell[0]], folder, tolerance, fresh) for cell in cells)
-    yield from Parallel(n_jobs=jobs, return_as="generator_unordered", batch_size=1)(tasks)
+    yield from Parallel(return_as="generator_unordered", batch_size=1)(tasks)
 
 
 def _leave_interrupts_to_the_parent() -> None:

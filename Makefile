@@ -1,0 +1,57 @@
+# Everything runs in .venv, which the first target that needs it makes: `make compare` is all it takes.
+
+PYTHON ?= python3
+ARGS ?=
+
+ready := .venv/.ready
+bin := .venv/bin
+
+.DEFAULT_GOAL := help
+.PHONY: compare test test-long bench clean help
+
+compare: $(ready) ## run every model on every published wall and tabulate, in comparison/
+	$(bin)/runningbond compare --out comparison $(ARGS)
+
+test: $(ready) ## style, types, and the tests that take seconds
+	$(bin)/ruff check
+	$(bin)/ruff format --check
+	$(bin)/mypy
+	$(bin)/pytest -q -m "not long" $(ARGS)
+
+test-long: $(ready) ## the studies that take minutes
+	$(bin)/pytest -q -m long $(ARGS)
+
+bench: $(ready) ## run the benchmarks one after another
+	@set -e; for script in $(sort $(wildcard benchmarks/*.py)); do echo "$$script"; $(bin)/python "$$script"; done
+
+clean: ## remove .venv and caches; results stay
+	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist *.egg-info
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+help: ## show this
+	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "make %-12s%s\n", $$1, $$2}' Makefile
+	@echo
+	@echo 'ARGS="panel-01 --models limit" goes to runningbond compare; PYTHON=python3.12 is the interpreter of a new .venv.'
+
+# The stamp is touched last and taken away first: with none, the setup is new or was broken off, and starts afresh.
+$(ready): pyproject.toml Makefile tools/system-libraries
+	@$(check-python)
+	@tools/system-libraries
+	@echo 'Setting up .venv: a few minutes the first time.'
+	@test -e $@ || $(PYTHON) -m venv --clear .venv
+	@rm -f $@
+	@$(bin)/python -m pip install -q --disable-pip-version-check -e '.[develop]'
+	@touch $@
+
+refuse = { echo "runningbond: $(1)" >&2; exit 1; }
+install-python = install Python 3.11 or newer with venv (Debian, Ubuntu: apt-get install python3 python3-venv), \
+or name one: make PYTHON=python3.12
+
+# Debian packs ensurepip, without which venv makes nothing useful, separately from Python.
+define check-python
+command -v $(PYTHON) >/dev/null || $(call refuse,$(PYTHON) not found: $(install-python)); \
+$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	|| $(call refuse,$(PYTHON) is too old: $(install-python)); \
+$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null \
+	|| $(call refuse,$(PYTHON) cannot make virtual environments: $(install-python))
+endef
