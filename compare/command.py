@@ -49,7 +49,7 @@ def run(
     scene
         Scene file, or the name of a published scene such as panel-01.
     model
-        homog, limit or limit-nonassociated.
+        homog, limit, limit-nonassociated or dem-dynamic.
     tolerance
         Relative width of the bracket asked for.
     json

@@ -11,8 +11,8 @@ import numpy as np
 
 from scene import Scene
 
-COMPUTING_ROOMS = ("scene", "joints", "results", "dem", "homog")
-LIBRARIES = ("numpy", "scipy", "shapely")
+COMPUTING_ROOMS = ("scene", "joints", "results", "dynamics", "dem", "homog")
+LIBRARIES = ("numpy", "scipy", "shapely", "numba")
 
 
 def fingerprint(scene: Scene, model: str, tolerance: float) -> str:

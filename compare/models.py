@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from typing import TypeAlias
 
-from dem import limit, limit_nonassociated
+from dem import dem_dynamic, limit, limit_nonassociated
 from homog import homog
 from results import Outcome
 from scene import Scene, SceneError
@@ -17,6 +17,7 @@ MODELS: dict[str, Model] = {
     "homog": lambda scene, tolerance: homog(scene),
     "limit": limit,
     "limit-nonassociated": limit_nonassociated,
+    "dem-dynamic": dem_dynamic,
 }
 
 TOLERANCE = 0.01

@@ -1,5 +1,6 @@
 """Rigid blocks: kinematics and limit analysis."""
 
+from .dynamic import dem_dynamic
 from .equilibrium import Equilibrium, equilibrium
 from .kinematics import (
     Jump,
@@ -19,6 +20,7 @@ __all__ = [
     "Jump",
     "LimitState",
     "dead_load",
+    "dem_dynamic",
     "equilibrium",
     "jump_operator",
     "limit",

@@ -15,7 +15,7 @@ from scipy.sparse import csc_array, csr_array
 from joints import JointPoints, PointStrength, joint_points, point_strength
 from scene import Array, Scene
 
-from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator
+from .kinematics import dead_load, fastest_corner_by_one, jump_operator, live_load, movable_freedoms, pin_operator
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,14 +69,9 @@ class Equilibrium:
         multipliers : (nd,) float
             Multipliers of the equilibrium equations.
         """
-        blocks = self.scene.blocks
-        motion = np.zeros(3 * len(blocks))
+        motion = np.zeros(3 * len(self.scene.blocks))
         motion[movable_freedoms(self.scene)] = multipliers
-        motion = motion.reshape(-1, 3) / [1.0, 1.0, self.length_unit]
-        arm = blocks.vertices - blocks.centroid[blocks.owner]
-        u, v, spin = motion[blocks.owner].T
-        fastest = float(np.hypot(u - spin * arm[:, 1], v + spin * arm[:, 0]).max())
-        return motion / fastest if fastest > 0 else motion
+        return fastest_corner_by_one(self.scene.blocks, motion.reshape(-1, 3) / [1.0, 1.0, self.length_unit])
 
     def point_forces(self, pressure: Array, tangential: Array) -> Array:
         """Normal and tangential force at each point ``(np, 2)`` [N] from scaled ones, tension positive."""

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from joints import JointPoints
-from scene import Array, Indices, PointLoad, Scene
+from scene import Array, Blocks, Indices, PointLoad, Scene
 
 
 def _point_rows(direction: Array, arm: Array) -> Array:
@@ -101,6 +101,14 @@ def _body_force(scene: Scene, acceleration: tuple[float, float]) -> Array:
     load = np.zeros((len(scene.blocks), 3))
     load[:, :2] = scene.mass[:, None] * np.array(acceleration)
     return load.ravel()
+
+
+def fastest_corner_by_one(blocks: Blocks, motion: Array) -> Array:
+    """Scale motions ``(nb, 3)`` so that the fastest corner of any block moves by one metre."""
+    arm = blocks.vertices - blocks.centroid[blocks.owner]
+    u, v, spin = motion[blocks.owner].T
+    fastest = float(np.hypot(u - spin * arm[:, 1], v + spin * arm[:, 0]).max())
+    return motion / fastest if fastest > 0 else motion
 
 
 def movable_freedoms(scene: Scene) -> Indices:

@@ -1,0 +1,185 @@
+"""Load controls: steps with bisection, a ramp, and work-conjugate displacement control."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from scene import Array
+
+from .run import Criteria, Run, Verdict, settle
+from .system import State
+
+RAMP = 20
+"""Length of the ramp to each load, in times that the wall took to rest under the first one.
+
+Loads put on at once send waves through the wall. Under its own weight it hardly minds, but a wall without weight has
+no pressure on its joints but what the load gives it, and slips for good wherever a wave takes that away: four times
+slower, `point-load-4` bears twice as much.
+"""
+
+GROWTH = 1 / 8
+"""Largest step, once the first ones are borne, as a fraction of the load."""
+
+Observer = Callable[[State, float], None]
+
+
+def _nobody(state: State, multiplier: float) -> None:
+    """Observe nothing."""
+
+
+@dataclass(eq=False)
+class LoadSteps:
+    """What a search by steps of constant load came to.
+
+    Parameters
+    ----------
+    lower, upper
+        Largest multiplier that the wall bore at rest, smallest that brought it down; None where none did.
+    verdict
+        Of the last load tried.
+    borne
+        State at rest under `lower`; None if not even the dead load was borne.
+    fallen
+        State in the collapse under `upper`.
+    rests : list of (multiplier, State)
+        Every state at rest, in order of load.
+    """
+
+    lower: float | None = None
+    upper: float | None = None
+    verdict: Verdict = "undecided"
+    borne: State | None = None
+    fallen: State | None = None
+    rests: list[tuple[float, State]] = field(default_factory=list)
+
+    @property
+    def steps(self) -> int:
+        """Steps taken along the path that was kept."""
+        return 0 if self.borne is None else self.borne.steps
+
+
+def load_steps(
+    run: Run,
+    first: float,
+    tolerance: float,
+    criteria: Criteria,
+    *,
+    most: float = np.inf,
+    observe: Observer = _nobody,
+) -> LoadSteps:
+    """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
+
+    Every trial starts from the last state at rest, so that a fall leaves no trace in the states that count.
+    Steps grow while they are borne, so that the first one need not know the answer's size.
+
+    Parameters
+    ----------
+    run
+        The system.
+    first
+        First step of the multiplier.
+    tolerance
+        Relative width of the bracket at which to stop.
+    criteria
+        When a load counts as borne.
+    most
+        Multiplier beyond which the search is given up.
+    observe
+        Called with the state and the multiplier at every look.
+    """
+    state = State.at_rest(run.system)
+    found = LoadSteps(verdict=settle(run, state, 0.0, criteria, observe))
+    if found.verdict != "stable":
+        found.fallen = state
+        return found
+    found.lower, found.borne = 0.0, state
+    found.rests.append((0.0, state))
+    step, borne_in_a_row, steps_to_rest = first, 0, state.steps
+    while found.upper is None or found.upper - found.lower > tolerance * found.upper:
+        trial = found.lower + step if found.upper is None else (found.lower + found.upper) / 2
+        if trial > most:
+            found.verdict = "undecided"
+            return found
+        state = found.borne.copy()
+        ramp(run, state, found.lower, trial, RAMP * steps_to_rest)
+        before = state.steps
+        found.verdict = settle(run, state, trial, criteria, observe)
+        if len(found.rests) == 1:
+            steps_to_rest = state.steps - before
+        if found.verdict == "stable":
+            found.lower, found.borne = trial, state
+            found.rests.append((trial, state))
+            borne_in_a_row += 1
+            step = max(step, min(2 * step, GROWTH * trial)) if borne_in_a_row % 3 == 0 else step
+        elif found.verdict == "collapse":
+            found.upper, found.fallen = trial, state
+        else:
+            return found
+    return found
+
+
+def ramp(run: Run, state: State, start: float, stop: float, steps: int, interval: int = 20) -> None:
+    """Raise the multiplier evenly from `start` to `stop` over a number of steps, in place."""
+    pieces = max(1, steps // interval)
+    for k in range(pieces):
+        run.hold(state, start + (stop - start) * (k + 0.5) / pieces, interval)
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """A wall pushed at a prescribed speed.
+
+    Parameters
+    ----------
+    curve : (n, 2) float
+        Displacement of the control point [m] and mean multiplier, piece by piece.
+    peak
+        Largest multiplier of the curve.
+    rate_error
+        Change of the peak when the speed was last halved; inf if it never settled.
+    state
+        The wall at the end.
+    """
+
+    curve: Array
+    peak: float
+    rate_error: float
+    state: State
+
+
+def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Drive:
+    """Push a wall until its control point has moved a distance [m] or so, from a copy of a state.
+
+    The work-conjugate displacement, live load times motion, grows at a constant rate; the multiplier follows.
+    """
+    system = run.system
+    state = start.copy()
+    reach = _work_displacement(run, distance)
+    speed = reach / (steps * run.dt)
+    curve = np.zeros((pieces, 2))
+    for piece in range(pieces):
+        multiplier = run.drive(state, speed, steps // pieces)
+        curve[piece] = system.control @ state.motion, multiplier
+    return Drive(curve, float(curve[:, 1].max()), float("inf"), state)
+
+
+def settled_drive(
+    run: Run, start: State, distance: float, tolerance: float, steps: int = 20_000, halvings: int = 8
+) -> Drive:
+    """Halve the speed until the peak of the curve changes by less than a relative tolerance."""
+    slow = drive(run, start, distance, steps)
+    for _ in range(halvings):
+        fast, steps = slow, 2 * steps
+        slow = drive(run, start, distance, steps)
+        error = abs(fast.peak - slow.peak)
+        slow = Drive(slow.curve, slow.peak, error, slow.state)
+        if error <= tolerance * abs(slow.peak):
+            break
+    return slow
+
+
+def _work_displacement(run: Run, distance: float) -> float:
+    """Work of the live load at λ = 1 when every freedom it acts on moves as far as the control point."""
+    system = run.system
+    return float(distance * np.abs(system.live).sum())

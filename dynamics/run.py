@@ -1,0 +1,192 @@
+"""A run: a block system brought forward in time, with its energy ledger and its verdict."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from joints.point_kernel import DAMPED_WORK, FRICTION_WORK
+from scene import Array
+
+from .stepping import stepper, work_arrays
+from .system import BlockSystem, State
+from .time_step import stable_step
+
+Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """Where the work of the loads went [J]; what is not accounted for is the residual."""
+
+    external: float
+    kinetic: float
+    elastic: float
+    joint: float
+    friction: float
+    damped: float
+
+    @property
+    def residual(self) -> float:
+        """Work that the integration lost or made up."""
+        return self.external - self.kinetic - self.elastic - self.joint - self.friction - self.damped
+
+
+class Run:
+    """A system in motion.
+
+    Parameters
+    ----------
+    system
+        The blocks.
+    local
+        Local damping α: each freedom is resisted by α times its unbalanced force.
+    viscous
+        Damping ratio of the stiffness-proportional viscosity of the joints, at the highest frequency.
+    dt
+        Time step [s]; the stable one where none is given.
+    """
+
+    def __init__(
+        self,
+        system: BlockSystem,
+        *,
+        local: float = 0.5,
+        viscous: float = 0.1,
+        dt: float | None = None,
+    ) -> None:
+        self.system = system
+        self.local = local
+        self.dt = dt or stable_step(system.block_frequency_squared, viscous, local)
+        self._viscosity = 2 * viscous / math.sqrt(system.block_frequency_squared) / self.dt
+        self._hold, self._drive = stepper(system.gather, system.law.kernel, system.scatter)
+        modes = (system.stiffness, system.viscosity, 1 / system.mass)
+        restraint = (system.restraint.freedom, system.restraint.basis)
+        self._arrays = (system.geometry, system.law.parameters, modes, restraint)
+        self._work = work_arrays(len(system.mass), system.law.parameters.shape[1])
+
+    def hold(self, state: State, multiplier: float, steps: int, dead: float = 1.0) -> None:
+        """Take steps under constant loads: `multiplier` times the live one and `dead` times the dead one."""
+        system = self.system
+        load = dead * system.dead + multiplier * system.live
+        before = float(load @ state.motion)
+        self._hold(steps, self.dt, self.local, self._viscosity, load, *self._arrays, _histories(state), self._work)
+        state.external += float(load @ state.motion) - before
+        state.steps += steps
+
+    def drive(self, state: State, speed: float, steps: int) -> float:
+        """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier."""
+        system = self.system
+        before = float(system.dead @ state.motion)
+        coefficients = (steps, self.dt, self.local, self._viscosity)
+        mean, worked = self._drive(
+            *coefficients, system.dead, system.live, speed, *self._arrays, _histories(state), self._work
+        )
+        state.external += float(system.dead @ state.motion) - before + worked
+        state.steps += steps
+        return float(mean)
+
+    def unbalanced(self, state: State) -> float:
+        """Largest unbalanced force of the last step, relative to the force unit."""
+        moving = np.isfinite(self.system.mass)
+        return float(np.abs(state.unbalanced[moving]).max() / self.system.force_unit)
+
+    def forces(self, state: State) -> tuple[Array, Array]:
+        """Normal and tangential force at each point ``(np,)`` [N], without a change of state."""
+        system = self.system
+        moved = self.motion_of_blocks(state)
+        _, opening, slip, normal, tangential = (buffer.copy() for buffer in self._work)
+        system.gather(moved, system.geometry, opening, slip)
+        # At rest: the viscosity, of no account then, would need the rate of a step that is not taken.
+        system.law.kernel(opening, slip, system.law.parameters, state.history.copy(), 0.0, normal, tangential)
+        return normal, tangential
+
+    def motion_of_blocks(self, state: State) -> Array:
+        """Motion with restrained coordinates turned back into those of their blocks, ``(nd,)``."""
+        moved = state.motion.copy()
+        for i, basis in zip(self.system.restraint.freedom, self.system.restraint.basis, strict=True):
+            moved[i : i + 3] = basis @ state.motion[i : i + 3]
+        return moved
+
+    def ledger(self, state: State) -> Ledger:
+        """Account for the work of the loads so far."""
+        system, law = self.system, self.system.law
+        normal, tangential = self.forces(state)
+        opening, slip = (np.zeros(len(normal)) for _ in range(2))
+        system.gather(self.motion_of_blocks(state), system.geometry, opening, slip)
+        torn = np.maximum(0.0, opening - law.tension / law.normal_stiffness)
+        stored = normal**2 / (2 * law.normal_stiffness) + law.tension * torn
+        stored += tangential**2 / (2 * law.shear_stiffness)
+        moving = np.isfinite(system.mass)
+        return Ledger(
+            external=state.external,
+            kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum()),
+            elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
+            joint=float(stored.sum()),
+            friction=float(state.history[FRICTION_WORK].sum()),
+            damped=float(state.damped.sum() + state.history[DAMPED_WORK].sum()),
+        )
+
+
+def _histories(state: State) -> tuple[Array, ...]:
+    return (
+        state.motion,
+        state.velocity,
+        state.history,
+        state.damped,
+        state.unbalanced,
+    )
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """When a held load has been borne, and when it has brought the wall down.
+
+    Parameters
+    ----------
+    rest
+        Unbalanced force, relative to the force unit, below which the wall is at rest.
+    collapse
+        Displacement [m] of any freedom since the load was raised that counts as collapse.
+    budget
+        Steps after which the question is left undecided.
+    interval
+        Steps between two looks.
+    """
+
+    collapse: float
+    rest: float = 1e-5
+    budget: int = 2_000_000
+    interval: int = 200
+
+
+def settle(
+    run: Run,
+    state: State,
+    multiplier: float,
+    criteria: Criteria,
+    observe: Callable[[State, float], None] = lambda state, multiplier: None,
+) -> Verdict:
+    """Hold a load until the wall rests or falls.
+
+    It rests when the unbalanced force is below the threshold at three looks in a row, so that a wall passing
+    through balance in full motion is not mistaken for one at rest.
+    """
+    start = state.motion.copy()
+    calm = 0
+    for _ in range(criteria.budget // criteria.interval):
+        run.hold(state, multiplier, criteria.interval)
+        observe(state, multiplier)
+        calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
+        if calm == 3:
+            return "stable"
+        if moved_by(state, start) > criteria.collapse:
+            return "collapse"
+    return "undecided"
+
+
+def moved_by(state: State, start: Array) -> float:
+    """Largest translation of any block since a motion ``(nd,)`` [m]."""
+    return float(np.abs((state.motion - start).reshape(-1, 3)[:, :2]).max())

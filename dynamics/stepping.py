@@ -1,0 +1,169 @@
+"""Central differences with lagged viscous and local damping, compiled for one pair of kinematics and one law.
+
+Each step is a gather of jumps, the law over all points, a scatter of forces and one diagonal update:
+
+    f = f_dead + λ f_live − K q − Bᵀ t(B q) − c v⁻
+    v⁺ = v⁻ + Δt (f − α |f| sign v⁻) / m
+    q⁺ = q + Δt v⁺
+
+with v half a step behind q (Cundall & Strack 1979; Munjiza 2004).
+"""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from joints import compiled
+from scene import Array
+
+from .system import Kernel
+
+kernel = compiled.kernel
+
+
+@kernel
+def _restrained(motion: Array, freedom: Array, basis: Array, moved: Array) -> None:
+    moved[:] = motion
+    for r in range(freedom.size):
+        i = freedom[r]
+        for row in range(3):
+            total = 0.0
+            for column in range(3):
+                total += basis[r, row, column] * motion[i + column]
+            moved[i + row] = total
+
+
+@kernel
+def _project(force: Array, freedom: Array, basis: Array) -> None:
+    for r in range(freedom.size):
+        i = freedom[r]
+        x, y, m = force[i], force[i + 1], force[i + 2]
+        for column in range(3):
+            force[i + column] = basis[r, 0, column] * x + basis[r, 1, column] * y + basis[r, 2, column] * m
+
+
+@kernel
+def _update(
+    force: Array,
+    stiffness: Array,
+    viscosity: Array,
+    mobility: Array,
+    local: float,
+    dt: float,
+    motion: Array,
+    velocity: Array,
+    damped: Array,
+) -> None:
+    for i in range(motion.size):
+        before = velocity[i]
+        viscous = viscosity[i] * before
+        f = force[i] - stiffness[i] * motion[i] - viscous
+        force[i] = f
+        sense = (1.0 if before > 0.0 else 0.0) - (1.0 if before < 0.0 else 0.0)
+        resisted = local * abs(f) * sense
+        after = before + dt * mobility[i] * (f - resisted)
+        damped[i] += 0.5 * dt * (resisted + viscous) * (before + after)
+        motion[i] += dt * after
+        velocity[i] = after
+
+
+@cache
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kernel]:
+    """Compile the two loops of a model: at a constant load, and at a prescribed work-conjugate speed.
+
+    Returns
+    -------
+    hold, drive
+        ``hold(steps, dt, local, load, …)`` and ``drive(steps, dt, local, load, live, live_mobility, speed, …)``,
+        the latter returning the mean multiplier of its steps.
+    """
+
+    @kernel
+    def hold(
+        steps: int,
+        dt: float,
+        local: float,
+        joint_viscosity: float,
+        load: Array,
+        geometry: Any,
+        parameters: Any,
+        modes: Any,
+        restraint: Any,
+        state: Any,
+        work: Any,
+    ) -> None:
+        stiffness, viscosity, mobility = modes
+        freedom, basis = restraint
+        motion, velocity, history, damped, force = state
+        moved, opening, slip, normal, tangential = work
+        for _ in range(steps):
+            _restrained(motion, freedom, basis, moved)
+            gather(moved, geometry, opening, slip)
+            law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
+            force[:] = load
+            scatter(normal, tangential, geometry, force)
+            _project(force, freedom, basis)
+            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+
+    @kernel
+    def drive(
+        steps: int,
+        dt: float,
+        local: float,
+        joint_viscosity: float,
+        load: Array,
+        live: Array,
+        speed: float,
+        geometry: Any,
+        parameters: Any,
+        modes: Any,
+        restraint: Any,
+        state: Any,
+        work: Any,
+    ) -> tuple[float, float]:
+        stiffness, viscosity, mobility = modes
+        freedom, basis = restraint
+        motion, velocity, history, damped, force = state
+        moved, opening, slip, normal, tangential = work
+        response = 0.0
+        for i in range(live.size):
+            response += live[i] * mobility[i] * live[i]
+        total = 0.0
+        worked = 0.0
+        for _ in range(steps):
+            _restrained(motion, freedom, basis, moved)
+            gather(moved, geometry, opening, slip)
+            law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
+            force[:] = load
+            scatter(normal, tangential, geometry, force)
+            _project(force, freedom, basis)
+            pushed = 0.0
+            before = 0.0
+            for i in range(live.size):
+                pushed += live[i] * mobility[i] * (force[i] - stiffness[i] * motion[i] - viscosity[i] * velocity[i])
+                before += live[i] * velocity[i]
+            multiplier = -pushed / response
+            for i in range(live.size):
+                force[i] += multiplier * live[i]
+            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+            # Local damping acts on the live load too; what it takes from the prescribed speed is given back.
+            after = 0.0
+            for i in range(live.size):
+                after += live[i] * velocity[i]
+            returned = (speed - after) / (dt * response)
+            for i in range(live.size):
+                change = dt * returned * mobility[i] * live[i]
+                velocity[i] += change
+                motion[i] += dt * change
+            multiplier += returned
+            total += multiplier
+            worked += 0.5 * multiplier * dt * (before + speed)
+        return total / steps, worked
+
+    return hold, drive
+
+
+def work_arrays(n_modes: int, n_points: int) -> tuple[Array, ...]:
+    """Buffers of one run: motions, then opening, slip, normal and tangential force of the points."""
+    return (np.zeros(n_modes), *(np.zeros(n_points) for _ in range(4)))

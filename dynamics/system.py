@@ -1,0 +1,132 @@
+"""The block system: modes and their masses, joint points and their law, loads, and how modes move joints.
+
+A model is a choice of modes and a pair of kernels, `gather` from motions to jumps and `scatter` back from joint
+forces to motions; the integrator sees vectors only and the law jumps only.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from joints import KernelLaw
+from scene import Array, Indices
+
+Kernel: TypeAlias = Callable[..., Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Restraint:
+    """Blocks whose motion is restrained at points, in coordinates that leave the restraint satisfied.
+
+    Parameters
+    ----------
+    freedom : (nr,) int
+        First freedom of each such block.
+    basis : (nr, 3, 3) float
+        Motion of the block per coordinate, mass-orthogonal; columns that are not needed are zero.
+    """
+
+    freedom: Indices
+    basis: Array
+
+
+@dataclass(frozen=True, eq=False)
+class BlockSystem:
+    """Blocks in motion.
+
+    Parameters
+    ----------
+    mass : (nd,) float
+        Modal masses; inf where a mode is held.
+    stiffness : (nd,) float
+        Modal stiffness of the blocks themselves [N/m]; zero for rigid modes.
+    viscosity : (nd,) float
+        Modal viscous damping coefficient [N s/m].
+    dead, live : (nd,) float
+        Modal loads [N], the live one for λ = 1.
+    law
+        Law of the joint points.
+    gather, scatter
+        Compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry,
+        force)``; the latter subtracts the joints' forces from `force`.
+    geometry
+        Arrays that the two kernels share.
+    restraint
+        Blocks held at points.
+    block_frequency_squared : float
+        Largest ω² [1/s²] of any block against its share of its joints: an upper bound of the system's.
+    control : (nd,) float
+        Displacement of the control point along the live load, per modal motion.
+    force_unit : float
+        Force [N] against which unbalanced forces are measured.
+    """
+
+    mass: Array
+    stiffness: Array
+    viscosity: Array
+    dead: Array
+    live: Array
+    law: KernelLaw
+    gather: Kernel
+    scatter: Kernel
+    geometry: tuple[NDArray[Any], ...]
+    restraint: Restraint
+    block_frequency_squared: float
+    control: Array
+    force_unit: float
+
+    @property
+    def freedoms(self) -> int:
+        """Number of modes that move."""
+        return int(np.isfinite(self.mass).sum())
+
+
+@dataclass(eq=False)
+class State:
+    """Where a system is: brought forward in place by the integrator.
+
+    Parameters
+    ----------
+    motion, velocity : (nd,) float
+        Modal displacement, and velocity half a step behind.
+    history : (rows, np) float
+        History of the joint points, as their law keeps it.
+    damped : (nd,) float
+        Work done against damping [J], mode by mode.
+    external : float
+        Work of the loads [J].
+    unbalanced : (nd,) float
+        Force of the last step.
+    steps : int
+        Steps taken.
+    """
+
+    motion: Array
+    velocity: Array
+    history: Array
+    damped: Array
+    unbalanced: Array
+    external: float = 0.0
+    steps: int = 0
+
+    @classmethod
+    def at_rest(cls, system: BlockSystem) -> "State":
+        """The undeformed system without velocity."""
+        nd = len(system.mass)
+        history = np.zeros((system.law.rows, system.law.parameters.shape[1]))
+        return cls(np.zeros(nd), np.zeros(nd), history, np.zeros(nd), np.zeros(nd))
+
+    def copy(self) -> "State":
+        """A state that goes its own way from here."""
+        return State(
+            self.motion.copy(),
+            self.velocity.copy(),
+            self.history.copy(),
+            self.damped.copy(),
+            self.unbalanced.copy(),
+            self.external,
+            self.steps,
+        )
