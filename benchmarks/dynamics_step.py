@@ -15,7 +15,7 @@ from compare import published_scene
 from dem import jump_operator
 from dem.rigid_system import contact_points, rigid_system
 from dynamics import Run, State
-from scene import Scene, scene_from_dict
+from scene import Array, Scene, scene_from_dict
 
 RUNS = 5
 WALL = {
@@ -50,7 +50,7 @@ def sparse(scene: Scene, steps: int) -> list[float]:
     system, points = rigid_system(scene), contact_points(scene)
     run = Run(system)
     jump = jump_operator(points, scene.blocks.centroid)
-    k_n, k_t, tension, shear, friction, flexibility = tuple(system.law.parameters)
+    k_n, k_t, tension, shear, friction, flexibility = (system.law.parameters[row] for row in range(6))
     mobility, load = 1 / system.mass, system.dead + 0.2 * system.live
     opening_t, slip_t = csr_array(jump.opening.T), csr_array(jump.slip.T)
     motion, velocity, plastic = np.zeros_like(load), np.zeros_like(load), np.zeros(len(points))
@@ -60,7 +60,8 @@ def sparse(scene: Scene, steps: int) -> list[float]:
     def advance() -> None:
         nonlocal motion, velocity, plastic, before_n, before_t
         for _ in range(steps):
-            opening, slip = jump.opening @ motion, jump.slip @ motion
+            opening: Array = np.asarray(jump.opening @ motion)
+            slip: Array = np.asarray(jump.slip @ motion)
             elastic = np.minimum(k_n * opening, tension)
             normal = np.minimum(elastic + (elastic < tension) * beta * k_n * (opening - before_n), tension)
             most = shear + friction * (tension - normal)

@@ -15,6 +15,7 @@ from results import Outcome, save_outcome, write_atomically
 from scene import Scene, SceneError, read_scene
 
 from .campaign import Campaign, Cell, Interrupted, run_campaign
+from .curves import draw_curves
 from .figures import draw_figures
 from .fingerprint import fingerprint
 from .models import MODELS, TOLERANCE, check_model, check_tolerance, run_model
@@ -155,7 +156,7 @@ def _report(walls: Mapping[str, Scene], models: Sequence[str], campaign: Campaig
     write_atomically(out / "table.csv", csv_text(walls, models, campaign).encode())
     markdown = "\n".join(sheet.markdown() for sheet in [*sheets, *costs])
     write_atomically(out / "table.md", markdown.encode())
-    charts = draw_figures(campaign, out)
+    charts = [*draw_figures(campaign, out), *draw_curves(campaign, out)]
     console = Console() if sys.stdout.isatty() else Console(width=160)
     for sheet in [*sheets, *costs]:
         console.print(sheet.terminal())

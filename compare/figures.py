@@ -56,11 +56,11 @@ def draw_figures(campaign: Campaign, folder: Path) -> list[Path]:
     writer.writerow(["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)])
     writer.writerows([f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True))
     write_atomically(folder / "figure-6.csv", table.getvalue().encode())
-    _save(_figure_6(campaign, slenderness, multiplier), folder / "figure-6.png")
+    save(_figure_6(campaign, slenderness, multiplier), folder / "figure-6.png")
     written = [folder / "figure-6.csv", folder / "figure-6.png"]
     panels = [case for case in PUBLISHED if case.source == BARALDI]
     if all(any(cell[0] == case.name for cell in campaign.outcomes) for case in panels):
-        _save(_table_2(campaign, panels), folder / "table-2.png")
+        save(_table_2(campaign, panels), folder / "table-2.png")
         written.append(folder / "table-2.png")
     return written
 
@@ -82,7 +82,7 @@ def _figure_6(campaign: Campaign, slenderness: Array, multiplier: Array) -> Figu
     axes.set(xlabel="slenderness H / L", ylabel="collapse multiplier λ", xlim=(0, 3), ylim=(0, 0.66))
     axes.set_title("Homogenised collapse multiplier, tan φ = 0.6 (cf. Baraldi et al., Fig. 6)", fontsize=10)
     axes.legend(frameon=False, fontsize=9, loc="upper right", bbox_to_anchor=(1, 0.88))
-    _bare(axes)
+    bare(axes)
     return figure
 
 
@@ -96,7 +96,7 @@ def _table_2(campaign: Campaign, panels: Sequence[PublishedCase]) -> Figure:
         axes.set(title=f"H/L = {name}", xlabel="block ratio b/a", ylim=(0, 0.66), xlim=(-0.5, 3.5))
         if column == 0:
             axes.set_ylabel("collapse multiplier λ")
-        _bare(axes)
+        bare(axes)
     handles, labels = figure.axes[0].get_legend_handles_labels()
     unique = dict(zip(labels, handles, strict=True))
     figure.legend(list(unique.values()), list(unique), loc="outside lower center", ncols=3, frameon=False, fontsize=9)
@@ -116,11 +116,13 @@ def _panel_marks(axes: Axes, k: int, case: PublishedCase, campaign: Campaign) ->
         axes.plot(k + shift, outcome.multiplier, marker, color=colour, ms=5, mew=1.5, ls="none", label=model)
 
 
-def _bare(axes: Axes) -> None:
+def bare(axes: Axes) -> None:
+    """Take away the frame where nothing is read off it."""
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _save(figure: Figure, path: Path) -> None:
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure, whole or not at all."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=160)
     write_atomically(path, buffer.getvalue())
