@@ -5,7 +5,7 @@ import math
 from collections.abc import Callable
 from typing import TypeAlias
 
-from dem import dem_dynamic, limit, limit_nonassociated
+from dem import limit, limit_nonassociated
 from homog import homog
 from results import Outcome
 from scene import Scene, SceneError
@@ -13,11 +13,19 @@ from scene import Scene, SceneError
 Model: TypeAlias = Callable[[Scene, float], Outcome]
 """From a scene and the relative width of the bracket asked for to an outcome."""
 
+
+def _dem_dynamic(scene: Scene, tolerance: float) -> Outcome:
+    """`dem.dynamic.dem_dynamic`, imported when it is wanted, for its compiler takes a second to load."""
+    from dem.dynamic import dem_dynamic
+
+    return dem_dynamic(scene, tolerance)
+
+
 MODELS: dict[str, Model] = {
     "homog": lambda scene, tolerance: homog(scene),
     "limit": limit,
     "limit-nonassociated": limit_nonassociated,
-    "dem-dynamic": dem_dynamic,
+    "dem-dynamic": _dem_dynamic,
 }
 
 TOLERANCE = 0.01

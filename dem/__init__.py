@@ -1,6 +1,5 @@
-"""Rigid blocks: kinematics and limit analysis."""
+"""Rigid blocks: kinematics and limit analysis; `dem.dynamic` for blocks in motion, which needs compiled kernels."""
 
-from .dynamic import dem_dynamic
 from .equilibrium import Equilibrium, equilibrium
 from .kinematics import (
     Jump,
@@ -20,7 +19,6 @@ __all__ = [
     "Jump",
     "LimitState",
     "dead_load",
-    "dem_dynamic",
     "equilibrium",
     "jump_operator",
     "limit",

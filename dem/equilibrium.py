@@ -2,9 +2,10 @@
 
     B_nᵀ f_n + B_tᵀ f_t + Cᵀ r − λ f_live = f_dead
 
-with point forces f (tension positive) and reactions r of pinned points. Lengths are measured in the root mean
-square block size, forces in the largest dead load (for a weightless wall, in the strongest joint point), and
-the live load in its largest entry, so that a wall of any size, density and unit of load gives the same numbers.
+with point forces f (tension positive) and reactions r of pinned points. Lengths are measured in block sizes,
+forces in the largest dead load (for a weightless wall, in the strongest joint point), each block's equations in its
+share of the largest block, and the live load in its largest entry, so that a wall of any size, density and unit of
+load gives the same numbers.
 """
 
 from dataclasses import dataclass, replace
@@ -40,8 +41,9 @@ class Equilibrium:
         Force [N] that counts as 1.
     live_unit : float
         Multiplier λ that counts as 1.
-    length_unit : float
-        Length [m] that counts as 1.
+    scale : (nd,) float
+        Factor of each equation: blocks count by their own weight, or a small one's balance would be lost in
+        the solver's tolerance beside a large one, and moments by their own size.
     """
 
     scene: Scene
@@ -54,7 +56,7 @@ class Equilibrium:
     live: Array
     force_unit: float
     live_unit: float
-    length_unit: float
+    scale: Array
 
     @property
     def freedoms(self) -> int:
@@ -70,8 +72,8 @@ class Equilibrium:
             Multipliers of the equilibrium equations.
         """
         motion = np.zeros(3 * len(self.scene.blocks))
-        motion[movable_freedoms(self.scene)] = multipliers
-        return fastest_corner_by_one(self.scene.blocks, motion.reshape(-1, 3) / [1.0, 1.0, self.length_unit])
+        motion[movable_freedoms(self.scene)] = multipliers * self.scale
+        return fastest_corner_by_one(self.scene.blocks, motion.reshape(-1, 3))
 
     def point_forces(self, pressure: Array, tangential: Array) -> Array:
         """Normal and tangential force at each point ``(np, 2)`` [N] from scaled ones, tension positive."""
@@ -89,16 +91,17 @@ def equilibrium(scene: Scene) -> Equilibrium:
     strength = point_strength(scene.joint, points.area)
     jump = jump_operator(points, scene.blocks.centroid)
     free = movable_freedoms(scene)
-    length_unit = float(np.sqrt(scene.blocks.area[~scene.fixed].mean()))
-    moments = np.tile([1.0, 1.0, 1.0 / length_unit], len(free) // 3)
+    area = scene.blocks.area[~scene.fixed]
+    share = area / area.max()
+    scale = np.column_stack([1 / share, 1 / share, 1 / (share * np.sqrt(area))]).ravel()
 
-    dead, live = dead_load(scene)[free] * moments, live_load(scene)[free] * moments
+    dead, live = dead_load(scene)[free] * scale, live_load(scene)[free] * scale
     live_size = float(np.abs(live).max())
     strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
     force_unit = float(np.abs(dead).max()) or strongest or live_size
 
     def rows(operator: csr_array) -> csc_array:
-        return csc_array(operator[:, free].T * moments[:, None])
+        return csc_array(operator[:, free].T * scale[:, None])
 
     return Equilibrium(
         scene,
@@ -111,5 +114,5 @@ def equilibrium(scene: Scene) -> Equilibrium:
         live / live_size,
         force_unit,
         force_unit / live_size,
-        length_unit,
+        scale,
     )

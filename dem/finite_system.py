@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics import BlockSystem
-from joints import coulomb_law, joint_stiffness, point_strength
+from joints import joint_stiffness, point_strength
+from joints.point_kernel import coulomb_law
 from scene import Array, Indices, Scene, SceneError
 
 from .finite_kernels import gather_finite, scatter_finite

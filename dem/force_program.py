@@ -118,7 +118,7 @@ def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -
     return LinearProgram(cost, matrix, system.dead - system.opening @ system.strength.tension, bounds)
 
 
-def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSolution:
+def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *, method: str = "") -> ForceSolution:
     """Solve `force_program`: by interior point and crossover, or by simplex where nothing is optimised."""
     program = force_program(system, forces, aim)
     found = linprog(  # type: ignore[call-overload]  # its stubs know no sparse A_eq
@@ -126,7 +126,7 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") ->
         A_eq=program.matrix,
         b_eq=program.right,
         bounds=program.bounds,
-        method="highs-ds" if aim == "zero" else "highs-ipm",
+        method=method or ("highs-ds" if aim == "zero" else "highs-ipm"),
     )
     status = STATUS[int(found.status)]
     if found.x is None or status != "optimal":

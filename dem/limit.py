@@ -17,6 +17,9 @@ from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 
 FALLS = "falls under its dead load: no admissible forces balance it"
+ZERO = 1e-6
+"""Multiplier, in units of the live load, below which a bracket need not be relatively narrow: zero is an answer."""
+
 SOUND = 1e-6
 """Largest relative residual, violation or duality gap with which a program's answer is believed."""
 
@@ -64,9 +67,9 @@ class LimitState:
 
     @property
     def penetration(self) -> float:
-        """Largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest jump."""
+        """Largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion."""
         opening, slip = self.jumps
-        largest = max(np.abs(opening).max(initial=0.0), np.abs(slip).max(initial=0.0))
+        largest = float(np.abs(self.forces.motion).max(initial=0.0))
         short = self.system.strength.friction * np.abs(slip) - opening
         return float(short.max(initial=0.0) / largest) if largest > 0 else 0.0
 
@@ -118,11 +121,14 @@ class LimitState:
 
 def limit_state(system: Equilibrium) -> LimitState:
     """Solve the associated limit analysis of a scene; its status may be other than optimal."""
-    return LimitState(system, solve_forces(system, coulomb(system.strength)))
+    forces = solve_forces(system, coulomb(system.strength))
+    if forces.status in ("infeasible", "numerical"):  # simplex settles what the interior point is unsure of
+        forces = solve_forces(system, coulomb(system.strength), method="highs-ds")
+    return LimitState(system, forces)
 
 
-def stands_under_dead_load(system: Equilibrium) -> bool:
-    """Whether admissible forces balance the dead load alone.
+def stands_under_dead_load(system: Equilibrium) -> bool | None:
+    """Whether admissible forces balance the dead load alone; None if the solver cannot tell.
 
     Normal forces nearly always suffice and make a much smaller program; the friction cones are tried
     only where they do not.
@@ -130,9 +136,13 @@ def stands_under_dead_load(system: Equilibrium) -> bool:
     if not system.dead.any():
         return True
     dry = system.without_strength(system.dead)
-    if solve_forces(dry, frozen_friction(dry.strength, np.zeros(len(dry.points))), "zero").status != "optimal":
-        return solve_forces(system, coulomb(system.strength), "zero").status == "optimal"
-    return True
+    if solve_forces(dry, frozen_friction(dry.strength, np.zeros(len(dry.points))), "zero").status == "optimal":
+        return True
+    for method in ("highs-ds", "highs-ipm"):
+        status = solve_forces(system, coulomb(system.strength), "zero", method=method).status
+        if status in ("optimal", "infeasible"):
+            return status == "optimal"
+    return None
 
 
 def locks(system: Equilibrium) -> bool:
@@ -148,16 +158,17 @@ def judge(state: LimitState) -> tuple[Status, str]:
     load that no forces balance, or forces that lock.
     """
     system, program = state.system, state.forces.status
+    stands = stands_under_dead_load(system)
+    if stands is None:
+        return "failed", "the solver cannot tell whether the wall stands under its dead load"
+    if not stands:
+        return "infeasible", FALLS
     if program == "optimal":
-        if not stands_under_dead_load(system):
-            return "infeasible", FALLS
         if not state.sound:
             return "failed", f"forces and mechanism disagree: {state.measures}"
         return "collapse", "static and kinematic bound, associated joints; true friction may collapse earlier"
     if program == "budget":
         return "undecided", "the linear program ran out of iterations"
-    if not stands_under_dead_load(system):
-        return "infeasible", FALLS
     if locks(system):
         return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
     return "failed", f"the linear program solver gave up: {program}"
@@ -193,7 +204,7 @@ def _bracketed(found: Outcome, state: LimitState, tolerance: float) -> Outcome:
     system, forces = state.system, state.forces
     static, kinematic = (system.live_unit * max(0.0, x) for x in (forces.multiplier, state.kinematic_multiplier))
     lower, upper = min(static, kinematic), max(static, kinematic)
-    if upper - lower > tolerance * upper:
+    if upper - lower > tolerance * max(upper, system.live_unit * ZERO):
         return replace(found, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
     return replace(
         found,

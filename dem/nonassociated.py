@@ -10,6 +10,7 @@ such forces are an interval, every point of which is a load at which the wall ca
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,10 +29,10 @@ ENOUGH = 2
 """Certificates in a row that end the sequence."""
 
 STILL = 1e-7
-"""Jump rate, relative to the mechanism's largest, that counts as none."""
+"""Jump rate, relative to the mechanism's largest motion, that counts as none."""
 
 PENETRATION = 1e-6
-"""Closing rate, relative to the mechanism's largest jump, that rules a mechanism out."""
+"""Closing rate, relative to the mechanism's largest motion, that rules a mechanism out."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +68,7 @@ def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
         None for a mechanism whose blocks run into each other.
     """
     opening, slip = system.opening.T @ motion, system.slip.T @ motion
-    largest = max(np.abs(opening).max(initial=0.0), np.abs(slip).max(initial=0.0))
+    largest = float(np.abs(motion).max(initial=0.0))
     if largest == 0.0 or opening.min(initial=0.0) < -PENETRATION * largest:
         return None
     opens, forward, backward = opening > STILL * largest, slip > STILL * largest, slip < -STILL * largest
@@ -134,6 +135,18 @@ def search(system: Equilibrium, pressure: Array) -> Search:
     return Search(certificates, MOST_PROGRAMS)
 
 
+def certified_loads(certificates: Sequence[Certificate], unit: float) -> list[tuple[float, float]]:
+    """Loads at which collapse is certified, as intervals that do not touch, in order."""
+    pairs = sorted((unit * max(0.0, c.least.multiplier), unit * max(0.0, c.most.multiplier)) for c in certificates)
+    merged = [pairs[0]]
+    for low, high in pairs[1:]:
+        if low <= merged[-1][1] * (1 + 1e-9):
+            merged[-1] = merged[-1][0], max(high, merged[-1][1])
+        else:
+            merged.append((low, high))
+    return merged
+
+
 def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
     """Limit analysis of a scene with true Coulomb friction.
 
@@ -149,7 +162,8 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
     -------
     Outcome
         `lower` and `upper` are the smallest and largest load at which a collapse was certified, and
-        `multiplier` is the smallest; smaller ones are not excluded. `motion` and `force` belong to it.
+        `multiplier` is the smallest; smaller ones are not excluded, and where several mechanisms were
+        certified at loads apart from each other the message says at which. `motion` and `force` belong to it.
         Without a certificate the status is ``undecided`` and `upper` the associated load, which no true
         collapse load exceeds.
     """
@@ -181,10 +195,13 @@ def _collapse(found: Outcome, system: Equilibrium, associated: ForceSolution, to
         upper = system.live_unit * associated.multiplier
         return replace(found, upper=upper, message=given_up + "upper is the associated bound")
     worst = min(searched.certificates, key=lambda certificate: certificate.least.multiplier)
-    lower = system.live_unit * max(0.0, worst.least.multiplier)
-    upper = system.live_unit * max(certificate.most.multiplier for certificate in searched.certificates)
+    proved = certified_loads(searched.certificates, system.live_unit)
+    lower, upper = proved[0][0], proved[-1][1]
     message = "collapse is certified at every load of the interval; smaller ones are not excluded"
-    if upper - lower > tolerance * upper:
+    if len(proved) > 1:
+        loads = ", ".join(f"{low:.6g} … {high:.6g}" for low, high in proved)
+        message = f"collapse is certified at {loads}, and nothing is proved in between or below"
+    elif upper - lower > tolerance * upper:
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
     return replace(
         found,

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics import BlockSystem, Restraint, block_frequency_squared
-from joints import JointPoints, KernelLaw, coulomb_law, joint_points, joint_stiffness, point_strength
+from joints import JointPoints, joint_points, joint_stiffness, point_strength
+from joints.point_kernel import KernelLaw, coulomb_law
 from scene import Array, PointLoad, Scene
 
 from .kinematics import dead_load, jump_operator, live_load, mass_matrix_diagonal, pin_operator, point_operator

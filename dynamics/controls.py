@@ -95,9 +95,9 @@ def load_steps(
         return found
     found.lower, found.borne = 0.0, state
     found.rests.append((0.0, state))
-    step, borne_in_a_row, steps_to_rest = first, 0, state.steps
+    step, steps_to_rest, neutral = first, state.steps, None
     while found.upper is None or found.upper - found.lower > tolerance * found.upper:
-        trial = found.lower + step if found.upper is None else (found.lower + found.upper) / 2
+        trial = _next_trial(found, step, neutral, tolerance)
         if trial > most:
             found.verdict = "undecided"
             return found
@@ -105,18 +105,28 @@ def load_steps(
         ramp(run, state, found.lower, trial, RAMP * steps_to_rest)
         before = state.steps
         found.verdict = settle(run, state, trial, criteria, observe)
-        if len(found.rests) == 1:
-            steps_to_rest = state.steps - before
         if found.verdict == "stable":
-            found.lower, found.borne = trial, state
+            if len(found.rests) == 1:
+                steps_to_rest = state.steps - before
+            found.lower, found.borne, neutral = trial, state, None
             found.rests.append((trial, state))
-            borne_in_a_row += 1
-            step = max(step, min(2 * step, GROWTH * trial)) if borne_in_a_row % 3 == 0 else step
+            step = max(step, min(2 * step, GROWTH * trial)) if len(found.rests) % 3 == 0 else step
         elif found.verdict == "collapse":
             found.upper, found.fallen = trial, state
+        elif neutral is None:
+            neutral = trial
         else:
             return found
     return found
+
+
+def _next_trial(found: LoadSteps, step: float, neutral: float | None, tolerance: float) -> float:
+    """Next load to try: a step up, the middle of the bracket, or just beside a load that neither held nor fell."""
+    lower = found.lower or 0.0
+    if neutral is None:
+        return lower + step if found.upper is None else (lower + found.upper) / 2
+    above = neutral * (1 + tolerance / 4)
+    return above if found.upper is None or found.upper > above else neutral * (1 - tolerance / 4)
 
 
 def ramp(run: Run, state: State, start: float, stop: float, steps: int, interval: int = 20) -> None:
@@ -149,19 +159,23 @@ class Drive:
 
 
 def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Drive:
-    """Push a wall until its control point has moved a distance [m] or so, from a copy of a state.
+    """Push a wall until its control point has moved a distance [m], from a copy of a state.
 
-    The work-conjugate displacement, live load times motion, grows at a constant rate; the multiplier follows.
+    The work-conjugate displacement, live load times motion, grows at a constant rate after a soft start; the
+    multiplier follows. It takes `steps` if everything moves as far as the control point, and fewer as a rule.
     """
     system = run.system
     state = start.copy()
-    reach = _work_displacement(run, distance)
-    speed = reach / (steps * run.dt)
-    curve = np.zeros((pieces, 2))
+    speed = _work_displacement(run, distance) / (steps * run.dt)
+    soft = max(1, pieces // 20)
+    curve = []
     for piece in range(pieces):
-        multiplier = run.drive(state, speed, steps // pieces)
-        curve[piece] = system.control @ state.motion, multiplier
-    return Drive(curve, float(curve[:, 1].max()), float("inf"), state)
+        multiplier = run.drive(state, speed * min(1.0, (piece + 1) / soft), steps // pieces)
+        curve.append((system.control @ state.motion, multiplier))
+        if curve[-1][0] >= distance:
+            break
+    found = np.array(curve)
+    return Drive(found, float(found[soft:, 1].max(initial=found[0, 1])), float("inf"), state)
 
 
 def settled_drive(

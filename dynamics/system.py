@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from joints import KernelLaw
+from joints.point_kernel import KernelLaw
 from scene import Array, Indices
 
 Kernel: TypeAlias = Callable[..., Any]

@@ -5,7 +5,7 @@ import time
 import numpy as np
 
 from results import Outcome
-from scene import Lateral, Scene, SceneError
+from scene import Bond, Lateral, Scene, SceneError
 
 from .collapse import crack_slope, lateral_multiplier
 
@@ -22,8 +22,8 @@ def homog(scene: Scene) -> Outcome:
     Returns
     -------
     Outcome
-        `upper` equals the multiplier: a mechanism of the continuum proves it for the continuum. For the
-        wall of blocks it is an estimate, on either side.
+        No bracket: a mechanism of the continuum proves the multiplier an upper bound for the continuum, but
+        for the wall of blocks it is an estimate, on either side.
 
     Raises
     ------
@@ -31,13 +31,11 @@ def homog(scene: Scene) -> Outcome:
         For a scene to which the closed form does not apply.
     """
     start = time.perf_counter()
-    reason = _why_not(scene)
-    if reason or scene.bond is None:
-        raise SceneError("model homog", f"has no closed form for this scene: {reason}")
+    bond = _bond(scene)
     low, high = scene.blocks.extent(~scene.fixed)
     length, height = high - low
     friction = scene.joint.friction
-    slope = crack_slope(scene.bond.width, scene.bond.height, friction)
+    slope = crack_slope(bond.width, bond.height, friction)
     multiplier = lateral_multiplier(height / length, slope, friction)
     sliding = "sliding" if multiplier == friction else "turning about a crack"
     return Outcome(
@@ -45,37 +43,42 @@ def homog(scene: Scene) -> Outcome:
         "homog",
         "collapse",
         multiplier=multiplier,
-        upper=multiplier,
         seconds=time.perf_counter() - start,
-        message=f"homogenised continuum, {sliding}; upper bound of the continuum, an estimate for the blocks",
+        message=f"homogenised continuum, {sliding}; an estimate for the wall of blocks, on either side",
     )
 
 
-def _why_not(scene: Scene) -> str:
+def _bond(scene: Scene) -> Bond:
+    """Bond of a scene that keeps every assumption of the closed form; the others are refused."""
+    reason = "it needs a block width and height, not a drawing" if scene.bond is None else _why_not(scene, scene.bond)
+    if scene.bond is None or reason:
+        raise SceneError("model homog", f"has no closed form for this scene: {reason}")
+    return scene.bond
+
+
+def _why_not(scene: Scene, bond: Bond) -> str:
     """The first assumption of the closed form that a scene breaks, or nothing."""
-    if scene.bond is None:
-        return "it needs a block width and height, not a drawing"
     if not isinstance(scene.load.live, Lateral):
         return 'it needs load.live.kind = "lateral"'
     if len(scene.pins):
         return 'it needs support.kind = "base" or "fixed-first-course"'
     if scene.joint.cohesion > 0:
         return "it needs dry joints, joint.cohesion = 0"
+    if scene.joint.inset > 0:
+        return "it needs sharp corners, joint.inset = 0"
     movable = ~scene.fixed
     low, high = scene.blocks.extent(movable)
     area = scene.blocks.area[movable].sum()
     if not np.isclose(area, np.prod(high - low), rtol=1e-6):
         return "it needs a full rectangular panel with flush ends and no openings"
-    if not _is_running_bond(scene):
+    if not _is_running_bond(scene, bond):
         return "it needs running bond, every course half a block off its neighbours"
     return ""
 
 
-def _is_running_bond(scene: Scene) -> bool:
+def _is_running_bond(scene: Scene, bond: Bond) -> bool:
     """Whether the head joints are those of running bond: one at every second half block, shifted course by course."""
-    bond, movable = scene.bond, ~scene.fixed
-    if bond is None:
-        return False
+    movable = ~scene.fixed
     low, high = scene.blocks.extent(movable)
     ends = scene.joints.ends[movable[scene.joints.block].all(axis=1)]
     rise = np.abs(ends[:, 1] - ends[:, 0])

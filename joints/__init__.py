@@ -1,7 +1,6 @@
 """Joint points and the Mohr–Coulomb joint: the one place where its signs are written down."""
 
 from .mohr_coulomb import PointStrength, point_strength
-from .point_kernel import KernelLaw, coulomb_law
 from .point_law import PointLaw, PointResponse, point_law
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw, resultant_law
@@ -9,13 +8,11 @@ from .stiffness import joint_stiffness
 
 __all__ = [
     "JointPoints",
-    "KernelLaw",
     "PointLaw",
     "PointResponse",
     "PointStrength",
     "ResultantLaw",
     "Rule",
-    "coulomb_law",
     "gauss",
     "joint_points",
     "joint_stiffness",

@@ -52,5 +52,8 @@ class PointStrength:
 
 def point_strength(material: JointMaterial, area: Array) -> PointStrength:
     """Strength of joint points that each stand for an area ``(np,)`` [m²]."""
-    shear = max(0.0, material.cohesion - material.tensile_strength * material.friction)
-    return PointStrength(material.friction, material.tensile_strength * area, shear * area)
+    cohesion, friction, tension = material.cohesion, material.friction, material.tensile_strength
+    # No joint pulls beyond the apex of its cone, even where only the friction of a material was changed.
+    if friction * tension > cohesion:
+        tension = cohesion / friction
+    return PointStrength(friction, tension * area, max(0.0, cohesion - tension * friction) * area)

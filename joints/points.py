@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene import Array, Indices, Joints, frozen
+from scene import Array, Indices, Joints, SceneError, frozen
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +100,10 @@ def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, ins
         Points of joint 0 first, each joint's points in the sense of its tangent.
     """
     rule = rule or lobatto()
+    if len(joints) and 2 * inset >= joints.length.min():
+        raise SceneError(
+            "joint.inset", f"must be less than half the shortest joint, {joints.length.min():.4g} m long", inset
+        )
     start, stop = joints.ends[:, 0], joints.ends[:, 1]
     length = joints.length[:, None]
     tangent = (stop - start) / length

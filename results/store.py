@@ -53,14 +53,19 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "") -> None:
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **{name: getattr(outcome, name) for name in ARRAYS})
     content = buffer.getvalue()
-    digest = hashlib.sha256(content).hexdigest()
-    arrays = f"arrays-{digest[:16]}.npz"
+    arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
     write_atomically(folder / arrays, content)
-    record = {"key": key, "arrays": arrays, "sha256": digest, **outcome.summary()}
+    scalars = {"key": key, "arrays": arrays, **outcome.summary()}
+    record = {**scalars, "sha256": _seal(scalars, content)}
     write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
     for stale in folder.glob("arrays-*.npz"):
         if stale.name != arrays:
             stale.unlink(missing_ok=True)
+
+
+def _seal(scalars: dict[str, object], content: bytes) -> str:
+    """Digest of everything that is kept."""
+    return hashlib.sha256(json.dumps(scalars, sort_keys=True).encode() + content).hexdigest()
 
 
 def load_outcome(folder: Path) -> tuple[Outcome, str]:
@@ -74,13 +79,14 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
     try:
         record = json.loads((folder / RECORD).read_bytes())
         content = (folder / record["arrays"]).read_bytes()
-        if hashlib.sha256(content).hexdigest() != record["sha256"]:
-            raise StoreError(f"{folder / record['arrays']}: is not the file that {RECORD} vouches for")
+        seal = record.pop("sha256")
+        if _seal(record, content) != seal:
+            raise StoreError(f"{folder}: is not what {RECORD} vouches for")
         with np.load(io.BytesIO(content)) as stored:
             arrays = {name: stored[name] for name in ARRAYS}
-        scalars = {name: value for name, value in record.items() if name not in ("key", "arrays", "sha256")}
+        scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}
         return Outcome(**scalars, **arrays), str(record["key"])
     except OSError as error:
         raise StoreError(f"{folder}: holds no outcome: {error.strerror or error}") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise StoreError(f"{folder / RECORD}: is damaged: {error}") from error

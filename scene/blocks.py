@@ -127,9 +127,10 @@ class Blocks:
         with np.errstate(invalid="ignore"):
             thin = ~(self.area > 1e-9 * np.maximum.reduceat(length, self.first[:-1]) ** 2)
         if thin.any():
-            raise SceneError(self.name(int(np.argmax(thin))), "encloses no area; its corners must run round it")
+            fault = "encloses no area; its corners must run round it counter-clockwise"
+            raise SceneError(self.name(int(np.argmax(thin))), fault)
         scale = length * length[self.successor]
-        reflex = np.logical_or.reduceat(turn < -1e-9 * scale, self.first[:-1])
+        reflex = np.logical_or.reduceat(turn < -CONTACT_TOLERANCE * scale, self.first[:-1])
         # A polygon that winds twice has only left turns, and yet crosses itself.
         angle = np.arctan2(turn, (edge * edge[self.successor]).sum(axis=1))
         reflex |= np.add.reduceat(angle, self.first[:-1]) > 3 * np.pi

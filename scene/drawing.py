@@ -12,6 +12,9 @@ from ezdxf.lldxf.const import DXFError
 from .arrays import Array
 from .refusal import SceneError
 
+STRAIGHT = 2e-5
+"""How far a corner may lie off a straight side, in sizes of its block: the rounding of a drawing, below any contact."""
+
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
 
@@ -37,7 +40,7 @@ def read_drawing(path: Path, units: str) -> tuple[list[Array], Array]:
         entities = list(readfile(path).modelspace().query("LWPOLYLINE POLYLINE"))
     except OSError as error:
         raise SceneError(key, f"cannot be read as DXF: {error.strerror or error}", str(path)) from error
-    except DXFError as error:
+    except (DXFError, ValueError) as error:
         raise SceneError(key, f"is no valid DXF file: {error}", str(path)) from error
     outlines = [_outline(entity, METRES[units]) for entity in entities]
     if len(outlines) < 2:
@@ -48,16 +51,19 @@ def read_drawing(path: Path, units: str) -> tuple[list[Array], Array]:
 
 
 def _outline(entity: object, scale: float) -> Array:
+    # World coordinates: a polyline that was mirrored has axes of its own.
     if isinstance(entity, LWPolyline):
-        points = [(x, y) for x, y in entity.get_points("xy")]
+        points = list(entity.vertices_in_wcs())
         curved, closed, handle = entity.has_arc, entity.closed, entity.dxf.handle
-    elif isinstance(entity, Polyline):
-        points = [(p.x, p.y) for p in entity.points()]
+    elif isinstance(entity, Polyline) and (entity.is_2d_polyline or entity.is_3d_polyline):
+        points = list(entity.points_in_wcs())
         curved, closed, handle = entity.has_arc, entity.is_closed, entity.dxf.handle
-    else:  # pragma: no cover - the query yields nothing else
-        raise TypeError(type(entity).__name__)
+    else:
+        raise SceneError("wall.drawing", "holds a mesh; each block is one closed polyline")
     name = f"wall.drawing, polyline {handle}"
-    corners = np.array(points, dtype=float) * scale
+    corners = np.array([(p.x, p.y) for p in points], dtype=float).reshape(-1, 2) * scale
+    if np.ptp([p.z for p in points] or [0.0]) * scale > 1e-6:
+        raise SceneError(name, "does not lie in the drawing's plane")
     if len(corners) > 1 and np.allclose(corners[0], corners[-1], rtol=0, atol=0):
         corners, closed = corners[:-1], True
     if not closed:
@@ -70,5 +76,5 @@ def _outline(entity: object, scale: float) -> Array:
     if not polygon.is_valid:
         raise SceneError(name, "crosses itself")
     # Corners in the middle of a straight side would cut one joint into two.
-    straight = shapely.simplify(polygon, 1e-9 * np.sqrt(polygon.area))
+    straight = shapely.simplify(polygon, STRAIGHT * np.sqrt(polygon.area))
     return np.array(shapely.geometry.polygon.orient(straight).exterior.coords)[:-1]

@@ -37,8 +37,6 @@ def read_scene(path: str | Path) -> Scene:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
         raise SceneError(str(path), "is no scene file: it is not UTF-8 text") from error
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(str(path), f"is no valid TOML: {error}") from error
     except (RecursionError, ValueError) as error:
         raise SceneError(str(path), f"is no valid TOML: {error}") from error
     return scene_from_dict(content, folder=path.parent, default_title=path.stem)

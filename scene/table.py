@@ -7,6 +7,9 @@ from typing import Any
 
 from .refusal import SceneError
 
+SMALLEST = 1e-100
+"""Numbers below it, or above its inverse, describe nothing; their products leave the range of a double."""
+
 
 class Table:
     """A TOML table being read.
@@ -129,7 +132,7 @@ def _finite(value: Any) -> float | None:
         number = float(value)
     except OverflowError:
         return None
-    return number if math.isfinite(number) else None
+    return number if number == 0.0 or SMALLEST <= abs(number) <= 1 / SMALLEST else None
 
 
 def _range(least: float, most: float, above: float, below: float) -> str:
