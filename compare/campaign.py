@@ -3,21 +3,32 @@
 import multiprocessing
 import signal
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
-from joblib import Parallel, delayed, parallel_config
+from joblib import Parallel, cpu_count, delayed, parallel_config
+from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from results import Outcome, StoreError, load_outcome, save_outcome
 from scene import Scene, SceneError
 
 from .fingerprint import fingerprint
-from .models import MODELS, TOLERANCE, check_model, check_tolerance
+from .models import MODELS, TOLERANCE, check_model, check_tolerance, run_model
 
 Cell: TypeAlias = tuple[str, str]
 """Name of a scene and of a model."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What one model said of one scene: an outcome, or why it says nothing."""
+
+    cell: Cell
+    outcome: Outcome | None
+    reason: str = ""
+    reused: bool = False
 
 
 @dataclass
@@ -41,6 +52,24 @@ class Campaign:
     def __len__(self) -> int:
         return len(self.outcomes) + len(self.inapplicable)
 
+    @property
+    def kept(self) -> int:
+        """Number of outcomes that are in the folder."""
+        return sum(outcome.status != "failed" for outcome in self.outcomes.values())
+
+    def add(self, answer: Answer) -> None:
+        """Take in an answer."""
+        if answer.outcome is None:
+            self.inapplicable[answer.cell] = answer.reason
+        else:
+            self.outcomes[answer.cell] = answer.outcome
+        if answer.reused:
+            self.reused.add(answer.cell)
+
+    def only(self, names: Container[str]) -> "Campaign":
+        """The part of it that is about some scenes."""
+        return Campaign({cell: outcome for cell, outcome in self.outcomes.items() if cell[0] in names})
+
 
 class Interrupted(Exception):
     """A campaign stopped by Ctrl-C; what it has is in the folder."""
@@ -48,14 +77,6 @@ class Interrupted(Exception):
     def __init__(self, campaign: Campaign) -> None:
         super().__init__("interrupted")
         self.campaign = campaign
-
-
-@dataclass(frozen=True)
-class _Answer:
-    cell: Cell
-    outcome: Outcome | None
-    reason: str = ""
-    reused: bool = False
 
 
 def run_campaign(
@@ -101,15 +122,9 @@ def run_campaign(
     cells = [(name, model) for model in reversed(models) for name in largest_first]
     campaign = Campaign()
     try:
-        with _processes(jobs):
-            for answer in _answers(cells, scenes, folder, tolerance, fresh):
-                if answer.outcome is None:
-                    campaign.inapplicable[answer.cell] = answer.reason
-                else:
-                    campaign.outcomes[answer.cell] = answer.outcome
-                if answer.reused:
-                    campaign.reused.add(answer.cell)
-                progress(answer.cell)
+        for answer in _answers(cells, scenes, folder, tolerance, jobs, fresh):
+            campaign.add(answer)
+            progress(answer.cell)
     except KeyboardInterrupt:
         raise Interrupted(campaign) from None
     return campaign
@@ -119,7 +134,9 @@ def _processes(jobs: int) -> parallel_config:
     """Where tasks run: in processes of their own, or in this one where there is to be only one."""
     if jobs == 1 or not _can_have_processes():
         return parallel_config(backend="sequential")
-    return parallel_config(backend="loky", n_jobs=jobs, initializer=_leave_interrupts_to_the_parent)
+    # More processes than cores gain nothing but memory.
+    n_jobs = cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count()))
+    return parallel_config(backend="loky", n_jobs=n_jobs, initializer=_leave_interrupts_to_the_parent)
 
 
 def _can_have_processes() -> bool:
@@ -133,10 +150,30 @@ def _can_have_processes() -> bool:
 
 
 def _answers(
-    cells: Sequence[Cell], scenes: Mapping[str, Scene], folder: Path, tolerance: float, fresh: bool
-) -> Iterator[_Answer]:
+    cells: Sequence[Cell], scenes: Mapping[str, Scene], folder: Path, tolerance: float, jobs: int, fresh: bool
+) -> Iterator[Answer]:
+    """Answers as they come, whatever becomes of the processes that find them."""
+    left = dict.fromkeys(cells)
+    try:
+        for answer in _side_by_side(cells, scenes, folder, tolerance, jobs, fresh):
+            del left[answer.cell]
+            yield answer
+    except TerminatedWorkerError:
+        # A process was killed, and nobody says over which case: what is left goes one by one, the cheapest first.
+        for cell in reversed(list(left)):
+            try:
+                yield from _side_by_side([cell], scenes, folder, tolerance, 2, fresh)
+            except TerminatedWorkerError:
+                lost = Outcome(scenes[cell[0]].title, cell[1], "failed", message="its process was killed (memory?)")
+                yield Answer(cell, lost)
+
+
+def _side_by_side(
+    cells: Sequence[Cell], scenes: Mapping[str, Scene], folder: Path, tolerance: float, jobs: int, fresh: bool
+) -> Iterator[Answer]:
     tasks = (delayed(_run_cell)(cell, scenes[cell[0]], folder, tolerance, fresh) for cell in cells)
-    yield from Parallel(return_as="generator_unordered", batch_size=1)(tasks)
+    with _processes(jobs):
+        yield from Parallel(return_as="generator_unordered", batch_size=1)(tasks)
 
 
 def _leave_interrupts_to_the_parent() -> None:
@@ -144,7 +181,7 @@ def _leave_interrupts_to_the_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _run_cell(cell: Cell, scene: Scene, folder: Path, tolerance: float, fresh: bool) -> _Answer:
+def _run_cell(cell: Cell, scene: Scene, folder: Path, tolerance: float, fresh: bool) -> Answer:
     """Run one model on one scene, or find its outcome; called in a process of its own."""
     name, model = cell
     place = folder / name / model
@@ -152,15 +189,14 @@ def _run_cell(cell: Cell, scene: Scene, folder: Path, tolerance: float, fresh: b
     if not fresh:
         found = _find(place, key)
         if found is not None:
-            return _Answer(cell, found, reused=True)
+            return Answer(cell, found, reused=True)
     try:
-        outcome = MODELS[model](scene, tolerance)
+        outcome = run_model(model, scene, tolerance)
     except SceneError as reason:
-        return _Answer(cell, None, str(reason))
-    except Exception as error:  # one broken case must not lose a campaign; it is reported, and not kept
-        return _Answer(cell, Outcome(scene.title, model, "failed", message=f"{type(error).__name__}: {error}"))
-    save_outcome(outcome, place, key)
-    return _Answer(cell, outcome)
+        return Answer(cell, None, str(reason))
+    if outcome.status != "failed":  # a failure is tried again, perhaps by better code
+        save_outcome(outcome, place, key)
+    return Answer(cell, outcome)
 
 
 def _find(place: Path, key: str) -> Outcome | None:

@@ -1,6 +1,9 @@
 """The command line: ``runningbond run`` and ``runningbond compare``."""
 
+import io
 import json
+import os
+import signal
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
@@ -15,12 +18,10 @@ from results import Outcome, save_outcome, write_atomically
 from scene import Scene, SceneError, read_scene
 
 from .campaign import Campaign, Cell, Interrupted, run_campaign
-from .curves import draw_curves
-from .figures import draw_figures
 from .fingerprint import fingerprint
 from .models import MODELS, TOLERANCE, check_model, check_tolerance, run_model
-from .published import PUBLISHED, find_scene
-from .table import cost_sheets, csv_text, multiplier_sheets
+from .published import PUBLISHED, PublishedCase, find_scene, published_case
+from .table import Comparison, cost_sheets, csv_text, multiplier_sheets
 
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 UNDECIDED = ("undecided", "failed")
@@ -61,10 +62,13 @@ def run(
     check_model(model)
     check_tolerance(tolerance)
     wall = read_scene(find_scene(scene))
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a solver would not look up from its work
     outcome = run_model(model, wall, tolerance)
+    print(_as_json(outcome) if json else _as_text(outcome), flush=True)
     if out is not None:
         save_outcome(outcome, out, fingerprint(wall, model, tolerance))
-    print(_as_json(outcome) if json else _as_text(outcome))
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
@@ -96,39 +100,45 @@ def compare(
     fresh
         Compute again what is already there.
     """
-    chosen = [model.strip() for model in models.split(",")]
+    chosen = list(dict.fromkeys(model.strip() for model in models.split(",")))
     for model in chosen:
         check_model(model, "--models")
     check_tolerance(tolerance)
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
-    walls = _read_all(scenes or [case.name for case in PUBLISHED])
+    walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
     out.mkdir(parents=True, exist_ok=True)
     console = Console(stderr=True)
     try:
         campaign = _run_with_progress(walls, chosen, out, tolerance, jobs, fresh, console)
     except Interrupted as stopped:
-        total = len(walls) * len(chosen)
+        total, again = len(walls) * len(chosen), "the same command without --fresh" if fresh else "the same command"
         console.print(
-            f"Interrupted: {len(stopped.campaign)} of {total} cases are kept in {out}; the same command goes on.",
+            f"Interrupted: {stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on.",
             soft_wrap=True,
+            markup=False,
         )
         return STOPPED
-    _report(walls, chosen, campaign, out)
+    _report(Comparison(walls, chosen, campaign, published), out)
     failed = [cell for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for name, model in failed:
-        console.print(f"{name}, {model}: {campaign.outcomes[name, model].message}")
+        console.print(f"{name}, {model}: {campaign.outcomes[name, model].message}", markup=False)
     return NO_ANSWER if failed else DONE
 
 
-def _read_all(scenes: Sequence[str]) -> dict[str, Scene]:
+def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, PublishedCase]]:
+    """Scenes by name, and the published cases among them."""
     walls: dict[str, Scene] = {}
+    published: dict[str, PublishedCase] = {}
     for scene in scenes:
         path = find_scene(scene)
         if path.stem in walls:
             raise SceneError(scene, f'is the second scene called "{path.stem}"; results are kept by file name')
         walls[path.stem] = read_scene(path)
-    return walls
+        case = published_case(path)
+        if case is not None:
+            published[path.stem] = case
+    return walls, published
 
 
 def _run_with_progress(
@@ -140,7 +150,8 @@ def _run_with_progress(
     fresh: bool,
     console: Console,
 ) -> Campaign:
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console) as bar:
         task = bar.add_task("comparing", total=len(walls) * len(models))
 
@@ -150,18 +161,22 @@ def _run_with_progress(
         return run_campaign(walls, models, folder=out, tolerance=tolerance, jobs=jobs, fresh=fresh, progress=advance)
 
 
-def _report(walls: Mapping[str, Scene], models: Sequence[str], campaign: Campaign, out: Path) -> None:
-    sheets = multiplier_sheets(walls, models, campaign)
-    costs = cost_sheets(walls, models, campaign)
-    write_atomically(out / "table.csv", csv_text(walls, models, campaign).encode())
-    markdown = "\n".join(sheet.markdown() for sheet in [*sheets, *costs])
-    write_atomically(out / "table.md", markdown.encode())
-    charts = [*draw_figures(campaign, out), *draw_curves(campaign, out)]
-    console = Console() if sys.stdout.isatty() else Console(width=160)
-    for sheet in [*sheets, *costs]:
+def _report(comparison: Comparison, out: Path) -> None:
+    from .curves import draw_curves
+    from .figures import draw_figures
+
+    campaign = comparison.campaign
+    sheets = [*multiplier_sheets(comparison), *cost_sheets(comparison)]
+    write_atomically(out / "table.csv", csv_text(comparison).encode())
+    write_atomically(out / "table.md", "\n".join(sheet.markdown() for sheet in sheets).encode())
+    published = campaign.only(comparison.published)
+    charts = [*draw_figures(published, out), *draw_curves(published, out)]
+    console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
+    for sheet in sheets:
         console.print(sheet.terminal())
-    console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them found in {out}")
-    console.print("written: " + ", ".join(str(path) for path in [out / "table.csv", out / "table.md", *charts]))
+    console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them found in {out}", soft_wrap=True)
+    written = ", ".join(str(path) for path in [out / "table.csv", out / "table.md", *charts])
+    console.print(f"written: {written}", soft_wrap=True)
 
 
 def _as_json(outcome: Outcome) -> str:
@@ -193,10 +208,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def command(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; bad input is one line on standard error and exit code 2."""
     tokens = list(sys.argv[1:] if arguments is None else arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
     try:
         result = app(tokens, exit_on_error=False, print_error=False)
     except (SceneError, CycloptsError) as error:
         return _refuse(str(error))
+    except BrokenPipeError:  # whoever read us has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return DONE
     except OSError as error:
         return _refuse(f"{error.filename or 'output'}: {error.strerror or error}")
     except KeyboardInterrupt:

@@ -49,7 +49,10 @@ def figure_6_data(points: int = 120) -> tuple[Array, Array]:
 
 
 def draw_figures(campaign: Campaign, folder: Path) -> list[Path]:
-    """Draw every chart that a campaign has something for, and write the data of Figure 6 beside it."""
+    """Draw every chart that a campaign of published walls has something for, and write the data of Figure 6."""
+    panels = [case for case in PUBLISHED if case.source == BARALDI]
+    if not any(cell[0] == case.name for case in panels for cell in campaign.outcomes):
+        return []
     slenderness, multiplier = figure_6_data()
     table = io.StringIO()
     writer = csv.writer(table, lineterminator="\n")
@@ -58,7 +61,6 @@ def draw_figures(campaign: Campaign, folder: Path) -> list[Path]:
     write_atomically(folder / "figure-6.csv", table.getvalue().encode())
     save(_figure_6(campaign, slenderness, multiplier), folder / "figure-6.png")
     written = [folder / "figure-6.csv", folder / "figure-6.png"]
-    panels = [case for case in PUBLISHED if case.source == BARALDI]
     if all(any(cell[0] == case.name for cell in campaign.outcomes) for case in panels):
         save(_table_2(campaign, panels), folder / "table-2.png")
         written.append(folder / "table-2.png")

@@ -57,6 +57,11 @@ def run_model(name: str, scene: Scene, tolerance: float = TOLERANCE) -> Outcome:
     tolerance
         Relative width of the bracket asked for.
 
+    Returns
+    -------
+    Outcome
+        ``failed``, with the error's own words, where the model broke.
+
     Raises
     ------
     SceneError
@@ -64,4 +69,9 @@ def run_model(name: str, scene: Scene, tolerance: float = TOLERANCE) -> Outcome:
     """
     check_model(name)
     check_tolerance(tolerance)
-    return MODELS[name](scene, tolerance)
+    try:
+        return MODELS[name](scene, tolerance)
+    except SceneError:
+        raise
+    except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
+        return Outcome(scene.title, name, "failed", message=f"{type(error).__name__}: {error}")

@@ -80,13 +80,20 @@ def published_scene(name: str) -> Scene:
     return read_scene(find_scene(name))
 
 
+def published_case(path: Path) -> PublishedCase | None:
+    """The published case whose own file this is; a file of the same name elsewhere is somebody's own wall."""
+    return next((case for case in PUBLISHED if case.path.resolve() == path.resolve()), None)
+
+
 def find_scene(scene: str) -> Path:
     """Path of a scene: a file, or the name of a published case where there is no such file."""
     path = Path(scene)
-    if path.exists():
+    if path.is_file():
         return path
     for case in PUBLISHED:
         if scene == case.name:
             return case.path
     names = f"{PUBLISHED[0].name} … {PUBLISHED[-1].name}"
+    if path.exists():
+        raise SceneError(scene, "cannot be read: it is a folder")
     raise SceneError(scene, f"there is no such file, nor a published scene of that name ({names})")

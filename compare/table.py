@@ -4,16 +4,17 @@ import csv
 import io
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from rich.table import Table as RichTable
+from rich.text import Text
 
 from homog import homog
 from results import Outcome
 from scene import Scene, SceneError
 
 from .campaign import Campaign
-from .published import BARALDI, PUBLISHED
+from .published import BARALDI, PublishedCase
 
 OWN = "Your scenes"
 CORRECTED = "HOMO corrected, tan 30°"
@@ -36,35 +37,75 @@ class Sheet:
 
     def terminal(self) -> RichTable:
         """The table for rich's console."""
-        table = RichTable(title=self.title, title_justify="left")
+        table = RichTable(title=Text(self.title), title_justify="left")
         for head in self.heads:
-            table.add_column(head)
+            table.add_column(Text(head))
         for row in self.rows:
-            table.add_row(*row)
+            table.add_row(*map(Text, row))
         return table
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Scenes, the models run on them, what came out, and which of the scenes are published ones.
+
+    Parameters
+    ----------
+    scenes
+        Scenes by name.
+    models
+        Names of the models.
+    campaign
+        Their outcomes.
+    published
+        Published cases by the names of their scenes.
+    """
+
+    scenes: Mapping[str, Scene]
+    models: Sequence[str]
+    campaign: Campaign
+    published: Mapping[str, PublishedCase] = field(default_factory=dict)
+
+    def by_source(self) -> dict[str, list[str]]:
+        """Names of scenes by where they were published."""
+        groups: dict[str, list[str]] = {}
+        for name in self.scenes:
+            source = self.published[name].source if name in self.published else OWN
+            groups.setdefault(source, []).append(name)
+        return groups
+
+    def printed(self, name: str) -> dict[str, float]:
+        """Values printed for a scene, and the homogenised one as its formula should read."""
+        case = self.published.get(name)
+        if case is None:
+            return {}
+        corrected = {CORRECTED: corrected_homo(self.scenes[name])} if case.source == BARALDI else {}
+        return {**case.printed, **corrected}
 
 
 def _line(cells: Sequence[str]) -> str:
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
-def multiplier_sheets(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Campaign) -> list[Sheet]:
+def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
     """Printed values and brackets, one table a source."""
+    scenes, models, campaign = comparison.scenes, comparison.models, comparison.campaign
     sheets = []
-    for source, names in _by_source(scenes).items():
-        printed = list(dict.fromkeys(label for name in names for label in _printed(name, scenes[name])))
-        heads = ["scene", "title", *(f"printed {label}" if label != CORRECTED else label for label in printed), *models]
+    for source, names in comparison.by_source().items():
+        labels = _labels(comparison, names)
+        heads = ["scene", "title", *(x if x == CORRECTED else f"printed {x}" for x in labels), *models]
         rows = []
         for name in names:
-            values = _printed(name, scenes[name])
-            cells = [_printed_number(label, values) for label in printed]
+            values = comparison.printed(name)
+            cells = [_printed_number(label, values) for label in labels]
             rows.append([name, scenes[name].title, *cells, *(_cell(campaign, name, model) for model in models)])
         sheets.append(Sheet(source, heads, rows))
     return sheets
 
 
-def cost_sheets(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Campaign) -> list[Sheet]:
+def cost_sheets(comparison: Comparison) -> list[Sheet]:
     """Degrees of freedom, steps and seconds, one table a source."""
+    scenes, models, campaign = comparison.scenes, comparison.models, comparison.campaign
     return [
         Sheet(
             f"{source}: degrees of freedom / steps / seconds",
@@ -74,20 +115,21 @@ def cost_sheets(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Ca
                 for name in names
             ],
         )
-        for source, names in _by_source(scenes).items()
+        for source, names in comparison.by_source().items()
     ]
 
 
-def csv_text(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Campaign) -> str:
+def csv_text(comparison: Comparison) -> str:
     """One row a scene and model, with the printed values of the scene."""
-    labels = list(dict.fromkeys(label for name in scenes for label in _printed(name, scenes[name])))
+    scenes, models, campaign = comparison.scenes, comparison.models, comparison.campaign
+    labels = _labels(comparison, list(scenes))
     scalars = [key for key in Outcome("", "", "undecided").summary() if key not in ("scene", "model")]
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(["scene", "title", "source", "blocks", "model", *scalars, *(f"printed {x}" for x in labels)])
-    for source, names in _by_source(scenes).items():
+    for source, names in comparison.by_source().items():
         for name in names:
-            scene, printed = scenes[name], _printed(name, scenes[name])
+            scene, printed = scenes[name], comparison.printed(name)
             for model in models:
                 outcome = campaign.outcomes.get((name, model))
                 found = outcome.summary() if outcome else _nothing(campaign, name, model)
@@ -99,25 +141,13 @@ def csv_text(scenes: Mapping[str, Scene], models: Sequence[str], campaign: Campa
     return buffer.getvalue()
 
 
+def _labels(comparison: Comparison, names: Sequence[str]) -> list[str]:
+    return list(dict.fromkeys(label for name in names for label in comparison.printed(name)))
+
+
 def _nothing(campaign: Campaign, name: str, model: str) -> dict[str, str]:
     reason = campaign.inapplicable.get((name, model))
     return {"status": "not run"} if reason is None else {"status": "not applicable", "message": reason}
-
-
-def _by_source(scenes: Mapping[str, Scene]) -> dict[str, list[str]]:
-    sources = {case.name: case.source for case in PUBLISHED}
-    groups: dict[str, list[str]] = {}
-    for name in scenes:
-        groups.setdefault(sources.get(name, OWN), []).append(name)
-    return groups
-
-
-def _printed(name: str, scene: Scene) -> dict[str, float]:
-    """Values printed for a scene, and the homogenised one as its formula should read."""
-    for case in PUBLISHED:
-        if case.name == name:
-            return {**case.printed, **({CORRECTED: corrected_homo(scene)} if case.source == BARALDI else {})}
-    return {}
 
 
 def corrected_homo(scene: Scene) -> float:
@@ -168,4 +198,6 @@ def _cost(campaign: Campaign, name: str, model: str) -> str:
 
 def _number(value: float) -> str:
     """Four decimals for a multiplier of order one, whole newtons for a force."""
+    if value != 0 and abs(value) < 0.01:
+        return f"{value:.3g}"
     return f"{value:.4f}" if abs(value) < 100 else f"{value:,.0f}"

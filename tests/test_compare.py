@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import psutil
 import pytest
 
 from compare import MODELS, PUBLISHED, published_scene, run_campaign, run_model
@@ -228,3 +229,49 @@ def test_corrected_column_is_not_the_stated_friction() -> None:
     scene = published_scene("panel-05")
     assert corrected_homo(scene) == pytest.approx(0.5336, abs=5e-5)
     assert run_model("homog", scene).multiplier == pytest.approx(0.5420, abs=5e-5)
+
+
+def test_your_own_wall_is_yours_whatever_its_file_is_called(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A changed copy of a published scene, under its name, with a title that looks like markup."""
+    own = PUBLISHED[0].path.read_text().replace('"flush"', '"toothed"').replace("H/L = 0.5, b/a = 4", "my [/b] wall")
+    (tmp_path / "panel-01.toml").write_text(own)
+    arguments = ["compare", str(tmp_path / "panel-01.toml"), "--models", "limit", "--out", str(tmp_path / "out")]
+    assert command(arguments) == 0
+    printed = capsys.readouterr().out
+    assert "Your scenes" in printed
+    assert "my [/b] wall" in printed
+    assert "0.570" not in printed
+    assert not (tmp_path / "out" / "figure-6.png").exists()
+
+
+def test_results_lying_about_do_not_hide_a_published_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for _ in range(2):
+        assert command(["compare", "panel-04", "--models", "limit", "--out", "."]) == 0
+    assert command(["run", "panel-04", "--model", "homog"]) == 0
+
+
+def test_a_killed_process_loses_one_case_and_no_more(tmp_path: Path) -> None:
+    """As the kernel does to one that takes all the memory: its case is run again, the others stay."""
+    process = start(tmp_path, "panel-11", *FAST, "--models", "limit,limit-nonassociated")
+    deadline = time.monotonic() + 60
+    while not list(tmp_path.glob("*/*/outcome.json")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    workers = [child for child in psutil.Process(process.pid).children() if "LokyProcess" in " ".join(child.cmdline())]
+    busiest = max(workers, key=lambda child: sum(child.cpu_times()[:2]))
+    busiest.kill()
+    waiting = time.monotonic() + 120
+    while not (tmp_path / "wall-w3" / "limit" / "outcome.json").exists() and time.monotonic() < waiting:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert (tmp_path / "wall-w3" / "limit" / "outcome.json").exists()
+    assert process.returncode == 130
+    assert "Traceback" not in errors
+
+
+def test_a_broken_pipe_is_no_complaint() -> None:
+    script = Path(sys.executable).parent / "runningbond"
+    line = f"{script} run panel-04 --model limit | true; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")

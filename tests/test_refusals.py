@@ -106,7 +106,7 @@ def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys:
     ("arguments", "said"),
     [
         (["run", "nowhere.toml", "--model", "limit"], "there is no such file"),
-        (["run", ".", "--model", "limit"], "cannot be read"),
+        (["run", ".", "--model", "limit"], "it is a folder"),
         (["run", "panel-01"], "--model"),
         (["run", "panel-01", "--model", "limt"], 'did you mean "limit"?'),
         (["run", "panel-01", "--model", "fem"], "must be one of homog, limit, limit-nonassociated, dem-dynamic"),
