@@ -71,11 +71,8 @@ def dem_dynamic(
     run = Run(system, local=LOCAL, viscous=VISCOUS)
     criteria = Criteria(collapse=collapse * lowest_block(scene), budget=budget)
     unit = system.force_unit / float(np.abs(system.live).max())
-    taken = Taken()
-    found = load_steps(run, first_step * unit, tolerance, criteria, most=first_step * unit * MOST, observe=taken.count)
-    outcome = Outcome(
-        scene.title, "dem-dynamic", "undecided", dofs=system.freedoms, steps=taken.looks * criteria.interval
-    )
+    found = load_steps(run, first_step * unit, tolerance, criteria, most=first_step * unit * MOST)
+    outcome = Outcome(scene.title, "dem-dynamic", "undecided", dofs=system.freedoms, steps=found.taken)
     outcome = _judge(outcome, scene, run, found)
     return replace(outcome, seconds=time.perf_counter() - start)
 
@@ -111,17 +108,6 @@ def finite_pushover(scene: Scene, distance: float, *, steps: int = 2_000_000, lo
     state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=COLLAPSE * lowest_block(scene)))
     return drive(run, state, distance, steps, pieces=400).curve
-
-
-class Taken:
-    """Counts the looks that a search takes, on every path."""
-
-    def __init__(self) -> None:
-        self.looks = 0
-
-    def count(self, state: State, multiplier: float) -> None:
-        """Observe one look."""
-        self.looks += 1
 
 
 def lowest_block(scene: Scene) -> float:
