@@ -1,0 +1,40 @@
+"""What the README says can be done, done as it says."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from compare import MODELS
+from compare.command import command
+
+README = (Path(__file__).parent.parent / "README.md").read_text()
+
+
+def _block(language: str) -> str:
+    found = re.search(rf"```{language}\n(.*?)```", README, re.DOTALL)
+    assert found is not None
+    return found.group(1)
+
+
+@pytest.fixture
+def wall(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "wall.toml"
+    path.write_text(_block("toml"))
+    return path
+
+
+@pytest.mark.parametrize("line", re.findall(r"^\.venv/bin/runningbond (.*)$", README, re.MULTILINE))
+def test_commands_run(line: str, wall: Path) -> None:
+    assert command(line.split()) == 0
+
+
+def test_python_lines_run(wall: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    exec(_block("python"), {})  # the README's own lines
+    assert capsys.readouterr().out.startswith("collapse")
+
+
+def test_every_model_has_its_row() -> None:
+    for model in MODELS:
+        assert f"| `{model}` |" in README
