@@ -62,7 +62,9 @@ class ResultantLaw:
         return beyond
 
 
-def resultant_law(strength: PointStrength, stiffness: Stiffness, area: Array, length: Array, arm: Array) -> ResultantLaw:
+def resultant_law(
+    strength: PointStrength, stiffness: Stiffness, area: Array, length: Array, arm: Array
+) -> ResultantLaw:
     """Law of whole joints.
 
     Parameters
