@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics import BlockSystem, Restraint, block_frequency_squared
-from joints import JointPoints, joint_points, joint_stiffness, point_strength
+from joints import JointPoints, PointStrength, joint_points, joint_stiffness, point_strength
 from joints.point_kernel import KernelLaw, coulomb_law
-from scene import Array, PointLoad, Scene
+from joints.softening_kernel import softening_law
+from scene import Array, JointMaterial, PointLoad, Scene
 
 from .kinematics import dead_load, jump_operator, live_load, mass_matrix_diagonal, pin_operator, point_operator
 from .rigid_kernels import gather_rigid, scatter_rigid
@@ -37,9 +38,8 @@ def rigid_system(scene: Scene) -> BlockSystem:
         If the scene gives its joints no stiffness.
     """
     points = contact_points(scene)
-    stiffness = joint_stiffness(scene.joint)
     strength = point_strength(scene.joint, points.area)
-    law = coulomb_law(stiffness.normal * points.area, stiffness.shear * points.area, strength)
+    law = point_law_of(scene.joint, strength, points.area)
     mass = np.where(np.repeat(scene.fixed, 3), np.inf, mass_matrix_diagonal(scene))
     restraint, mass = _restraint(scene, mass)
     dead, live = dead_load(scene), live_load(scene)
@@ -66,6 +66,15 @@ def rigid_system(scene: Scene) -> BlockSystem:
         control=control,
         force_unit=largest or strongest or float(np.abs(live).max()),
     )
+
+
+def point_law_of(joint: JointMaterial, strength: PointStrength, area: Array) -> KernelLaw:
+    """Law of points of a material: perfectly plastic without fracture energies, softening with them."""
+    stiffness = joint_stiffness(joint)
+    normal, shear = stiffness.normal * area, stiffness.shear * area
+    if joint.fracture_energy_1 is None and joint.fracture_energy_2 is None:
+        return coulomb_law(normal, shear, strength)
+    return softening_law(normal, shear, strength, area, joint.fracture_energy_1, joint.fracture_energy_2)
 
 
 def control_row(scene: Scene) -> Array:

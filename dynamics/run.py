@@ -116,15 +116,12 @@ class Run:
         normal, tangential = self.forces(state)
         opening, slip = (np.zeros(len(normal)) for _ in range(2))
         system.gather(self.motion_of_blocks(state), system.geometry, opening, slip)
-        torn = np.maximum(0.0, opening - law.tension / law.normal_stiffness)
-        stored = normal**2 / (2 * law.normal_stiffness) + law.tension * torn
-        stored += tangential**2 / (2 * law.shear_stiffness)
         moving = np.isfinite(system.mass)
         return Ledger(
             external=state.external,
             kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum()),
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
-            joint=float(stored.sum()),
+            joint=law.stored(law, opening, normal, tangential),
             friction=float(state.history[FRICTION_WORK].sum()),
             damped=float(state.damped.sum() + state.history[DAMPED_WORK].sum()),
         )

@@ -1,5 +1,6 @@
 """The point law as a compiled kernel over all joint points; `point_law` is the same law with its tangent."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,11 +28,14 @@ class KernelLaw:
         What the kernel needs to know of each point.
     rows : int
         Rows of the history.
+    stored
+        ``stored(law, opening, normal, tangential)``: energy that the points would give back [J].
     """
 
     kernel: Any
     parameters: Array
     rows: int
+    stored: Callable[["KernelLaw", Array, Array, Array], float]
 
     @property
     def normal_stiffness(self) -> Array:
@@ -65,7 +69,14 @@ def coulomb_law(
     """
     mu = np.full(len(strength.tension), strength.friction) if friction is None else friction
     parameters = [normal_stiffness, shear_stiffness, strength.tension, strength.shear, mu, 1 / shear_stiffness]
-    return KernelLaw(coulomb_kernel, np.array(parameters), 5)
+    return KernelLaw(coulomb_kernel, np.array(parameters), 5, _stored_uncut)
+
+
+def _stored_uncut(law: KernelLaw, opening: Array, normal: Array, tangential: Array) -> float:
+    """Energy of springs whose tension is cut off but not forgotten."""
+    torn = np.maximum(0.0, opening - law.tension / law.normal_stiffness)
+    elastic = normal**2 / (2 * law.normal_stiffness) + tangential**2 / (2 * law.shear_stiffness)
+    return float((elastic + law.tension * torn).sum())
 
 
 @kernel
