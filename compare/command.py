@@ -51,7 +51,7 @@ def run(
     scene
         Scene file, or the name of a published scene such as panel-01.
     model
-        homog, limit, limit-nonassociated or dem-dynamic.
+        homog, limit, limit-nonassociated, dem-static or dem-dynamic.
     tolerance
         Relative width of the bracket asked for.
     json

@@ -14,6 +14,13 @@ Model: TypeAlias = Callable[[Scene, float], Outcome]
 """From a scene and the relative width of the bracket asked for to an outcome."""
 
 
+def _dem_static(scene: Scene, tolerance: float) -> Outcome:
+    """`dem.static.dem_static`, imported when it is wanted, as `_dem_dynamic` is."""
+    from dem.static import dem_static
+
+    return dem_static(scene, tolerance)
+
+
 def _dem_dynamic(scene: Scene, tolerance: float) -> Outcome:
     """`dem.dynamic.dem_dynamic`, imported when it is wanted, for its compiler takes a second to load."""
     from dem.dynamic import dem_dynamic
@@ -25,6 +32,7 @@ MODELS: dict[str, Model] = {
     "homog": lambda scene, tolerance: homog(scene),
     "limit": limit,
     "limit-nonassociated": limit_nonassociated,
+    "dem-static": _dem_static,
     "dem-dynamic": _dem_dynamic,
 }
 

@@ -1,0 +1,187 @@
+"""The paper's static solver as it was published: violated joint actions lose their stiffness (Sec. 3, Eq. 3).
+
+The load grows in equal increments. In each, the stiffness matrix is assembled from the joints' normal, shear and
+rotational stiffnesses and the increment of motion solved for; where the actions that a joint's full stiffness would
+give violate a condition of Eq. 3, the stiffness against that mode is set to zero, against all three where the joint
+detaches, and the increment is solved for again, until the set of violated conditions repeats. The paper does not say
+what force a mode without stiffness keeps: here the one it had before the increment, so that equilibrium is kept, or
+nothing in a joint that detaches, whose forces the rest must take over.
+
+It is known to fail. Released modes come and go: sets of violated conditions that were met before prove a *cycle*, as
+nothing but the set enters the next solution. Loose blocks make the matrix *singular*, often far below collapse.
+Others *wander* from set to set. On the fifteen dry published walls, with increments of .05, .01 and .002 and both
+readings of l_c, each of the 90 runs ended in a cycle or singular below the collapse load of `dem_static`, the robust
+variant, W3 and the walls of upright blocks already under their dead load or in the step after it. The curve up to
+there is what the method gives.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from scipy.sparse import block_array, csc_array, csr_array, diags_array, vstack
+from scipy.sparse.linalg import splu
+
+from joints import ResultantLaw, gauss, joint_points, joint_stiffness, point_strength, resultant_law
+from joints.resultant_law import DETACHED
+from scene import Array, Mask, Scene
+
+from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator
+from .rigid_system import control_row
+
+UpdateStatus: TypeAlias = Literal["converged", "cycle", "singular", "wandering"]
+
+MOST_UPDATES = 100
+"""Solutions of one load step after which it is said to wander."""
+
+ROUNDING = 1e-9
+"""Excess over Eq. 3 that counts as none, relative to the largest action or load."""
+
+SINGULAR = 1e9
+"""Motion, in those of a single spring as stiff as any joint action, at which a matrix counts as singular."""
+
+
+@dataclass(frozen=True, eq=False)
+class StiffnessUpdate:
+    """What the published algorithm came to.
+
+    Parameters
+    ----------
+    curve : (n, 2) float
+        Displacement of the control point [m] and λ of the converged load steps, the dead load's first.
+    status : tuple of str
+        How each load step ended; all but the last converged.
+    solves : int
+        Linear systems solved.
+    """
+
+    curve: Array
+    status: tuple[UpdateStatus, ...]
+    solves: int
+
+    @property
+    def multiplier(self) -> float | None:
+        """λ of the last converged load step; None where even the dead load's failed."""
+        return float(self.curve[-1, 1]) if len(self.curve) else None
+
+
+@dataclass(frozen=True, eq=False)
+class ResultantWall:
+    """Rigid blocks joined by the resultants of their joints.
+
+    Parameters
+    ----------
+    law
+        Law of the joints.
+    jump : (3 nj, nd) sparse array
+        Opening, slip and relative rotation of the joints, all openings first, per movable freedom.
+    pins : (n_pins, nd) sparse array
+        Displacements that are held.
+    dead, live : (nd,) float
+        Loads [N, N, N m].
+    """
+
+    law: ResultantLaw
+    jump: csr_array
+    pins: csr_array
+    dead: Array
+    live: Array
+
+    def move(self, intact: Mask, load: Array) -> Array | None:
+        """Motion ``(nd,)`` under a load, with the joint modes ``(nj, 3)`` that are intact; None if singular."""
+        stiffness = np.where(intact, self.law.stiffness, 0.0).T.ravel()
+        largest = float(self.law.stiffness.max())
+        inner = self.jump.T @ diags_array(stiffness) @ self.jump
+        held = block_array([[inner, largest * self.pins.T], [largest * self.pins, None]])
+        try:
+            solved = splu(csc_array(held)).solve(np.concatenate([load, np.zeros(self.pins.shape[0])]))
+        except RuntimeError:
+            return None
+        motion = solved[: len(load)]
+        return motion if np.abs(motion).max() * largest <= SINGULAR * np.abs(load).max() else None
+
+    def actions(self, motion: Array) -> Array:
+        """Actions ``(nj, 3)`` that intact joints add in a motion ``(nd,)``."""
+        return np.asarray(self.law.stiffness * (self.jump @ motion).reshape(3, -1).T)
+
+
+def resultant_wall(scene: Scene, arm: float = 0.5) -> ResultantWall:
+    """Set up a scene's resultants, with l_c the given share of each joint's length."""
+    middles = joint_points(scene.joints, scene.thickness, gauss(1))
+    stiffness, length = joint_stiffness(scene.joint), scene.joints.length
+    strength = point_strength(scene.joint, middles.area)
+    jump = jump_operator(middles, scene.blocks.centroid)
+    joint, (a, b) = np.arange(len(middles)), middles.block.T
+    entries = (np.repeat([1.0, -1.0], len(joint)), (np.tile(joint, 2), np.concatenate([3 * b + 2, 3 * a + 2])))
+    rotation = csr_array(entries, shape=jump.opening.shape)
+    free = movable_freedoms(scene)
+    return ResultantWall(
+        resultant_law(strength, stiffness, middles.area, length, arm * length),
+        csr_array(vstack([jump.opening, jump.slip, rotation]))[:, free],
+        pin_operator(scene)[:, free],
+        dead_load(scene)[free],
+        live_load(scene)[free],
+    )
+
+
+def stiffness_update(scene: Scene, increment: float, most: float, arm: float = 0.5) -> StiffnessUpdate:
+    """Push a wall over by the published algorithm, as far as it goes.
+
+    Parameters
+    ----------
+    scene
+        The scene; its joints need a stiffness.
+    increment, most
+        Load increment, and the multiplier at which to stop.
+    arm
+        l_c as a share of each joint's length: one half is exact, one the paper's reading.
+    """
+    wall = resultant_wall(scene, arm)
+    control = control_row(scene)[movable_freedoms(scene)]
+    force = np.zeros_like(wall.law.stiffness)
+    motion = np.zeros_like(wall.dead)
+    rows: list[tuple[float, float]] = []
+    ends: list[UpdateStatus] = []
+    solves = 0
+    for multiplier in np.arange(round(most / increment) + 1) * increment:
+        step = load_step(wall, force, wall.dead + multiplier * wall.live)
+        ends.append(step.status)
+        solves += step.solves
+        if step.status != "converged":
+            break
+        force, motion = step.force, motion + step.motion
+        rows.append((float(control @ motion), float(multiplier)))
+    return StiffnessUpdate(np.array(rows).reshape(-1, 2), tuple(ends), solves)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadStep:
+    """One load step: how it ended, the actions ``(nj, 3)`` and motion ``(nd,)`` after it, and its solutions."""
+
+    status: UpdateStatus
+    force: Array
+    motion: Array
+    solves: int
+
+
+def load_step(wall: ResultantWall, force: Array, load: Array) -> LoadStep:
+    """Set stiffnesses to zero until the violated conditions repeat, from actions ``(nj, 3)`` to a load ``(nd,)``."""
+    intact: Mask = np.ones(force.shape, dtype=np.bool_)
+    met: set[bytes] = set()
+    motion = np.zeros_like(load)
+    for solves in range(1, MOST_UPDATES + 1):
+        met.add(intact.tobytes())
+        kept = np.where(np.any(intact, axis=1, keepdims=True), force, 0.0)
+        solved = wall.move(intact, load - wall.jump.T @ kept.T.ravel())
+        if solved is None:
+            return LoadStep("singular", force, motion, solves)
+        motion, added = solved, wall.actions(solved)
+        scale = max(float(np.abs(kept + added)[:, :2].max()), float(np.abs(load).max()))
+        violated = wall.law.violated(force + added, ROUNDING * scale)
+        now: Mask = ~(violated | violated[:, [DETACHED]])
+        if np.array_equal(now, intact):
+            return LoadStep("converged", kept + np.where(intact, added, 0.0), motion, solves)
+        if now.tobytes() in met:
+            return LoadStep("cycle", force, motion, solves)
+        intact = now
+    return LoadStep("wandering", force, motion, MOST_UPDATES)
