@@ -22,6 +22,8 @@ from dem import (
     movable_freedoms,
     pin_operator,
 )
+from dem.force_program import ForceSolution
+from dem.nonassociated import Certificate, certified_loads
 from joints import joint_points
 from scene import (
     Array,
@@ -426,3 +428,36 @@ def test_no_friction_and_no_strength_hold_nothing_sideways() -> None:
     zero = multiplier(panel(joint__friction=0.0))
     assert zero == pytest.approx(0, abs=1e-12)
     assert math.copysign(1.0, zero) == 1.0
+
+
+def test_disjoint_certificates_are_named() -> None:
+    """Two mechanisms certified at loads apart from each other prove nothing in between."""
+    size = {"wall__block_width": 0.06, "wall__block_height": 0.24, "wall__height": 1.44}
+    outcome = limit_nonassociated(scene_from_dict(content(**size, joint__inset=0.005)))
+    assert outcome.status == "collapse"
+    if "nothing is proved in between" not in outcome.message:
+        assert "every load of the interval" in outcome.message
+    merged = certified_loads([_certificate(3, 4), _certificate(1, 2), _certificate(1.5, 2.5)], 10.0)
+    assert merged == [(10, 25), (30, 40)]
+
+
+def _certificate(least: float, most: float) -> Certificate:
+    none = np.zeros(0)
+    ends = [ForceSolution("optimal", x, none, none, none, none, 0) for x in (least, most)]
+    return Certificate(none, *ends)
+
+
+@pytest.mark.parametrize("size", [10.0, 100.0, 1000.0])
+def test_a_small_block_on_a_huge_one_topples_as_on_a_small_one(size: float) -> None:
+    """b/h = 0.2 on a block up to ten thousand times as wide; its balance is not lost in the huge one's."""
+    scene = pile([rectangle(0, 0, size, size), rectangle(size / 2, size, 0.1, 0.5)], 0.6)
+    assert multiplier(scene) == pytest.approx(0.2, rel=1e-4)
+    assert limit_nonassociated(scene).lower == pytest.approx(0.2, rel=1e-4)
+
+
+def test_zero_is_an_answer() -> None:
+    """A wall without weight and without tension that any force pulls apart."""
+    live = {"kind": "point", "at": [0.7, 0.5], "force": [0.5, -1]}
+    joint = {"friction": 0.3, "cohesion": 100, "tensile_strength": 0.0}
+    load = {"gravity": 0.0, "live": live}
+    assert multiplier(courses([[1, 2, 0.5]], 0.2, 0.5, joint=joint, load=load)) == pytest.approx(0, abs=1e-6)

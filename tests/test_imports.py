@@ -1,9 +1,12 @@
 """Who may import whom, and that the rooms stay apart."""
 
 import ast
+import tomllib
 from pathlib import Path
 
 import pytest
+
+from compare.fingerprint import COMPUTING_ROOMS
 
 ROOT = Path(__file__).parent.parent
 MAY_IMPORT = {
@@ -57,3 +60,17 @@ def test_there_is_no_cycle_between_rooms() -> None:
         ready = [room for room, allowed in MAY_IMPORT.items() if room not in order and allowed <= set(order)]
         assert ready, "the rooms left import each other"
         order += ready
+
+
+def test_no_room_stands_outside_the_design() -> None:
+    """Every package of the tree and of the distribution is one of the design's rooms."""
+    rooms = {path.parent.name for path in ROOT.glob("*/__init__.py")} - {"tests"}
+    with (ROOT / "pyproject.toml").open("rb") as file:
+        packages = set(tomllib.load(file)["tool"]["setuptools"]["packages"])
+    assert rooms == packages
+    assert rooms <= set(MAY_IMPORT)
+
+
+def test_what_can_change_a_number_is_in_the_fingerprint() -> None:
+    rooms = {path.parent.name for path in ROOT.glob("*/__init__.py")} - {"tests", "compare"}
+    assert set(COMPUTING_ROOMS) == rooms

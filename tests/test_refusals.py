@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from compare.command import command
+from tests.test_scene import drawing
 from tests.walls import content, write_toml
 
 POINT = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1]}
@@ -154,3 +155,27 @@ def test_the_installed_command_leaves_with_the_same_code(tmp_path: Path) -> None
     refused = subprocess.run([script, "run", "x", "--model", "homog"], capture_output=True, text=True, check=False)
     assert refused.returncode == 2
     assert "Traceback" not in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("outlines", "said"),
+    [
+        ([[(0, 0), (200, 0), (200, 100), (0, 100)], [(100, 50), (300, 50), (300, 150), (100, 150)]], "overlaps"),
+        ([[(0, 0), (200, 0), (200, 100), (100, 20), (0, 100)]], "is not convex"),
+        ([[(0, 40), (200, 40), (200, 100), (0, 100)]], "is a floating block"),
+        ([], "needs the ground and at least one block"),
+    ],
+)
+def test_a_drawing_that_is_no_wall(
+    outlines: list[list[tuple[float, float]]], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ground = [(-500.0, -50.0), (700.0, -50.0), (700.0, 0.0), (-500.0, 0.0)]
+    drawing(tmp_path / "wall.dxf", [ground, *outlines])
+    wall = {"drawing": "wall.dxf", "units": "mm", "thickness": 0.12}
+    scene = write_toml(content(wall=wall), tmp_path / "wall.toml")
+    assert command(["run", str(scene), "--model", "limit", "--out", str(tmp_path / "out")]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert said in printed.err
+    assert printed.err.count("\n") == 1
+    assert not (tmp_path / "out").exists()

@@ -282,6 +282,24 @@ def test_a_drawing_is_read_in_its_units_with_the_lowest_outline_as_ground(tmp_pa
     assert scene.blocks.area[:2] == pytest.approx([0.02, 0.02])
 
 
+def test_a_mirrored_outline_is_where_it_is_drawn(tmp_path: Path) -> None:
+    """CAD programs mirror a polyline by turning its axes; its corners in the world do not change."""
+    plain, turned = tmp_path / "plain.dxf", tmp_path / "turned.dxf"
+    outline = [(0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)]
+    drawing(plain, [GROUND, outline])
+    document = ezdxf.new()  # type: ignore[attr-defined]
+    document.modelspace().add_lwpolyline(GROUND, close=True)
+    mirrored = document.modelspace().add_lwpolyline([(-x, y) for x, y in outline], close=True)
+    mirrored.dxf.extrusion = (0, 0, -1)
+    document.saveas(turned)
+    scenes = []
+    for path in (plain, turned):
+        wall = {"drawing": path.name, "units": "mm", "thickness": 0.12}
+        scenes.append(read_scene(write_toml(content(wall=wall), tmp_path / "wall.toml")))
+    assert scenes[0].blocks.extent(0)[0] == pytest.approx(scenes[1].blocks.extent(0)[0])
+    assert scenes[0].joints.length == pytest.approx(scenes[1].joints.length)
+
+
 @pytest.mark.parametrize(
     ("outlines", "close", "fault"),
     [
