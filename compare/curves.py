@@ -38,7 +38,8 @@ def _figure_7(campaign: Campaign, cases: Sequence[PublishedCase]) -> Figure:
             homog = campaign.outcomes.get((case.name, "homog"))
             if homog is not None and homog.multiplier is not None:
                 axes.axhline(homog.multiplier, color=colour, lw=0.8, ls=(0, (6, 4)))
-        axes.set(title=f"H/L = {label}", xlabel="displacement of the upper corner [mm]", ylim=(0, 0.66))
+        axes.set(title=f"H/L = {label}", xlabel="displacement of the upper corner [mm]")
+        axes.set(xlim=(-0.3, 12), ylim=(0, 0.66))
         if column == 0:
             axes.set_ylabel("load multiplier λ")
         bare(axes)

@@ -96,7 +96,7 @@ def _table_2(campaign: Campaign, panels: Sequence[PublishedCase]) -> Figure:
         for k, case in enumerate(panels[4 * column : 4 * column + 4]):
             _panel_marks(axes, k, case, campaign)
         axes.set_xticks(range(4), [label for label, _ in TEXTURES])
-        axes.set(title=f"H/L = {name}", xlabel="block ratio b/a", ylim=(0, 0.66), xlim=(-0.5, 3.5))
+        axes.set(title=f"H/L = {name}", xlabel="block ratio b/a", ylim=(0, 0.66), xlim=(-0.5, 3.7))
         if column == 0:
             axes.set_ylabel("collapse multiplier λ")
         bare(axes)
