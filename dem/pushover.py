@@ -1,8 +1,9 @@
 """The pushover curve of rigid blocks: states of equilibrium at growing displacements of the live load.
 
 Steps are controlled by the displacement f_live · q that does the live load's work, so the curve goes on past its
-peak. A step of which no equilibrium is found is tried shorter and longer in turn, for two things end a step: too
-many joints that change at once, and a snap, where the wall has no equilibrium nearby and a longer step lands beyond.
+peak. Each step is implicit: plastic slip is the history at its beginning. A step of which no equilibrium is found
+is tried shorter and longer in turn, for two things end a step: too many joints that change at once, and a snap,
+where the wall has no equilibrium nearby and a longer step lands beyond it.
 """
 
 from dataclasses import dataclass
@@ -20,8 +21,8 @@ EASY = 25
 LONGER, SHORTER = 1.5, 0.7
 """Bounds of the next step's length, relative to this one's."""
 
-ATTEMPTS = (1.0, 0.25, 4.0, 0.0625, 16.0)
-"""Lengths, relative to the step that was meant, that are tried in turn."""
+ATTEMPTS = ((1.0, 200), (0.25, 200), (4.0, 200), (1.0, 1000), (0.25, 1000), (4.0, 1000), (16.0, 1000))
+"""Lengths, relative to the step that was meant, that are tried in turn, and the linear systems given to each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,10 +95,10 @@ class Curve:
             The step that was made, and the linear systems solved in it alone; None where the curve broke off.
         """
         last = self.states[-1]
-        for share in ATTEMPTS:
+        for share, patience in ATTEMPTS:
             length = share * step
             control = Control(last.displacement + length)
-            rest = relax(self.system, self._foreseen(length), last.plastic_slip, control)
+            rest = relax(self.system, self._foreseen(length), last.plastic_slip, control, patience)
             self.solves += rest.solves
             if rest.balanced:
                 self.states.append(_state(self.system, rest, control.value))
@@ -128,7 +129,7 @@ def _state(system: StaticSystem, rest: Rest, displacement: float) -> State:
 def under_dead_load(system: StaticSystem) -> Curve | None:
     """A curve's first state, balanced by the dead load alone; None where there is none to be found."""
     nothing = np.zeros(len(system.law.normal_stiffness))
-    rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True))
+    rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), patience=1000)
     if not rest.balanced:
         return None
     displacement = float(system.equilibrium.live @ rest.x[: system.freedoms])

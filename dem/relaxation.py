@@ -11,7 +11,7 @@ openings, for which K is singular, fall until something carries them. Next ε is
 model (1) foretold the unbalanced forces, as a trust region's radius is.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,9 +34,6 @@ VANISH, SHRINK, KEEP, GROW = 0.05, 0.3, 0.7, 4.0
 
 REFUSED, REFUSAL = 10.0, 10.0
 """Growth of the unbalanced force at which a step is not taken, and the factor of ε with which it is tried again."""
-
-PATIENCE = (200, *12 * (50,))
-"""Linear systems after which slip is taken up, at first and again, before equilibrium is given up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,11 +58,8 @@ class Rest:
     solves: int
 
 
-def relax(system: StaticSystem, guess: Array, plastic_slip: Array, control: Control) -> Rest:
-    """Look for equilibrium, and where it is not near, let the wall move towards it and slip as it goes.
-
-    An implicit step knows only the slip at its beginning. Where the wall snaps, sliding joints on the way to the next
-    equilibrium then find no agreement with the forces that hold them; taken up on the way, as in any motion, they do.
+def relax(system: StaticSystem, guess: Array, plastic_slip: Array, control: Control, patience: int = 200) -> Rest:
+    """Look for equilibrium.
 
     Parameters
     ----------
@@ -77,19 +71,9 @@ def relax(system: StaticSystem, guess: Array, plastic_slip: Array, control: Cont
         History of the joint points.
     control
         The last equation.
+    patience
+        Linear systems after which it is given up.
     """
-    solves = 0
-    for patience in PATIENCE:
-        rest = iterate(system, guess, plastic_slip, control, patience)
-        solves += rest.solves
-        if rest.balanced:
-            break
-        guess, plastic_slip = rest.x, rest.response.plastic_slip
-    return replace(rest, solves=solves)
-
-
-def iterate(system: StaticSystem, guess: Array, plastic_slip: Array, control: Control, patience: int) -> Rest:
-    """Look for equilibrium after a given plastic slip, with a number of linear systems; arguments as of `relax`."""
     nd = system.freedoms
     x, proximal = guess, FIRST_PROXIMAL
     response = system.respond(x, plastic_slip)

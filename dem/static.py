@@ -10,8 +10,7 @@ displacement of the live load by Newton's method with the consistent Coulomb tan
 - a proximal term that falls with the residual alone gets past the stall, but creeps or falls into cycles of two;
 - one that follows how well the linear model foretold the forces does neither: 15 to 50 linear systems a step, on
   walls with openings as on others, and the same with its parameters changed two- or threefold;
-- a step that is only ever shortened gets stuck where the wall snaps; slip that is taken up on the way, and after
-  that longer steps, land beyond.
+- a step that is only ever shortened gets stuck where the wall snaps; tried longer as well it lands beyond.
 
 Friction is never frozen and no convex program is solved, so the cost is that of sparse LU factors of one pattern.
 A state of equilibrium need not be stable: walls of upright blocks snap, and where they do depends on the steps. Hence

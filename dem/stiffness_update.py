@@ -11,8 +11,8 @@ It is known to fail. Released modes come and go: sets of violated conditions tha
 nothing but the set enters the next solution. Loose blocks make the matrix *singular*, often far below collapse.
 Others *wander* from set to set. On the fifteen dry published walls, with increments of .05, .01 and .002 and both
 readings of l_c, each of the 90 runs ended in a cycle or singular below the collapse load of `dem_static`, the robust
-variant, W3 and the walls of upright blocks already under their dead load or in the step after it. The curve up to
-there is what the method gives.
+variant: W3 under its dead load, the walls of upright blocks within two steps of theirs. The curve up to there is what
+the method gives.
 """
 
 from dataclasses import dataclass
