@@ -17,7 +17,7 @@ from scene import Array, Scene
 
 from .equilibrium import equilibrium
 from .finite_system import finite_system
-from .kinematics import fastest_corner_by_one
+from .kinematics import fastest_corner_by_one, lowest_block
 from .limit import FALLS, locks
 from .rigid_system import rigid_system
 
@@ -108,14 +108,6 @@ def finite_pushover(scene: Scene, distance: float, *, steps: int = 2_000_000, lo
     state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=COLLAPSE * lowest_block(scene)))
     return drive(run, state, distance, steps, pieces=400).curve
-
-
-def lowest_block(scene: Scene) -> float:
-    """Smallest height of a movable block [m]."""
-    blocks = scene.blocks
-    y = blocks.vertices[:, 1]
-    height = np.maximum.reduceat(y, blocks.first[:-1]) - np.minimum.reduceat(y, blocks.first[:-1])
-    return float(height[~scene.fixed].min())
 
 
 def _judge(outcome: Outcome, scene: Scene, run: Run, found: LoadSteps) -> Outcome:

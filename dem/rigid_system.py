@@ -9,9 +9,16 @@ from dynamics import BlockSystem, Restraint, block_frequency_squared
 from joints import JointPoints, PointStrength, joint_points, joint_stiffness, point_strength
 from joints.point_kernel import KernelLaw, coulomb_law
 from joints.softening_kernel import softening_law
-from scene import Array, JointMaterial, PointLoad, Scene
+from scene import Array, JointMaterial, Scene
 
-from .kinematics import dead_load, jump_operator, live_load, mass_matrix_diagonal, pin_operator, point_operator
+from .kinematics import (
+    control_row,
+    dead_load,
+    jump_operator,
+    live_load,
+    mass_matrix_diagonal,
+    pin_operator,
+)
 from .rigid_kernels import gather_rigid, scatter_rigid
 
 
@@ -75,29 +82,6 @@ def point_law_of(joint: JointMaterial, strength: PointStrength, area: Array) -> 
     if joint.fracture_energy_1 is None and joint.fracture_energy_2 is None:
         return coulomb_law(normal, shear, strength)
     return softening_law(normal, shear, strength, area, joint.fracture_energy_1, joint.fracture_energy_2)
-
-
-def control_row(scene: Scene) -> Array:
-    """Displacement of the control point along the live load, per motion of the blocks, ``(3 nb,)``.
-
-    The control point is where a point load acts, or the highest corner that lies farthest along a lateral
-    load (the paper's upper corner on the side of the push).
-    """
-    live, blocks = scene.load.live, scene.blocks
-    if isinstance(live, PointLoad):
-        block = scene.loaded_blocks
-        direction = np.array(live.force) / np.hypot(*live.force)
-        at = np.tile(live.at, (len(block), 1))
-    else:
-        direction = np.array(live.direction)
-        up = -np.array(scene.load.gravity) / np.hypot(*scene.load.gravity)
-        movable = np.flatnonzero(~scene.fixed[blocks.owner])
-        height = blocks.vertices[movable] @ up
-        top = movable[height >= height.max() - blocks.tolerance]
-        corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
-        block, at = blocks.owner[corner], blocks.vertices[corner]
-    rows = point_operator(block, at, np.tile(direction, (len(block), 1)), blocks.centroid)
-    return np.asarray(rows.T @ np.full(len(block), 1 / len(block)), dtype=np.float64)
 
 
 def _geometry(scene: Scene, points: JointPoints) -> tuple[NDArray[Any], ...]:

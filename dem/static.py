@@ -25,11 +25,9 @@ import numpy as np
 from results import Outcome
 from scene import Array, Scene
 
-from .dynamic import lowest_block
-from .kinematics import movable_freedoms
+from .kinematics import control_row, lowest_block, movable_freedoms
 from .limit import FALLS, locks, stands_under_dead_load
 from .pushover import EASY, LONGER, SHORTER, Curve, elastic_response, under_dead_load
-from .rigid_system import control_row
 from .static_system import StaticSystem, static_system
 
 FIRST_STEP = 0.03

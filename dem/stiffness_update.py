@@ -26,8 +26,7 @@ from joints import ResultantLaw, gauss, joint_points, joint_stiffness, point_str
 from joints.resultant_law import DETACHED
 from scene import Array, Mask, Scene
 
-from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator
-from .rigid_system import control_row
+from .kinematics import control_row, dead_load, jump_operator, live_load, movable_freedoms, pin_operator
 
 UpdateStatus: TypeAlias = Literal["converged", "cycle", "singular", "wandering"]
 

@@ -75,9 +75,31 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
     Returns
     -------
     hold, drive
-        ``hold(steps, dt, local, load, …)`` and ``drive(steps, dt, local, load, live, live_mobility, speed, …)``,
-        the latter returning the mean multiplier of its steps.
+        ``hold(steps, dt, local, joint_viscosity, load, …)`` and ``drive(…, load, live, speed, …)``, the latter
+        returning the mean multiplier of its steps and the work of the live load.
     """
+
+    @kernel
+    def respond(
+        load: Array,
+        joint_viscosity: float,
+        geometry: Any,
+        parameters: Any,
+        restraint: Any,
+        motion: Array,
+        history: Array,
+        force: Array,
+        work: Any,
+    ) -> None:
+        """Write the forces on the modes: the load, less what the joints make of the motion."""
+        freedom, basis = restraint
+        moved, opening, slip, normal, tangential = work
+        _restrained(motion, freedom, basis, moved)
+        gather(moved, geometry, opening, slip)
+        law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
+        force[:] = load
+        scatter(normal, tangential, geometry, force)
+        _project(force, freedom, basis)
 
     @kernel
     def hold(
@@ -94,16 +116,9 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         work: Any,
     ) -> None:
         stiffness, viscosity, mobility = modes
-        freedom, basis = restraint
         motion, velocity, history, damped, force = state
-        moved, opening, slip, normal, tangential = work
         for _ in range(steps):
-            _restrained(motion, freedom, basis, moved)
-            gather(moved, geometry, opening, slip)
-            law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
-            force[:] = load
-            scatter(normal, tangential, geometry, force)
-            _project(force, freedom, basis)
+            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
             _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
 
     @kernel
@@ -123,21 +138,14 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         work: Any,
     ) -> tuple[float, float]:
         stiffness, viscosity, mobility = modes
-        freedom, basis = restraint
         motion, velocity, history, damped, force = state
-        moved, opening, slip, normal, tangential = work
         response = 0.0
         for i in range(live.size):
             response += live[i] * mobility[i] * live[i]
         total = 0.0
         worked = 0.0
         for _ in range(steps):
-            _restrained(motion, freedom, basis, moved)
-            gather(moved, geometry, opening, slip)
-            law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
-            force[:] = load
-            scatter(normal, tangential, geometry, force)
-            _project(force, freedom, basis)
+            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
             pushed = 0.0
             before = 0.0
             for i in range(live.size):

@@ -25,6 +25,7 @@ from dynamics import (
     drive,
     mass_factor,
     settle,
+    settled_drive,
     stable_step,
 )
 from joints import PointStrength, Rule, joint_points, joint_stiffness
@@ -359,6 +360,18 @@ def test_shear_box_slides_at_cohesion_and_friction(force: float, cohesion: float
     pushed = drive(run, state, 1e-3, 40_000)
     plateau = float(np.median(pushed.curve[-50:, 1]))
     assert plateau * force == pytest.approx(cohesion + force * friction, rel=1e-3)
+
+
+def test_speed_is_halved_until_the_peak_settles() -> None:
+    """A block pushed too fast shows its inertia above μ; slowed down, its peak comes to μ and stays there."""
+    run = Run(rigid_system(block_on_base(1.0, 0.01, 0.4, stiffness=1e9)), local=0.5)
+    state = State.at_rest(run.system)
+    settle(run, state, 0.0, Criteria(collapse=1.0))
+    fast = drive(run, state, 1e-3, 400)
+    settled = settled_drive(run, state, 1e-3, 0.01, steps=400, halvings=12)
+    assert fast.peak > 1.05 * 0.4
+    assert settled.rate_error <= 0.01 * settled.peak
+    assert settled.peak == pytest.approx(0.4, rel=0.02)
 
 
 @pytest.mark.parametrize("stiffness", [1e10, 1e11, 1e12])
