@@ -11,8 +11,8 @@ import numpy as np
 
 from scene import Scene
 
-COMPUTING_ROOMS = ("scene", "joints", "results", "dynamics", "dem", "homog")
-LIBRARIES = ("numpy", "scipy", "shapely", "numba")
+COMPUTING_ROOMS = ("scene", "joints", "results", "dynamics", "meshing", "fem_interface", "dem", "homog")
+LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh")
 
 
 def fingerprint(scene: Scene, model: str, tolerance: float) -> str:
