@@ -1,4 +1,4 @@
-"""The command line: ``runningbond run`` and ``runningbond compare``."""
+"""The command line: ``runningbond run``, ``runningbond compare`` and ``runningbond mesh``."""
 
 import io
 import json
@@ -10,10 +10,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import App, CycloptsError, Parameter
+from cyclopts import App, CycloptsError, Parameter, Token
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
+from meshing import check_suffix, wall_mesh, write_mesh
 from results import Outcome, save_outcome, write_atomically
 from scene import Scene, SceneError, read_scene
 
@@ -124,6 +125,42 @@ def compare(
     for name, model in failed:
         console.print(f"{name}, {model}: {campaign.outcomes[name, model].message}", markup=False)
     return NO_ANSWER if failed else DONE
+
+
+def _whole(_: type, tokens: Sequence[Token]) -> int:
+    """Read a whole number; cyclopts would round any other."""
+    if not tokens[0].value.lstrip("+-").isdecimal():
+        raise ValueError(f"{tokens[0].value!r} is no whole number")
+    return int(tokens[0].value)
+
+
+@app.command
+def mesh(
+    scene: str,
+    /,
+    *,
+    out: Annotated[Path, Parameter(name=("--out", "-o"))],
+    cells: Annotated[int, Parameter(converter=_whole)] = 1,
+) -> int:
+    """Write a finite-element mesh of a wall, its joints as elements without thickness.
+
+    Parameters
+    ----------
+    scene
+        Scene file, or the name of a published scene such as panel-01.
+    out
+        File to write, .msh or .vtu.
+    cells
+        Cells in half a block along the course, and in a block's height.
+    """
+    check_suffix(out)
+    wall = read_scene(find_scene(scene))
+    meshed = wall_mesh(wall, cells)
+    write_mesh(meshed, wall, out)
+    print(
+        f"{out}: {len(meshed.points)} nodes, {len(meshed.triangles)} triangles, {len(meshed.interfaces)} joint elements"
+    )
+    return DONE
 
 
 def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, PublishedCase]]:

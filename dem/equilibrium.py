@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 
-from joints import JointPoints, PointStrength, joint_points, point_strength
+from joints import JointPoints, PointStrength, wall_points, wall_strength
+from results import fastest_corner_by_one
 from scene import Array, Scene
 
-from .kinematics import dead_load, fastest_corner_by_one, jump_operator, live_load, movable_freedoms, pin_operator
+from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,8 +88,8 @@ class Equilibrium:
 
 def equilibrium(scene: Scene) -> Equilibrium:
     """Set up the equilibrium equations of a scene."""
-    points = joint_points(scene.joints, scene.thickness, inset=scene.joint.inset)
-    strength = point_strength(scene.joint, points.area)
+    points = wall_points(scene)
+    strength = wall_strength(scene, points)
     jump = jump_operator(points, scene.blocks.centroid)
     free = movable_freedoms(scene)
     area = scene.blocks.area[~scene.fixed]

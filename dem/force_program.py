@@ -31,15 +31,15 @@ class ForceSet:
 
     Parameters
     ----------
-    slopes
-        Slopes f_t / p of the rays.
+    slopes : sequence of (np,) float
+        Slopes f_t / p of each ray at each point.
     most : sequence of (np,) float
         Largest p on each ray at each point; inf where the ray is free, 0 where it is shut.
     shear_low, shear_high : (np,) float
         Bounds of s.
     """
 
-    slopes: Sequence[float]
+    slopes: Sequence[Array]
     most: Sequence[Array]
     shear_low: Array
     shear_high: Array
@@ -59,7 +59,8 @@ def coulomb(strength: PointStrength) -> ForceSet:
 def frozen_friction(strength: PointStrength, pressure: Array) -> ForceSet:
     """Shear resistances frozen at those of a given pressure ``(np,)``, so that slip opens nothing."""
     resistance = strength.shear + strength.friction * pressure
-    return ForceSet((0.0,), (np.full(len(pressure), np.inf),), -resistance, resistance)
+    nothing = np.zeros(len(pressure))
+    return ForceSet((nothing,), (np.full(len(pressure), np.inf),), -resistance, resistance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +105,7 @@ class ForceSolution:
 def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> LinearProgram:
     """Pose the program that looks for a multiplier which forces of a set can balance."""
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
-    rays = [slope * system.slip - system.opening for slope in forces.slopes]
+    rays = [system.slip.multiply(slope).tocsc() - system.opening for slope in forces.slopes]
     shear = [system.slip] if forces.has_shear else []
     matrix = csc_array(hstack([*rays, *shear, system.reaction, csc_array(-system.live[:, None])], format="csc"))
     bounds = np.zeros((matrix.shape[1], 2))
@@ -134,7 +135,7 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
         return ForceSolution(status, np.nan, none, none, none, none, int(found.nit))
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
     rays = found.x[: n_rays * n].reshape(n_rays, n)
-    tangential = np.asarray(forces.slopes) @ rays
+    tangential = (np.asarray(forces.slopes) * rays).sum(axis=0)
     if forces.has_shear:
         tangential = tangential + found.x[n_rays * n : (n_rays + 1) * n]
     return ForceSolution(

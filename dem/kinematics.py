@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from joints import JointPoints
-from scene import Array, Blocks, Indices, PointLoad, Scene
+from scene import Array, Indices, PointLoad, Scene
 
 
 def _point_rows(direction: Array, arm: Array) -> Array:
@@ -103,45 +103,14 @@ def _body_force(scene: Scene, acceleration: tuple[float, float]) -> Array:
     return load.ravel()
 
 
-def fastest_corner_by_one(blocks: Blocks, motion: Array) -> Array:
-    """Scale motions ``(nb, 3)`` so that the fastest corner of any block moves by one metre."""
-    arm = blocks.vertices - blocks.centroid[blocks.owner]
-    u, v, spin = motion[blocks.owner].T
-    fastest = float(np.hypot(u - spin * arm[:, 1], v + spin * arm[:, 0]).max())
-    return motion / fastest if fastest > 0 else motion
-
-
 def movable_freedoms(scene: Scene) -> Indices:
     """Degrees of freedom of the blocks that are not fixed."""
     return np.flatnonzero(np.repeat(~scene.fixed, 3))
 
 
 def control_row(scene: Scene) -> Array:
-    """Displacement of the control point along the live load, per motion of the blocks, ``(3 nb,)``.
-
-    The control point is where a point load acts, or the highest corner that lies farthest along a lateral
-    load (the paper's upper corner on the side of the push).
-    """
-    live, blocks = scene.load.live, scene.blocks
-    if isinstance(live, PointLoad):
-        block = scene.loaded_blocks
-        direction = np.array(live.force) / np.hypot(*live.force)
-        at = np.tile(live.at, (len(block), 1))
-    else:
-        direction = np.array(live.direction)
-        up = -np.array(scene.load.gravity) / np.hypot(*scene.load.gravity)
-        movable = np.flatnonzero(~scene.fixed[blocks.owner])
-        height = blocks.vertices[movable] @ up
-        top = movable[height >= height.max() - blocks.tolerance]
-        corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
-        block, at = blocks.owner[corner], blocks.vertices[corner]
-    rows = point_operator(block, at, np.tile(direction, (len(block), 1)), blocks.centroid)
-    return np.asarray(rows.T @ np.full(len(block), 1 / len(block)), dtype=np.float64)
-
-
-def lowest_block(scene: Scene) -> float:
-    """Smallest height of a movable block [m]."""
-    blocks = scene.blocks
-    y = blocks.vertices[:, 1]
-    height = np.maximum.reduceat(y, blocks.first[:-1]) - np.minimum.reduceat(y, blocks.first[:-1])
-    return float(height[~scene.fixed].min())
+    """Displacement of the control point along the live load, per motion of the blocks, ``(3 nb,)``."""
+    block, at, direction = scene.control_point
+    n = len(block)
+    rows = point_operator(block, np.tile(at, (n, 1)), np.tile(direction, (n, 1)), scene.blocks.centroid)
+    return np.asarray(rows.T @ np.full(n, 1 / n), dtype=np.float64)

@@ -1,51 +1,77 @@
 """Kinematics of rigid blocks as compiled kernels: two contact points a joint, at ± h along its tangent.
 
-Small displacements: the jumps are linear in the motions, and the same as `jump_operator`'s.
+Small displacements: the jumps are linear in the motions, and the same as `jump_operator`'s. Joints come in runs
+(`runs.Runs`), in which blocks follow one another as joints do, so that the loops run in vector registers. Indices
+are unsigned, which need no check for counting from the end.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from joints import compiled
 from scene import Array
 
 kernel = compiled.kernel
-ONE, TWO = np.uint64(1), np.uint64(2)  # unsigned indices need no check for counting from the end
+Geometry = tuple[NDArray[np.uint64], NDArray[np.uint64], NDArray[np.uint64], Array]
 
 
 @kernel
-def gather_rigid(motion: Array, geometry: tuple[Array, ...], opening: Array, slip: Array) -> None:
-    """Opening and slip ``(2 nj,)`` of all joints' first points, then of their second ones, from motions ``(3 nb,)``."""
-    first, second, ax, ay, bx, by, nx, ny, half = geometry
-    n = first.size
-    for j in range(n):
-        a, b = first[j], second[j]
-        spin_a, spin_b = motion[a + TWO], motion[b + TWO]
-        du = motion[b] - spin_b * by[j] - motion[a] + spin_a * ay[j]
-        dv = motion[b + ONE] + spin_b * bx[j] - motion[a + ONE] - spin_a * ax[j]
-        middle = du * nx[j] + dv * ny[j]
-        along = dv * nx[j] - du * ny[j]
-        turn = (spin_b - spin_a) * half[j]
-        opening[j] = middle + turn
-        opening[n + j] = middle - turn
-        slip[j] = along
-        slip[n + j] = along
+def gather_rigid(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
+    """Opening and slip ``(2 nj,)`` of all joints' first points, then of their second ones, from motions ``(3 nb,)``.
+
+    Motions are those of all blocks along x, then along y, then their rotations.
+    """
+    start, first, second, shape = geometry
+    n, nb = opening.size // 2, motion.size // 3
+    u, v, spin = motion[:nb], motion[nb : 2 * nb], motion[2 * nb :]
+    opening_1, opening_2, slip_1, slip_2 = opening[:n], opening[n:], slip[:n], slip[n:]
+    for run in range(shape.shape[0]):
+        nx, ny, half = shape[run, 0], shape[run, 1], shape[run, 2]
+        normal_a, normal_b, tangent_a, tangent_b = shape[run, 3], shape[run, 4], shape[run, 5], shape[run, 6]
+        a, b = first[run], second[run]
+        for j in range(start[run], start[np.uint64(run + 1)]):
+            du, dv = u[b + j] - u[a + j], v[b + j] - v[a + j]
+            spin_a, spin_b = spin[a + j], spin[b + j]
+            middle = du * nx + dv * ny + (spin_b * normal_b - spin_a * normal_a)
+            along = dv * nx - du * ny + (spin_b * tangent_b - spin_a * tangent_a)
+            turn = (spin_b - spin_a) * half
+            opening_1[j] = middle + turn
+            opening_2[j] = middle - turn
+            slip_1[j] = along
+            slip_2[j] = along
 
 
 @kernel
-def scatter_rigid(normal: Array, tangential: Array, geometry: tuple[Array, ...], force: Array) -> None:
-    """Subtract from modal forces ``(3 nb,)`` what the joint points' forces ``(2 nj,)`` do on them."""
-    first, second, ax, ay, bx, by, nx, ny, half = geometry
-    n = first.size
+def scatter_rigid(normal: Array, tangential: Array, geometry: Geometry, force: Array) -> None:
+    """Subtract from modal forces ``(3 nb,)`` what the joint points' tractions ``(2 nj,)`` do on them."""
+    start, first, second, shape = geometry
+    n, nb = normal.size // 2, force.size // 3
+    fx, fy, moment = force[:nb], force[nb : 2 * nb], force[2 * nb :]
+    # Pull, shear and turn of each joint take the place of its points' tractions.
+    pull, turn, shear = normal[:n], normal[n:], tangential[:n]
     for j in range(n):
-        pull = normal[j] + normal[n + j]
-        shear = tangential[j] + tangential[n + j]
-        moment = half[j] * (normal[n + j] - normal[j])
-        fx = pull * nx[j] - shear * ny[j]
-        fy = pull * ny[j] + shear * nx[j]
-        a, b = first[j], second[j]
-        force[a] += fx
-        force[a + ONE] += fy
-        force[a + TWO] += ax[j] * fy - ay[j] * fx - moment
-        force[b] -= fx
-        force[b + ONE] -= fy
-        force[b + TWO] -= bx[j] * fy - by[j] * fx - moment
+        one, two = pull[j], turn[j]
+        pull[j] = one + two
+        turn[j] = one - two
+    for j in range(n):
+        shear[j] += tangential[n + j]
+    for run in range(shape.shape[0]):
+        area = shape[run, 7]
+        nx, ny, half = area * shape[run, 0], area * shape[run, 1], area * shape[run, 2]
+        normal_a, normal_b = area * shape[run, 3], area * shape[run, 4]
+        tangent_a, tangent_b = area * shape[run, 5], area * shape[run, 6]
+        a, b = first[run], second[run]
+        low, high = start[run], start[np.uint64(run + 1)]
+        for j in range(low, high):
+            fx[a + j] += pull[j] * nx - shear[j] * ny
+        for j in range(low, high):
+            fy[a + j] += pull[j] * ny + shear[j] * nx
+        for j in range(low, high):
+            moment[a + j] += pull[j] * normal_a + shear[j] * tangent_a + turn[j] * half
+        # The two sides apart, for a run may have one side's blocks a step behind the other's.
+        for j in range(low, high):
+            fx[b + j] -= pull[j] * nx - shear[j] * ny
+        for j in range(low, high):
+            fy[b + j] -= pull[j] * ny + shear[j] * nx
+        for j in range(low, high):
+            moment[b + j] -= pull[j] * normal_b + shear[j] * tangent_b + turn[j] * half

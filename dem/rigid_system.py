@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dynamics import BlockSystem, Restraint, block_frequency_squared
-from joints import JointPoints, PointStrength, joint_points, joint_stiffness, point_strength
-from joints.point_kernel import KernelLaw, coulomb_law
-from joints.softening_kernel import softening_law
-from scene import Array, JointMaterial, Scene
+from joints import JointPoints, wall_points, wall_strength
+from joints.laws import kernel_law
+from joints.point_kernel import KernelLaw
+from scene import Array, Scene
 
 from .kinematics import (
     control_row,
@@ -20,12 +20,14 @@ from .kinematics import (
     pin_operator,
 )
 from .rigid_kernels import gather_rigid, scatter_rigid
+from .runs import Runs, find_runs
 
 
 def contact_points(scene: Scene) -> JointPoints:
-    """Two contact points a joint, all joints' first ones, then all second ones."""
-    points = joint_points(scene.joints, scene.thickness, inset=scene.joint.inset)
-    order = np.concatenate([np.arange(0, len(points), 2), np.arange(1, len(points), 2)])
+    """Two contact points a joint in the order of the kernels: all joints' first ones, then all second ones."""
+    points = wall_points(scene)
+    joint = _runs(scene, points).joint
+    order = np.concatenate([2 * joint, 2 * joint + 1])
     return JointPoints(
         points.joint[order],
         points.block[order],
@@ -45,54 +47,67 @@ def rigid_system(scene: Scene) -> BlockSystem:
         If the scene gives its joints no stiffness.
     """
     points = contact_points(scene)
-    strength = point_strength(scene.joint, points.area)
-    law = point_law_of(scene.joint, strength, points.area)
-    mass = np.where(np.repeat(scene.fixed, 3), np.inf, mass_matrix_diagonal(scene))
-    restraint, mass = _restraint(scene, mass)
-    dead, live = dead_load(scene), live_load(scene)
-    _into_coordinates(dead, restraint)
-    _into_coordinates(live, restraint)
-    control = control_row(scene)
-    _into_coordinates(control, restraint)
-    dead[np.isinf(mass)] = live[np.isinf(mass)] = 0.0
-    largest = float(np.abs(dead.reshape(-1, 3)[:, :2]).max())
-    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
+    runs = _runs(scene, wall_points(scene))
+    law = kernel_law(scene.joint_materials, scene.material_of_joint[points.joint])
+    restraint, mass, dead, live, control = loads_and_masses(scene)
+    rigid = runs.block[:, None] + len(scene.blocks) * np.arange(3)
+    order = np.argsort(rigid.ravel())
     still = np.zeros_like(mass)
     return BlockSystem(
-        mass=mass,
+        mass=mass[order],
         stiffness=still,
         viscosity=still,
-        dead=dead,
-        live=live,
+        dead=dead[order],
+        live=live[order],
         law=law,
+        area=points.area,
         gather=gather_rigid,
         scatter=scatter_rigid,
-        geometry=_geometry(scene, points),
-        restraint=restraint,
-        block_frequency_squared=min(float(_own_frequencies(scene, points, law, x).max()) for x in (0.0, 0.5, 1.0)),
-        control=control,
-        force_unit=largest or strongest or float(np.abs(live).max()),
+        geometry=_geometry(runs, points),
+        rigid=rigid,
+        restraint=Restraint(rigid.ravel()[restraint.freedom], restraint.basis),
+        block_frequency_squared=largest_frequency_squared(scene, points, law),
+        control=control[order],
+        force_unit=force_unit(scene, dead, live, points),
     )
 
 
-def point_law_of(joint: JointMaterial, strength: PointStrength, area: Array) -> KernelLaw:
-    """Law of points of a material: perfectly plastic without fracture energies, softening with them."""
-    stiffness = joint_stiffness(joint)
-    normal, shear = stiffness.normal * area, stiffness.shear * area
-    if joint.fracture_energy_1 is None and joint.fracture_energy_2 is None:
-        return coulomb_law(normal, shear, strength)
-    return softening_law(normal, shear, strength, area, joint.fracture_energy_1, joint.fracture_energy_2)
+def force_unit(scene: Scene, dead: Array, live: Array, points: JointPoints) -> float:
+    """Force [N] by which unbalanced ones are measured: the largest weight, or what the strongest point bears."""
+    strength = wall_strength(scene, points)
+    largest = float(np.abs(dead.reshape(-1, 3)[:, :2]).max())
+    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
+    return largest or strongest or float(np.abs(live).max())
 
 
-def _geometry(scene: Scene, points: JointPoints) -> tuple[NDArray[Any], ...]:
-    n = len(points) // 2
-    a, b = points.block[:n].T
-    start, stop = points.position[:n], points.position[n:]
-    middle = (start + stop) / 2
-    arm_a, arm_b = middle - scene.blocks.centroid[a], middle - scene.blocks.centroid[b]
-    half = np.hypot(*(stop - start).T) / 2
-    arms = (np.ascontiguousarray(column) for column in (*arm_a.T, *arm_b.T, *points.normal[:n].T))
-    return ((3 * a).astype(np.uint64), (3 * b).astype(np.uint64), *arms, half)
+def loads_and_masses(scene: Scene) -> tuple[Restraint, Array, Array, Array, Array]:
+    """Restraint of pinned blocks; mass, dead load, live load and control row, three freedoms a block ``(3 nb,)``."""
+    mass = np.where(np.repeat(scene.fixed, 3), np.inf, mass_matrix_diagonal(scene))
+    restraint, mass = _restraint(scene, mass)
+    dead, live, control = dead_load(scene), live_load(scene), control_row(scene)
+    for row in (dead, live, control):
+        for freedom, basis in zip(restraint.freedom, restraint.basis, strict=True):
+            row[freedom] = basis.T @ row[freedom]
+    dead[np.isinf(mass)] = live[np.isinf(mass)] = 0.0
+    return restraint, mass, dead, live, control
+
+
+def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw) -> float:
+    """Bound of the system's largest ω² [1/s²], the best of a few ways to share the joints' energy."""
+    return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0))
+
+
+def _runs(scene: Scene, points: JointPoints) -> Runs:
+    """Runs of a scene with two points a joint, each joint's in the sense of its tangent."""
+    reach = points.position[1::2] - points.position[::2]
+    return find_runs(scene, np.hypot(reach[:, 0], reach[:, 1]) / 2)
+
+
+def _geometry(runs: Runs, points: JointPoints) -> tuple[NDArray[Any], ...]:
+    start = runs.start[:-1]
+    shape = np.column_stack([runs.shape, points.area[: len(runs.joint)][start]])
+    # From the place of a joint to those of its blocks; unsigned, a negative difference comes out right all the same.
+    return (runs.start.astype(np.uint64), *((x - start).astype(np.uint64) for x in (runs.first, runs.second)), shape)
 
 
 def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
@@ -113,12 +128,7 @@ def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
         modal = np.full(3, np.inf)
         modal[: 3 - rank] = (free**2 * inertia[:, None]).sum(axis=0)
         mass[3 * block : 3 * block + 3] = modal
-    return Restraint((3 * blocks).astype(np.int64), bases), mass
-
-
-def _into_coordinates(load: Array, restraint: Restraint) -> None:
-    for freedom, basis in zip(restraint.freedom, restraint.basis, strict=True):
-        load[freedom : freedom + 3] = basis.T @ load[freedom : freedom + 3]
+    return Restraint(3 * blocks[:, None] + np.arange(3), bases), mass
 
 
 def _own_frequencies(scene: Scene, points: JointPoints, law: KernelLaw, share: float) -> Array:
@@ -133,7 +143,8 @@ def _own_frequencies(scene: Scene, points: JointPoints, law: KernelLaw, share: f
     ratio = np.column_stack([mass[:, 0] / mass[:, 1], mass[:, 1] / mass[:, 0]])
     part = 1 + np.nan_to_num(ratio, nan=1.0, posinf=0.0) ** share
     own = np.zeros((n, 3, 3))
-    for operator, stiffness in ((jump.opening, law.normal_stiffness), (jump.slip, law.shear_stiffness)):
+    sides = ((jump.opening, law.normal_stiffness), (jump.slip, law.shear_stiffness))
+    for operator, stiffness in ((operator, k * points.area) for operator, k in sides):
         rows = operator.tocoo()
         values = np.zeros((len(points), 2, 3))
         side = (points.block[rows.row, 1] == rows.col // 3).astype(int)

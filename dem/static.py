@@ -25,7 +25,7 @@ import numpy as np
 from results import Outcome
 from scene import Array, Scene
 
-from .kinematics import control_row, lowest_block, movable_freedoms
+from .kinematics import control_row, movable_freedoms
 from .limit import FALLS, locks, stands_under_dead_load
 from .pushover import EASY, LONGER, SHORTER, Curve, elastic_response, under_dead_load
 from .static_system import StaticSystem, static_system
@@ -94,7 +94,7 @@ def dem_static(
     if rest is None:
         found = _fallen(found, system)
     else:
-        far = collapse * lowest_block(scene) / system.length_unit
+        far = collapse * scene.lowest_block / system.length_unit
         found = _drawn(found, Drawing(system, rest, first_step, far, tolerance, budget))
     return replace(found, seconds=time.perf_counter() - start)
 
@@ -226,7 +226,7 @@ def _drawn(found: Outcome, drawing: Drawing) -> Outcome:
 
 def _evidence(system: StaticSystem, curve: Curve, change: float) -> str:
     """What a collapse is believed by."""
-    heights = curve.moved * system.length_unit / lowest_block(system.equilibrium.scene)
+    heights = curve.moved * system.length_unit / system.equilibrium.scene.lowest_block
     return (
         f"peak of the pushover curve at small displacements, followed to {heights:.2g} block heights; "
         f"halving the steps moved it by {change:.0e}"

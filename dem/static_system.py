@@ -15,8 +15,8 @@ import numpy as np
 from scipy.sparse import coo_array, csc_array, csr_array
 from scipy.sparse.linalg import splu
 
-from joints import PointLaw, PointResponse, joint_stiffness, point_law
-from scene import Array, Indices, Scene, Stiffness
+from joints import PointLaw, PointResponse, wall_stiffness
+from scene import Array, Indices, Scene
 
 from .equilibrium import Equilibrium, equilibrium
 
@@ -212,9 +212,8 @@ def static_system(scene: Scene) -> StaticSystem:
     SceneError
         If the scene gives its joints no stiffness.
     """
-    stiffness = joint_stiffness(scene.joint)
     system = equilibrium(scene)
-    area = system.points.area
-    length = system.force_unit / (max(stiffness.normal, stiffness.shear) * float(area.max()))
-    scaled = Stiffness(*(k * length / system.force_unit for k in (stiffness.normal, stiffness.shear)))
-    return StaticSystem(system, point_law(system.strength, scaled, area), length)
+    normal, shear = (k * system.points.area for k in wall_stiffness(scene, system.points.joint))
+    length = system.force_unit / float(max(normal.max(), shear.max()))
+    scale = length / system.force_unit
+    return StaticSystem(system, PointLaw(system.strength, normal * scale, shear * scale), length)

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import splu
 
-from joints import ResultantLaw, gauss, joint_points, joint_stiffness, point_strength, resultant_law
+from joints import ResultantLaw, gauss, joint_points, resultant_law, wall_stiffness, wall_strength
 from joints.resultant_law import DETACHED
 from scene import Array, Mask, Scene
 
@@ -107,15 +107,15 @@ class ResultantWall:
 def resultant_wall(scene: Scene, arm: float = 0.5) -> ResultantWall:
     """Set up a scene's resultants, with l_c the given share of each joint's length."""
     middles = joint_points(scene.joints, scene.thickness, gauss(1))
-    stiffness, length = joint_stiffness(scene.joint), scene.joints.length
-    strength = point_strength(scene.joint, middles.area)
+    normal, shear = (k * middles.area for k in wall_stiffness(scene, middles.joint))
+    length = scene.joints.length
     jump = jump_operator(middles, scene.blocks.centroid)
     joint, (a, b) = np.arange(len(middles)), middles.block.T
     entries = (np.repeat([1.0, -1.0], len(joint)), (np.tile(joint, 2), np.concatenate([3 * b + 2, 3 * a + 2])))
     rotation = csr_array(entries, shape=jump.opening.shape)
     free = movable_freedoms(scene)
     return ResultantWall(
-        resultant_law(strength, stiffness, middles.area, length, arm * length),
+        resultant_law(wall_strength(scene, middles), normal, shear, length, arm * length),
         csr_array(vstack([jump.opening, jump.slip, rotation]))[:, free],
         pin_operator(scene)[:, free],
         dead_load(scene)[free],

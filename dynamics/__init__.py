@@ -1,9 +1,10 @@
 """Blocks in motion: the system, its integration, its load controls and its verdict."""
 
-from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive
+from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive, settled_load_steps
 from .run import Criteria, Ledger, Run, Verdict, moved_by, settle
 from .system import BlockSystem, Restraint, State
 from .time_step import block_frequency_squared, mass_factor, stable_step
+from .verdict import collapse_by_steps
 
 __all__ = [
     "BlockSystem",
@@ -16,6 +17,7 @@ __all__ = [
     "State",
     "Verdict",
     "block_frequency_squared",
+    "collapse_by_steps",
     "drive",
     "load_steps",
     "mass_factor",
@@ -23,5 +25,6 @@ __all__ = [
     "ramp",
     "settle",
     "settled_drive",
+    "settled_load_steps",
     "stable_step",
 ]

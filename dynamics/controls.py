@@ -18,6 +18,9 @@ pressure on its joints but what the load gives it, and slips for good wherever a
 the slower it is loaded.
 """
 
+SLOWINGS = 4
+"""How often a wall without weight is loaded anew, half as fast each time, until its bracket stays where it is."""
+
 GROWTH = 1 / 8
 """Largest step, once the first ones are borne, as a fraction of the load."""
 
@@ -46,6 +49,8 @@ class LoadSteps:
         Every state at rest, in order of load.
     taken
         Steps taken, on every path.
+    rate_error
+        Change of `lower` when the loading was last slowed to half its speed; None where it never was.
     """
 
     lower: float | None = None
@@ -55,6 +60,7 @@ class LoadSteps:
     fallen: State | None = None
     rests: list[tuple[float, State]] = field(default_factory=list)
     taken: int = 0
+    rate_error: float | None = None
 
 
 def load_steps(
@@ -64,6 +70,7 @@ def load_steps(
     criteria: Criteria,
     *,
     most: float = np.inf,
+    ramp_length: int = RAMP,
     observe: Observer = _nobody,
 ) -> LoadSteps:
     """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
@@ -83,6 +90,8 @@ def load_steps(
         When a load counts as borne.
     most
         Multiplier beyond which the search is given up.
+    ramp_length
+        Length of the ramp to each load, in times that the wall took to rest under the first one.
     observe
         Called with the state and the multiplier at every look.
     """
@@ -95,14 +104,13 @@ def load_steps(
     found.lower, found.borne = 0.0, state
     found.rests.append((0.0, state))
     step, steps_to_rest, neutral = first, state.steps, None
-    length = RAMP if run.system.dead.any() else RAMP_WEIGHTLESS
     while found.upper is None or found.upper - found.lower > tolerance * found.upper:
         trial = _next_trial(found, step, neutral, tolerance)
         if trial > most:
             found.verdict = "undecided"
             return found
         state = found.borne.copy()
-        ramp(run, state, found.lower, trial, length * steps_to_rest)
+        ramp(run, state, found.lower, trial, ramp_length * steps_to_rest)
         before = state.steps
         found.verdict = settle(run, state, trial, criteria, observe)
         found.taken += state.steps - found.borne.steps
@@ -119,6 +127,38 @@ def load_steps(
         else:
             return found
     return found
+
+
+def settled_load_steps(
+    run: Run,
+    first: float,
+    tolerance: float,
+    criteria: Criteria,
+    *,
+    most: float = np.inf,
+    observe: Observer = _nobody,
+) -> LoadSteps:
+    """Search by load steps as slow as the wall asks for; see `load_steps` for the arguments.
+
+    A wall without weight is loaded anew at half the speed until `lower` changes by less than the tolerance; where it
+    never settles the verdict is ``undecided``.
+    """
+    if run.system.dead.any():
+        return load_steps(run, first, tolerance, criteria, most=most, observe=observe)
+    length = RAMP_WEIGHTLESS
+    slow = load_steps(run, first, tolerance, criteria, most=most, ramp_length=length, observe=observe)
+    for _ in range(SLOWINGS):
+        if slow.lower is None or slow.upper is None:
+            return slow
+        fast, length = slow, 2 * length
+        slow = load_steps(run, first, tolerance, criteria, most=most, ramp_length=length, observe=observe)
+        slow.taken += fast.taken
+        if slow.lower is not None and fast.lower is not None:
+            slow.rate_error = abs(slow.lower - fast.lower)
+            if slow.rate_error <= tolerance * slow.lower:
+                return slow
+    slow.verdict = "undecided"
+    return slow
 
 
 def _next_trial(found: LoadSteps, step: float, neutral: float | None, tolerance: float) -> float:

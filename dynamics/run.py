@@ -65,7 +65,7 @@ class Run:
         modes = (system.stiffness, system.viscosity, 1 / system.mass)
         restraint = (system.restraint.freedom, system.restraint.basis)
         self._arrays = (system.geometry, system.law.parameters, modes, restraint)
-        self._work = work_arrays(len(system.mass), system.law.parameters.shape[1])
+        self._work = work_arrays(len(system.mass), system.law.points)
 
     def hold(self, state: State, multiplier: float, steps: int, dead: float = 1.0) -> None:
         """Take steps under constant loads: `multiplier` times the live one and `dead` times the dead one."""
@@ -95,35 +95,41 @@ class Run:
 
     def forces(self, state: State) -> tuple[Array, Array]:
         """Normal and tangential force at each point ``(np,)`` [N], without a change of state."""
+        _, _, normal, tangential = self._tractions(state)
+        return normal * self.system.area, tangential * self.system.area
+
+    def _tractions(self, state: State) -> tuple[Array, Array, Array, Array]:
+        """Opening and slip [m] and tractions [Pa] of the points, without a change of state."""
         system = self.system
-        moved = self.motion_of_blocks(state)
-        _, opening, slip, normal, tangential = (buffer.copy() for buffer in self._work)
-        system.gather(moved, system.geometry, opening, slip)
+        opening, slip, normal, tangential = (np.zeros(system.law.points) for _ in range(4))
+        system.gather(self._unrestrained(state.motion), system.geometry, opening, slip)
         # At rest: the viscosity, of no account then, would need the rate of a step that is not taken.
         system.law.kernel(opening, slip, system.law.parameters, state.history.copy(), 0.0, normal, tangential)
-        return normal, tangential
+        return opening, slip, normal, tangential
 
     def motion_of_blocks(self, state: State) -> Array:
+        """Translation and rotation of each block, ``(nb, 3)`` [m, m, rad]."""
+        return self._unrestrained(state.motion)[self.system.rigid]
+
+    def _unrestrained(self, motion: Array) -> Array:
         """Motion with restrained coordinates turned back into those of their blocks, ``(nd,)``."""
-        moved = state.motion.copy()
+        moved = motion.copy()
         for i, basis in zip(self.system.restraint.freedom, self.system.restraint.basis, strict=True):
-            moved[i : i + 3] = basis @ state.motion[i : i + 3]
+            moved[i] = basis @ motion[i]
         return moved
 
     def ledger(self, state: State) -> Ledger:
         """Account for the work of the loads so far."""
         system, law = self.system, self.system.law
-        normal, tangential = self.forces(state)
-        opening, slip = (np.zeros(len(normal)) for _ in range(2))
-        system.gather(self.motion_of_blocks(state), system.geometry, opening, slip)
+        opening, _, normal, tangential = self._tractions(state)
         moving = np.isfinite(system.mass)
         return Ledger(
             external=state.external,
             kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum()),
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
-            joint=law.stored(law, opening, normal, tangential),
-            friction=float(state.history[FRICTION_WORK].sum()),
-            damped=float(state.damped.sum() + state.history[DAMPED_WORK].sum()),
+            joint=float(system.area @ law.stored(law, opening, normal, tangential)),
+            friction=float(system.area @ state.history[FRICTION_WORK]),
+            damped=float(state.damped.sum() + system.area @ state.history[DAMPED_WORK]),
         )
 
 
@@ -146,7 +152,8 @@ class Criteria:
     rest
         Unbalanced force, relative to the force unit, below which the wall is at rest.
     collapse
-        Displacement [m] of any freedom since the load was raised that counts as collapse.
+        Displacement [m] of any block since the load was raised at which a wall that does not slow down is in
+        collapse.
     budget
         Steps after which the question is left undecided.
     interval
@@ -169,9 +176,11 @@ def settle(
     """Hold a load until the wall rests or falls.
 
     It rests when the unbalanced force is below the threshold at three looks in a row, so that a wall passing
-    through balance in full motion is not mistaken for one at rest.
+    through balance in full motion is not mistaken for one at rest. It falls when it has moved far and does not slow
+    down, so that a wall that slips and is caught is not mistaken for one in collapse.
     """
     start = state.motion.copy()
+    fall = Fall(criteria.collapse)
     calm = 0
     for _ in range(criteria.budget // criteria.interval):
         run.hold(state, multiplier, criteria.interval)
@@ -179,11 +188,41 @@ def settle(
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
         if calm == 3:
             return "stable"
-        if moved_by(state, start) > criteria.collapse:
+        if fall.goes_on(moved_by(run.system, state, start), state.steps):
             return "collapse"
     return "undecided"
 
 
-def moved_by(state: State, start: Array) -> float:
+class Fall:
+    """Whether a motion is a collapse: it has come far, and no slower over the last half of its way than before.
+
+    Parameters
+    ----------
+    far
+        Displacement [m] at which it is looked at for the first time; then whenever it has doubled.
+    """
+
+    FARTHEST = 4
+    """Doublings after which a motion that does slow down counts as collapse all the same."""
+
+    def __init__(self, far: float) -> None:
+        self._marks = [far * 2.0**k for k in range(-2, self.FARTHEST + 1)]
+        self._passed: list[int] = []
+
+    def goes_on(self, moved: float, steps: int) -> bool:
+        """Whether a wall that has moved so far [m] after so many steps is in collapse."""
+        while len(self._passed) < len(self._marks) and moved > self._marks[len(self._passed)]:
+            self._passed.append(steps)
+            if len(self._passed) == len(self._marks):
+                return True
+            if len(self._passed) >= 3:
+                first, second, third = self._passed[-3:]
+                # The way from the second mark to the third is twice as long as that from the first to the second.
+                if third - second <= 2 * (second - first):
+                    return True
+        return False
+
+
+def moved_by(system: BlockSystem, state: State, start: Array) -> float:
     """Largest translation of any block since a motion ``(nd,)`` [m]."""
-    return float(np.abs((state.motion - start).reshape(-1, 3)[:, :2]).max())
+    return float(np.abs((state.motion - start)[system.rigid[:, :2]]).max())

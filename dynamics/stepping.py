@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from joints import compiled
-from scene import Array
+from scene import Array, Indices
 
 from .system import Kernel
 
@@ -23,24 +23,22 @@ kernel = compiled.kernel
 
 
 @kernel
-def _restrained(motion: Array, freedom: Array, basis: Array, moved: Array) -> None:
+def _restrained(motion: Array, freedom: Indices, basis: Array, moved: Array) -> None:
     moved[:] = motion
-    for r in range(freedom.size):
-        i = freedom[r]
+    for r in range(freedom.shape[0]):
         for row in range(3):
             total = 0.0
             for column in range(3):
-                total += basis[r, row, column] * motion[i + column]
-            moved[i + row] = total
+                total += basis[r, row, column] * motion[freedom[r, column]]
+            moved[freedom[r, row]] = total
 
 
 @kernel
-def _project(force: Array, freedom: Array, basis: Array) -> None:
-    for r in range(freedom.size):
-        i = freedom[r]
-        x, y, m = force[i], force[i + 1], force[i + 2]
+def _project(force: Array, freedom: Indices, basis: Array) -> None:
+    for r in range(freedom.shape[0]):
+        x, y, m = force[freedom[r, 0]], force[freedom[r, 1]], force[freedom[r, 2]]
         for column in range(3):
-            force[i + column] = basis[r, 0, column] * x + basis[r, 1, column] * y + basis[r, 2, column] * m
+            force[freedom[r, column]] = basis[r, 0, column] * x + basis[r, 1, column] * y + basis[r, 2, column] * m
 
 
 @kernel
@@ -91,11 +89,14 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         force: Array,
         work: Any,
     ) -> None:
-        """Write the forces on the modes: the load, less what the joints make of the motion."""
+        """Write the forces on the modes: the load, less those of the joints' tractions."""
         freedom, basis = restraint
         moved, opening, slip, normal, tangential = work
-        _restrained(motion, freedom, basis, moved)
-        gather(moved, geometry, opening, slip)
+        if freedom.size:
+            _restrained(motion, freedom, basis, moved)
+            gather(moved, geometry, opening, slip)
+        else:
+            gather(motion, geometry, opening, slip)
         law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
         force[:] = load
         scatter(normal, tangential, geometry, force)
@@ -173,5 +174,5 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
 
 
 def work_arrays(n_modes: int, n_points: int) -> tuple[Array, ...]:
-    """Buffers of one run: motions, then opening, slip, normal and tangential force of the points."""
+    """Buffers of one run: motions, then opening, slip, normal and tangential traction of the points."""
     return (np.zeros(n_modes), *(np.zeros(n_points) for _ in range(4)))

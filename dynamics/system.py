@@ -23,8 +23,8 @@ class Restraint:
 
     Parameters
     ----------
-    freedom : (nr,) int
-        First freedom of each such block.
+    freedom : (nr, 3) int
+        Freedoms of each such block.
     basis : (nr, 3, 3) float
         Motion of the block per coordinate, mass-orthogonal; columns that are not needed are zero.
     """
@@ -49,11 +49,15 @@ class BlockSystem:
         Modal loads [N], the live one for λ = 1.
     law
         Law of the joint points.
+    area : (np,) float
+        Area that each joint point stands for [m²].
     gather, scatter
         Compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry,
-        force)``; the latter subtracts the joints' forces from `force`.
+        force)``; the latter subtracts the forces of the joints' tractions from `force`.
     geometry
         Arrays that the two kernels share.
+    rigid : (nb, 3) int
+        Where in the motion each block's translations along x and y [m] and its rotation [rad] stand.
     restraint
         Blocks held at points.
     block_frequency_squared : float
@@ -70,9 +74,11 @@ class BlockSystem:
     dead: Array
     live: Array
     law: KernelLaw
+    area: Array
     gather: Kernel
     scatter: Kernel
     geometry: tuple[NDArray[Any], ...]
+    rigid: Indices
     restraint: Restraint
     block_frequency_squared: float
     control: Array
@@ -116,7 +122,7 @@ class State:
     def at_rest(cls, system: BlockSystem) -> "State":
         """The undeformed system without velocity."""
         nd = len(system.mass)
-        history = np.zeros((system.law.rows, system.law.parameters.shape[1]))
+        history = np.zeros((system.law.rows, system.law.points))
         return cls(np.zeros(nd), np.zeros(nd), history, np.zeros(nd), np.zeros(nd))
 
     def copy(self) -> "State":

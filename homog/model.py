@@ -66,6 +66,8 @@ def _why_not(scene: Scene, bond: Bond) -> str:
         return "it needs dry joints, joint.cohesion = 0"
     if scene.joint.inset > 0:
         return "it needs sharp corners, joint.inset = 0"
+    if scene.inner_joint is not None:
+        return "it needs blocks that do not crack, without inner_joint"
     movable = ~scene.fixed
     low, high = scene.blocks.extent(movable)
     area = scene.blocks.area[movable].sum()

@@ -1,10 +1,11 @@
 """Joint points and the Mohr–Coulomb joint: the one place where its signs are written down."""
 
 from .mohr_coulomb import PointStrength, point_strength
-from .point_law import PointLaw, PointResponse, point_law
+from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw, resultant_law
 from .stiffness import joint_stiffness
+from .wall import wall_points, wall_stiffness, wall_strength
 
 __all__ = [
     "JointPoints",
@@ -17,7 +18,9 @@ __all__ = [
     "joint_points",
     "joint_stiffness",
     "lobatto",
-    "point_law",
     "point_strength",
     "resultant_law",
+    "wall_points",
+    "wall_stiffness",
+    "wall_strength",
 ]

@@ -25,7 +25,7 @@ class PointStrength:
 
     Parameters
     ----------
-    friction
+    friction : (np,) float
         tan φ.
     tension : (np,) float
         Largest tensile force f_t A [N].
@@ -33,7 +33,7 @@ class PointStrength:
         Shear force that the point carries at that tension, s A [N].
     """
 
-    friction: float
+    friction: Array
     tension: Array
     shear: Array
 
@@ -50,10 +50,16 @@ class PointStrength:
         return self.tension * opening + self.shear * np.abs(slip)
 
 
-def point_strength(material: JointMaterial, area: Array) -> PointStrength:
-    """Strength of joint points that each stand for an area ``(np,)`` [m²]."""
+def truncated_cone(material: JointMaterial) -> tuple[float, float, float]:
+    """Friction tan φ, tension f_t [Pa] and shear s at that tension [Pa] of a material."""
     cohesion, friction, tension = material.cohesion, material.friction, material.tensile_strength
     # No joint pulls beyond the apex of its cone, even where only the friction of a material was changed.
     if friction * tension > cohesion:
         tension = cohesion / friction
-    return PointStrength(friction, tension * area, max(0.0, cohesion - tension * friction) * area)
+    return friction, tension, max(0.0, cohesion - tension * friction)
+
+
+def point_strength(material: JointMaterial, area: Array) -> PointStrength:
+    """Strength of joint points of one material that each stand for an area ``(np,)`` [m²]."""
+    friction, tension, shear = truncated_cone(material)
+    return PointStrength(np.full(len(area), friction), tension * area, shear * area)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene import Array, Stiffness
+from scene import Array
 
 from .mohr_coulomb import PointStrength
 
@@ -74,8 +74,3 @@ class PointLaw:
         tangent[:, 1, 1] = np.where(sticks & ((resistance > 0) | closed), k_t, 0.0)
         # A point that sticks keeps its plastic slip to the last bit, where eq. 4 would round it.
         return PointResponse(normal, tangential, np.where(sticks, plastic_slip, slip - tangential / k_t), tangent)
-
-
-def point_law(strength: PointStrength, stiffness: Stiffness, area: Array) -> PointLaw:
-    """Law of points that each stand for an area ``(np,)`` [m²]; strength and stiffness in the same unit of force."""
-    return PointLaw(strength, stiffness.normal * area, stiffness.shear * area)

@@ -79,7 +79,7 @@ class JointPoints:
         return len(self.joint)
 
 
-def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, inset: float = 0.0) -> JointPoints:
+def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, inset: float | Array = 0.0) -> JointPoints:
     """Lay a quadrature rule on every joint.
 
     Parameters
@@ -90,7 +90,7 @@ def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, ins
         Out-of-plane thickness [m].
     rule
         Quadrature rule; two Lobatto points where none is given.
-    inset
+    inset : float or (nj,) float
         Distance [m] by which the rule's ends are moved in from the joint's ends, as rounded corners
         would. The areas still add up to the whole joint.
 
@@ -100,16 +100,19 @@ def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, ins
         Points of joint 0 first, each joint's points in the sense of its tangent.
     """
     rule = rule or lobatto()
-    if len(joints) and 2 * inset >= joints.length.min():
+    too_far = 2 * np.asarray(inset) >= joints.length
+    if too_far.any():
         raise SceneError(
-            "joint.inset", f"must be less than half the shortest joint, {joints.length.min():.4g} m long", inset
+            "joint.inset",
+            f"must be less than half the shortest joint, {joints.length[too_far].min():.4g} m long",
+            float(np.max(inset)),
         )
     start, stop = joints.ends[:, 0], joints.ends[:, 1]
     length = joints.length[:, None]
     tangent = (stop - start) / length
     normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
     n = len(rule.nodes)
-    reach = length / 2 - inset
+    reach = length / 2 - np.broadcast_to(inset, len(joints))[:, None]
     position = (start + stop)[:, None] / 2 + (reach * rule.nodes)[:, :, None] * tangent[:, None]
     area = thickness * length * rule.weights / 2
     return JointPoints(

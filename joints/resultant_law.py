@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene import Array, Mask, Stiffness
+from scene import Array, Mask
 
 from .mohr_coulomb import PointStrength
 
@@ -62,22 +62,20 @@ class ResultantLaw:
         return beyond
 
 
-def resultant_law(
-    strength: PointStrength, stiffness: Stiffness, area: Array, length: Array, arm: Array
-) -> ResultantLaw:
+def resultant_law(strength: PointStrength, normal: Array, shear: Array, length: Array, arm: Array) -> ResultantLaw:
     """Law of whole joints.
 
     Parameters
     ----------
     strength
         Strength of the joints' areas.
-    stiffness
-        Per unit area [Pa/m].
-    area, length : (nj,) float
-        Of the joints [m², m].
+    normal, shear : (nj,) float
+        Stiffness of the joints' whole areas [N/m].
+    length : (nj,) float
+        Of the joints [m].
     arm : (nj,) float
         l_c [m]; ``length / 2`` is exact, the paper reads ``length``.
     """
     # A uniform layer of length l resists rotation with k_n A l² / 12.
-    rotational = stiffness.normal * area * length**2 / 12
-    return ResultantLaw(strength, np.column_stack([stiffness.normal * area, stiffness.shear * area, rotational]), arm)
+    rotational = normal * length**2 / 12
+    return ResultantLaw(strength, np.column_stack([normal, shear, rotational]), arm)

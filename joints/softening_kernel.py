@@ -12,111 +12,98 @@ come back, to nothing at s_c = 2 G_II / c. Each encloses its fracture energy exa
 
 import numpy as np
 
-from scene import Array
+from scene import Array, JointMaterial
 
 from .compiled import kernel
-from .mohr_coulomb import PointStrength
-from .point_kernel import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE, KernelLaw
+from .point_kernel import (
+    DAMPED_WORK,
+    FRICTION_WORK,
+    OPENING_BEFORE,
+    SLIP_BEFORE,
+    KernelLaw,
+    Parameters,
+    coulomb_constants,
+)
 
 PLASTIC_SLIP, DAMAGE, SLIPPED = 4, 5, 6
 """Rows of the history beside those of every law: slip that stays [m], damage, and the length of its path [m]."""
 
 
-def softening_law(
-    normal_stiffness: Array,
-    shear_stiffness: Array,
-    strength: PointStrength,
-    area: Array,
-    energy_1: float | None,
-    energy_2: float | None,
-) -> KernelLaw:
-    """Mohr–Coulomb points whose tension and cohesion are lost to fracture.
-
-    Parameters
-    ----------
-    normal_stiffness, shear_stiffness : (np,) float
-        k_n A and k_t A [N/m].
-    strength
-        Strength of the sound points.
-    area : (np,) float
-        Area of the points [m²].
-    energy_1, energy_2
-        Fracture energies of the two modes [J/m²]; None never softens.
-    """
-    cohesion = strength.shear + strength.friction * strength.tension
-    first = strength.tension / normal_stiffness
-    last = np.maximum(_end_of_softening(energy_1, area, strength.tension), first * (1 + 1e-9))
-    slipped = _end_of_softening(energy_2, area, cohesion)
-    mu = np.full(len(area), strength.friction)
-    parameters = [normal_stiffness, shear_stiffness, strength.tension, strength.shear, mu, 1 / shear_stiffness]
-    return KernelLaw(softening_kernel, np.array([*parameters, first, last, 1 / slipped]), 7, _stored)
+def softening_constants(material: JointMaterial) -> tuple[float, ...]:
+    """Constants of `softening_kernel`: those of `coulomb_kernel`, then δ_e, δ_c [m] and 1 / s_c [1/m]."""
+    sound = coulomb_constants(material)
+    k_n, _, tension, shear, friction, _ = sound
+    cohesion = shear + friction * tension
+    first = tension / k_n
+    last = max(_end_of_softening(material.fracture_energy_1, tension), first * (1 + 1e-9))
+    return *sound, first, last, 1 / _end_of_softening(material.fracture_energy_2, cohesion)
 
 
-def _end_of_softening(energy: float | None, area: Array, strength: Array) -> Array:
+def _end_of_softening(energy: float | None, strength: float) -> float:
     """Jump at which a linear branch from a strength has spent an energy [m]; tiny for none of either."""
     if energy is None:
-        return np.full(len(area), 1e300)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        jump = np.where(strength > 0, 2 * energy * area / strength, 0.0)
-    return np.maximum(jump, 1e-15)
+        return 1e300
+    return max(2 * energy / strength if strength > 0 else 0.0, 1e-15)
 
 
-def _stored(law: KernelLaw, opening: Array, normal: Array, tangential: Array) -> float:
-    """Energy of points that unload to the origin in opening."""
+def stored_by_secant(law: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
+    """Energy of points that unload to the origin in opening, ``(np,)`` [J/m²]."""
     closed = normal**2 / (2 * law.normal_stiffness)
     opened = normal * np.maximum(opening, 0.0) / 2
-    return float((np.where(opening > 0, opened, closed) + tangential**2 / (2 * law.shear_stiffness)).sum())
+    return np.asarray(np.where(opening > 0, opened, closed) + tangential**2 / (2 * law.shear_stiffness))
 
 
 @kernel
 def softening_kernel(
     opening: Array,
     slip: Array,
-    parameters: Array,
+    parameters: Parameters,
     history: Array,
     viscosity: float,
     normal: Array,
     tangential: Array,
 ) -> None:
-    """Forces at softening joint points from their jumps; see `coulomb_kernel` for the arguments."""
-    k_n, k_t, tension = parameters[0], parameters[1], parameters[2]
-    shear, friction, flexibility = parameters[3], parameters[4], parameters[5]
-    first, last, per_slip = parameters[6], parameters[7], parameters[8]
+    """Tractions of softening joint points from their jumps; see `coulomb_kernel` for the arguments."""
+    segments, constants = parameters
     spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
     opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
     damage, slipped = history[DAMAGE], history[SLIPPED]
-    for i in range(opening.size):
-        jump_n, jump_t = opening[i], slip[i]
-        change_n, change_t = jump_n - opening_before[i], jump_t - slip_before[i]
-        before = damage[i]
-        torn = min(1.0, max(0.0, (jump_n - first[i]) / (last[i] - first[i])))
-        sheared = min(1.0, slipped[i] * per_slip[i])
-        after = max(before, min(1.0, np.sqrt(torn * torn + sheared * sheared)))
-        sound = 1.0 - after
-        # Secant stiffness in opening: the traction of this damage at the opening that would cause it in mode I.
-        onset = first[i] + before * (last[i] - first[i])
-        secant_before = (1.0 - before) * tension[i] / onset
-        secant = sound * tension[i] / (first[i] + after * (last[i] - first[i]))
-        if tension[i] == 0.0:
-            secant_before, secant = 0.0, 0.0
-        elastic = secant * jump_n if jump_n > 0.0 else k_n[i] * jump_n
-        # The triangle between the two secants: exact along the straight branch, however long the step.
-        reach = max(jump_n, 0.0)
-        spent[i] += 0.5 * (secant_before - secant) * reach * min(reach, onset)
-        n = elastic
-        if jump_n <= 0.0:
-            n = min(elastic + viscosity * k_n[i] * change_n, sound * tension[i])
-        most = max(0.0, sound * shear[i] + friction[i] * (sound * tension[i] - n))
-        trial = k_t[i] * (jump_t - plastic_slip[i])
-        held = max(-most, min(most, trial))
-        t = max(-most, min(most, held + viscosity * k_t[i] * change_t))
-        slid = (trial - held) * flexibility[i]
-        plastic_slip[i] += slid
-        slipped[i] += abs(slid)
-        spent[i] += held * slid
-        damped[i] += (n - elastic) * change_n + (t - held) * change_t
-        damage[i] = after
-        opening_before[i] = jump_n
-        slip_before[i] = jump_t
-        normal[i] = n
-        tangential[i] = t
+    for segment in range(constants.shape[0]):
+        k_n, k_t, tension = constants[segment, 0], constants[segment, 1], constants[segment, 2]
+        shear, friction, flexibility = constants[segment, 3], constants[segment, 4], constants[segment, 5]
+        first, last, per_slip = constants[segment, 6], constants[segment, 7], constants[segment, 8]
+        for i in range(segments[segment], segments[np.uint64(segment + 1)]):
+            jump_n, jump_t = opening[i], slip[i]
+            change_n, change_t = jump_n - opening_before[i], jump_t - slip_before[i]
+            before = damage[i]
+            torn = min(1.0, max(0.0, (jump_n - first) / (last - first)))
+            sheared = min(1.0, slipped[i] * per_slip)
+            after = max(before, min(1.0, np.sqrt(torn * torn + sheared * sheared)))
+            sound = 1.0 - after
+            # Secant stiffness in opening: the traction of this damage at the opening that would cause it in mode I.
+            onset = first + before * (last - first)
+            secant_before = (1.0 - before) * tension / onset
+            secant = sound * tension / (first + after * (last - first))
+            if tension == 0.0:
+                secant_before, secant = 0.0, 0.0
+            elastic = secant * jump_n if jump_n > 0.0 else k_n * jump_n
+            # The triangle between the two secants: exact along the straight branch, however long the step.
+            reach = max(jump_n, 0.0)
+            spent[i] += 0.5 * (secant_before - secant) * reach * min(reach, onset)
+            n = elastic
+            if jump_n <= 0.0:
+                n = min(elastic + viscosity * k_n * change_n, sound * tension)
+            most = max(0.0, sound * shear + friction * (sound * tension - n))
+            trial = k_t * (jump_t - plastic_slip[i])
+            held = max(-most, min(most, trial))
+            t = max(-most, min(most, held + viscosity * k_t * change_t))
+            slid = (trial - held) * flexibility
+            plastic_slip[i] += slid
+            slipped[i] += abs(slid)
+            spent[i] += held * slid
+            damped[i] += (n - elastic) * change_n + (t - held) * change_t
+            damage[i] = after
+            opening_before[i] = jump_n
+            slip_before[i] = jump_t
+            normal[i] = n
+            tangential[i] = t

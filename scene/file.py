@@ -57,9 +57,11 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     top = Table("", content)
     title = " ".join(top.text("title", default_title).split())
     wall, block, joint, support, load = (top.table(key) for key in ("wall", "block", "joint", "support", "load"))
+    inner = top.optional_table("inner_joint")
     top.finish()
     block_material = _block_material(block)
     joint_material = _joint_material(joint)
+    inner_material = _joint_material(inner) if inner else None
     kind = cast(SupportKind, support.choice("kind", SUPPORT_KINDS))
     support.finish()
     loads = _load(load)
@@ -78,6 +80,7 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
         support=kind,
         ground=ground,
         bond=bond,
+        inner_joint=inner_material,
     )
 
 
@@ -142,7 +145,9 @@ def _friction(joint: Table) -> float:
     if angle is None:
         return joint.number("friction", least=0.0)
     if "friction" in joint:
-        raise SceneError("joint.friction_angle", "does not go with joint.friction; give one of them", angle)
+        raise SceneError(
+            joint.key("friction_angle"), f"does not go with {joint.key('friction')}; give one of them", angle
+        )
     return math.tan(math.radians(angle))
 
 
@@ -152,17 +157,18 @@ def _tensile_strength(joint: Table, friction: float, cohesion: float) -> float:
     if friction == 0.0:
         if given is None and cohesion > 0.0:
             raise SceneError(
-                "joint.tensile_strength", "is missing; with friction 0 its default, cohesion / friction, does not exist"
+                joint.key("tensile_strength"),
+                "is missing; with friction 0 its default, cohesion / friction, does not exist",
             )
         return given or 0.0
     apex = cohesion / friction
     if given is None:
         if not math.isfinite(apex):
-            raise SceneError("joint.friction", "is so small that cohesion / friction is infinite", friction)
+            raise SceneError(joint.key("friction"), "is so small that cohesion / friction is infinite", friction)
         return apex
     if given > apex * (1 + 1e-3):
         raise SceneError(
-            "joint.tensile_strength",
+            joint.key("tensile_strength"),
             f"must be at most cohesion / friction = {apex:.6g}, the apex of the Coulomb cone",
             given,
         )
@@ -173,7 +179,7 @@ def _elasticity(joint: Table) -> Mortar | Stiffness | None:
     direct = [key for key in ("normal_stiffness", "shear_stiffness") if key in joint]
     if "mortar" in joint:
         if direct:
-            raise SceneError(f"joint.{direct[0]}", "does not go with joint.mortar; give one of them")
+            raise SceneError(joint.key(direct[0]), f"does not go with {joint.key('mortar')}; give one of them")
         mortar = joint.table("mortar")
         layer = Mortar(
             mortar.number("young", above=0.0),

@@ -1,12 +1,12 @@
 """Joints: the segments along which two blocks touch, found from their geometry alone."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import shapely
 
-from .arrays import Array, Indices, frozen
+from .arrays import Array, Indices, Mask, frozen
 from .blocks import Blocks
 from .refusal import SceneError
 
@@ -21,14 +21,19 @@ class Joints:
         The blocks a and b on either side; the joint's normal points from a to b.
     ends : (nj, 2, 2) float
         End points [m], in the sense in which a's counter-clockwise boundary runs.
+    inner : (nj,) bool
+        Whether a joint is a potential crack inside what was one block; none is where it is left out.
     """
 
     block: Indices
     ends: Array
+    inner: Mask = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "block", frozen(self.block, np.int64))
         object.__setattr__(self, "ends", frozen(self.ends))
+        inner = self.inner if len(self.inner) else np.zeros(len(self.block), dtype=np.bool_)
+        object.__setattr__(self, "inner", frozen(inner, np.bool_))
 
     def __len__(self) -> int:
         return len(self.block)
@@ -38,6 +43,10 @@ class Joints:
         """Length of each joint, ``(nj,)`` [m]."""
         run = self.ends[:, 1] - self.ends[:, 0]
         return np.hypot(run[:, 0], run[:, 1])
+
+    def part(self, chosen: Mask | Indices) -> "Joints":
+        """Some of the joints, or all in another order."""
+        return Joints(self.block[chosen], self.ends[chosen], self.inner[chosen])
 
 
 def find_joints(blocks: Blocks) -> Joints:

@@ -40,6 +40,13 @@ class Table:
         """A table inside this one."""
         return Table(self.key(key), self._take(key, "a table"))
 
+    def optional_table(self, key: str) -> "Table | None":
+        """A table inside this one where the key is present, None where it is not."""
+        if key in self._left:
+            return self.table(key)
+        self._known.append(key)
+        return None
+
     def number(
         self,
         key: str,

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components
 from .arrays import Array, Indices, Mask, frozen
 from .blocks import Blocks
 from .bond import Bond
+from .crack import halved
 from .loads import Load, PointLoad
 from .materials import BlockMaterial, JointMaterial
 from .refusal import SceneError
@@ -44,6 +45,8 @@ class Scene:
         Dead and live load.
     bond
         Nominal block where the wall is bonded on a lattice, None for a drawing.
+    inner_joint
+        Material of the potential cracks inside blocks; None where blocks do not crack.
     """
 
     title: str
@@ -57,6 +60,7 @@ class Scene:
     joint: JointMaterial
     load: Load
     bond: Bond | None = None
+    inner_joint: JointMaterial | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "fixed", frozen(self.fixed, np.bool_))
@@ -67,6 +71,16 @@ class Scene:
         """Mass of each block, ``(nb,)`` [kg]."""
         return self.block.density * self.thickness * self.blocks.area
 
+    @property
+    def joint_materials(self) -> tuple[JointMaterial, ...]:
+        """Materials of the joints, to which `material_of_joint` refers."""
+        return (self.joint,) if self.inner_joint is None else (self.joint, self.inner_joint)
+
+    @property
+    def material_of_joint(self) -> Indices:
+        """Material of each joint, ``(nj,)``."""
+        return self.joints.inner.astype(np.int64)
+
     @cached_property
     def loaded_blocks(self) -> Indices:
         """Movable blocks that share a point load; empty for a lateral load."""
@@ -75,6 +89,31 @@ class Scene:
             return np.zeros(0, dtype=np.int64)
         touching = self.blocks.containing(np.array(live.at))
         return touching[~self.fixed[touching]]
+
+    @cached_property
+    def control_point(self) -> tuple[Indices, Array, Array]:
+        """Blocks whose displacement is averaged at the control point ``(n,)``, the point and a direction ``(2,)``.
+
+        The control point is where a point load acts, or the highest corner that lies farthest along a lateral
+        load (the paper's upper corner on the side of the push); its displacement is read along the live load.
+        """
+        live, blocks = self.load.live, self.blocks
+        if isinstance(live, PointLoad):
+            return self.loaded_blocks, np.array(live.at), np.array(live.force) / np.hypot(*live.force)
+        direction = np.array(live.direction)
+        up = -np.array(self.load.gravity) / np.hypot(*self.load.gravity)
+        movable = np.flatnonzero(~self.fixed[blocks.owner])
+        height = blocks.vertices[movable] @ up
+        top = movable[height >= height.max() - blocks.tolerance]
+        corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
+        return blocks.owner[corner], blocks.vertices[corner[0]], direction
+
+    @property
+    def lowest_block(self) -> float:
+        """Smallest height of a movable block [m]."""
+        y, first = self.blocks.vertices[:, 1], self.blocks.first[:-1]
+        height = np.maximum.reduceat(y, first) - np.minimum.reduceat(y, first)
+        return float(height[~self.fixed].min())
 
 
 def build_scene(
@@ -88,6 +127,7 @@ def build_scene(
     support: SupportKind = "base",
     ground: Array | None = None,
     bond: Bond | None = None,
+    inner_joint: JointMaterial | None = None,
 ) -> Scene:
     """Join blocks into a wall, put it on its support, and check that it can be analysed.
 
@@ -98,6 +138,9 @@ def build_scene(
     ground : (n, 2) float, optional
         Outline of the ground; without it a flat strip is laid under the lowest course where the
         support needs one.
+    inner_joint
+        Material of a potential crack on the vertical axis of every block; in a bonded wall, of every block wider
+        than half the nominal one.
 
     Raises
     ------
@@ -108,6 +151,10 @@ def build_scene(
     support_needs_ground = support == "base"
     wall_blocks = Blocks.from_polygons(polygons)
     wall_blocks.check()
+    whole = np.arange(len(polygons))
+    if inner_joint is not None:
+        polygons, whole = halved(polygons, 0.75 * bond.width if bond else 0.0)
+        wall_blocks = Blocks.from_polygons(polygons)
     if ground is None and support_needs_ground:
         ground = _strip_below(wall_blocks)
     outlines = [*polygons] if ground is None else [*polygons, ground]
@@ -123,19 +170,23 @@ def build_scene(
         pins = corner_pins(blocks, wall, roller=support == "corners")
 
     joints = find_joints(blocks)
+    part_of = np.append(whole, np.full(len(outlines) - len(polygons), -1))[joints.block]
     movable = ~fixed[joints.block].all(axis=1)
+    inner = (part_of[:, 0] == part_of[:, 1]) & movable
+    order = np.concatenate([np.flatnonzero(movable & ~inner), np.flatnonzero(inner)])
     scene = Scene(
         title,
         blocks,
         fixed,
         wall,
         pins,
-        Joints(joints.block[movable], joints.ends[movable]),
+        Joints(joints.block[order], joints.ends[order], inner[order]),
         thickness,
         block,
         joint,
         load,
         bond,
+        inner_joint,
     )
     _check(scene)
     return scene
@@ -154,13 +205,15 @@ def _check(scene: Scene) -> None:
     if scene.fixed.all():
         raise SceneError("support.kind", "holds every block; give the wall more than one course", "fixed-first-course")
     _refuse_floating_blocks(scene)
-    inset = scene.joint.inset
-    if len(scene.joints) and 2 * inset >= scene.joints.length.min():
-        raise SceneError(
-            "joint.inset",
-            f"must be less than half the shortest joint, {scene.joints.length.min():.4g} m long",
-            inset,
-        )
+    for name, material, chosen in (
+        ("joint.inset", scene.joint, ~scene.joints.inner),
+        ("inner_joint.inset", scene.inner_joint, scene.joints.inner),
+    ):
+        length = scene.joints.length[chosen]
+        if material is not None and len(length) and 2 * material.inset >= length.min():
+            raise SceneError(
+                name, f"must be less than half the shortest joint, {length.min():.4g} m long", material.inset
+            )
     live = scene.load.live
     if isinstance(live, PointLoad):
         if scene.loaded_blocks.size == 0:

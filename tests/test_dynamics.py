@@ -28,10 +28,11 @@ from dynamics import (
     settled_drive,
     stable_step,
 )
-from joints import PointStrength, Rule, joint_points, joint_stiffness
+from joints import Rule, joint_points, joint_stiffness
 from joints.compiled import kernel
-from joints.point_kernel import FRICTION_WORK, coulomb_law
-from scene import Array, Mortar, Scene
+from joints.laws import kernel_law
+from joints.point_kernel import FRICTION_WORK, KernelLaw
+from scene import Array, JointMaterial, Mortar, Scene, Stiffness
 from tests.test_dem import pile, rectangle
 from tests.walls import panel
 
@@ -58,11 +59,13 @@ def oscillator(stiffness: float = 1.0, viscosity: float = 0.0) -> BlockSystem:
         viscosity=np.array([viscosity]),
         dead=np.zeros(1),
         live=np.zeros(1),
-        law=coulomb_law(none, none, PointStrength(0.0, none, none)),
+        law=kernel_law([JointMaterial(0.0, elasticity=Stiffness(1.0, 1.0))], np.zeros(0, dtype=np.int64)),
+        area=none,
         gather=_no_jumps,
         scatter=_no_forces,
         geometry=(none,),
-        restraint=Restraint(np.zeros(0, dtype=np.int64), np.zeros((0, 3, 3))),
+        rigid=np.zeros((1, 3), dtype=np.int64),
+        restraint=Restraint(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3))),
         block_frequency_squared=stiffness,
         control=np.ones(1),
         force_unit=1.0,
@@ -148,14 +151,17 @@ def test_kernels_are_the_jump_operator_and_its_transpose(changes: dict[str, Any]
     system, points = rigid_system(scene), contact_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)
     rng = np.random.default_rng(1)
-    motion = rng.normal(size=len(system.mass))
-    opening, slip, force = np.zeros(len(points)), np.zeros(len(points)), np.zeros(len(motion))
-    system.gather(motion, system.geometry, opening, slip)
-    assert opening == pytest.approx(jump.opening @ motion, abs=1e-12)
-    assert slip == pytest.approx(jump.slip @ motion, abs=1e-12)
+    motion = np.where(scene.fixed[:, None], 0.0, rng.normal(size=(len(scene.blocks), 3)))
+    coordinates = np.zeros(motion.size)
+    coordinates[system.rigid] = motion
+    opening, slip, force = np.zeros(len(points)), np.zeros(len(points)), np.zeros(motion.size)
+    system.gather(coordinates, system.geometry, opening, slip)
+    assert opening == pytest.approx(jump.opening @ motion.ravel(), abs=1e-12)
+    assert slip == pytest.approx(jump.slip @ motion.ravel(), abs=1e-12)
     normal, tangential = rng.normal(size=(2, len(points)))
+    expected = jump.opening.T @ (normal * points.area) + jump.slip.T @ (tangential * points.area)
     system.scatter(normal, tangential, system.geometry, force)
-    assert force == pytest.approx(-(jump.opening.T @ normal + jump.slip.T @ tangential), abs=1e-12)
+    assert force[system.rigid][~scene.fixed] == pytest.approx(-expected.reshape(-1, 3)[~scene.fixed], abs=1e-12)
 
 
 def _stiffness_matrix(scene: Scene) -> Array:
@@ -197,18 +203,20 @@ def test_a_column_of_blocks_has_the_frequencies_of_a_chain(mode: int) -> None:
     theta = 2 * math.asin(omega * run.dt / 2)
     shape = 1e-6 * np.sin(phase * np.arange(1, n + 1))
     state = State.at_rest(run.system)
-    state.motion[1 : 3 * n : 3] = shape
-    state.velocity[1 : 3 * n : 3] = shape * (1 - math.cos(theta)) / run.dt
+    rise = system.rigid[:n, 1]
+    state.motion[rise] = shape
+    state.velocity[rise] = shape * (1 - math.cos(theta)) / run.dt
     for step in range(1, 200):
         run.hold(state, 0.0, 1)
-        assert state.motion[1 : 3 * n : 3] == pytest.approx(shape * math.cos(step * theta), abs=1e-14)
+        assert state.motion[rise] == pytest.approx(shape * math.cos(step * theta), abs=1e-14)
 
 
 def test_momentum_of_a_free_wall_is_kept() -> None:
     """Linear and angular, to 1e-12, while joints open and slide."""
     scene = panel(wall__height=0.24, joint__mortar=STIFF)
     system = rigid_system(scene)
-    mass = mass_matrix_diagonal(scene)
+    mass = np.zeros(len(system.mass))
+    mass[system.rigid] = mass_matrix_diagonal(scene).reshape(-1, 3)
     free = replace(system, mass=mass, dead=np.zeros_like(mass), live=np.zeros_like(mass))
     run = Run(free, local=0.0)
     state = State.at_rest(free)
@@ -216,7 +224,7 @@ def test_momentum_of_a_free_wall_is_kept() -> None:
     centroid = scene.blocks.centroid
 
     def momenta() -> Array:
-        p = (mass * state.velocity).reshape(-1, 3)
+        p = (mass * state.velocity)[system.rigid]
         spin = p[:, 2] + centroid[:, 0] * p[:, 1] - centroid[:, 1] * p[:, 0]
         return np.array([*p[:, :2].sum(axis=0), spin.sum()])
 
@@ -235,7 +243,7 @@ def test_pinned_corners_do_not_move(kind: str) -> None:
     run.hold(state, 5000.0, 3000)
     motion = run.motion_of_blocks(state)
     assert np.abs(motion).max() > 1e-6
-    assert np.abs(pin_operator(scene) @ motion).max() < 1e-12 * np.abs(motion).max() + 1e-18
+    assert np.abs(pin_operator(scene) @ motion.ravel()).max() < 1e-12 * np.abs(motion).max() + 1e-18
 
 
 # --- one block -----------------------------------------------------------------------------------------------
@@ -261,14 +269,14 @@ def test_stick_and_slip_under_a_harmonic_force() -> None:
     assert settle(run, state, 0.8 * (1 - 1e-6), Criteria(collapse=1.0, rest=1e-9)) == "stable"
     state.velocity[:] = 0.0
     weight, interval = GRAVITY, 20
-    start = state.motion[0]
+    start = run.motion_of_blocks(state)[0, 0]
     pieces = round(10 / (interval * run.dt))
     step = 10 / (pieces * interval)
     run = Run(rigid_system(scene), local=0.0, viscous=0.1, dt=step)
     for piece in range(pieces):
         t = (piece + 0.5) * interval * step
         run.hold(state, 8 * math.cos(t) / weight, interval)
-    assert state.motion[0] - start == pytest.approx(-0.00869717, abs=2e-8)
+    assert run.motion_of_blocks(state)[0, 0] - start == pytest.approx(-0.00869717, abs=2e-8)
 
 
 def test_coulomb_oscillator_turns_at_the_known_points_and_sticks() -> None:
@@ -276,35 +284,37 @@ def test_coulomb_oscillator_turns_at_the_known_points_and_sticks() -> None:
     scene = block_on_base(1.0, 0.01, 2.0 / GRAVITY, stiffness=1e9)
     system = rigid_system(scene)
     spring = np.zeros_like(system.mass)
-    spring[0] = 100.0
+    x, y, _ = system.rigid[0]
+    spring[x] = 100.0
     run = Run(replace(system, stiffness=spring), local=0.0, viscous=0.1)
     state = State.at_rest(run.system)
-    state.motion[1] = -GRAVITY / 1e9  # resting on its base
-    state.motion[0] = 0.11
+    state.motion[y] = -GRAVITY / 1e9  # resting on its base
+    state.motion[x] = 0.11
     state.history[4] = -0.11  # slip of the block, b in a downward normal's frame, starts without a force
     state.history[3] = -0.11
     state.history[2] = -GRAVITY / 1e9
     track = []
     while state.steps * run.dt < 3 * math.pi / 10 + 0.2:
         run.hold(state, 0.0, 10)
-        track.append((state.steps * run.dt, state.motion[0]))
-    time, x = np.array(track).T
+        track.append((state.steps * run.dt, state.motion[x]))
+    time, place = np.array(track).T
     for k, turning in enumerate((-0.07, 0.03, 0.01), start=1):
-        at = np.interp(k * math.pi / 10, time, x)
+        at = np.interp(k * math.pi / 10, time, place)
         assert at == pytest.approx(turning, abs=1e-5)
-    assert x[time > 3 * math.pi / 10 + 0.01] == pytest.approx(0.01, abs=1e-5)
+    assert place[time > 3 * math.pi / 10 + 0.01] == pytest.approx(0.01, abs=1e-5)
 
 
 def test_newmark_block_slides_as_far_as_it_should() -> None:
     """μ = 0.3 under a pulse of 0.5 g for 0.4 s: 0.2616 m."""
     run = Run(rigid_system(block_on_base(1.0, 0.1, 0.3, stiffness=1e9)), local=0.0)
     state = State.at_rest(run.system)
-    state.motion[1] = -GRAVITY / 1e9
+    x, y, _ = run.system.rigid[0]
+    state.motion[y] = -GRAVITY / 1e9
     run.hold(state, 0.5, round(0.4 / run.dt))
     run.hold(state, 0.0, round(0.6 / run.dt))
     pulse = 0.5 * 0.2 * GRAVITY * 0.4**2
-    assert state.motion[0] == pytest.approx(pulse + (0.2 * GRAVITY * 0.4) ** 2 / (2 * 0.3 * GRAVITY), rel=2e-4)
-    assert state.motion[0] == pytest.approx(0.2616, abs=1e-4)
+    assert state.motion[x] == pytest.approx(pulse + (0.2 * GRAVITY * 0.4) ** 2 / (2 * 0.3 * GRAVITY), rel=2e-4)
+    assert state.motion[x] == pytest.approx(0.2616, abs=1e-4)
 
 
 @pytest.mark.parametrize(("share", "period"), [(0.2, 1.041399), (0.5, 1.975213), (0.9, 4.483458)])
@@ -468,9 +478,9 @@ def test_no_tension_joint_turns_as_its_pressure_allows() -> None:
     scene = block_on_base(0.12, 0.12, 0.6)
     points = joint_points(scene.joints, 0.12, _midpoints(20_000))
     xi = (points.position - points.position.mean(axis=0)) @ points.tangent[0]
-    law = coulomb_law(1e9 * points.area, 1e9 * points.area, PointStrength(0.6, 0 * points.area, 0 * points.area))
+    law = kernel_law([JointMaterial(0.6, elasticity=Stiffness(1e9, 1e9))], np.zeros(len(points), dtype=np.int64))
     for e, expected in ((0.01, 5.787037e-4), (0.03, 2.057613e-3), (0.05, 1.851852e-2)):
-        middle, turn = _rest_of(law, xi, 1000.0, e)
+        middle, turn = _rest_of(law, points.area, xi, 1000.0, e)
         assert abs(turn) == pytest.approx(expected, rel=2e-6)
         assert middle < 0 or e > 0.04
 
@@ -479,15 +489,16 @@ def _midpoints(n: int) -> Rule:
     return Rule((np.arange(n) + 0.5) / n * 2 - 1, np.full(n, 2 / n))
 
 
-def _rest_of(law: Any, xi: Array, normal: float, e: float) -> tuple[float, float]:
+def _rest_of(law: KernelLaw, area: Array, xi: Array, normal: float, e: float) -> tuple[float, float]:
     """Middle opening and rotation at which the law's forces carry a normal force at an eccentricity (Newton)."""
-    unknown = np.array([-normal / law.normal_stiffness.sum(), 0.0])
+    unknown = np.array([-normal / (area @ law.normal_stiffness), 0.0])
     for _ in range(60):
         opening = unknown[0] + unknown[1] * xi
-        force, shear = np.zeros_like(xi), np.zeros_like(xi)
-        law.kernel(opening, 0 * xi, law.parameters, np.zeros((law.rows, len(xi))), 0.0, force, shear)
+        traction, shear = np.zeros_like(xi), np.zeros_like(xi)
+        law.kernel(opening, 0 * xi, law.parameters, np.zeros((law.rows, len(xi))), 0.0, traction, shear)
+        force = area * traction
         residual = np.array([force.sum() + normal, (force * xi).sum() + normal * e])
-        closed = law.normal_stiffness * (opening < 0)
+        closed = area * law.normal_stiffness * (opening < 0)
         tangent = np.array([[closed.sum(), (closed * xi).sum()], [(closed * xi).sum(), (closed * xi**2).sum()]])
         unknown = unknown - np.linalg.solve(tangent, residual)
     assert np.abs(residual).max() < 1e-6 * normal

@@ -134,7 +134,7 @@ def test_tangent_is_the_derivative_of_the_force(law: PointLaw, opening: float, s
 
 
 def test_an_open_dry_point_carries_nothing_and_has_no_tangent() -> None:
-    law = PointLaw(PointStrength(0.6, np.zeros(1), np.zeros(1)), np.ones(1), np.ones(1))
+    law = PointLaw(PointStrength(np.full(1, 0.6), np.zeros(1), np.zeros(1)), np.ones(1), np.ones(1))
     found = law(np.array([0.1]), np.array([0.3]), np.zeros(1))
     assert found.normal == found.tangential == 0
     assert not found.tangent.any()

@@ -1,0 +1,156 @@
+"""The collapse of a wall by steps of constant load, each held until the wall rests or falls."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from results import Outcome, fastest_corner_by_one
+from scene import Array, Indices, Scene
+
+from .controls import LoadSteps, settled_load_steps
+from .run import Criteria, Run
+from .system import State
+
+LOCAL, VISCOUS = 0.5, 0.1
+"""Local damping α, and the joints' viscous damping ratio at the highest frequency."""
+
+COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 0.8
+"""Displacement at which a wall that does not slow down is in collapse, in heights of the lowest block.
+
+A wall without weight may slip far and be caught by the pressure that the slip itself brings about; at small
+displacements nothing but the end of its motion tells that from a collapse.
+"""
+
+FIRST_STEP = 0.1
+"""First load step, in live loads as large as the largest dead one (for a weightless wall, as the strongest joint)."""
+
+UNACCOUNTED = 0.01
+"""Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
+
+MOST = 1e6
+"""Multiplier, in first steps, beyond which no collapse is looked for."""
+
+BUDGET = 2_000_000
+"""Time steps after which a load is left undecided."""
+
+
+def collapse_by_steps(
+    scene: Scene,
+    model: str,
+    run: Run,
+    tolerance: float,
+    *,
+    point_order: Indices,
+    locks: Callable[[], bool],
+    note: str = "",
+    collapse: float | None = None,
+    first_step: float = FIRST_STEP,
+    budget: int = BUDGET,
+) -> Outcome:
+    """Find the load that brings a wall down.
+
+    Parameters
+    ----------
+    scene
+        The wall.
+    model
+        Name of the model.
+    run
+        Its blocks in motion.
+    tolerance
+        Relative width of the bracket.
+    point_order : (np,) int
+        Joint points in the order in which the outcome lists their forces.
+    locks
+        Whether the wall is known to bear any multiple of the live load; asked where no load brought it down.
+    note
+        What the message is to say about the run besides.
+    collapse
+        Displacement at which a wall that does not slow down is in collapse, in heights of the lowest block;
+        `COLLAPSE` or `COLLAPSE_WEIGHTLESS` where none is given.
+    first_step
+        First load step; steps grow while they are borne and are bisected once one is not.
+    budget
+        Time steps after which a load is left undecided.
+
+    Returns
+    -------
+    Outcome
+        `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
+        it fell. `curve` has every state at rest, and ends in the fall.
+    """
+    system = run.system
+    if collapse is None:
+        collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
+    criteria = Criteria(collapse=collapse * scene.lowest_block, budget=budget)
+    first = first_step * system.force_unit / float(np.abs(system.live[system.rigid]).max())
+    found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST)
+    outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=found.taken)
+    outcome = _judge(outcome, scene, run, found, point_order, locks)
+    message = "; ".join(part for part in (outcome.message, note) if part)
+    return replace(outcome, message=message)
+
+
+def _judge(
+    outcome: Outcome, scene: Scene, run: Run, found: LoadSteps, point_order: Indices, locks: Callable[[], bool]
+) -> Outcome:
+    if found.borne is None:
+        if found.verdict == "collapse":
+            return replace(outcome, status="infeasible", message="falls under its dead load")
+        return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+    if found.upper is None or found.lower is None or found.fallen is None:
+        if found.verdict != "undecided" or not locks():
+            message = "the budget ran out: the wall neither rested nor fell"
+            return replace(outcome, lower=found.lower, message=message)
+        return replace(
+            outcome,
+            status="unbounded",
+            message="self-locking: borne up to every load tried, and joint forces balance any multiple of it",
+        )
+    outcome = replace(
+        outcome,
+        lower=found.lower,
+        upper=found.upper,
+        curve=_curve(run, found),
+        motion=_mechanism(scene, run, found.borne, found.fallen),
+        force=np.column_stack(run.forces(found.borne))[point_order],
+    )
+    lost = _unaccounted(run, found.fallen)
+    if lost > UNACCOUNTED:
+        return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
+    if found.verdict == "undecided":
+        return replace(outcome, message=_undecided(found))
+    slowed = "" if found.rate_error is None else f"; loading at half the speed moved it by {found.rate_error:.0e}"
+    return replace(
+        outcome,
+        status="collapse",
+        multiplier=(found.lower + found.upper) / 2,
+        message="largest load at rest and smallest in collapse, small displacements; "
+        f"work accounted for to {max(lost, 1e-6):.0e} of it{slowed}",
+    )
+
+
+def _undecided(found: LoadSteps) -> str:
+    if found.rate_error is None:
+        return "the budget ran out inside this bracket: the wall neither rested nor fell"
+    return f"the slower the loading, the more it bears: the last slowing moved it by {found.rate_error:.2g}"
+
+
+def _unaccounted(run: Run, state: State) -> float:
+    """Share of the work of the loads that the energy ledger misses."""
+    ledger = run.ledger(state)
+    return abs(ledger.residual) / abs(ledger.external) if ledger.external else 0.0
+
+
+def _curve(run: Run, found: LoadSteps) -> Array:
+    """Control displacement and multiplier of the states at rest, then of the fall."""
+    rows = [(run.system.control @ state.motion, multiplier) for multiplier, state in found.rests]
+    if found.fallen is not None and found.upper is not None:
+        rows.append((run.system.control @ found.fallen.motion, found.upper))
+    return np.array(rows)
+
+
+def _mechanism(scene: Scene, run: Run, borne: State, fallen: State) -> Array:
+    """What moved between the last rest and the fall, its fastest corner by one metre."""
+    return fastest_corner_by_one(scene.blocks, run.motion_of_blocks(fallen) - run.motion_of_blocks(borne))

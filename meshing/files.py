@@ -1,0 +1,135 @@
+"""A mesh as a file that other programs read: MSH 4.1 written by gmsh, or VTU written by meshio."""
+
+import errno
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from scene import Indices, Scene, SceneError
+
+from .mesh import GROUPS, WallMesh, joint_group
+from .session import gmsh_session
+
+TRIANGLE, QUADRILATERAL = 2, 3
+"""gmsh's numbers for the two kinds of elements."""
+
+LAST_LINE = b"$EndElementData\n"
+
+NONE = -1
+"""Block of a joint element, joint of a triangle."""
+
+
+def write_mesh(mesh: WallMesh, scene: Scene, path: str | Path) -> None:
+    """Write a mesh; the file is there whole, or as it was before.
+
+    Parameters
+    ----------
+    mesh, scene
+        The mesh and the wall that it was made of.
+    path
+        Where to; its ending, ``.msh`` or ``.vtu``, says in which format. Its folder is made if missing.
+
+    Raises
+    ------
+    SceneError
+        For any other ending.
+    """
+    path = Path(path)
+    check_suffix(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _write_beside(mesh, scene, path)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def _write_beside(mesh: WallMesh, scene: Scene, path: Path) -> None:
+    """Write a mesh under another name, and give it its own when it is whole."""
+    suffix = path.suffix.lower()
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=suffix)
+    os.close(handle)
+    try:
+        _WRITERS[suffix](mesh, scene, name)
+        with open(name, "rb") as file:
+            os.fsync(file.fileno())
+        os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def check_suffix(path: Path) -> None:
+    """Refuse a file name that says no format."""
+    if path.suffix.lower() not in _WRITERS:
+        raise SceneError(str(path), f"must end in {' or '.join(_WRITERS)}, the formats of a mesh")
+
+
+def _write_msh(mesh: WallMesh, scene: Scene, name: str) -> None:
+    triangle_group, interface_group = _groups(mesh, scene)
+    # In the order of the groups, since some readers take the data of elements to be in the file's order.
+    order = np.argsort(interface_group, kind="stable")
+    interfaces, interface_group = mesh.interfaces[order], interface_group[order]
+    n_triangles, n_interfaces = len(mesh.triangles), len(interfaces)
+    numbers = {
+        "block": np.concatenate([mesh.triangle_block, np.full(n_interfaces, NONE)]),
+        "joint": np.concatenate([np.full(n_triangles, NONE), mesh.joint[order]]),
+    }
+    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+    node_group = _block_group(scene)[mesh.block]
+    with gmsh_session() as gmsh:
+        # One entity a group: with one for each of 20 000 blocks gmsh takes minutes.
+        for group in np.unique(np.concatenate([triangle_group, interface_group])):
+            entity = gmsh.model.addDiscreteEntity(2, group + 1)
+            nodes = np.flatnonzero(node_group == group)
+            gmsh.model.mesh.addNodes(2, entity, nodes + 1, points[nodes].ravel())
+            rows = np.flatnonzero(triangle_group == group)
+            gmsh.model.mesh.addElementsByType(entity, TRIANGLE, rows + 1, mesh.triangles[rows].ravel() + 1)
+            rows = np.flatnonzero(interface_group == group)
+            corners = interfaces[rows].ravel() + 1
+            gmsh.model.mesh.addElementsByType(entity, QUADRILATERAL, n_triangles + rows + 1, corners)
+            gmsh.model.addPhysicalGroup(2, [entity], entity, GROUPS[group])
+        gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+        gmsh.option.setNumber("Mesh.Binary", 1)  # text would round the coordinates
+        gmsh.write(name)
+        gmsh.option.setNumber("PostProcessing.SaveMesh", 0)
+        tags = np.arange(n_triangles + n_interfaces) + 1
+        for title, values in numbers.items():
+            view = gmsh.view.add(title)
+            model = gmsh.model.getCurrent()
+            gmsh.view.addHomogeneousModelData(view, 0, model, "ElementData", tags, values.astype(np.float64))
+            gmsh.view.write(view, name, append=True)
+    with open(name, "rb") as file:
+        file.seek(max(0, os.path.getsize(name) - len(LAST_LINE)))
+        if file.read() != LAST_LINE:  # gmsh does not look whether the disk is full
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), name)
+
+
+def _write_vtu(mesh: WallMesh, scene: Scene, name: str) -> None:
+    import meshio
+
+    cells = [("triangle", mesh.triangles), ("quad", mesh.interfaces)]
+    data = {
+        "block": [mesh.triangle_block, np.full(len(mesh.interfaces), NONE)],
+        "joint": [np.full(len(mesh.triangles), NONE), mesh.joint],
+        "group": [group + 1 for group in _groups(mesh, scene)],
+    }
+    if not len(mesh.interfaces):
+        cells, data = cells[:1], {key: values[:1] for key, values in data.items()}
+    points = np.column_stack([mesh.points, np.zeros(len(mesh.points))])
+    meshio.Mesh(points, cells, cell_data=data).write(name, file_format="vtu")
+
+
+def _groups(mesh: WallMesh, scene: Scene) -> tuple[Indices, Indices]:
+    """Groups of the triangles ``(nt,)`` and of the joint elements ``(ne,)``, as indices into `GROUPS`."""
+    return _block_group(scene)[mesh.triangle_block], joint_group(scene)[mesh.joint]
+
+
+def _block_group(scene: Scene) -> Indices:
+    return np.where(scene.wall, GROUPS.index("block"), GROUPS.index("ground"))
+
+
+_WRITERS: dict[str, Callable[[WallMesh, Scene, str], None]] = {".msh": _write_msh, ".vtu": _write_vtu}

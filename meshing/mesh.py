@@ -1,0 +1,151 @@
+"""The mesh of a wall: blocks in triangles, joints as elements without thickness between nodes of their own."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene import Array, Indices, Scene, SceneError, frozen
+
+from .outline import Outlines, outlines
+from .shapes import shape_of_blocks, triangulate
+
+MOST_TRIANGLES = 10_000_000
+GROUPS = ("block", "ground", "bed", "head", "base", "inner")
+"""What elements belong to: triangles to the wall's blocks or the ground, joint elements to one of four kinds."""
+
+
+@dataclass(frozen=True, eq=False)
+class WallMesh:
+    """Triangles of all blocks and the joint elements between them.
+
+    Every node belongs to one block, so blocks hang together through their joints alone. Blocks, nodes and
+    triangles come in the order of the scene's blocks, joint elements in the order of its joints and along
+    their tangents. Blocks of one shape have the same nodes and triangles in the same order.
+
+    Parameters
+    ----------
+    points : (nn, 2) float
+        Nodes [m]. Those of a block's outline come first, counter-clockwise from its lowest corner, the left
+        one of two.
+    first_node : (nb + 1,) int
+        Block ``i`` owns the nodes ``first_node[i]`` to ``first_node[i + 1]``.
+    block : (nn,) int
+        Block of each node.
+    shape : (nb,) int
+        Shape of each block: those with the same number are congruent, nodes and all.
+    triangles : (nt, 3) int
+        Nodes of each triangle, counter-clockwise.
+    triangle_block : (nt,) int
+        Block of each triangle.
+    interfaces : (ne, 4) int
+        Nodes a0, a1, b1, b0 of each joint element: a0 → a1 along the joint's tangent on the side of block a,
+        b0 and b1 across from them on block b. As a quadrilateral it has no area.
+    joint : (ne,) int
+        Joint of each joint element.
+    """
+
+    points: Array
+    first_node: Indices
+    block: Indices
+    shape: Indices
+    triangles: Indices
+    triangle_block: Indices
+    interfaces: Indices
+    joint: Indices
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", frozen(self.points))
+        for name in ("first_node", "block", "shape", "triangles", "triangle_block", "interfaces", "joint"):
+            object.__setattr__(self, name, frozen(getattr(self, name), np.int64))
+
+
+def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
+    """Mesh a wall with gmsh.
+
+    Parameters
+    ----------
+    scene
+        The wall.
+    cells
+        Cells in half a block along the course, and in a block's height: a full block of running bond is
+        2 `cells` by `cells` cells of four triangles. Blocks that are no such grid, those of drawings, get
+        triangles of about that size.
+
+    Raises
+    ------
+    SceneError
+        For a number of cells that is none or too large, and where gmsh cannot be loaded.
+    """
+    if cells < 1:
+        raise SceneError("cells", "must be a whole number, at least 1", cells)
+    if 8 * cells**2 * len(scene.blocks) > MOST_TRIANGLES:
+        raise SceneError("cells", f"gives more than {MOST_TRIANGLES} triangles; take fewer cells", cells)
+    outline = outlines(scene, cells)
+    shape, example = shape_of_blocks(outline)
+    meshes = triangulate(outline, example)
+
+    n_inner = np.array([len(mesh.inner) for mesh in meshes])[shape]
+    n_triangles = np.array([len(mesh.triangles) for mesh in meshes])[shape]
+    first_node, first_triangle = _offsets(outline.count + n_inner), _offsets(n_triangles)
+    points = np.empty((first_node[-1], 2))
+    triangles = np.empty((first_triangle[-1], 3), dtype=np.int64)
+    origin = outline.points[outline.first[:-1]]
+    points[_runs(first_node[:-1], outline.count)] = outline.points
+    for number, blocks in enumerate(_members(shape, len(meshes))):
+        mesh = meshes[number]
+        start = first_node[blocks] + outline.count[blocks]
+        points[start[:, None] + np.arange(len(mesh.inner))] = origin[blocks][:, None] + mesh.inner
+        rows = first_triangle[blocks][:, None] + np.arange(len(mesh.triangles))
+        triangles[rows] = first_node[blocks][:, None, None] + mesh.triangles
+    interfaces, joint = _interfaces(scene, outline, first_node)
+    blocks = np.arange(len(shape))
+    return WallMesh(
+        points,
+        first_node,
+        np.repeat(blocks, np.diff(first_node)),
+        shape,
+        triangles,
+        np.repeat(blocks, n_triangles),
+        interfaces,
+        joint,
+    )
+
+
+def _interfaces(scene: Scene, outline: Outlines, first_node: Indices) -> tuple[Indices, Indices]:
+    """Nodes of the joint elements ``(ne, 4)`` and the joint of each ``(ne,)``."""
+    joint = np.repeat(np.arange(len(scene.joints)), outline.divisions)
+    step = _runs(np.zeros_like(outline.divisions), outline.divisions)
+    a, b = scene.joints.block[joint].T
+    start_a, start_b = outline.start[joint].T
+    # The outline of block b runs against the tangent: its first node on the joint is the last of a's.
+    last = outline.divisions[joint] - step
+    a0, a1 = ((start_a + i) % outline.count[a] + first_node[a] for i in (step, step + 1))
+    b1, b0 = ((start_b + i) % outline.count[b] + first_node[b] for i in (last - 1, last))
+    return np.column_stack([a0, a1, b1, b0]), joint
+
+
+def joint_group(scene: Scene) -> Indices:
+    """Group of each joint as an index into `GROUPS`, ``(nj,)``.
+
+    An inner joint is a potential crack inside a block, a base joint has a block that does not move; of the others,
+    bed joints are nearer to the level than to the upright.
+    """
+    run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
+    bed, head, base, inner = (GROUPS.index(word) for word in ("bed", "head", "base", "inner"))
+    kind = np.where(run[:, 0] >= run[:, 1], bed, head)
+    kind = np.where(scene.fixed[scene.joints.block].any(axis=1), base, kind)
+    return np.where(scene.joints.inner, inner, kind)
+
+
+def _offsets(count: Indices) -> Indices:
+    return np.concatenate([[0], np.cumsum(count)])
+
+
+def _runs(start: Indices, count: Indices) -> Indices:
+    """The numbers start, start + 1, … of runs of given lengths, one run after another."""
+    return np.asarray(np.arange(count.sum()) + np.repeat(start - _offsets(count)[:-1], count))
+
+
+def _members(shape: Indices, n: int) -> list[Indices]:
+    """Blocks of each shape."""
+    return np.split(np.argsort(shape, kind="stable"), np.cumsum(np.bincount(shape, minlength=n))[:-1])
