@@ -20,7 +20,7 @@ from scene import Scene, SceneError, read_scene
 
 from .campaign import Campaign, Cell, Interrupted, run_campaign
 from .fingerprint import fingerprint
-from .models import MODELS, TOLERANCE, check_model, check_tolerance, run_model
+from .models import IN_MOTION, MODELS, TOLERANCE, check_model, check_tolerance, run_model
 from .published import PUBLISHED, PublishedCase, find_scene, published_case
 from .table import Comparison, cost_sheets, csv_text, multiplier_sheets
 
@@ -65,12 +65,33 @@ def run(
     wall = read_scene(find_scene(scene))
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # a solver would not look up from its work
+    stopped = _interruptions(model)
     outcome = run_model(model, wall, tolerance)
     print(_as_json(outcome) if json else _as_text(outcome), flush=True)
     if out is not None:
-        save_outcome(outcome, out, fingerprint(wall, model, tolerance))
+        # What was broken off is kept under no fingerprint: no comparison takes it for the answer.
+        save_outcome(outcome, out, "" if stopped else fingerprint(wall, model, tolerance))
+    if stopped:
+        return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+def _interruptions(model: str) -> list[int]:
+    """Interruptions by Ctrl-C from here on: a run of blocks in motion ends with what it has found so far.
+
+    A linear program does not look up from its work, and the program ends at once.
+    """
+    found: list[int] = []
+    if model not in IN_MOTION:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        return found
+
+    def stop(number: int, frame: object) -> None:
+        found.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, stop)
+    return found
 
 
 @app.command

@@ -36,6 +36,9 @@ MODELS: dict[str, Model] = {
     "dem-dynamic": _dem_dynamic,
 }
 
+IN_MOTION = ("dem-dynamic", "fem")
+"""Models that bring blocks forward in time, and can be stopped with an answer so far."""
+
 TOLERANCE = 0.01
 
 

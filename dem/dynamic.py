@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics import Criteria, Run, collapse_by_steps, settle
+from dynamics import Criteria, Observer, Run, collapse_by_steps, nobody, settle
 from dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP, LOCAL, VISCOUS
 from results import Outcome
 from scene import Array, Scene
@@ -32,6 +32,7 @@ def dem_dynamic(
     collapse: float | None = None,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
+    observe: Observer = nobody,
 ) -> Outcome:
     """Collapse of a scene by the motion of its rigid blocks, at small displacements.
 
@@ -48,6 +49,8 @@ def dem_dynamic(
         First load step; steps grow while they are borne and are bisected once one is not.
     budget
         Time steps after which a load is left undecided.
+    observe
+        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
 
     Returns
     -------
@@ -66,6 +69,7 @@ def dem_dynamic(
         collapse=collapse,
         first_step=first_step,
         budget=budget,
+        observe=observe,
     )
     return replace(outcome, seconds=time.perf_counter() - start)
 

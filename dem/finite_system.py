@@ -17,8 +17,11 @@ from .rigid_system import force_unit, loads_and_masses
 PLASTIC_SLIP = 4
 """Row of the law's history: slip [m] at which a contact would be free of shear."""
 
-LONGEST = 200
-"""Steps between two looks at how far the blocks have moved: in so many, nothing at rest gathers speed to speak of."""
+HASTE = 2
+"""Times the speed that blocks have, and that loads alone would give them, with which they are reckoned to move on."""
+
+LONGEST = 1000
+"""Steps between two looks at how far the blocks have moved."""
 
 
 @dataclass(eq=False, kw_only=True)
@@ -112,6 +115,7 @@ class FiniteRun(Run):
         self.outline = Outline.of(scene)
         self._undeformed = find_contacts(self.outline, np.zeros_like(system.mass))
         self._undeformed_bound = system.block_frequency_squared
+        self._loading = self._farthest((np.abs(system.dead) + np.abs(system.live)) / system.mass)
         self._contacts = self._undeformed
 
     def at_rest(self) -> FiniteState:
@@ -168,8 +172,10 @@ class FiniteRun(Run):
             self._pair(state)
             left = room
         self._take_up(state.contacts)
-        way = 2 * self._farthest(state.velocity) * self.dt
-        return int(np.clip(left / way if way > 0 else LONGEST, 1, LONGEST))
+        speed, gain = HASTE * self._farthest(state.velocity), HASTE * self._loading
+        root = np.sqrt(speed**2 + 2 * gain * left)
+        time = 2 * left / (speed + root) if root > 0 else np.inf
+        return int(np.clip(time / self.dt, 1, LONGEST))
 
     def _pair(self, state: FiniteState) -> None:
         """Find the contacts of a state anew, in place, and hand their history on."""

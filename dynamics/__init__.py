@@ -1,7 +1,7 @@
 """Blocks in motion: the system, its integration, its load controls and its verdict."""
 
 from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive, settled_load_steps
-from .run import Criteria, Ledger, Run, Verdict, moved_by, settle
+from .run import Criteria, Ledger, Observer, Run, Verdict, moved_by, nobody, settle
 from .system import BlockSystem, Restraint, State
 from .time_step import block_frequency_squared, mass_factor, stable_step
 from .verdict import collapse_by_steps
@@ -12,6 +12,7 @@ __all__ = [
     "Drive",
     "Ledger",
     "LoadSteps",
+    "Observer",
     "Restraint",
     "Run",
     "State",
@@ -22,6 +23,7 @@ __all__ = [
     "load_steps",
     "mass_factor",
     "moved_by",
+    "nobody",
     "ramp",
     "settle",
     "settled_drive",

@@ -1,13 +1,12 @@
 """Load controls: steps with bisection, a ramp, and work-conjugate displacement control."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from scene import Array
 
-from .run import Criteria, Run, Verdict, settle
+from .run import Criteria, Observer, Run, Verdict, nobody, settle
 from .system import State
 
 RAMP, RAMP_WEIGHTLESS = 2, 20
@@ -23,12 +22,6 @@ SLOWINGS = 4
 
 GROWTH = 1 / 8
 """Largest step, once the first ones are borne, as a fraction of the load."""
-
-Observer = Callable[[State, float], None]
-
-
-def _nobody(state: State, multiplier: float) -> None:
-    """Observe nothing."""
 
 
 @dataclass(eq=False)
@@ -51,6 +44,8 @@ class LoadSteps:
         Steps taken, on every path.
     rate_error
         Change of `lower` when the loading was last slowed to half its speed; None where it never was.
+    interrupted
+        Whether Ctrl-C ended it.
     """
 
     lower: float | None = None
@@ -61,6 +56,7 @@ class LoadSteps:
     rests: list[tuple[float, State]] = field(default_factory=list)
     taken: int = 0
     rate_error: float | None = None
+    interrupted: bool = False
 
 
 def load_steps(
@@ -71,7 +67,7 @@ def load_steps(
     *,
     most: float = np.inf,
     ramp_length: int = RAMP,
-    observe: Observer = _nobody,
+    observe: Observer = nobody,
 ) -> LoadSteps:
     """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
 
@@ -93,14 +89,38 @@ def load_steps(
     ramp_length
         Length of the ramp to each load, in times that the wall took to rest under the first one.
     observe
-        Called with the state and the multiplier at every look.
+        Called at every look.
+
+    Returns
+    -------
+    LoadSteps
+        Ctrl-C ends the search with what it had found.
     """
+    found = LoadSteps()
+    try:
+        _search(found, run, first, tolerance, criteria, most, ramp_length, observe)
+    except KeyboardInterrupt:
+        found.interrupted, found.verdict = True, "undecided"
+    return found
+
+
+def _search(
+    found: LoadSteps,
+    run: Run,
+    first: float,
+    tolerance: float,
+    criteria: Criteria,
+    most: float,
+    ramp_length: int,
+    observe: Observer,
+) -> None:
+    """Fill in what a search finds, as it finds it."""
     state = State.at_rest(run.system)
-    found = LoadSteps(verdict=settle(run, state, 0.0, criteria, observe))
+    found.verdict = settle(run, state, 0.0, criteria, observe)
     found.taken = state.steps
     if found.verdict != "stable":
         found.fallen = state
-        return found
+        return
     found.lower, found.borne = 0.0, state
     found.rests.append((0.0, state))
     step, steps_to_rest, neutral = first, state.steps, None
@@ -108,7 +128,7 @@ def load_steps(
         trial = _next_trial(found, step, neutral, tolerance)
         if trial > most:
             found.verdict = "undecided"
-            return found
+            return
         state = found.borne.copy()
         ramp(run, state, found.lower, trial, ramp_length * steps_to_rest)
         before = state.steps
@@ -125,8 +145,7 @@ def load_steps(
         elif neutral is None:
             neutral = trial
         else:
-            return found
-    return found
+            return
 
 
 def settled_load_steps(
@@ -136,7 +155,7 @@ def settled_load_steps(
     criteria: Criteria,
     *,
     most: float = np.inf,
-    observe: Observer = _nobody,
+    observe: Observer = nobody,
 ) -> LoadSteps:
     """Search by load steps as slow as the wall asks for; see `load_steps` for the arguments.
 
@@ -148,11 +167,14 @@ def settled_load_steps(
     length = RAMP_WEIGHTLESS
     slow = load_steps(run, first, tolerance, criteria, most=most, ramp_length=length, observe=observe)
     for _ in range(SLOWINGS):
-        if slow.lower is None or slow.upper is None:
+        if slow.lower is None or slow.upper is None or slow.interrupted:
             return slow
         fast, length = slow, 2 * length
         slow = load_steps(run, first, tolerance, criteria, most=most, ramp_length=length, observe=observe)
         slow.taken += fast.taken
+        if slow.interrupted:
+            fast.interrupted, fast.verdict, fast.taken = True, "undecided", slow.taken
+            return fast
         if slow.lower is not None and fast.lower is not None:
             slow.rate_error = abs(slow.lower - fast.lower)
             if slow.rate_error <= tolerance * slow.lower:

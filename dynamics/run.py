@@ -16,6 +16,13 @@ from .time_step import stable_step
 
 Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
 
+Observer: TypeAlias = Callable[["Run", State, float], None]
+"""Looks at a run, its state and the multiplier, now and then, and changes none of them."""
+
+
+def nobody(run: "Run", state: State, multiplier: float) -> None:
+    """Observe nothing."""
+
 
 @dataclass(frozen=True)
 class Ledger:
@@ -171,7 +178,7 @@ def settle(
     state: State,
     multiplier: float,
     criteria: Criteria,
-    observe: Callable[[State, float], None] = lambda state, multiplier: None,
+    observe: Observer = nobody,
 ) -> Verdict:
     """Hold a load until the wall rests or falls.
 
@@ -184,7 +191,7 @@ def settle(
     calm = 0
     for _ in range(criteria.budget // criteria.interval):
         run.hold(state, multiplier, criteria.interval)
-        observe(state, multiplier)
+        observe(run, state, multiplier)
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
         if calm == 3:
             return "stable"

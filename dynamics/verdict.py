@@ -9,7 +9,7 @@ from results import Outcome, fastest_corner_by_one
 from scene import Array, Indices, Scene
 
 from .controls import LoadSteps, settled_load_steps
-from .run import Criteria, Run
+from .run import Criteria, Observer, Run, nobody
 from .system import State
 
 LOCAL, VISCOUS = 0.5, 0.1
@@ -47,6 +47,7 @@ def collapse_by_steps(
     collapse: float | None = None,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
+    observe: Observer = nobody,
 ) -> Outcome:
     """Find the load that brings a wall down.
 
@@ -73,6 +74,8 @@ def collapse_by_steps(
         First load step; steps grow while they are borne and are bisected once one is not.
     budget
         Time steps after which a load is left undecided.
+    observe
+        Called every so many steps.
 
     Returns
     -------
@@ -85,7 +88,7 @@ def collapse_by_steps(
         collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
     criteria = Criteria(collapse=collapse * scene.lowest_block, budget=budget)
     first = first_step * system.force_unit / float(np.abs(system.live[system.rigid]).max())
-    found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST)
+    found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=found.taken)
     outcome = _judge(outcome, scene, run, found, point_order, locks)
     message = "; ".join(part for part in (outcome.message, note) if part)
@@ -96,9 +99,16 @@ def _judge(
     outcome: Outcome, scene: Scene, run: Run, found: LoadSteps, point_order: Indices, locks: Callable[[], bool]
 ) -> Outcome:
     if found.borne is None:
+        if found.interrupted:
+            return replace(outcome, message="interrupted before the wall came to rest under its dead load")
         if found.verdict == "collapse":
             return replace(outcome, status="infeasible", message="falls under its dead load")
         return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+    if found.interrupted:
+        outcome = replace(
+            outcome, curve=_curve(run, found), force=np.column_stack(run.forces(found.borne))[point_order]
+        )
+        return replace(outcome, lower=found.lower, upper=found.upper, message="interrupted: the bracket found so far")
     if found.upper is None or found.lower is None or found.fallen is None:
         if found.verdict != "undecided" or not locks():
             message = "the budget ran out: the wall neither rested nor fell"

@@ -28,6 +28,7 @@ from dynamics import (
     settled_drive,
     stable_step,
 )
+from dynamics.run import Fall
 from joints import Rule, joint_points, joint_stiffness
 from joints.compiled import kernel
 from joints.laws import kernel_law
@@ -461,6 +462,36 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible() -> None:
     scene = pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)], 0.5)
     stiff = replace(scene, joint=replace(scene.joint, elasticity=Mortar(1e9, 0.2, 0.01)))
     assert dem_dynamic(stiff).status == "infeasible"
+
+
+@pytest.mark.parametrize(("exponent", "falls"), [(2.0, True), (1.0, True), (0.5, False)])
+def test_a_fall_is_a_motion_that_does_not_slow_down(exponent: float, falls: bool) -> None:
+    """x = t^p past the mark of 1: falling for p ≥ 1, and for p < 1 not before it has come 2^4 times as far."""
+    fall = Fall(1.0)
+    at = next(t for t in range(1, 10_000_000) if fall.goes_on((t / 1000) ** exponent, t))
+    assert (at / 1000) ** exponent == pytest.approx(1.0 if falls else 2.0**Fall.FARTHEST, rel=0.01)
+
+
+def test_observers_see_every_look_and_ctrl_c_leaves_what_was_found() -> None:
+    """Stopped in the middle of the search: undecided, with the load borne so far and its curve."""
+    scene = panel(joint__mortar=STIFF, wall__height=0.24)
+    seen: list[float] = []
+
+    def stop(run: Run, state: State, multiplier: float) -> None:
+        assert run.motion_of_blocks(state).shape == (len(scene.blocks), 3)
+        seen.append(multiplier)
+        if multiplier > 0.25:
+            raise KeyboardInterrupt
+
+    outcome = dem_dynamic(scene, observe=stop)
+    assert outcome.status == "undecided"
+    assert outcome.multiplier is None
+    assert outcome.lower is not None
+    assert 0 < outcome.lower <= 0.25
+    assert "interrupted" in outcome.message
+    assert outcome.curve[:, 1].max() == outcome.lower
+    assert seen == sorted(seen)
+    assert outcome.steps > 0
 
 
 def test_a_budget_that_runs_out_is_undecided() -> None:

@@ -7,6 +7,10 @@ import pytest
 from compare import published_scene
 from dem import limit
 from dem.dynamic import dem_dynamic
+from dem.rigid_system import rigid_system
+from dynamics import Criteria, Run, load_steps
+from dynamics.controls import RAMP
+from dynamics.verdict import COLLAPSE, FIRST_STEP
 from scene import Scene
 from tests.walls import panel
 
@@ -31,16 +35,36 @@ def test_rounded_walls_fall_where_they_should(name: str) -> None:
 
 @pytest.mark.parametrize("name", ROUNDED)
 def test_bracket_stays_where_it_is(name: str) -> None:
-    """Whatever displacement counts as collapse, and however the load is stepped."""
+    """Twice the displacement that counts as collapse, half the first load step, half the speed: brackets overlap."""
     scene = rounded(name)
-    reference = dem_dynamic(scene)
-    for other in (dem_dynamic(scene, collapse=0.1), dem_dynamic(scene, first_step=0.05)):
-        assert other.lower is not None
-        assert reference.upper is not None
-        assert other.upper is not None
-        assert reference.lower is not None
-        assert other.lower < reference.upper * 1.005
-        assert reference.lower < other.upper * 1.005
+    run, far = Run(rigid_system(scene)), COLLAPSE * scene.lowest_block
+
+    def bracket(first: float = FIRST_STEP, collapse: float = far, ramp_length: int = RAMP) -> tuple[float, float]:
+        found = load_steps(run, first, 0.01, Criteria(collapse=collapse), ramp_length=ramp_length)
+        assert found.lower is not None
+        assert found.upper is not None
+        return found.lower, found.upper
+
+    lower, upper = bracket()
+    for other in (bracket(collapse=2 * far), bracket(first=FIRST_STEP / 2), bracket(ramp_length=2 * RAMP)):
+        assert other[0] < upper * 1.005
+        assert lower < other[1] * 1.005
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("name", "bound"), [("point-load-2", 99.3e3), ("point-load-4", 260.4e3)])
+def test_walls_without_weight_are_loaded_slower_until_the_bracket_stays(name: str, bound: float) -> None:
+    """The paper's concentrated loads: the bracket, its rate error, and the associated bound above it."""
+    scene = published_scene(name)
+    outcome = dem_dynamic(scene)
+    assert outcome.status == "collapse"
+    assert "half the speed" in outcome.message
+    assert outcome.upper is not None
+    assert outcome.lower is not None
+    assert outcome.lower <= bound * 1.001
+    slipped = dem_dynamic(scene, collapse=1.6)
+    assert slipped.lower is not None
+    assert slipped.lower == pytest.approx(outcome.lower, rel=0.01)
 
 
 @pytest.mark.parametrize("name", ["wall-w1", "wall-w2", "wall-w3", "panel-02", "panel-04", "point-load-quarter"])
