@@ -13,13 +13,13 @@ from scene import Array, Blocks, Indices, Mask, Scene, SceneError
 from .finite_kernels import gather_finite, place_outline
 
 MARGIN = 0.02
-"""Distance up to which sides count as near, in sizes of the smallest block (root of its area).
+"""Least distance up to which sides count as near, in sizes of the smallest block (root of its area).
 
 It costs time, not accuracy: the wider, the more pairs are looked at every step, and the fewer times they are sought.
 """
 
 FLAT = 0.1
-"""Turn [rad] of the outline below which a corner is not rounded: hardly a corner."""
+"""Turn [rad] of the outline below which a corner is hardly one: it is not rounded, and rests with both its sides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ class Outline:
 
     @property
     def margin(self) -> float:
-        """Distance up to which sides count as near [m]."""
+        """Distance up to which sides of blocks that hardly move count as near [m]."""
         return float(MARGIN * np.sqrt(self.blocks.area.min()))
 
     @cached_property
@@ -126,6 +126,8 @@ class Contacts:
     ----------
     motion : (3 nb,) float
         Motion of the blocks when these contacts were found.
+    margin : float
+        Distance up to which they were sought [m].
     ends : (n, 6) uint
         Corner of block b and of block a, far corners of their sides, and the sides (their first corners); b > a.
     inwards : (n,) float
@@ -137,6 +139,7 @@ class Contacts:
     """
 
     motion: Array
+    margin: float
     ends: NDArray[np.uint64]
     inwards: Array
     tilt: Array
@@ -147,7 +150,7 @@ class Contacts:
 
     def chosen(self, rows: Mask | Indices) -> "Contacts":
         """Some of these."""
-        return Contacts(self.motion, self.ends[rows], self.inwards[rows], self.tilt[rows], self.area[rows])
+        return Contacts(self.motion, self.margin, self.ends[rows], self.inwards[rows], self.tilt[rows], self.area[rows])
 
     @property
     def key(self) -> Indices:
@@ -163,12 +166,12 @@ class Contacts:
         return (*fixed, *ends, buffers, np.zeros((len(self), 4)))
 
 
-def find_contacts(outline: Outline, motion: Array) -> Contacts:
-    """Find every end of facing sides that is nearer than the margin after a motion ``(3 nb,)``.
+def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
+    """Find every end of facing sides that is nearer than a margin [m] after a motion ``(3 nb,)``.
 
     None of those left out touches before some block has moved by half the margin.
     """
-    e, f = _facing_sides(outline, motion)
+    e, f = _facing_sides(outline, motion, margin)
     blocks, after = outline.blocks, outline.blocks.successor
     owner = blocks.owner
     spin = motion[2::3]
@@ -182,34 +185,40 @@ def find_contacts(outline: Outline, motion: Array) -> Contacts:
     n = len(e)
     both = Contacts(
         motion.copy(),
+        margin,
         np.concatenate([low, high]).astype(np.uint64),
         np.repeat([1.0, -1.0], n),
         np.tile(tilt, 2),
         np.tile(area, 2),
     )
-    opening, corner, _ = resting(outline, both, motion)
-    near = np.abs(opening) < outline.margin
-    # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each.
+    near = np.abs(jumps(outline, both, motion)[0]) < margin
+    # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
+    # rests with both, each of which stands for its own area.
+    corner, _ = resting(outline, both, motion)
     lean = -both.inwards * np.tile(tilt + turned, 2)
-    return both.chosen(near & (np.abs(lean) <= outline.exterior[corner] / 2))
+    return both.chosen(near & (np.abs(lean) <= np.maximum(outline.exterior[corner] / 2, FLAT)))
 
 
-def resting(outline: Outline, contacts: Contacts, motion: Array) -> tuple[Array, Indices, Indices]:
-    """Opening of each end [m], the corner that is farther in, and the side it rests on, all ``(n,)``."""
-    geometry = contacts.geometry(outline)
-    opening, slip = np.zeros((2, len(contacts)))
-    gather_finite(motion, geometry, opening, slip)
-    arcs = geometry[7][1]
+def jumps(outline: Outline, contacts: Contacts, motion: Array) -> Array:
+    """Opening and slip of contacts after a motion ``(3 nb,)``, ``(2, n)`` [m]."""
+    found = np.zeros((2, len(contacts)))
+    gather_finite(motion, contacts.geometry(outline), *found)
+    return found
+
+
+def resting(outline: Outline, contacts: Contacts, motion: Array) -> tuple[Indices, Indices]:
+    """Of each end, the corner that is farther in and the side it rests on after a motion ``(3 nb,)``, two ``(n,)``."""
+    arcs = outline.placed(motion)[1]
     v, w, _, _, e, f = contacts.ends.astype(np.int64).T
     apart = arcs[v, :2] - arcs[w, :2]
     inwards = contacts.inwards * (apart[:, 1] * arcs[f, 2] - apart[:, 0] * arcs[f, 3])
     on_f = inwards >= 0
-    return opening, np.where(on_f, v, w), np.where(on_f, f, e)
+    return np.where(on_f, v, w), np.where(on_f, f, e)
 
 
-def _facing_sides(outline: Outline, motion: Array) -> tuple[Indices, Indices]:
+def _facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indices, Indices]:
     """Sides e of one block and f of another, of lower number, that face each other and whose boxes are near."""
-    blocks, margin = outline.blocks, outline.margin
+    blocks = outline.blocks
     corners, arcs = outline.corners(motion), outline.placed(motion)[1]
     following = corners[blocks.successor]
     low, high = np.minimum(corners, following) - margin / 2, np.maximum(corners, following) + margin / 2

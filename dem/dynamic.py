@@ -43,7 +43,7 @@ def dem_dynamic(
     tolerance
         Relative width of the bracket.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in heights of the lowest block;
+        Displacement at which a wall that does not slow down is in collapse, in block sizes;
         by default 0.05, for a wall without weight 0.8.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not.
@@ -105,7 +105,7 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
     """
     run = FiniteRun(scene, local=local, viscous=VISCOUS)
     state = run.at_rest()
-    settle(run, state, 0.0, Criteria(collapse=COLLAPSE * scene.lowest_block))
+    settle(run, state, 0.0, Criteria(collapse=COLLAPSE * scene.block_size))
     block, at, direction = scene.control_point
     steps = max(1, round(distance / (speed * PIECES * run.dt)))
     power = speed * float(np.abs(run.system.live).sum())

@@ -15,6 +15,7 @@ they touch: forces there do the work that the jumps say, and keep linear and ang
 """
 
 import math
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from joints import compiled
 from scene import Array
 
 kernel = compiled.kernel
+Geometry: TypeAlias = tuple[Any, ...]
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 
 
@@ -57,7 +59,7 @@ def _arc_on_arc(dx: float, dy: float, radii: float) -> tuple[float, float, float
 
 
 @kernel
-def gather_finite(motion: Array, geometry: tuple, opening: Array, slip: Array) -> None:  # type: ignore[type-arg]
+def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
     """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``.
 
     `geometry` is the outline of the blocks; radius of each corner and straight length of the side that starts there;
@@ -143,7 +145,7 @@ def _far_arcs(
 
 
 @kernel
-def scatter_finite(normal: Array, tangential: Array, geometry: tuple, force: Array) -> None:  # type: ignore[type-arg]
+def scatter_finite(normal: Array, tangential: Array, geometry: Geometry, force: Array) -> None:
     """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
     outline, ends, area, placed, contact = geometry[0], geometry[3], geometry[6], geometry[7], geometry[8]
     freedom, turned = outline[1], placed[0]

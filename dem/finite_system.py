@@ -10,7 +10,7 @@ from joints.laws import kernel_law
 from joints.point_kernel import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE, KernelLaw
 from scene import Array, Indices, Scene, SceneError
 
-from .contacts import Contacts, Outline, find_contacts, resting
+from .contacts import Contacts, Outline, find_contacts, jumps, resting
 from .finite_kernels import gather_finite, scatter_finite
 from .rigid_system import force_unit, loads_and_masses
 
@@ -19,6 +19,9 @@ PLASTIC_SLIP = 4
 
 HASTE = 2
 """Times the speed that blocks have, and that loads alone would give them, with which they are reckoned to move on."""
+
+STEPS_AHEAD = 16
+"""Steps of the fastest block within which sides count as near at least."""
 
 LONGEST = 1000
 """Steps between two looks at how far the blocks have moved."""
@@ -71,7 +74,7 @@ def finite_system(scene: Scene) -> BlockSystem:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
     restraint, mass, dead, live, control = loads_and_masses(scene)
     outline = Outline.of(scene)
-    contacts = find_contacts(outline, np.zeros_like(mass))
+    contacts = find_contacts(outline, np.zeros_like(mass), outline.margin)
     law = _law(scene, contacts)
     still = np.zeros_like(mass)
     return BlockSystem(
@@ -113,7 +116,7 @@ class FiniteRun(Run):
         super().__init__(system, local=local, viscous=viscous)
         self.scene, self.viscous = scene, viscous
         self.outline = Outline.of(scene)
-        self._undeformed = find_contacts(self.outline, np.zeros_like(system.mass))
+        self._undeformed = find_contacts(self.outline, np.zeros_like(system.mass), self.outline.margin)
         self._undeformed_bound = system.block_frequency_squared
         self._loading = self._farthest((np.abs(system.dead) + np.abs(system.live)) / system.mass)
         self._contacts = self._undeformed
@@ -128,7 +131,7 @@ class FiniteRun(Run):
     def moved_to(self, motion: Array) -> FiniteState:
         """The wall without velocity after a motion ``(3 nb,)``, its contacts free of shear."""
         nd = len(motion)
-        self._take_up(find_contacts(self.outline, motion))
+        self._take_up(find_contacts(self.outline, motion, self.outline.margin))
         fresh = self._fresh_history(motion)
         return FiniteState(motion.copy(), np.zeros(nd), fresh, np.zeros(nd), np.zeros(nd), contacts=self._contacts)
 
@@ -166,11 +169,11 @@ class FiniteRun(Run):
 
     def _look(self, state: FiniteState) -> int:
         """Pair anew what has moved; returns the steps until the blocks may have moved so far again."""
-        room = self.outline.margin / 2
+        room = state.contacts.margin / 2
         left = room - self._farthest(state.motion - state.contacts.motion)
         if left < room / 4:
             self._pair(state)
-            left = room
+            left = state.contacts.margin / 2
         self._take_up(state.contacts)
         speed, gain = HASTE * self._farthest(state.velocity), HASTE * self._loading
         root = np.sqrt(speed**2 + 2 * gain * left)
@@ -180,27 +183,34 @@ class FiniteRun(Run):
     def _pair(self, state: FiniteState) -> None:
         """Find the contacts of a state anew, in place, and hand their history on."""
         before, history = state.contacts, state.history
-        _, corner_before, side_before = resting(self.outline, before, state.motion)
-        shear = _jumps(self, before, state.motion)[1] - history[PLASTIC_SLIP]
+        corner_before, side_before = resting(self.outline, before, state.motion)
+        shear = jumps(self.outline, before, state.motion)[1] - history[PLASTIC_SLIP]
         state.friction += float(before.area @ history[FRICTION_WORK])
         state.absorbed += float(before.area @ history[DAMPED_WORK])
 
-        state.contacts = find_contacts(self.outline, state.motion)
+        # What flies moves by many a step's way before the next look, and may be as deep in a block by then.
+        fast = STEPS_AHEAD * self._farthest(state.velocity) * self.dt
+        found = find_contacts(self.outline, state.motion, max(self.outline.margin, fast))
+        # The same end of the same two sides; or, for a corner that has turned on, the same corner on the same side,
+        # which goes on with the area that it had: another stiffness would jolt it.
+        corner, side = resting(self.outline, found, state.motion)
+        turned = _where(corner_before * 2**32 + side_before, corner * 2**32 + side)
+        same = _where(before.key, found.key)
+        on, still = turned >= 0, same >= 0
+        area = found.area.copy()
+        area[on] = before.area[turned[on]]
+        area[still] = before.area[same[still]]
+
+        state.contacts = replace(found, area=area)
         self._take_up(state.contacts)
         state.history = self._fresh_history(state.motion)
-        _, corner, side = resting(self.outline, state.contacts, state.motion)
-        # The same end of the same two sides; or, for a corner that has turned on, the same corner on the same side.
-        by_corner = _where(corner_before * 2**32 + side_before, corner * 2**32 + side)
-        same = _where(before.key, state.contacts.key)
-        old, new = by_corner >= 0, same >= 0
-        grown = state.contacts.area[old] / before.area[by_corner[old]]
-        state.history[PLASTIC_SLIP, old] -= shear[by_corner[old]] / grown
-        state.history[:, new] = history[:, same[new]]
+        state.history[PLASTIC_SLIP, on] -= shear[turned[on]]
+        state.history[:, still] = history[:, same[still]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
 
     def _fresh_history(self, motion: Array) -> Array:
         """History of contacts that are free of shear after a motion ``(3 nb,)``."""
-        opening, slip = _jumps(self, self._contacts, motion)
+        opening, slip = jumps(self.outline, self._contacts, motion)
         history = np.zeros((self.system.law.rows, len(opening)))
         history[OPENING_BEFORE], history[SLIP_BEFORE], history[PLASTIC_SLIP] = opening, slip, slip
         return history
@@ -238,13 +248,6 @@ def _finite(state: State) -> FiniteState:
     if not isinstance(state, FiniteState):
         raise TypeError("finite displacements need a state that knows its contacts: begin with `FiniteRun.at_rest()`")
     return state
-
-
-def _jumps(run: FiniteRun, contacts: Contacts, motion: Array) -> Array:
-    """Opening and slip of contacts after a motion ``(3 nb,)``, ``(2, n)`` [m]."""
-    jumps = np.zeros((2, len(contacts)))
-    gather_finite(motion, contacts.geometry(run.outline), *jumps)
-    return jumps
 
 
 def _where(keys: Indices, sought: Indices) -> Indices:

@@ -102,10 +102,10 @@ class Run:
 
     def forces(self, state: State) -> tuple[Array, Array]:
         """Normal and tangential force at each point ``(np,)`` [N], without a change of state."""
-        _, _, normal, tangential = self._tractions(state)
+        _, _, normal, tangential = self.tractions(state)
         return normal * self.system.area, tangential * self.system.area
 
-    def _tractions(self, state: State) -> tuple[Array, Array, Array, Array]:
+    def tractions(self, state: State) -> tuple[Array, Array, Array, Array]:
         """Opening and slip [m] and tractions [Pa] of the points, without a change of state."""
         system = self.system
         opening, slip, normal, tangential = (np.zeros(system.law.points) for _ in range(4))
@@ -118,6 +118,10 @@ class Run:
         """Translation and rotation of each block, ``(nb, 3)`` [m, m, rad]."""
         return self._unrestrained(state.motion)[self.system.rigid]
 
+    def velocity_of_blocks(self, state: State) -> Array:
+        """Velocity and spin of each block half a step ago, ``(nb, 3)`` [m/s, m/s, rad/s]."""
+        return self._unrestrained(state.velocity)[self.system.rigid]
+
     def _unrestrained(self, motion: Array) -> Array:
         """Motion with restrained coordinates turned back into those of their blocks, ``(nd,)``."""
         moved = motion.copy()
@@ -128,7 +132,7 @@ class Run:
     def ledger(self, state: State) -> Ledger:
         """Account for the work of the loads so far."""
         system, law = self.system, self.system.law
-        opening, _, normal, tangential = self._tractions(state)
+        opening, _, normal, tangential = self.tractions(state)
         moving = np.isfinite(system.mass)
         return Ledger(
             external=state.external,
@@ -212,6 +216,9 @@ class Fall:
     FARTHEST = 4
     """Doublings after which a motion that does slow down counts as collapse all the same."""
 
+    SLACK = 1.1
+    """How much slower than before is not yet slower: sliding contacts chatter, and their speed with them."""
+
     def __init__(self, far: float) -> None:
         self._marks = [far * 2.0**k for k in range(-2, self.FARTHEST + 1)]
         self._passed: list[int] = []
@@ -225,7 +232,7 @@ class Fall:
             if len(self._passed) >= 3:
                 first, second, third = self._passed[-3:]
                 # The way from the second mark to the third is twice as long as that from the first to the second.
-                if third - second <= 2 * (second - first):
+                if third - second <= 2 * self.SLACK * (second - first):
                     return True
         return False
 

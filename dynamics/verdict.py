@@ -16,13 +16,13 @@ LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
 
 COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 0.8
-"""Displacement at which a wall that does not slow down is in collapse, in heights of the lowest block.
+"""Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_size`).
 
 A wall without weight may slip far and be caught by the pressure that the slip itself brings about; at small
 displacements nothing but the end of its motion tells that from a collapse.
 """
 
-FIRST_STEP = 0.1
+FIRST_STEP = 0.05
 """First load step, in live loads as large as the largest dead one (for a weightless wall, as the strongest joint)."""
 
 UNACCOUNTED = 0.01
@@ -68,7 +68,7 @@ def collapse_by_steps(
     note
         What the message is to say about the run besides.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in heights of the lowest block;
+        Displacement at which a wall that does not slow down is in collapse, in block sizes;
         `COLLAPSE` or `COLLAPSE_WEIGHTLESS` where none is given.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not.
@@ -86,7 +86,7 @@ def collapse_by_steps(
     system = run.system
     if collapse is None:
         collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
-    criteria = Criteria(collapse=collapse * scene.lowest_block, budget=budget)
+    criteria = Criteria(collapse=collapse * scene.block_size, budget=budget)
     first = first_step * system.force_unit / float(np.abs(system.live[system.rigid]).max())
     found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=found.taken)

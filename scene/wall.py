@@ -109,6 +109,11 @@ class Scene:
         return blocks.owner[corner], blocks.vertices[corner[0]], direction
 
     @property
+    def block_size(self) -> float:
+        """Smaller side of the blocks [m]: the height of the lowest, or the nominal width of a bonded wall's."""
+        return min(self.lowest_block, self.bond.width) if self.bond else self.lowest_block
+
+    @property
     def lowest_block(self) -> float:
         """Smallest height of a movable block [m]."""
         y, first = self.blocks.vertices[:, 1], self.blocks.first[:-1]

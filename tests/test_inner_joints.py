@@ -26,7 +26,7 @@ def wall(inner: dict[str, Any] | None, **changes: Any) -> Scene:
 
 def test_every_whole_block_is_cut_on_its_axis_and_no_half_one() -> None:
     plain, cracked = wall(None), wall(WEAK)
-    width = np.array([np.ptp(plain.blocks.polygon(i)[:, 0]) for i in np.flatnonzero(plain.wall)])
+    width = np.array([np.ptp(plain.blocks.polygon(i)[:, 0]) for i in np.flatnonzero(plain.wall).tolist()])
     whole = int((width > 0.2).sum())
     assert cracked.joints.inner.sum() == whole
     assert cracked.wall.sum() == plain.wall.sum() + whole

@@ -37,7 +37,7 @@ def test_rounded_walls_fall_where_they_should(name: str) -> None:
 def test_bracket_stays_where_it_is(name: str) -> None:
     """Twice the displacement that counts as collapse, half the first load step, half the speed: brackets overlap."""
     scene = rounded(name)
-    run, far = Run(rigid_system(scene)), COLLAPSE * scene.lowest_block
+    run, far = Run(rigid_system(scene)), COLLAPSE * scene.block_size
 
     def bracket(first: float = FIRST_STEP, collapse: float = far, ramp_length: int = RAMP) -> tuple[float, float]:
         found = load_steps(run, first, 0.01, Criteria(collapse=collapse), ramp_length=ramp_length)
