@@ -60,7 +60,7 @@ def find_runs(scene: Scene, half: Array) -> Runs:
     order = np.lexsort((a, kind))
     a, b, kind = a[order], b[order], kind[order]
     goes_on = (np.diff(a) == 1) & (np.diff(b) == 1) & (np.diff(kind) == 0)
-    begin = np.flatnonzero(np.append(True, ~goes_on))
+    begin = np.flatnonzero(np.append(len(order) > 0, ~goes_on))
     start = np.append(begin, len(order))
     return Runs(place, order, start, a[begin], b[begin], shape[order][begin])
 

@@ -1,0 +1,61 @@
+"""Fracture energies of joints after the paper's Eqs. 4–5, as they should read and as they are printed.
+
+Linear fracture mechanics gives G = K² / E with K² = π l × (strength in that mode)²: opening (I) is resisted by the
+tensile strength f_t, slip (II) by the cohesion c. The paper prints the two strengths the other way round, and takes
+the block's width b for the length of a bed joint, which is half of it in running bond.
+"""
+
+from dataclasses import replace
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from joints.mohr_coulomb import truncated_cone
+from scene import Array, Indices, JointMaterial, Mortar, Scene, SceneError
+
+Energies: TypeAlias = Literal["given", "corrected", "printed"]
+"""Fracture energies of the scene; of Eqs. 4–5 with the strengths in their places; of Eqs. 4–5 as printed."""
+
+
+def corrected_energies(length: float, cohesion: float, tension: float, young: float) -> tuple[float, float]:
+    """G_I = l π f_t² / E and G_II = l π c² / E of a joint of length l [m], [J/m²]; strengths and E in Pa."""
+    return length * np.pi * tension**2 / young, length * np.pi * cohesion**2 / young
+
+
+def printed_energies(length: float, cohesion: float, tension: float, young: float) -> tuple[float, float]:
+    """G_I = l π c² / E and G_II = l π f_t² / E as the paper prints them, [J/m²]."""
+    return length * np.pi * cohesion**2 / young, length * np.pi * tension**2 / young
+
+
+def fractured(scene: Scene, energies: Energies) -> tuple[list[JointMaterial], Indices]:
+    """Materials of a scene's joints with their fracture energies, and which of them each joint is of, ``(nj,)``.
+
+    Raises
+    ------
+    SceneError
+        If energies are to follow from a mortar that is not given.
+    """
+    if energies == "given":
+        return list(scene.joint_materials), scene.material_of_joint
+    formula = corrected_energies if energies == "corrected" else printed_energies
+    length = _printed_length(scene) if energies == "printed" else scene.joints.length
+    # Lengths that differ by rounding make one material.
+    keys = np.column_stack([scene.material_of_joint, np.rint(length / scene.blocks.tolerance)])
+    _, first, kind = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    materials = []
+    for joint in first:
+        material = scene.joint_materials[scene.material_of_joint[joint]]
+        if not isinstance(material.elasticity, Mortar):
+            raise SceneError("joint.mortar", f'is missing; "{energies}" fracture energies follow from it')
+        _, tension, _ = truncated_cone(material)
+        energy_1, energy_2 = formula(float(length[joint]), material.cohesion, tension, material.elasticity.young)
+        materials.append(replace(material, fracture_energy_1=energy_1, fracture_energy_2=energy_2))
+    return materials, np.asarray(kind.ravel(), dtype=np.int64)
+
+
+def _printed_length(scene: Scene) -> Array:
+    """Length that the paper takes: of the block's side, b for a bed joint and a for a head joint."""
+    if scene.bond is None:
+        return scene.joints.length
+    run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
+    return np.where(run[:, 0] >= run[:, 1], scene.bond.width, scene.bond.height)

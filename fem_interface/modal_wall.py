@@ -1,0 +1,121 @@
+"""A wall in modal coordinates: which coordinates a block has, and what loads and points are in them."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from meshing import WallMesh
+from scene import Array, Indices, PointLoad, Scene
+
+from .operators import Interface
+from .templates import Template, nodes_of, triangles_of
+
+
+@dataclass(frozen=True, eq=False)
+class ModalWall:
+    """Blocks with modes, joined at the points of an interface.
+
+    Modal coordinates stand template by template, in each mode by mode, for all its blocks side by side. Fixed blocks
+    share the last one, which never moves.
+
+    Parameters
+    ----------
+    scene, mesh
+        The wall and its mesh.
+    templates
+        Its movable blocks.
+    interface
+        Its joint points.
+    """
+
+    scene: Scene
+    mesh: WallMesh
+    templates: list[Template]
+    interface: Interface
+
+    @cached_property
+    def first(self) -> Indices:
+        """First coordinate of each template, then the one that never moves, ``(n_templates + 1,)``."""
+        counts = [len(template.blocks) * len(template.modes.mass) for template in self.templates]
+        return np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+
+    @cached_property
+    def place(self) -> Indices:
+        """Template of each block and its row there, ``(nb, 2)``; −1 for fixed blocks."""
+        place = np.full((len(self.scene.blocks), 2), -1)
+        for k, template in enumerate(self.templates):
+            place[template.blocks, 0] = k
+            place[template.blocks, 1] = np.arange(len(template.blocks))
+        return place
+
+    @property
+    def mass(self) -> Array:
+        """Modal masses, ``(nd,)``; inf where nothing moves."""
+        return self._of_modes([template.modes.mass for template in self.templates], np.inf)
+
+    @property
+    def stiffness(self) -> Array:
+        """Modal stiffness of the blocks themselves, ``(nd,)`` [N/m]."""
+        return self._of_modes([template.modes.stiffness for template in self.templates])
+
+    @cached_property
+    def rigid(self) -> Indices:
+        """Where each block's rigid coordinates stand, ``(nb, 3)``; the last coordinate of all for fixed blocks."""
+        found = np.full((len(self.scene.blocks), 3), self.first[-1])
+        for template, first in zip(self.templates, self.first, strict=False):
+            n = len(template.blocks)
+            found[template.blocks] = first + np.arange(n)[:, None] + n * np.arange(3)
+        return found
+
+    def _of_modes(self, values: list[Array], still: float = 0.0) -> Array:
+        each = [np.repeat(v, len(t.blocks)) for v, t in zip(values, self.templates, strict=True)]
+        return np.concatenate([*each, [still]])
+
+    def displacement(self, motion: Array) -> Array:
+        """Displacement of every node, ``(nn, 2)`` [m]."""
+        found = np.zeros_like(self.mesh.points)
+        for template, Q in zip(self.templates, self.split(motion), strict=True):
+            shape = template.modes.shape
+            nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
+            found[nodes] = (shape @ Q).reshape(-1, 2, len(template.blocks)).transpose(0, 2, 1)
+        return found
+
+    def split(self, motion: Array) -> list[Array]:
+        """Coordinates of each template's blocks, ``(m, n)`` each."""
+        pieces = np.split(motion, self.first[1:])[:-1]
+        return [piece.reshape(-1, len(t.blocks)) for piece, t in zip(pieces, self.templates, strict=True)]
+
+    def body_force(self, acceleration: tuple[float, float]) -> Array:
+        """Modal forces of an acceleration [m/s²] of all blocks, ``(nd,)`` [N]."""
+        return self._of_modes([template.modes.inert @ acceleration for template in self.templates])
+
+    def displacement_row(self, block: int, at: Array, direction: Array) -> Array:
+        """Displacement of a point ``(2,)`` of a movable block along a direction, per coordinate, ``(nd,)``.
+
+        The point is taken to lie in the triangle that it is deepest in, or least outside of.
+        """
+        template, row = self.place[block]
+        points, triangles = self.mesh.points[nodes_of(self.mesh, block)], triangles_of(self.mesh, block)
+        corners = np.concatenate([points[triangles], np.ones((*triangles.shape, 1))], axis=2)
+        shares = np.linalg.solve(corners.transpose(0, 2, 1), np.array([*at, 1.0])[:, None])[:, :, 0]
+        best = int(np.argmax(shares.min(axis=1)))
+        shape = self.templates[template].modes.shape.reshape(len(points), 2, -1)[triangles[best]]
+        found = np.zeros(self.first[-1] + 1)
+        self.split(found)[template][:, row] = np.einsum("c,x,cxm->m", shares[best], direction, shape)
+        return found
+
+    def live_load(self) -> Array:
+        """Load that λ multiplies, ``(nd,)`` [N]; a point load is shared equally by the blocks it touches."""
+        live = self.scene.load.live
+        if isinstance(live, PointLoad):
+            shared = self.scene.loaded_blocks
+            force = np.array(live.force) / len(shared)
+            return np.asarray(sum(self.displacement_row(int(b), np.array(live.at), force) for b in shared))
+        gravity = float(np.hypot(*self.scene.load.gravity))
+        return self.body_force((gravity * live.direction[0], gravity * live.direction[1]))
+
+    def control_row(self) -> Array:
+        """Displacement of the control point along the live load, ``(nd,)``; see `results.Outcome`."""
+        blocks, at, direction = self.scene.control_point
+        return np.asarray(sum(self.displacement_row(int(b), at, direction) for b in blocks)) / len(blocks)

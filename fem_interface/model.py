@@ -1,0 +1,97 @@
+"""Model ``fem``: deformable blocks in triangles with interfaces between them, in the manner of the paper's FEM/DEM.
+
+The paper's second model (Secs. 4–5): blocks of stiff constant-strain triangles, zero-thickness joint elements with
+Coulomb's law between them, explicit central differences. Blocks are taken in modal coordinates, in which nothing is
+lost and stiff deformations can be slowed down one by one.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics import Observer, Run, collapse_by_steps, nobody
+from dynamics.verdict import BUDGET, FIRST_STEP, LOCAL, VISCOUS
+from joints import Rule
+from results import Outcome
+from scene import Scene
+
+from .fracture import Energies
+from .modes import ModeCount
+from .runs import modal_wall
+from .stable import largest_scaling
+from .system import system_of
+
+
+def fem(
+    scene: Scene,
+    tolerance: float = 0.01,
+    *,
+    cells: int = 1,
+    modes: ModeCount = "all",
+    rule: Rule | None = None,
+    mass_scaling: bool = True,
+    energies: Energies = "given",
+    collapse: float | None = None,
+    first_step: float = FIRST_STEP,
+    budget: int = BUDGET,
+    observe: Observer = nobody,
+    locks: Callable[[], bool] = lambda: False,
+) -> Outcome:
+    """Collapse of a scene by the motion of its deformable blocks, at small displacements.
+
+    Parameters
+    ----------
+    scene
+        The scene; its joints need a stiffness, its blocks one too unless `modes` is 3.
+    tolerance
+        Relative width of the bracket.
+    cells
+        Cells in half a block along the course, and in a block's height.
+    modes
+        Modes of each block: 3 rigid motions, 6 with the uniform strains, or all of its mesh.
+    rule
+        Quadrature rule of the joint elements; two Lobatto points where none is given.
+    mass_scaling
+        Make deformable modes heavy enough not to limit the time step.
+    energies
+        Where the joints' fracture energies come from; without any, joints are perfectly plastic.
+    collapse
+        Displacement at which a wall that does not slow down is in collapse, in heights of the lowest block;
+        by default 0.05, for a wall without weight 0.8.
+    first_step
+        First load step; steps grow while they are borne and are bisected once one is not.
+    budget
+        Time steps after which a load is left undecided.
+    observe
+        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
+    locks
+        Whether the wall is known to bear any multiple of the live load; asked where no load brought it down, which
+        is undecided without such a proof.
+
+    Returns
+    -------
+    Outcome
+        `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
+        it fell. `force` lists the points joint element by joint element, `motion` the blocks' rigid part.
+    """
+    start = time.perf_counter()
+    wall = modal_wall(scene, cells, modes, rule)
+    system = system_of(wall, mass_scaling=mass_scaling, energies=energies)
+    factor = largest_scaling(wall, system.mass)
+    element = np.tile(wall.interface.element, len(wall.interface.weights))
+    outcome = collapse_by_steps(
+        scene,
+        "fem",
+        Run(system, local=LOCAL, viscous=VISCOUS),
+        tolerance,
+        point_order=np.argsort(element, kind="stable"),
+        locks=locks,
+        note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",
+        collapse=collapse,
+        first_step=first_step,
+        budget=budget,
+        observe=observe,
+    )
+    return replace(outcome, seconds=time.perf_counter() - start)

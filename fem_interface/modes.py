@@ -1,0 +1,129 @@
+"""Modes of one block: rigid motions first, then deformations, in which its mass and stiffness are diagonal.
+
+The rigid modes are the translations and the rotation about the centroid by one, so that their coordinates are those
+of a rigid block and their masses its mass and its moment of inertia, exactly, with the consistent mass. Deformable
+modes are normalised to the block's mass: their coordinate is the block's root mean square displacement [m].
+"""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from scene import Array
+
+ModeCount: TypeAlias = Literal[3, 6, "all"]
+"""Rigid motions; rigid motions and uniform strains; every degree of freedom of the mesh."""
+
+
+@dataclass(frozen=True, eq=False)
+class Modes:
+    """Modes of a block: three that are rigid, then deformations.
+
+    Parameters
+    ----------
+    rigid : (2 nn, 3) float
+        Nodal displacements of the translations along x and y and of the rotation about the centroid.
+    free : (3, 3) float
+        Rigid motion per coordinate that leaves the block's pins alone; columns that are not needed are zero.
+        The identity without pins.
+    shape : (2 nn, m) float
+        Nodal displacements per coordinate: ``rigid @ free``, then the deformations.
+    mass, stiffness : (m,) float
+        Modal masses, inf where a coordinate is not needed, and stiffness, zero for rigid modes.
+    inert : (m, 2) float
+        Modal force per acceleration of the whole block along x and y [kg].
+    """
+
+    rigid: Array
+    free: Array
+    shape: Array
+    mass: Array
+    stiffness: Array
+    inert: Array
+
+
+def rigid_motions(points: Array, M: Array) -> Array:
+    """Two translations and the rotation about the centroid, ``(2 nn, 3)``, of nodes ``(nn, 2)`` [m]."""
+    n = len(points)
+    R = np.zeros((n, 2, 3))
+    R[:, 0, 0] = R[:, 1, 1] = 1
+    translations = R.reshape(-1, 3)[:, :2]
+    # The origin need not be near: the centroid is taken from it first.
+    x, y = (points - points[0]).T
+    total = float(translations[:, 0] @ M @ translations[:, 0])
+    centre = (translations.T @ M @ np.column_stack([x, y]).ravel()) / total
+    R[:, 0, 2], R[:, 1, 2] = centre[1] - y, x - centre[0]
+    return R.reshape(-1, 3)
+
+
+def block_modes(points: Array, K: Array, M: Array, held: Array, count: ModeCount) -> Modes:
+    """Modes of a block.
+
+    Parameters
+    ----------
+    points : (nn, 2) float
+        Nodes [m].
+    K, M : (2 nn, 2 nn) float
+        Stiffness [N/m] and consistent mass [kg].
+    held : (np, 2 nn) float
+        Displacements that are zero, one a row: every mode satisfies them.
+    count
+        How many modes an unsupported block has.
+    """
+    if count not in (3, 6, "all"):
+        raise ValueError(f'modes = {count!r}: must be 3, 6 or "all"')
+    R = rigid_motions(points, M)
+    inertia = np.diag(R.T @ M @ R)
+    free, mass = _free_motions(held @ R, inertia)
+    rigid, stiffness = R @ free, np.zeros(3)
+    shape = rigid
+    if count != 3:
+        candidates = np.eye(len(M)) if count == "all" else np.hstack([R, uniform_strains(points)])
+        bending, own = _deformations(candidates, rigid[:, np.isfinite(mass)], held, K, M)
+        shape = np.hstack([rigid, np.sqrt(inertia[0]) * bending])
+        mass = np.concatenate([mass, np.full(len(own), inertia[0])])
+        stiffness = np.concatenate([stiffness, inertia[0] * own])
+    inert = shape.T @ M @ R[:, :2]
+    if len(held) == 0:
+        inert[:] = 0.0  # but for rounding
+        inert[0, 0] = inert[1, 1] = inertia[0]
+    return Modes(R, free, shape, mass, stiffness, inert)
+
+
+def uniform_strains(points: Array) -> Array:
+    """Displacements of the three uniform strains ε_x, ε_y and γ/2, ``(2 nn, 3)`` [m]."""
+    x, y = (points - points[0]).T
+    zero = np.zeros_like(x)
+    return np.stack([np.stack([x, zero], 1), np.stack([zero, y], 1), np.stack([y, x], 1)], axis=2).reshape(-1, 3)
+
+
+def _free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
+    """Rigid motions that leave the held points alone, mass-orthogonal, ``(3, 3)``, and their masses ``(3,)``."""
+    if len(held) == 0:
+        return np.eye(3), inertia.copy()
+    root = np.sqrt(inertia)
+    found = null_space(held / root, rcond=1e-9) / root[:, None] * root.min()
+    free, mass = np.zeros((3, 3)), np.full(3, np.inf)
+    free[:, : found.shape[1]] = found
+    mass[: found.shape[1]] = (found**2 * inertia[:, None]).sum(axis=0)
+    return free, mass
+
+
+def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Array) -> tuple[Array, Array]:
+    """Deformations in the span of some displacements that are orthogonal to the rigid ones and leave pins alone.
+
+    Returns
+    -------
+    (2 nn, d) float
+        Their shapes, of unit mass and diagonal stiffness.
+    (d,) float
+        ω² of each [1/s²].
+    """
+    inert = rigid.T @ M
+    zero = np.vstack([held, inert / np.linalg.norm(inert, axis=1)[:, None]]) if len(inert) else held
+    candidates = candidates / np.linalg.norm(candidates, axis=0)
+    space = candidates @ null_space(zero @ candidates, rcond=1e-9)
+    own, mix = eigh(space.T @ K @ space, space.T @ M @ space)
+    return space @ mix, own

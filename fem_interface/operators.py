@@ -1,0 +1,215 @@
+"""Operators of blocks in constant-strain triangles, assembled by scikit-fem: stiffness, mass, traces and jumps.
+
+Degrees of freedom are node by node, x before y: 2i and 2i + 1 are the displacement of node i [m].
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+from skfem import Basis, BilinearForm, ElementTriP1, ElementVector, FacetBasis, MeshTri, asm
+from skfem.helpers import dot
+from skfem.models.elasticity import linear_elasticity, plane_stress
+
+from joints import JointPoints, Rule, lobatto
+from meshing import WallMesh
+from scene import Array, Indices, Scene, SceneError
+
+
+def stiffness_matrix(points: Array, triangles: Indices, young: float, poisson: float, thickness: float) -> csr_array:
+    """Plane-stress stiffness of nodes ``(nn, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [N/m]."""
+    basis = Basis(_mesh(points, triangles), ElementVector(ElementTriP1()))
+    return csr_array(thickness * asm(linear_elasticity(*plane_stress(young, poisson)), basis))
+
+
+def mass_matrix(points: Array, triangles: Indices, density: float, thickness: float) -> csr_array:
+    """Consistent mass of nodes ``(nn, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [kg]."""
+    basis = Basis(_mesh(points, triangles), ElementVector(ElementTriP1()))
+    return csr_array(density * thickness * asm(BilinearForm(lambda u, v, _: dot(u, v)), basis))
+
+
+def lumped_mass(points: Array, triangles: Indices, density: float, thickness: float) -> Array:
+    """Row sums of the consistent mass, ``(2 nn,)`` [kg]: exact in translation, too much in rotation."""
+    return np.asarray(mass_matrix(points, triangles, density, thickness).sum(axis=1))
+
+
+def _mesh(points: Array, triangles: Indices) -> MeshTri:
+    return MeshTri(np.ascontiguousarray(points.T), np.ascontiguousarray(triangles.T))
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """Points on the joint elements of a mesh, and how the displacements of the elements' nodes reach them.
+
+    The points are numbered like `points`: the first points of all elements, then all second ones, and so on.
+
+    Parameters
+    ----------
+    element : (ne,) int
+        Joint elements of the mesh, in the order in which they come here.
+    nodes : (ne, 4) int
+        Nodes a0, a1, b0, b1 of each element: side a along the tangent, and the nodes of b that face them.
+    normal : (ne, 2) float
+        Unit normal of each element, from a to b.
+    weights : (n, ne, 2) float
+        Share of the displacement of the elements' two ends in that of each of their n points.
+    points
+        The joint points.
+    """
+
+    element: Indices
+    nodes: Indices
+    normal: Array
+    weights: Array
+    points: JointPoints
+
+    def arranged(self, order: Indices) -> "Interface":
+        """The same elements ``(ne,)`` in another order."""
+        ne = len(order)
+        of_points = (np.arange(len(self.weights))[:, None] * ne + order).ravel()
+        points = JointPoints(
+            **{field.name: getattr(self.points, field.name)[of_points] for field in fields(JointPoints)}
+        )
+        return Interface(
+            self.element[order], self.nodes[order], self.normal[order], self.weights[:, order].copy(), points
+        )
+
+
+def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None) -> Interface:
+    """Lay a quadrature rule on every joint element, moved in from the joints' ends by their inset.
+
+    Parameters
+    ----------
+    mesh
+        Mesh of the scene.
+    scene
+        The scene.
+    rule
+        Quadrature rule of each element; two Lobatto points where none is given.
+
+    Raises
+    ------
+    SceneError
+        If the inset leaves nothing of a joint's last element.
+    """
+    rule = rule or lobatto()
+    a0, a1, b1, b0 = mesh.interfaces.T
+    joint = mesh.joint
+    run = mesh.points[a1] - mesh.points[a0]
+    length = np.hypot(*run.T)
+    tangent = run / length[:, None]
+    normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+
+    inset = np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint[joint]]
+    low, high = _ends_moved_in(joint, length, inset)
+    local = low[:, None] + (high - low)[:, None] * (rule.nodes + 1) / 2
+    wall = _mesh(mesh.points, mesh.triangles)
+    weights, position = _tabulated(wall, a0, a1, local)
+    weights_b, position_b = _tabulated(wall, b0, b1, local)
+    if np.abs(position - position_b).max(initial=0.0) > scene.blocks.tolerance:
+        raise ValueError("the two sides of a joint element do not face each other")
+    if np.abs(weights - weights_b).max(initial=0.0) > 1e-9:
+        raise ValueError("the two sides of a joint element are divided differently")
+    n = len(rule.nodes)
+    area = scene.thickness * length * rule.weights[:, None] / 2
+    points = JointPoints(
+        np.tile(joint, n),
+        np.tile(scene.joints.block[joint], (n, 1)),
+        position.transpose(1, 0, 2).reshape(-1, 2),
+        np.tile(normal, (n, 1)),
+        np.tile(tangent, (n, 1)),
+        area.ravel(),
+    )
+    nodes = np.column_stack([a0, a1, b0, b1])
+    return Interface(np.arange(len(nodes)), nodes, normal, weights.transpose(1, 0, 2).copy(), points)
+
+
+def _ends_moved_in(joint: Indices, length: Array, inset: Array) -> tuple[Array, Array]:
+    """Part of each element that its rule is laid on, from `low` to `high` in [0, 1]."""
+    first = np.diff(joint, prepend=-1) != 0
+    last = np.diff(joint, append=-1) != 0
+    low, high = np.where(first, inset / length, 0.0), np.where(last, 1 - inset / length, 1.0)
+    if (low >= high).any():
+        worst = int(np.argmax(low - high))
+        raise SceneError(
+            "joint.inset", f"must leave something of a joint element {length[worst]:.4g} m long", float(inset[worst])
+        )
+    return low, high
+
+
+def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tuple[Array, Array]:
+    """Tabulate the displacement's interpolation at points of facets.
+
+    Parameters
+    ----------
+    first, last : (nf,) int
+        Nodes of the facets.
+    local : (nf, n) float
+        The points of each facet, from 0 at its first node to 1 at its last.
+
+    Returns
+    -------
+    (nf, n, 2) float
+        Share of the first and of the last node in the displacement at each point.
+    (nf, n, 2) float
+        Where the points are [m].
+    """
+    if len(first) == 0:
+        return np.zeros((*local.shape, 2)), np.zeros((*local.shape, 2))
+    facets = _facets(wall, first, last)
+    # scikit-fem runs along a facet from its lower node to its higher one.
+    running = np.where((first < last)[:, None], local, 1 - local)
+    quadrature = (running[None], np.ones(local.shape[1]))
+    basis = FacetBasis(wall, ElementTriP1(), facets=facets, quadrature=quadrature)
+    weights = np.zeros((*local.shape, 2))
+    nodes = wall.t[:, basis.tind]
+    for function, node in zip(basis.basis, nodes, strict=True):
+        for end, of_end in enumerate((first, last)):
+            weights[node == of_end, :, end] = np.asarray(function[0])[node == of_end]
+    return weights, np.asarray(basis.global_coordinates()).transpose(1, 2, 0)
+
+
+def _facets(wall: MeshTri, first: Indices, last: Indices) -> Indices:
+    """Facet between each pair of nodes."""
+    count = wall.p.shape[1]
+    low, high = wall.facets
+    keys = low.astype(np.int64) * count + high
+    order = np.argsort(keys)
+    wanted = np.minimum(first, last) * count + np.maximum(first, last)
+    found = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
+    if (keys[found] != wanted).any():
+        raise ValueError("a joint element does not lie on sides of triangles")
+    return np.asarray(found)
+
+
+@dataclass(frozen=True, eq=False)
+class NodalJump:
+    """Jump operator of the nodes: opening and slip at the points of an interface.
+
+    Parameters
+    ----------
+    opening, slip : (np, 2 nn) sparse array
+        Normal and tangential jump u_b − u_a [m] per nodal displacement [m].
+    """
+
+    opening: csr_array
+    slip: csr_array
+
+
+def nodal_jump(found: Interface, nodes: int) -> NodalJump:
+    """Jump operator of a mesh with so many nodes."""
+    n, ne, _ = found.weights.shape
+    rows = np.arange(n * ne)
+    tangent = np.column_stack([-found.normal[:, 1], found.normal[:, 0]])
+
+    def along(direction: Array) -> csr_array:
+        parts = []
+        for column, (sense, end) in enumerate([(-1.0, 0), (-1.0, 1), (1.0, 0), (1.0, 1)]):
+            share = sense * found.weights[:, :, end]
+            node = np.tile(found.nodes[:, column], n)
+            for axis in (0, 1):
+                values = (share * direction[:, axis]).ravel()
+                parts.append(coo_array((values, (rows, 2 * node + axis)), shape=(n * ne, 2 * nodes)))
+        return csr_array(sum(parts[1:], start=csr_array(parts[0])))
+
+    return NodalJump(along(found.normal), along(tangent))

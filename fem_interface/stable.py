@@ -1,0 +1,166 @@
+"""Mass scaling of deformable modes, and the frequency that bounds the scaled wall, from each block alone.
+
+With K_b a block's own stiffness, K_j its share of the joints' and C the viscosity of its deformable modes, central
+differences are stable at a step Δt(ω) if for every block
+
+    K_b + (2/Δt) C + K_j ≤ ω² M*,    M* = M + β K_b / ω²,
+
+with β a little above one: a mode that is stiff enough to limit the step is made just so heavy that it does not. The
+smallest such ω is sought; it comes close to that of rigid blocks, however stiff the blocks are.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics import block_frequency_squared, mass_factor, stable_step
+from dynamics.verdict import LOCAL, VISCOUS
+from joints.wall import wall_stiffness
+from scene import Array
+
+from .modal_wall import ModalWall
+from .runs import RESOLUTION
+
+ROOM = 1.1
+"""Step that masses are scaled for, in critical ones: leaves room for the viscosity of the scaled modes."""
+
+CLOSE = 1e-3
+"""Relative accuracy of ω²."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledModes:
+    """Modes made fit for a time step.
+
+    Parameters
+    ----------
+    frequency_squared : float
+        ω² that bounds the wall [1/s²].
+    mass, viscosity : (nd,) float
+        Modal masses after scaling, and viscosity of the deformable modes [N s/m].
+    """
+
+    frequency_squared: float
+    mass: Array
+    viscosity: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """Blocks of one template, each with other joints: their modes and their share of the joints, ``(n, m, m)``."""
+
+    mass: Array
+    stiffness: Array
+    joints: Array
+
+
+def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) -> ScaledModes:
+    """Scale the masses of a wall's modes as far as the joints' step asks for.
+
+    Parameters
+    ----------
+    wall
+        The wall.
+    damping
+        Viscous damping ratio of the deformable modes.
+    mass_scaling
+        Whether masses are scaled at all.
+    """
+    kinds = min(_all_kinds(wall), key=_rigid_bound)
+
+    def bound(square: float) -> float:
+        return max(_bound(kind, square, damping, mass_scaling) for kind in kinds)
+
+    low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
+    while bound(high) > high:
+        low, high = high, 2 * high
+    while high > low * (1 + CLOSE):
+        middle = np.sqrt(low * high)
+        low, high = (low, middle) if bound(middle) <= middle else (middle, high)
+    mass = _scaled(wall.mass, wall.stiffness, high) if mass_scaling else wall.mass
+    return ScaledModes(float(high), mass, _viscosity(wall.stiffness, mass, damping))
+
+
+def largest_scaling(wall: ModalWall, mass: Array) -> float:
+    """Largest factor by which modal masses ``(nd,)`` [kg] exceed those of a wall's blocks."""
+    moving = np.isfinite(mass)
+    return float((mass[moving] / wall.mass[moving]).max())
+
+
+def _scaled(mass: Array, stiffness: Array, square: float) -> Array:
+    return np.asarray(mass * mass_factor(stiffness, mass, ROOM * 2 / np.sqrt(square)))
+
+
+def _viscosity(stiffness: Array, mass: Array, damping: float) -> Array:
+    """2 ξ (k m)^{1/2}, nothing for a mode without stiffness whatever its mass."""
+    return np.where(stiffness > 0, 2 * damping * np.sqrt(stiffness * np.where(stiffness > 0, mass, 1.0)), 0.0)
+
+
+def _rigid_bound(kinds: list[_Kind]) -> float:
+    """Largest ω² of blocks that do not deform."""
+    found = 0.0
+    for kind in kinds:
+        rigid = np.flatnonzero(kind.stiffness == 0)
+        if len(rigid):
+            joints = kind.joints[:, rigid[:, None], rigid]
+            found = max(found, float(block_frequency_squared(joints, _each(kind.mass[rigid], joints)).max()))
+    return found
+
+
+def _bound(kind: _Kind, square: float, damping: float, mass_scaling: bool) -> float:
+    mass = _scaled(kind.mass, kind.stiffness, square) if mass_scaling else kind.mass
+    viscosity = _viscosity(kind.stiffness, mass, damping)
+    own = kind.stiffness + 2 / stable_step(square, VISCOUS, LOCAL) * viscosity
+    return float(block_frequency_squared(kind.joints + np.diag(own), _each(mass, kind.joints)).max())
+
+
+def _each(mass: Array, joints: Array) -> Array:
+    return np.tile(mass, (len(joints), 1))
+
+
+def _all_kinds(wall: ModalWall) -> list[list[_Kind]]:
+    """The blocks of a wall, for each of three ways of sharing a joint between its two sides."""
+    return [_kinds(wall, share) for share in (0.0, 0.5, 1.0)]
+
+
+def _kinds(wall: ModalWall, share: float) -> list[_Kind]:
+    """Blocks that differ in their mesh, their pins or their joints.
+
+    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a², so a joint's energy may be split between its sides.
+    With c = (m_b / m_a)^share, and nothing for a side that is held, two blocks of different mass share it fairly.
+    """
+    joint = wall.interface
+    n, ne, _ = joint.weights.shape
+    block = joint.points.block[:ne]
+    mass = np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block]
+    ratio = np.column_stack([mass[:, 0] / mass[:, 1], mass[:, 1] / mass[:, 0]])
+    part = 1 + np.nan_to_num(ratio, nan=1.0, posinf=0.0) ** share
+    normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne])
+    springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)
+
+    # Both sides of all elements, side by side: their local nodes, and all that their stiffness depends on.
+    block, part = block.T.ravel(), part.T.ravel()
+    nodes = np.concatenate([joint.nodes[:, :2], joint.nodes[:, 2:]]) - wall.mesh.first_node[block][:, None]
+    shares = joint.weights.transpose(1, 0, 2).reshape(ne, 2 * n)
+    alike = np.hstack([joint.normal, *springs.transpose(0, 2, 1) / springs.max(initial=1e-300), shares])
+    features = np.column_stack([nodes, part, np.tile(alike, (2, 1))])
+    _, likeness = np.unique(np.rint(features / RESOLUTION), axis=0, return_inverse=True)
+
+    order = np.lexsort([likeness, block])
+    of_block = np.split(order, np.searchsorted(block[order], np.arange(1, len(wall.scene.blocks))))
+    found = []
+    for template in wall.templates:
+        modes = template.modes
+        moving = np.isfinite(modes.mass)
+        shape = modes.shape[:, moving].reshape(-1, 2, moving.sum())
+        seen = {likeness[of_block[b]].tobytes(): of_block[b] for b in template.blocks}
+        joints = np.zeros((len(seen), shape.shape[2], shape.shape[2]))
+        for matrix, sides in zip(joints, seen.values(), strict=True):
+            for side in sides:
+                e = side % ne
+                at_points = np.einsum("pe,exm->pxm", joint.weights[:, e], shape[nodes[side]])
+                frame = np.array([joint.normal[e], [-joint.normal[e, 1], joint.normal[e, 0]]])
+                jumps = np.einsum("dx,pxm->dpm", frame, at_points)
+                matrix += part[side] * np.einsum("dp,dpm,dpk->mk", springs[:, :, e], jumps, jumps)
+        found.append(_Kind(modes.mass[moving], modes.stiffness[moving], joints))
+    return found

@@ -1,0 +1,150 @@
+"""A scene as a block system of deformable blocks."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics import BlockSystem, Restraint
+from joints import Rule
+from joints.laws import kernel_law
+from joints.wall import wall_strength
+from scene import Scene
+
+from .block_kernels import gather_modes, scatter_modes
+from .fracture import Energies, fractured
+from .modal_wall import ModalWall
+from .modes import ModeCount
+from .runs import find_runs, modal_wall
+from .stable import scaled_modes
+
+DAMPING = 0.05
+"""Viscous damping ratio of the deformable modes."""
+
+ROUNDING = 1e-14
+"""Share of a node in a point below which it is none, and no time is spent on it."""
+
+
+def fem_system(
+    scene: Scene,
+    cells: int = 1,
+    modes: ModeCount = "all",
+    rule: Rule | None = None,
+    *,
+    damping: float = DAMPING,
+    mass_scaling: bool = True,
+    energies: Energies = "given",
+) -> BlockSystem:
+    """Set up the deformable blocks of a scene.
+
+    Parameters
+    ----------
+    scene
+        The scene; its joints need a stiffness, its blocks one too if they deform.
+    cells
+        Cells in half a block along the course, and in a block's height.
+    modes
+        Modes of each block: 3 rigid motions, 6 with the uniform strains, or all of its mesh.
+    rule
+        Quadrature rule of the joint elements; two Lobatto points where none is given.
+    damping
+        Viscous damping ratio of the deformable modes.
+    mass_scaling
+        Make deformable modes heavy enough not to limit the time step.
+    energies
+        Where the joints' fracture energies come from.
+
+    Raises
+    ------
+    SceneError
+        If the scene gives its joints or its blocks no stiffness.
+    """
+    wall = modal_wall(scene, cells, modes, rule)
+    return system_of(wall, damping=damping, mass_scaling=mass_scaling, energies=energies)
+
+
+def system_of(
+    wall: ModalWall, *, damping: float = DAMPING, mass_scaling: bool = True, energies: Energies = "given"
+) -> BlockSystem:
+    """Block system of a wall in modal coordinates; see `fem_system`."""
+    scene, points = wall.scene, wall.interface.points
+    scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
+    strength = wall_strength(scene, points)
+    materials, of_joint = fractured(scene, energies)
+    dead, live = wall.body_force(scene.load.gravity), wall.live_load()
+    largest = float(np.abs(dead[wall.rigid[:, :2]]).max())
+    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
+    return BlockSystem(
+        mass=scaled.mass,
+        stiffness=wall.stiffness,
+        viscosity=scaled.viscosity,
+        dead=dead,
+        live=live,
+        area=points.area,
+        law=kernel_law(materials, of_joint[points.joint]),
+        gather=gather_modes,
+        scatter=scatter_modes,
+        geometry=_geometry(wall),
+        rigid=wall.rigid,
+        restraint=_restraint(wall),
+        block_frequency_squared=scaled.frequency_squared,
+        control=wall.control_row(),
+        force_unit=largest or strongest or float(np.abs(live).max()),
+    )
+
+
+def _restraint(wall: ModalWall) -> Restraint:
+    pinned = np.unique(wall.scene.pins.block)
+    free = [wall.templates[wall.place[block, 0]].modes.free for block in pinned]
+    return Restraint(wall.rigid[pinned], np.reshape(free, (-1, 3, 3)))
+
+
+def _geometry(wall: ModalWall) -> tuple[NDArray[Any], ...]:
+    """Arrays of the kernels: shapes and tables of the templates, runs of joint elements, and buffers.
+
+    A template's row of `shapes` is its number of blocks, of modes and of displacements of joint nodes a block, and
+    where its coordinates, its joint nodes' displacements and its table start. A run's row of `places` is where the
+    displacements of its nodes stand, side a's two ends before side b's, less the number of its first element; its
+    `shares` are what each displacement has in the opening and in the slip of each point.
+    """
+    mesh, joint = wall.mesh, wall.interface
+    n, ne, _ = joint.weights.shape
+    _, start = find_runs(wall)
+    on_joint = np.unique(joint.nodes)
+    of_node = wall.place[mesh.block[on_joint], 0]
+    place = np.full((len(mesh.points), 2), -1)
+    shapes, forward, backward = [], [np.zeros(0)], [np.zeros(0)]
+    at = entry = 0
+    for k, template in enumerate(wall.templates):
+        blocks, modes = len(template.blocks), template.modes
+        own = on_joint[of_node == k]
+        local = np.unique(own - mesh.first_node[mesh.block[own]])
+        shape = np.hstack([modes.rigid, modes.shape[:, 3:]]).reshape(-1, 2, len(modes.mass))[local]
+        table = shape.reshape(2 * len(local), len(modes.mass))
+        shapes.append((blocks, len(modes.mass), len(table), wall.first[k], at, entry))
+        forward.append(table.ravel())
+        backward.append(table.T.ravel())
+        rows = at + blocks * np.arange(len(table)).reshape(-1, 2)
+        place[mesh.first_node[template.blocks][:, None] + local] = rows + np.arange(blocks)[:, None, None]
+        at, entry = at + table.shape[0] * blocks, entry + table.size
+    begin = start[:-1]
+    places = place[joint.nodes[begin]].reshape(-1, 8)
+    places = np.where(places < 0, at, places) - begin[:, None]
+    tangent = np.column_stack([-joint.normal[:, 1], joint.normal[:, 0]])
+    frame = np.stack([joint.normal, tangent], axis=1)[begin]
+    shares = np.einsum("pre,rdx->rpdex", joint.weights[:, begin], frame).reshape(len(begin), n, 2, 4)
+    shares[np.abs(shares) < ROUNDING] = 0.0
+    area = joint.points.area.reshape(n, ne)[:, begin].T[:, :, None, None]
+    longest = int(np.diff(start).max(initial=0))
+    return (
+        np.array(shapes, dtype=np.int64),
+        np.concatenate(forward),
+        np.concatenate(backward),
+        start.astype(np.uint64),
+        places.astype(np.uint64),  # negative differences wrap round and come out right all the same
+        shares,
+        shares * area,
+        np.array([at]),
+        np.zeros(at + longest),
+        np.zeros(max(row[0] * row[1] for row in shapes)),
+    )

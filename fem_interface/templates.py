@@ -1,0 +1,109 @@
+"""Templates: what congruent blocks, held alike, have in common: one mesh, one set of modes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from meshing import WallMesh
+from scene import Array, Indices, Scene, SceneError
+
+from .modes import ModeCount, Modes, block_modes
+from .operators import mass_matrix, stiffness_matrix
+
+LARGE = 200_000
+"""Multiplications of one matrix product; larger ones are cut up, or the library would start threads."""
+
+
+@dataclass(frozen=True, eq=False)
+class Template:
+    """Congruent blocks.
+
+    Parameters
+    ----------
+    blocks : (n,) int
+        The blocks, column by column.
+    modes
+        Modes that all of them have.
+    """
+
+    blocks: Indices
+    modes: Modes
+
+
+def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
+    """Templates of the movable blocks; where there are very many, several have the same modes.
+
+    Raises
+    ------
+    SceneError
+        If blocks are to deform and the scene does not say how stiff they are.
+    """
+    alike: dict[tuple[int, bytes], list[int]] = {}
+    for block in _column_by_column(scene):
+        alike.setdefault(_likeness(mesh, scene, int(block)), []).append(int(block))
+    found = []
+    for blocks in alike.values():
+        modes = _modes(mesh, scene, blocks[0], count)
+        most = max(4, LARGE // modes.shape.size)
+        found += [Template(np.array(blocks[i : i + most]), modes) for i in range(0, len(blocks), most)]
+    return found
+
+
+def _column_by_column(scene: Scene) -> Indices:
+    """Movable blocks from left to right, and from the bottom up within a column; alternate courses' columns apart.
+
+    So the joints of one kind come in long runs, in which one joint's blocks follow the last one's.
+    """
+    low, high = scene.blocks.extent(scene.wall)
+    pitch = scene.bond.width if scene.bond else float((high - low)[0])
+    x, y = (scene.blocks.centroid - low).T
+    order = np.lexsort((y, np.rint(x / (1e-6 * pitch)), np.rint(4 * x / pitch) % 4))
+    return order[~scene.fixed[order]]
+
+
+def nodes_of(mesh: WallMesh, block: int) -> slice:
+    """Nodes of a block."""
+    return slice(int(mesh.first_node[block]), int(mesh.first_node[block + 1]))
+
+
+def triangles_of(mesh: WallMesh, block: int) -> Indices:
+    """Triangles of a block, in numbers of its own nodes, ``(nt, 3)``."""
+    return np.asarray(mesh.triangles[mesh.triangle_block == block] - mesh.first_node[block])
+
+
+def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
+    """Displacements of a block that its pins keep at zero, per nodal displacement, ``(np, 2 nn)``.
+
+    Raises
+    ------
+    SceneError
+        Where a pin is not at a node.
+    """
+    points = mesh.points[nodes_of(mesh, block)]
+    own = np.flatnonzero(scene.pins.block == block)
+    rows = np.zeros((len(own), len(points), 2))
+    for row, pin in zip(rows, own, strict=True):
+        distance = np.hypot(*(points - scene.pins.point[pin]).T)
+        node = int(np.argmin(distance))
+        if distance[node] > scene.blocks.tolerance:
+            raise SceneError(scene.blocks.name(block), "is pinned where its mesh has no node")
+        row[node] = scene.pins.direction[pin]
+    return rows.reshape(len(own), 2 * len(points))
+
+
+def _likeness(mesh: WallMesh, scene: Scene, block: int) -> tuple[int, bytes]:
+    """The same for congruent blocks that are held alike."""
+    return int(mesh.shape[block]), held_displacements(mesh, scene, block).tobytes()
+
+
+def _modes(mesh: WallMesh, scene: Scene, block: int, count: ModeCount) -> Modes:
+    material = scene.block
+    points, triangles = mesh.points[nodes_of(mesh, block)], triangles_of(mesh, block)
+    if count == 3:
+        K = np.zeros((2 * len(points), 2 * len(points)))
+    elif material.young is None:
+        raise SceneError("block.young", "is missing; this model needs it unless its blocks are rigid")
+    else:
+        K = stiffness_matrix(points, triangles, material.young, material.poisson, scene.thickness).toarray()
+    M = mass_matrix(points, triangles, material.density, scene.thickness).toarray()
+    return block_modes(points, K, M, held_displacements(mesh, scene, block), count)
