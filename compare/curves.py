@@ -13,7 +13,7 @@ from .campaign import Campaign
 from .figures import COLOURS, SLENDERNESS, TEXTURES, bare, save
 from .published import BARALDI, CONCENTRATED, FERRIS, PUBLISHED, PublishedCase
 
-LINES = {"dem-static": "-", "dem-dynamic": ":"}
+LINES = {"dem-static": "-", "dem-dynamic": ":", "fem": (0, (3, 1, 1, 1))}
 """Models that follow a path, and how their curves are drawn."""
 
 

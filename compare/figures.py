@@ -28,6 +28,7 @@ OURS = {
     "limit-nonassociated": ("#c2410c", "s"),
     "dem-static": ("#7c3aed", "v"),
     "dem-dynamic": ("#2a9d8f", "^"),
+    "fem": ("#be185d", "D"),
 }
 
 
@@ -109,7 +110,7 @@ def _table_2(campaign: Campaign, panels: Sequence[PublishedCase]) -> Figure:
 def _panel_marks(axes: Axes, k: int, case: PublishedCase, campaign: Campaign) -> None:
     for (label, marker), shift in zip(PRINTED.items(), (-0.3, -0.2, -0.1), strict=True):
         axes.plot(k + shift, case.printed[label], marker, color="0.62", ms=5, ls="none", label=f"printed {label}")
-    for (model, (colour, marker)), shift in zip(OURS.items(), (0.0, 0.11, 0.22, 0.33, 0.44), strict=True):
+    for (model, (colour, marker)), shift in zip(OURS.items(), (0.0, 0.1, 0.2, 0.3, 0.4, 0.5), strict=True):
         outcome = campaign.outcomes.get((case.name, model))
         if outcome is None or outcome.multiplier is None:
             continue
