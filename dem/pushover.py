@@ -1,9 +1,7 @@
-"""The pushover curve of rigid blocks: states of equilibrium at growing displacements of the live load.
+"""The way of rigid blocks to their collapse: states of rest under growing loads, and past the peak.
 
-Steps are controlled by the displacement f_live · q that does the live load's work, so the curve goes on past its
-peak. Each step is implicit: plastic slip is the history at its beginning. A step of which no equilibrium is found
-is tried shorter and longer in turn, for two things end a step: too many joints that change at once, and a snap,
-where the wall has no equilibrium nearby and a longer step lands beyond it.
+Loads are held one after the other until the wall rests or falls (`Way.push`). Past the largest that it bears, the
+displacement f_live · q that does the live load's work is prescribed instead, and λ follows (`Way.follow`).
 """
 
 from dataclasses import dataclass
@@ -12,22 +10,25 @@ import numpy as np
 
 from scene import Array
 
-from .relaxation import LEAST_PROXIMAL, Rest, relax
+from .relaxation import LONGEST, Rest, relax
 from .static_system import Control, StaticSystem
 
-EASY = 25
+EASY = 30
 """Linear systems of a step after which the next is as long."""
 
-LONGER, SHORTER = 1.5, 0.7
+LONGER, SHORTER = 1.15, 0.3
 """Bounds of the next step's length, relative to this one's."""
 
-ATTEMPTS = ((1.0, 200), (0.25, 200), (4.0, 200), (1.0, 1000), (0.25, 1000), (4.0, 1000), (16.0, 1000))
-"""Lengths, relative to the step that was meant, that are tried in turn, and the linear systems given to each."""
+STRIDE = 0.05
+"""Longest step of prescribed displacement, relative to the displacement so far."""
+
+ATTEMPTS = ((1.0, False), (0.25, False), (1.0, True))
+"""Lengths of such a step that are tried in turn, and whether the wall may creep: only where it snaps."""
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """A state of equilibrium.
+    """A state of rest.
 
     Parameters
     ----------
@@ -53,84 +54,85 @@ class State:
 
 
 @dataclass(eq=False)
-class Curve:
-    """Successive states of equilibrium, of which `push` finds one after the other.
+class Way:
+    """What is known of a wall's way to its collapse.
 
     Parameters
     ----------
     system
         The static equations.
-    states
-        The states, the one under the dead load alone first.
-    solves
-        Linear systems solved.
+    far : float
+        Motion of a freedom that counts as a fall, in units of the system.
+    budget : int
+        Linear systems that may still be solved.
+    rests
+        States of rest under growing loads, the dead load's first.
+    upper : float or None
+        Smallest load under which the wall fell.
+    fall : (nd,) float or None
+        How it was moving when it had fallen far enough.
     """
 
     system: StaticSystem
-    states: list[State]
-    solves: int
+    far: float
+    budget: int
+    rests: list[State]
+    upper: float | None = None
+    fall: Array | None = None
 
     @property
-    def displacement(self) -> Array:
-        """Displacement of the live load since the dead load, ``(n,)``."""
-        return np.array([state.displacement for state in self.states]) - self.states[0].displacement
+    def lower(self) -> float:
+        """Largest load at rest."""
+        return self.rests[-1].multiplier
 
-    @property
-    def multiplier(self) -> Array:
-        """λ of every state, ``(n,)``."""
-        return np.array([state.multiplier for state in self.states])
+    def push(self, multiplier: float, budget: int = LONGEST) -> Rest:
+        """Hold a load larger than the last until the wall rests or falls, and note which."""
+        last = self.rests[-1]
+        start = np.append(last.x[:-1], multiplier)
+        found = self._relax(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
+        if found.verdict == "rest":
+            self.rests.append(state_of(self.system, found))
+        elif found.verdict == "fall":
+            self.upper, self.fall = multiplier, found.last
+        return found
 
-    @property
-    def moved(self) -> float:
-        """Largest motion of a block since the dead load: a displacement, or a rotation times the block size."""
-        nd = self.system.freedoms
-        return float(np.abs(self.states[-1].x[:nd] - self.states[0].x[:nd]).max())
+    def follow(self, budget: int) -> list[State]:
+        """States of rest at growing displacements after the last load's, until one falls or the budget is spent."""
+        if len(self.rests) < 2:
+            return []
+        origin, before, last = self.rests[0].displacement, self.rests[-2], self.rests[-1]
+        states, nd = [before, last], self.system.freedoms
+        stride = STRIDE * (last.displacement - origin)
+        while budget > 0 and stride > 0 and np.abs(states[-1].x[:nd] - last.x[:nd]).max() < self.far:
+            before, now = states[-2:]
+            onward = (now.x - before.x) / (now.displacement - before.displacement)
+            for share, creeps in ATTEMPTS:
+                ahead = share * stride
+                control = Control(now.displacement + ahead)
+                found = self._relax(now.x + ahead * onward, now.plastic_slip, control, budget, creeps)
+                budget -= found.solves
+                if found.verdict == "rest":
+                    break
+            else:
+                break
+            stride = ahead
+            states.append(state_of(self.system, found))
+            stride = min(stride * lengthened(found.solves), STRIDE * (states[-1].displacement - origin))
+        return states[2:]
 
-    def push(self, step: float) -> tuple[float, int] | None:
-        """Add a state, if possible a given step further.
-
-        Returns
-        -------
-        tuple or None
-            The step that was made, and the linear systems solved in it alone; None where the curve broke off.
-        """
-        last = self.states[-1]
-        for share, patience in ATTEMPTS:
-            length = share * step
-            control = Control(last.displacement + length)
-            rest = relax(self.system, self._foreseen(length), last.plastic_slip, control, patience)
-            self.solves += rest.solves
-            if rest.balanced:
-                self.states.append(_state(self.system, rest, control.value))
-                return length, rest.solves
-        return None
-
-    def _foreseen(self, step: float) -> Array:
-        """Unknowns at the end of a step, by the elastic tangent at first and then by the step before."""
-        last = self.states[-1]
-        if len(self.states) == 1:
-            return last.x + step * elastic_response(self.system)
-        before = self.states[-2]
-        return last.x + step / (last.displacement - before.displacement) * (last.x - before.x)
-
-
-def elastic_response(system: StaticSystem) -> Array:
-    """Unknowns ``(n,)`` that the elastic wall adds where the live load moves by one unit."""
-    right = np.zeros(system.unknowns)
-    right[-1] = 1.0
-    return system.solve(system.elastic, LEAST_PROXIMAL, Control(1.0), right)
+    def _relax(self, start: Array, plastic_slip: Array, control: Control, budget: int, creeps: bool = True) -> Rest:
+        found = relax(self.system, start, plastic_slip, control, self.far, min(budget, self.budget), creeps=creeps)
+        self.budget -= found.solves
+        return found
 
 
-def _state(system: StaticSystem, rest: Rest, displacement: float) -> State:
+def lengthened(solves: int) -> float:
+    """Factor of the next step after one that took some linear systems."""
+    return float(np.clip((EASY / max(solves, 1)) ** 0.5, SHORTER, LONGER))
+
+
+def state_of(system: StaticSystem, rest: Rest) -> State:
+    """A state of rest as it is kept."""
     force = np.column_stack([rest.response.normal, rest.response.tangential])
-    return State(rest.x, rest.response.plastic_slip, force, displacement)
-
-
-def under_dead_load(system: StaticSystem) -> Curve | None:
-    """A curve's first state, balanced by the dead load alone; None where there is none to be found."""
-    nothing = np.zeros(len(system.law.normal_stiffness))
-    rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), patience=1000)
-    if not rest.balanced:
-        return None
     displacement = float(system.equilibrium.live @ rest.x[: system.freedoms])
-    return Curve(system, [_state(system, rest, displacement)], rest.solves)
+    return State(rest.x, rest.response.plastic_slip, force, displacement)

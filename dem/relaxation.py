@@ -1,17 +1,25 @@
-"""Equilibrium of rigid blocks at a given control: Newton's method kept in check by a vanishing proximal term.
+"""Rest of rigid blocks under a load or a displacement, or their fall: blocks creep on dashpots until they are still.
 
-With g(x) the unbalanced forces and K their consistent, unsymmetric tangent, each iteration solves
+With g(x) the unbalanced forces and K_e the elastic stiffness, the wall is first asked for equilibrium at once, as
+one implicit step whose history is the plastic slip before it. Where Newton's method finds none, the wall moves as
+it would if every joint had a dashpot in proportion to its springs,
 
-    (K + ε diag K_e) Δq = −g                                                                            (1)
+    K_e q̇ = −g(q),                                                                                      (1)
 
-K_e being the elastic stiffness. This is one implicit step of length 1/ε of the blocks' motion in a viscous fluid,
-diag(K_e) q̇ = −g, whose rest is true equilibrium whatever ε is: *pseudo-transient continuation* (Kelley & Keyes
-1998). Small ε is Newton's method. Large ε follows the fluid motion, which always goes on: loose blocks beside
-openings, for which K is singular, fall until something carries them. Next ε is chosen by how well the linear
-model (1) foretold the unbalanced forces, as a trust region's radius is.
+slip being taken up on the way: friction along a path that exists, instead of a state guessed far from it. What is at
+rest under (1) is in equilibrium, what is not goes on moving for ever, and loose blocks, for which the tangent is
+singular, hold nothing up: every joint resists its own motion and none that of the wall as a whole. Time steps 1/ε
+are implicit,
+
+    g(q) + ε K_e (q − q₀) = 0,                                                                          (2)
+
+and solved by Newton's method with the consistent, unsymmetric Coulomb tangent; ε follows the linear systems this
+takes, so that (2) turns into Newton's method for equilibrium as the wall comes to rest. This is *pseudo-transient
+continuation* (Kelley & Keyes 1998) with a path that means something.
 """
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -20,46 +28,72 @@ from scene import Array
 
 from .static_system import Control, StaticSystem
 
+Verdict: TypeAlias = Literal["rest", "fall", "undecided"]
+
 BALANCED = 1e-9
 """Largest unbalanced force that counts as none, relative to the largest joint force (or to the unit of force)."""
 
-FIRST_PROXIMAL, LEAST_PROXIMAL, MOST_PROXIMAL = 1e-2, 1e-10, 1e2
-"""ε of the first iteration, and its bounds."""
+FIRST, LEAST, MOST = 1e-2, 1e-12, 1e3
+"""ε of the first time step if there is no equilibrium at once, and its bounds."""
 
-EXACT, FORETOLD, WORTH = 0.05, 0.25, 0.9
-"""Error of the linear model, twice, and unbalanced force left, relative to the unbalanced force before."""
+FOLLOWED, EXACT = 0.3, 1e-10
+"""Error with which (2) counts as solved, relative to its dashpots' forces or to the largest joint force."""
 
-VANISH, SHRINK, KEEP, GROW = 0.05, 0.3, 0.7, 4.0
-"""Factors of ε after a step that was foretold exactly, one that was foretold, one worth it and any other."""
+PATIENCE, HOPELESS = 25, 100.0
+"""Linear systems after which a time step is given up, and growth of its error at which it is."""
 
-REFUSED, REFUSAL = 10.0, 10.0
-"""Growth of the unbalanced force at which a step is not taken, and the factor of ε with which it is tried again."""
+PART, PARTS = 0.4, 4
+"""Shortening of a Newton step that errs more after it than before, and how many lengths are tried."""
+
+USUAL, SMALLER, LARGER, REFUSAL = 8.0, 0.1, 2.0, 10.0
+"""Linear systems after which ε stays, bounds of its factor after a time step, and its factor after one given up."""
+
+WARY, WARINESS = 0.6, 3
+"""Least factor of ε soon after a time step was given up, and how many time steps are soon."""
+
+STEADY = 0.9
+"""Unbalanced force, relative to that before half the motion, at which a fall does not slow down."""
+
+LONGEST = 5000
+"""Linear systems after which a creep that neither rests nor falls is left undecided."""
 
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What an iteration came to.
+    """What became of a wall.
 
     Parameters
     ----------
+    verdict
+        ``rest`` in equilibrium, ``fall`` if it went farther than asked without slowing down, or ``undecided``.
     x : (n,) float
         Unknowns (q, r, λ) of the `StaticSystem`.
     response
         Answer of the joint points.
-    balanced : bool
-        Whether this is an equilibrium.
+    last : (nd,) float
+        Motion of the last time step.
     solves : int
         Linear systems solved.
     """
 
+    verdict: Verdict
     x: Array
     response: PointResponse
-    balanced: bool
+    last: Array
     solves: int
 
 
-def relax(system: StaticSystem, guess: Array, plastic_slip: Array, control: Control, patience: int = 200) -> Rest:
-    """Look for equilibrium.
+def relax(
+    system: StaticSystem,
+    guess: Array,
+    plastic_slip: Array,
+    control: Control,
+    far: float,
+    budget: int = LONGEST,
+    *,
+    creeps: bool = True,
+) -> Rest:
+    """Let a wall come to rest or fall.
 
     Parameters
     ----------
@@ -71,44 +105,91 @@ def relax(system: StaticSystem, guess: Array, plastic_slip: Array, control: Cont
         History of the joint points.
     control
         The last equation.
-    patience
+    far
+        Motion of a freedom that is a fall unless it slows down.
+    budget
         Linear systems after which it is given up.
+    creeps
+        Whether it may creep where there is no equilibrium at once; else it is left undecided.
     """
-    nd = system.freedoms
-    x, proximal = guess, FIRST_PROXIMAL
+    nd, x, rate, wary, refused, solves = system.freedoms, guess, LEAST, 0, False, 0
     response = system.respond(x, plastic_slip)
-    residual = system.unbalanced(x, response, control)
-    size = float(np.linalg.norm(residual[:nd]))
-    for solves in range(patience):
+    tangent, last = response.tangent, np.zeros(nd)
+    path: list[tuple[float, float]] = []
+    while True:
+        residual = system.unbalanced(x, response, control)
+        path.append((float(np.abs(x[:nd] - guess[:nd]).max()), float(np.linalg.norm(residual[:nd]))))
         if _balanced(residual, response):
-            return Rest(x, response, True, solves)
+            return Rest("rest", x, response, last, solves)
+        if path[-1][0] > far and _steady(path):
+            return Rest("fall", x, response, last, solves)
+        made = None
+        while made is None:
+            if solves >= budget or (refused and not creeps):
+                return Rest("undecided", x, response, last, solves)
+            made, taken = _creep(system, x, plastic_slip, control, rate, tangent, residual)
+            solves += taken
+            if made is not None and not refused and np.abs(made[0][:nd] - guess[:nd]).max() > far:
+                made = None  # nothing falls at once: a rest may lie on the way
+            if made is None:
+                rate = min(REFUSAL * rate, MOST) if refused else FIRST
+                wary, refused = WARINESS, True
+        last, x, tangent, plastic_slip = made[0][:nd] - x[:nd], made[0], made[1].tangent, made[1].plastic_slip
+        # The tangent is that of the step behind: a point that slid is taken to slide on.
+        response = system.respond(x, plastic_slip)
+        rate = float(np.clip(rate * np.clip(taken / USUAL, WARY if wary else SMALLER, LARGER), LEAST, MOST))
+        wary = max(wary - 1, 0)
+
+
+def _creep(
+    system: StaticSystem,
+    start: Array,
+    plastic_slip: Array,
+    control: Control,
+    rate: float,
+    tangent: Array,
+    residual: Array,
+) -> tuple[tuple[Array, PointResponse] | None, int]:
+    """One time step (2) from `start`: unknowns and response after it, or None; and the linear systems it took."""
+    nd, x, drag = system.freedoms, start, np.zeros(system.freedoms)
+    first = size = float(np.linalg.norm(residual))
+    for taken in range(1, PATIENCE + 1):
         try:
-            step = system.solve(response.tangent, proximal, control, -residual)
-        except RuntimeError:
-            step = np.full_like(x, np.nan)
+            step = system.solve(tangent + rate * system.elastic, control, -residual)
+        except np.linalg.LinAlgError:
+            return None, taken
         if not np.isfinite(step).all():
-            proximal = min(REFUSAL * proximal, MOST_PROXIMAL)
-            continue
-        tried = system.respond(x + step, plastic_slip)
-        left = system.unbalanced(x + step, tried, control)
-        size_left = float(np.linalg.norm(left[:nd]))
-        if size_left > REFUSED * size and proximal < MOST_PROXIMAL:
-            proximal = min(REFUSAL * proximal, MOST_PROXIMAL)
-            continue
-        error = float(np.linalg.norm(left[:nd] + proximal * system.diagonal * step[:nd]))
-        proximal = float(np.clip(proximal * _factor(error, size_left, size), LEAST_PROXIMAL, MOST_PROXIMAL))
-        x, response, residual, size = x + step, tried, left, size_left
-    return Rest(x, response, _balanced(residual, response), patience)
+            return None, taken
+        by_step, best = rate * system.viscous(step), np.inf
+        for share in PART ** np.arange(PARTS):
+            tried, dragged = x + share * step, drag + share * by_step
+            answer = system.respond(tried, plastic_slip)
+            left = system.unbalanced(tried, answer, control)
+            left[:nd] += dragged
+            error = float(np.linalg.norm(left))
+            if error < best:
+                best, kept = error, (tried, dragged, answer, left)
+            if error < (1 - share / 4) * size:
+                break
+        x, drag, response, residual = kept
+        size, tangent = best, response.tangent
+        if size <= max(FOLLOWED * float(np.linalg.norm(drag)), EXACT * _largest(response)):
+            return (x, response), taken
+        if size > HOPELESS * first:
+            return None, taken
+    return None, PATIENCE
 
 
-def _factor(error: float, left: float, before: float) -> float:
-    """Factor of ε after a step, from the linear model's error and the unbalanced force left and before."""
-    if error < FORETOLD * before:
-        return VANISH if error < EXACT * before else SHRINK
-    return KEEP if left < WORTH * before else GROW
+def _steady(path: list[tuple[float, float]]) -> bool:
+    """Whether the unbalanced force is still what it was before half the motion, or larger."""
+    moved, size = path[-1]
+    return size >= STEADY * next(before for way, before in reversed(path) if way <= moved / 2)
 
 
 def _balanced(residual: Array, response: PointResponse) -> bool:
-    largest = max(np.abs(response.normal).max(initial=0.0), np.abs(response.tangential).max(initial=0.0), 1.0)
     # Displacements, of which one unit makes about one unit of force, are held to the same measure.
-    return bool(np.abs(residual).max() <= BALANCED * largest)
+    return bool(np.abs(residual).max() <= BALANCED * _largest(response))
+
+
+def _largest(response: PointResponse) -> float:
+    return float(max(np.abs(response.normal).max(initial=0.0), np.abs(response.tangential).max(initial=0.0), 1.0))

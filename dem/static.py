@@ -1,20 +1,16 @@
-"""Model ``dem-static``: rigid blocks on elastic, frictional joint points, pushed over along their equilibrium path.
+"""Model ``dem-static``: rigid blocks on elastic, frictional joint points, brought to rest load by load until they fall.
 
 The paper's second solver (Sec. 3) sets the stiffness of violated joint actions to zero and solves again, which
-cycles or goes singular below collapse (`stiffness_update`). Here every step is brought to true equilibrium under the
-displacement of the live load by Newton's method with the consistent Coulomb tangent and a vanishing proximal term
-(`relaxation`). Of the routes that were tried on the published walls,
+cycles or goes singular below collapse (`stiffness_update`). Here each load is held until the wall is in equilibrium
+or has fallen, by Newton's method with the consistent Coulomb tangent and, where that finds no equilibrium at once,
+by the wall's own creep on dashpots (`relaxation`). Past the largest load that it bears, displacements are prescribed
+and the curve goes on.
 
-- Newton's method with a line search on the residual stalls: the tangent turns singular under loose blocks, and the
-  residual is a poor measure of progress, as a contact that closes a little too far makes it grow a thousandfold;
-- a proximal term that falls with the residual alone gets past the stall, but creeps or falls into cycles of two;
-- one that follows how well the linear model foretold the forces does neither: 15 to 50 linear systems a step, on
-  walls with openings as on others, and the same with its parameters changed two- or threefold;
-- a step that is only ever shortened gets stuck where the wall snaps; tried longer as well it lands beyond.
-
-Friction is never frozen and no convex program is solved, so the cost is that of sparse LU factors of one pattern.
-A state of equilibrium need not be stable: walls of upright blocks snap, and where they do depends on the steps. Hence
-the peak is only believed when halving the steps leaves it in place.
+Walls of upright or of small blocks do not reach one peak and sink: as blocks rock and slip into place λ falls and
+rises again many times over motions of a few elastic lengths. Under a displacement such a wall snaps, and where
+depends on the steps; under a load it falls to its next rest, or for good. Hence the bracket is one of loads. Friction
+remembers: loads in longer steps may bring a wall down earlier or later. `benchmarks/static_pushover.py` prints what
+steps half as long make of each published wall, and what it costs.
 """
 
 import time
@@ -23,36 +19,31 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from results import Outcome
-from scene import Array, Scene
+from scene import Scene
 
 from .kinematics import control_row, movable_freedoms
 from .limit import FALLS, locks, stands_under_dead_load
-from .pushover import EASY, LONGER, SHORTER, Curve, elastic_response, under_dead_load
-from .static_system import StaticSystem, static_system
+from .pushover import State, Way, lengthened, state_of
+from .relaxation import relax
+from .static_system import Control, StaticSystem, static_system
 
 FIRST_STEP = 0.03
-"""First step, by the multiplier it would add to the elastic wall, in units of `Equilibrium`."""
+"""First load, in units of `Equilibrium`."""
 
-COLLAPSE = 0.1
-"""Motion of a block to which a curve is followed at least, in heights of the lowest block."""
-
-FARTHEST = 50.0
-"""Motion, in those of `COLLAPSE`, at which a curve that still rises is given up."""
-
-HALVINGS = 3
-"""How often the steps are halved until the peak stays where it is."""
-
-MOST_PARTS = 16
-"""Half of the largest number of steps that one step is divided into."""
+COLLAPSE = 0.05
+"""Motion of a block that is a fall unless it slows down, in heights of the lowest block."""
 
 NOISE = 1e-6
-"""Difference of λ that is put down to unbalanced forces, relative to the peak; and λ itself, in scaled units."""
+"""Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
 
-BUDGET = 40_000
-"""Linear systems after which a curve is left where it is."""
+MOST = 1e6
+"""Multiplier, in first steps, beyond which no collapse is looked for."""
 
-LOCKED = 1.5
-"""Growth of λ over the last doubling of the displacement of a wall that may be locked."""
+BUDGET = 20_000
+"""Linear systems after which a wall is given up."""
+
+PAST = 500
+"""Linear systems that are spent on the curve past the largest load, and on a closer look at the bracket."""
 
 
 def dem_static(
@@ -63,7 +54,7 @@ def dem_static(
     collapse: float = COLLAPSE,
     budget: int = BUDGET,
 ) -> Outcome:
-    """Collapse of a scene at the peak of its pushover curve, at small displacements.
+    """Collapse of a scene under growing loads, each held until the wall rests or falls, at small displacements.
 
     Parameters
     ----------
@@ -72,193 +63,93 @@ def dem_static(
     tolerance
         Relative width of the bracket.
     first_step
-        First step, by the multiplier it would add to the elastic wall: in live loads as large as the largest
-        dead one, for a weightless wall as the strongest joint point.
+        First load, in live loads as large as the largest dead one, for a weightless wall as the strongest joint
+        point. Steps grow while the wall is easily brought to rest and shrink where it is not.
     collapse
-        Motion of a block to which the curve is followed at least, in heights of the lowest block.
+        Motion of a block that is a fall unless it slows down, in heights of the lowest block.
     budget
         Linear systems after which it is given up.
 
     Returns
     -------
     Outcome
-        The curve is drawn again with steps halved on the way to its peak until that stays where it is. `lower` is
-        the lower peak of the last two curves, a load in equilibrium; `upper` is the higher one, or what the last
-        curve may have reached between its states, or would reach if its displacement were doubled once more.
-        `multiplier`, `curve`, `motion` and `force` are of the last curve.
+        `lower` is the largest load in equilibrium, `upper` the smallest under which the wall fell. `curve` has the
+        states at rest, past the largest load under prescribed displacements; `force` is of `lower`.
     """
     start = time.perf_counter()
     system = static_system(scene)
     found = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
-    rest = under_dead_load(system)
-    if rest is None:
-        found = _fallen(found, system)
+    far = collapse * scene.lowest_block / system.length_unit
+    nothing = np.zeros(len(system.law.normal_stiffness))
+    rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
+    if rest.verdict != "rest":
+        found = _fallen(replace(found, steps=rest.solves), system)
     else:
-        far = collapse * scene.lowest_block / system.length_unit
-        found = _drawn(found, Drawing(system, rest, first_step, far, tolerance, budget))
+        way = Way(system, far, budget - rest.solves, [state_of(system, rest)])
+        found = _judged(found, way, _climb(way, first_step, tolerance), tolerance)
+        found = replace(found, steps=budget - way.budget)
     return replace(found, seconds=time.perf_counter() - start)
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
-    """How pushover curves are drawn.
+class Climb:
+    """How far a wall got: why it is `undecided`, if it is, and its states past the last load that it bore."""
 
-    Parameters
-    ----------
-    system
-        The static equations.
-    rest
-        Curve with nothing but its first state, at rest under the dead load.
-    first_step : float
-        First step's λ on the elastic wall, in units of `Equilibrium`.
-    far : float
-        Motion of a block to which a curve is followed at least, in units of the system.
-    tolerance : float
-        Relative width of the bracket.
-    budget : int
-        Linear systems a curve may take.
-    """
-
-    system: StaticSystem
-    rest: Curve
-    first_step: float
-    far: float
-    tolerance: float
-    budget: int
-
-    def draw(self, plan: Array) -> tuple[Curve, str]:
-        """Draw a curve through planned displacements ``(n,)`` and on by itself, and say how it ended.
-
-        It ends ``settled``, ``rising`` where it never did, ``broken`` where no equilibrium was found, or
-        ``long`` where the budget ran out.
-        """
-        curve = Curve(self.system, self.rest.states[:1], 0)
-        step = self.first_step / float(elastic_response(self.system)[-1])
-        while True:
-            now = curve.displacement[-1]
-            ahead = plan[plan > now + 1e-9 * step]
-            made = curve.push(ahead[0] - now if len(ahead) else step)
-            if made is None:
-                return curve, "broken"
-            step = made[0] * min(max((EASY / max(made[1], 1)) ** 0.5, SHORTER), LONGER)
-            if curve.moved >= self.far and self.settled(curve):
-                return curve, "settled"
-            if curve.moved >= FARTHEST * self.far:
-                return curve, "rising"
-            if curve.solves > self.budget:
-                return curve, "long"
-
-    def settled(self, curve: Curve) -> bool:
-        """Whether a curve would not rise above its peak if its displacement were doubled once more."""
-        reached = curve.multiplier[-1] + last_rise(curve)
-        return bool(reached <= (1 + self.tolerance / 2) * curve.multiplier.max())
-
-    def halved(self, curve: Curve) -> Array:
-        """Displacements that halve a curve's steps on the way to its peak, and divide them finer where it may hide."""
-        displacement, multiplier = curve.displacement, curve.multiplier
-        peak = float(multiplier.max())
-        way = np.arange(len(multiplier) - 1) <= np.argmax(multiplier >= (1 - self.tolerance / 2) * peak)
-        hidden = (ceilings(displacement, multiplier) - peak) / (peak or 1.0)
-        # What a chord's extension claims shrinks with its length.
-        finer = np.minimum(np.ceil(4 * hidden / self.tolerance), MOST_PARTS).astype(int)
-        parts = np.where(finer > 1, 2 * finer, np.where(way, 2, 1))
-        pieces = [
-            np.linspace(a, b, n + 1)[1:] for a, b, n in zip(displacement[:-1], displacement[1:], parts, strict=True)
-        ]
-        return np.concatenate(pieces)
+    undecided: str
+    past: list[State]
 
 
-def ceilings(displacement: Array, multiplier: Array) -> Array:
-    """Highest λ that a curve may have reached between its states ``(n,)``, ``(n − 1,)``.
-
-    Where a curve is concave it lies below the extensions of its chords on either side. A chord is only extended
-    where the next one is less steep, or as steep but for the noise of equilibrium; the far side of a snap is thus
-    not taken for the near one.
-    """
-    width, slope = np.diff(displacement), np.diff(multiplier) / np.diff(displacement)
-    highest = np.maximum(multiplier[:-1], multiplier[1:])
-    for k in range(len(slope)):
-        noise = NOISE * multiplier.max() / width[k]
-        left = slope[k - 1] if k > 0 and slope[k - 1] > slope[k] + noise else None
-        right = slope[k + 1] if k + 1 < len(slope) and slope[k + 1] < slope[k] + noise else None
-        rise = multiplier[k + 1] - multiplier[k]
-        if left is not None and right is not None:
-            meet = np.clip((rise - right * width[k]) / (left - right), 0.0, width[k])
-            highest[k] = max(highest[k], multiplier[k] + left * meet)
-        elif left is not None:
-            highest[k] = max(highest[k], multiplier[k] + left * width[k])
-        elif right is not None:
-            highest[k] = max(highest[k], multiplier[k + 1] - right * width[k])
-    return highest
+def _climb(way: Way, first_step: float, tolerance: float) -> Climb:
+    """Load a wall until it has fallen, close enough to the last load at rest, and follow it from there."""
+    step = first_step
+    while way.upper is None or way.upper - way.lower > tolerance * max(way.upper, NOISE):
+        held = way.push(way.lower + step if way.upper is None else (way.lower + way.upper) / 2)
+        if held.verdict == "undecided":
+            return Climb("it neither rested nor fell", [])
+        step = max(step * lengthened(held.solves), 2 * tolerance * way.lower)
+        if way.upper is None and way.lower > MOST * first_step:
+            return Climb("it bore every load tried", [])
+    past = way.follow(PAST)
+    # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
+    closer = (1 + tolerance / 4) * _peak(way, past).multiplier
+    if closer < way.upper and way.push(closer, PAST).verdict == "rest":
+        past = way.follow(PAST)
+    return Climb("", past)
 
 
-def ceiling(curve: Curve) -> float:
-    """Highest λ that a curve may have reached, or would reach if its displacement were doubled once more."""
-    between = float(ceilings(curve.displacement, curve.multiplier).max())
-    return max(between, float(curve.multiplier[-1]) + last_rise(curve))
+def _peak(way: Way, past: list[State]) -> State:
+    """State of the largest λ in equilibrium that is none at which the wall fell."""
+    most = np.inf if way.upper is None else way.upper
+    return max((state for state in (*way.rests, *past) if state.multiplier < most), key=lambda state: state.multiplier)
 
 
-def last_rise(curve: Curve) -> float:
-    """Rise of λ over the last doubling of a curve's displacement; no less than nothing."""
-    displacement, multiplier = curve.displacement, curve.multiplier
-    return float(max(0.0, multiplier[-1] - np.interp(displacement[-1] / 2, displacement, multiplier)))
-
-
-def _drawn(found: Outcome, drawing: Drawing) -> Outcome:
-    """Draw curves until the peak stays where it is."""
-    unit = drawing.system.equilibrium.live_unit
-    plan, peaks, solves = np.zeros(0), list[float](), drawing.rest.solves
-    for _ in range(1 + HALVINGS):
-        curve, end = drawing.draw(plan)
-        solves += curve.solves
-        found = replace(_shown(found, drawing.system, curve), steps=solves)
-        if end != "settled":
-            return _unsettled(found, drawing.system, curve, end)
-        peaks = [*peaks, float(curve.multiplier.max())][-2:]
-        lower, upper = min(peaks), max(*peaks, ceiling(curve))
-        found = replace(found, lower=unit * lower, upper=unit * upper)
-        if len(peaks) == 2 and upper - lower <= drawing.tolerance * max(upper, NOISE):
-            message = _evidence(drawing.system, curve, unit * abs(peaks[1] - peaks[0]))
-            return replace(found, status="collapse", multiplier=unit * peaks[1], message=message)
-        plan = drawing.halved(curve)
-    return replace(found, message=f"collapse, but the peak still moves after {HALVINGS} halvings of the steps")
-
-
-def _evidence(system: StaticSystem, curve: Curve, change: float) -> str:
-    """What a collapse is believed by."""
-    heights = curve.moved * system.length_unit / system.equilibrium.scene.lowest_block
-    return (
-        f"peak of the pushover curve at small displacements, followed to {heights:.2g} block heights; "
-        f"halving the steps moved it by {change:.0e}"
-    )
-
-
-def _shown(found: Outcome, system: StaticSystem, curve: Curve) -> Outcome:
-    """The arrays of an outcome: curve, mechanism at its end and forces at its peak."""
-    equations, states = system.equilibrium, curve.states
+def _judged(found: Outcome, way: Way, climb: Climb, tolerance: float) -> Outcome:
+    """Verdict on a climb, and its arrays."""
+    system, states = way.system, [*way.rests, *climb.past]
+    equations, peak = system.equilibrium, _peak(way, climb.past)
+    unit, nd = equations.live_unit, system.freedoms
     row = control_row(equations.scene)[movable_freedoms(equations.scene)] * equations.scale * system.length_unit
-    q = np.array([state.x[: system.freedoms] for state in states])
-    motion = equations.motion(q[-1] - q[-2]) if len(states) > 1 else np.zeros((0, 3))
-    return replace(
+    q = np.array([state.x[:nd] for state in states])
+    moving = way.fall if way.fall is not None else q[-1] - q[-2] if len(q) > 1 else None
+    found = replace(
         found,
-        curve=np.column_stack([(q - q[0]) @ row, equations.live_unit * curve.multiplier]),
-        motion=motion,
-        force=equations.force_unit * states[int(np.argmax(curve.multiplier))].force,
+        lower=unit * peak.multiplier,
+        upper=None if way.upper is None else unit * way.upper,
+        curve=np.column_stack([(q - q[0]) @ row, [unit * state.multiplier for state in states]]),
+        motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
+        force=equations.force_unit * peak.force,
     )
-
-
-def _unsettled(found: Outcome, system: StaticSystem, curve: Curve, end: str) -> Outcome:
-    """Outcome of a curve that proves no collapse."""
-    multiplier, found = curve.multiplier, replace(found, lower=None, upper=None)
-    if end == "rising" and multiplier[-1] > LOCKED * (multiplier[-1] - last_rise(curve)) and locks(system.equilibrium):
-        message = "self-locking: λ grows with the displacement, and joint forces balance any multiple of the live load"
-        return replace(found, status="unbounded", message=message)
-    reasons = {
-        "rising": "the pushover curve still rises at the largest displacement",
-        "broken": "the pushover curve broke off: no equilibrium was found at a larger displacement",
-        "long": "the budget ran out before the pushover curve was past its peak",
-    }
-    return replace(found, lower=system.equilibrium.live_unit * float(multiplier.max()), message=reasons[end])
+    if not climb.undecided:
+        heights = way.far * system.length_unit / equations.scene.lowest_block
+        message = (
+            f"largest load at rest and smallest of a fall over {heights:.2g} block heights, small displacements; "
+            "friction remembers, other load steps may differ by more than the bracket"
+        )
+        return replace(found, status="collapse", multiplier=found.lower, message=message)
+    if way.upper is None and way.budget > 0 and locks(equations):
+        message = f"self-locking: {climb.undecided}, and joint forces balance any multiple of it"
+        return replace(found, status="unbounded", lower=None, message=message)
+    return replace(found, message=f"the wall was given up: {climb.undecided}")
 
 
 def _fallen(found: Outcome, system: StaticSystem) -> Outcome:

@@ -1,23 +1,23 @@
-"""Rigid blocks on elastic joint points: residual and tangent of the static equations, and their sparse solution.
+"""Rigid blocks on elastic joint points: residual and tangent of the static equations, and their solution.
 
     B_nᵀ N + B_tᵀ S + Cᵀ r − f_dead − λ f_live = 0,    C q = 0,    f_live · q = d  (or λ given)
 
 in the scaled freedoms and forces of `Equilibrium`; displacements are measured in the elastic length that the unit
 of force makes of the stiffest joint point, so that stiffnesses, too, are of order one. Unknowns are ordered
 x = (q, r, λ). The tangent has the same pattern in every step: its entries are found once as sums of joint points'
-entries, its elimination order is found once, and the dense border of λ is eliminated last.
+entries.
 """
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array, csr_array
-from scipy.sparse.linalg import splu
+from scipy.sparse import csr_array
 
 from joints import PointLaw, PointResponse, wall_stiffness
 from scene import Array, Indices, Scene
 
+from .band import Band, band
 from .equilibrium import Equilibrium, equilibrium
 
 
@@ -27,34 +27,6 @@ class Control:
 
     value: float
     multiplier: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class Pattern:
-    """Where the entries of the tangent go, its unknowns already in the order of elimination.
-
-    Parameters
-    ----------
-    order : (n,) int
-        The unknown that is eliminated k-th.
-    row, first : (n_entries,), (n + 1,) int
-        Row of each entry, and the first entry of each column.
-    slot : (n_terms,) int
-        Entry to which each term is added, the number of entries for terms of blocks that are held. Terms are
-        the joint points' own 6 × 6 tangents, the proximal diagonal, C twice, and column, row and corner of the
-        border.
-    """
-
-    order: Indices
-    row: Indices
-    first: Indices
-    slot: Indices
-
-    def matrix(self, terms: Array) -> csc_array:
-        """Sum the terms up."""
-        n = len(self.order)
-        summed = np.bincount(self.slot, terms)[: len(self.row)]
-        return csc_array((summed, self.row, self.first), shape=(n, n))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,17 +79,21 @@ class StaticSystem:
         force = system.opening @ response.normal + system.slip @ response.tangential
         force += system.reaction @ reaction - system.dead - multiplier * system.live
         last = multiplier if control.multiplier else system.live @ q
-        return np.concatenate([force, system.reaction.T @ q, [last - control.value]])
+        return np.concatenate([force, self._held @ q, [last - control.value]])
 
-    def solve(self, tangent: Array, proximal: float, control: Control, right: Array) -> Array:
+    def viscous(self, motion: Array) -> Array:
+        """Forces ``(nd,)`` of dashpots in proportion to the elastic stiffness of every joint point."""
+        system, law, q = self.equilibrium, self.law, motion[: self.freedoms]
+        normal, tangential = law.normal_stiffness * (self.opening @ q), law.shear_stiffness * (self.slip @ q)
+        return np.asarray(system.opening @ normal + system.slip @ tangential)
+
+    def solve(self, tangent: Array, control: Control, right: Array) -> Array:
         """Solve the tangent equations.
 
         Parameters
         ----------
         tangent : (np, 2, 2) float
             Of the joint points.
-        proximal : float
-            Share of the elastic stiffness's diagonal that is added to the tangent.
         control
             Which equation is the last.
         right : (n,) float
@@ -125,27 +101,16 @@ class StaticSystem:
 
         Raises
         ------
-        RuntimeError
+        numpy.linalg.LinAlgError
             For a tangent that is singular to the last bit.
         """
-        jump = self._jump
+        jump, live = self._jump, self.equilibrium.live
         own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent), jump).ravel()
-        live = self.equilibrium.live
-        by_multiplier = float(control.multiplier)
-        pins = self.equilibrium.reaction.tocoo().data
-        terms = [own, proximal * self.diagonal, pins, pins, -live, (1 - by_multiplier) * live, [by_multiplier]]
-        order = self.pattern.order
-        # Pivots stay on the diagonal unless they are tiny: the order of elimination was chosen for that, and what
-        # accuracy it costs the next iteration makes good. Partial pivoting takes up to three times as long.
-        factors = splu(
-            self.pattern.matrix(np.concatenate(terms)),
-            permc_spec="NATURAL",
-            diag_pivot_thresh=1e-3,
-            options={"SymmetricMode": True},
-        )
-        x = np.empty(len(order))
-        x[order] = factors.solve(right[order])
-        return x
+        border = np.concatenate([live, np.zeros(self.unknowns - 1 - len(live))])
+        # The border of λ is eliminated by hand: q = a + λ b.
+        a, b = self._band.solve(np.concatenate([own, self._pins, self._pins]), np.column_stack([right[:-1], border])).T
+        multiplier = right[-1] if control.multiplier else (right[-1] - border @ a) / (border @ b)
+        return np.append(a + multiplier * b, multiplier)
 
     @cached_property
     def elastic(self) -> Array:
@@ -155,10 +120,14 @@ class StaticSystem:
         return tangent
 
     @cached_property
-    def diagonal(self) -> Array:
-        """Diagonal of the elastic stiffness, ``(nd,)``."""
-        k_n, k_t = self.law.normal_stiffness, self.law.shear_stiffness
-        return np.asarray(self.equilibrium.opening**2 @ k_n + self.equilibrium.slip**2 @ k_t)
+    def _held(self) -> csr_array:
+        """Displacements of pinned points per freedom, ``(n_pins, nd)``."""
+        return csr_array(self.equilibrium.reaction.T)
+
+    @cached_property
+    def _pins(self) -> Array:
+        """Entries of C in the order of its columns."""
+        return np.asarray(self.equilibrium.reaction.tocoo().data)
 
     @cached_property
     def _freedoms_of_points(self) -> Indices:
@@ -181,27 +150,16 @@ class StaticSystem:
         return jump
 
     @cached_property
-    def pattern(self) -> Pattern:
-        """Where the entries of the tangent go."""
-        n, nd, own = self.unknowns, self.freedoms, self._freedoms_of_points
+    def _band(self) -> Band:
+        """Where the entries of the tangent go: the joint points' own 6 × 6 tangents, then C twice."""
+        nd, own, scene = self.freedoms, self._freedoms_of_points, self.equilibrium.scene
         pins = self.equilibrium.reaction.tocoo()
-        free, last = np.arange(nd), np.full(nd, n - 1)
-        row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), free, pins.row, nd + pins.col, free, last, [n - 1]])
-        column = np.concatenate([np.tile(own, 6).ravel(), free, nd + pins.col, pins.row, last, free, [n - 1]])
-        there = (row >= 0) & (column >= 0)
-        # Symbolic factors of the unbordered matrix, made diagonally dominant so that nothing is pivoted.
-        inner = there & (row < n - 1) & (column < n - 1)
-        values = np.where(row == column, float(n), 1.0)[inner]
-        unbordered = csc_array(coo_array((values, (row[inner], column[inner])), shape=(n - 1, n - 1)))
-        unbordered.setdiag(float(36 * n))
-        order = np.append(np.argsort(splu(unbordered, permc_spec="MMD_AT_PLUS_A").perm_c), n - 1)
-
-        place = np.argsort(order)
-        key = np.where(there, place[column] * n + place[row], n * n)
-        entries, slot = np.unique(key, return_inverse=True)
-        entries = entries[entries < n * n]
-        first = np.searchsorted(entries, np.arange(n + 1) * n)
-        return Pattern(order, (entries % n).astype(np.int32), first.astype(np.int32), slot)
+        row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), pins.row, nd + pins.col])
+        column = np.concatenate([np.tile(own, 6).ravel(), nd + pins.col, pins.row])
+        home = np.repeat(scene.blocks.centroid[~scene.fixed], 3, axis=0)
+        held = np.empty((pins.shape[1], 2))
+        held[pins.col] = home[pins.row]
+        return band(row, column, np.concatenate([home, held]), 0.1 * scene.lowest_block)
 
 
 def static_system(scene: Scene) -> StaticSystem:
