@@ -4,7 +4,9 @@ Loads are held one after the other until the wall rests or falls (`Way.push`). P
 displacement f_live · q that does the live load's work is prescribed instead, and λ follows (`Way.follow`).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -53,6 +55,14 @@ class State:
         return float(self.x[-1])
 
 
+StaticObserver: TypeAlias = Callable[[StaticSystem, State], None]
+"""Looks at a state of rest as it is found, and changes nothing."""
+
+
+def nobody(system: StaticSystem, state: State) -> None:
+    """Observe nothing."""
+
+
 @dataclass(eq=False)
 class Way:
     """What is known of a wall's way to its collapse.
@@ -71,6 +81,8 @@ class Way:
         Smallest load under which the wall fell.
     fall : (nd,) float or None
         How it was moving when it had fallen far enough.
+    observe
+        Called with every state of rest under a load that is pushed for.
     """
 
     system: StaticSystem
@@ -79,6 +91,7 @@ class Way:
     rests: list[State]
     upper: float | None = None
     fall: Array | None = None
+    observe: StaticObserver = nobody
 
     @property
     def lower(self) -> float:
@@ -92,6 +105,7 @@ class Way:
         found = self._relax(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
         if found.verdict == "rest":
             self.rests.append(state_of(self.system, found))
+            self.observe(self.system, self.rests[-1])
         elif found.verdict == "fall":
             self.upper, self.fall = multiplier, found.last
         return found

@@ -17,6 +17,7 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from results import Outcome
 from scene import Scene
@@ -53,6 +54,7 @@ def dem_static(
     first_step: float = FIRST_STEP,
     collapse: float = COLLAPSE,
     budget: int = BUDGET,
+    observe: StaticObserver = nobody,
 ) -> Outcome:
     """Collapse of a scene under growing loads, each held until the wall rests or falls, at small displacements.
 
@@ -69,6 +71,8 @@ def dem_static(
         Motion of a block that is a fall unless it slows down, in heights of the lowest block.
     budget
         Linear systems after which it is given up.
+    observe
+        Called with every state at rest as it is found, and in the end with those past the largest load.
 
     Returns
     -------
@@ -78,17 +82,34 @@ def dem_static(
     """
     start = time.perf_counter()
     system = static_system(scene)
+    # Bands are too narrow for a second thread to gain anything.
+    with threadpool_limits(limits=1, user_api="blas"):
+        found = _found(scene, system, tolerance, first_step, collapse, budget, observe)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def _found(
+    scene: Scene,
+    system: StaticSystem,
+    tolerance: float,
+    first_step: float,
+    collapse: float,
+    budget: int,
+    observe: StaticObserver,
+) -> Outcome:
     found = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
     far = collapse * scene.lowest_block / system.length_unit
     nothing = np.zeros(len(system.law.normal_stiffness))
     rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
     if rest.verdict != "rest":
-        found = _fallen(replace(found, steps=rest.solves), system)
-    else:
-        way = Way(system, far, budget - rest.solves, [state_of(system, rest)])
-        found = _judged(found, way, _climb(way, first_step, tolerance), tolerance)
-        found = replace(found, steps=budget - way.budget)
-    return replace(found, seconds=time.perf_counter() - start)
+        return _fallen(replace(found, steps=rest.solves), system)
+    way = Way(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
+    observe(system, way.rests[0])
+    climb = _climb(way, first_step, tolerance)
+    for state in climb.past:
+        observe(system, state)
+    found = _judged(found, way, climb, tolerance)
+    return replace(found, steps=budget - way.budget)
 
 
 @dataclass(frozen=True, eq=False)

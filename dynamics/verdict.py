@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from results import Outcome, fastest_corner_by_one
 from scene import Array, Indices, Scene
@@ -87,8 +88,10 @@ def collapse_by_steps(
     if collapse is None:
         collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
     criteria = Criteria(collapse=collapse * scene.block_size, budget=budget)
-    first = first_step * system.force_unit / float(np.abs(system.live[system.rigid]).max())
-    found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
+    first = first_step * system.force_unit / float(np.abs(system.live).max())
+    # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
+    with threadpool_limits(limits=1, user_api="blas"):
+        found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=found.taken)
     outcome = _judge(outcome, scene, run, found, point_order, locks)
     message = "; ".join(part for part in (outcome.message, note) if part)
