@@ -122,7 +122,8 @@ def run_campaign(
     cells = [(name, model) for model in reversed(models) for name in largest_first]
     campaign = Campaign()
     try:
-        for answer in _answers(cells, scenes, folder, tolerance, jobs, fresh):
+        # Absolute, for a worker that has served before may stand elsewhere.
+        for answer in _answers(cells, scenes, folder.resolve(), tolerance, jobs, fresh):
             campaign.add(answer)
             progress(answer.cell)
     except KeyboardInterrupt:
@@ -195,7 +196,7 @@ def _run_cell(cell: Cell, scene: Scene, folder: Path, tolerance: float, fresh: b
     except SceneError as reason:
         return Answer(cell, None, str(reason))
     if outcome.status != "failed":  # a failure is tried again, perhaps by better code
-        save_outcome(outcome, place, key)
+        save_outcome(outcome, place, key, scene)
     return Answer(cell, outcome)
 
 

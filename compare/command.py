@@ -1,4 +1,4 @@
-"""The command line: ``runningbond run``, ``runningbond compare`` and ``runningbond mesh``."""
+"""The command line: ``runningbond run``, ``compare``, ``render`` and ``mesh``."""
 
 import io
 import json
@@ -8,21 +8,27 @@ import sys
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, CycloptsError, Parameter, Token
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from meshing import check_suffix, wall_mesh, write_mesh
-from results import Outcome, save_outcome, write_atomically
+from results import Outcome, StoreError, load_scene, save_outcome, write_atomically
+from results.painting import Colouring
+from results.rendering import why_not_drawn
+from results.vtk_messages import VtkError
 from scene import Scene, SceneError, read_scene
 
 from .campaign import Campaign, Cell, Interrupted, run_campaign
 from .fingerprint import fingerprint
-from .models import IN_MOTION, MODELS, TOLERANCE, check_model, check_tolerance, run_model
+from .models import IN_MOTION, MODELS, OBSERVED, TOLERANCE, check_model, check_tolerance, run_model
 from .published import PUBLISHED, PublishedCase, find_scene, published_case
 from .table import Comparison, cost_sheets, csv_text, multiplier_sheets
+
+if TYPE_CHECKING:
+    from .recording import Recorder
 
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 UNDECIDED = ("undecided", "failed")
@@ -52,13 +58,13 @@ def run(
     scene
         Scene file, or the name of a published scene such as panel-01.
     model
-        homog, limit, limit-nonassociated, dem-static or dem-dynamic.
+        homog, limit, limit-nonassociated, dem-static, dem-dynamic or fem.
     tolerance
         Relative width of the bracket asked for.
     json
         Print one JSON object and nothing else.
     out
-        Folder in which to keep the result.
+        Folder in which to keep the result, its time series for ParaView and a picture of its mechanism.
     """
     check_model(model)
     check_tolerance(tolerance)
@@ -66,14 +72,84 @@ def run(
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
     stopped = _interruptions(model)
-    outcome = run_model(model, wall, tolerance)
+    recorder = None
+    if out is not None and model in OBSERVED:
+        from .recording import recorder as observer
+
+        recorder = observer(wall, model, out)
+    outcome = run_model(model, wall, tolerance, recorder)
     print(_as_json(outcome) if json else _as_text(outcome), flush=True)
     if out is not None:
         # What was broken off is kept under no fingerprint: no comparison takes it for the answer.
-        save_outcome(outcome, out, "" if stopped else fingerprint(wall, model, tolerance))
+        save_outcome(outcome, out, "" if stopped else fingerprint(wall, model, tolerance), wall)
+        _record(wall, outcome, out, recorder)
+        _draw(out)
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+def _record(scene: Scene, outcome: Outcome, out: Path, recorder: "Recorder | None") -> None:
+    """Finish the time series of a run, or write that of a mechanism."""
+    if recorder is not None:
+        recorder.finish(outcome)
+        return
+    from .recording import record_mechanism
+
+    record_mechanism(scene, outcome, out)
+
+
+def _draw(out: Path) -> None:
+    """Draw the mechanism, or say in a line why there is no picture: the numbers are kept all the same."""
+    from results.album import draw_mechanism, forget_pictures
+
+    forget_pictures(out)
+    why_not = why_not_drawn()
+    if not why_not:
+        draw_mechanism(out)
+    else:
+        print(f"runningbond: {why_not}", file=sys.stderr)
+
+
+@app.command
+def render(
+    folder: Path,
+    /,
+    *,
+    colour: Colouring = "displacement",
+    view: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Draw what a result folder has to show: its collapse mechanism, and of a time series the last moment and a film.
+
+    Parameters
+    ----------
+    folder
+        Folder of one outcome: that of run --out, or scene/model in that of compare.
+    colour
+        Colour blocks by displacement or by course.
+    view
+        Open a window instead, where there is a screen.
+    """
+    try:
+        load_scene(folder)
+    except StoreError as error:
+        raise SceneError(str(folder), str(error).removeprefix(f"{folder}: ")) from error
+    if view:
+        if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+            raise SceneError("--view", "needs a screen; without it pictures are written")
+        from results.album import view_folder
+
+        view_folder(folder, colour)
+        return DONE
+    why_not = why_not_drawn()
+    if why_not:
+        print(f"runningbond: {why_not}", file=sys.stderr)
+        return NO_ANSWER
+    from results.album import draw_folder
+
+    written = draw_folder(folder, colour)
+    print("\n".join(map(str, written)) if written else f"{folder}: the outcome has no mechanism to draw")
+    return DONE
 
 
 def _interruptions(model: str) -> list[int]:
@@ -141,7 +217,7 @@ def compare(
             markup=False,
         )
         return STOPPED
-    _report(Comparison(walls, chosen, campaign, published), out)
+    _report(Comparison(walls, chosen, campaign, published), out, tolerance)
     failed = [cell for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for name, model in failed:
         console.print(f"{name}, {model}: {campaign.outcomes[name, model].message}", markup=False)
@@ -219,22 +295,30 @@ def _run_with_progress(
         return run_campaign(walls, models, folder=out, tolerance=tolerance, jobs=jobs, fresh=fresh, progress=advance)
 
 
-def _report(comparison: Comparison, out: Path) -> None:
+def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
     from .curves import draw_curves
     from .figures import draw_figures
+    from .plates import draw_plates
+    from .report import report_html
 
     campaign = comparison.campaign
     sheets = [*multiplier_sheets(comparison), *cost_sheets(comparison)]
     write_atomically(out / "table.csv", csv_text(comparison).encode())
     write_atomically(out / "table.md", "\n".join(sheet.markdown() for sheet in sheets).encode())
-    published = campaign.only(comparison.published)
-    charts = [*draw_figures(published, out), *draw_curves(published, out)]
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
     for sheet in sheets:
         console.print(sheet.terminal())
     console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them found in {out}", soft_wrap=True)
-    written = ", ".join(str(path) for path in [out / "table.csv", out / "table.md", *charts])
-    console.print(f"written: {written}", soft_wrap=True)
+    published = campaign.only(comparison.published)
+    why_not = why_not_drawn()
+    charts = [*draw_figures(published, out), *draw_curves(published, out)]
+    charts += [] if why_not else draw_plates(comparison, out)
+    pictures = [path for path in charts if path.suffix == ".png"]
+    write_atomically(out / "report.html", report_html(comparison, pictures, tolerance, why_not).encode())
+    tables = [out / name for name in ("table.csv", "table.md", "report.html")]
+    console.print(f"written: {', '.join(map(str, [*tables, *charts]))}", soft_wrap=True)
+    if why_not:
+        print(f"runningbond: {why_not}", file=sys.stderr)
 
 
 def _as_json(outcome: Outcome) -> str:
@@ -272,6 +356,9 @@ def command(arguments: Sequence[str] | None = None) -> int:
         result = app(tokens, exit_on_error=False, print_error=False)
     except (SceneError, CycloptsError) as error:
         return _refuse(str(error))
+    except VtkError as error:
+        print(f"runningbond: {error}", file=sys.stderr)
+        return NO_ANSWER
     except BrokenPipeError:  # whoever read us has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return DONE

@@ -3,29 +3,45 @@
 import difflib
 import math
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from dem import limit, limit_nonassociated
 from homog import homog
 from results import Outcome
 from scene import Scene, SceneError
 
-Model: TypeAlias = Callable[[Scene, float], Outcome]
-"""From a scene and the relative width of the bracket asked for to an outcome."""
+if TYPE_CHECKING:
+    from dem.pushover import StaticObserver
+    from dynamics import Observer
+
+Model: TypeAlias = Callable[..., Outcome]
+"""From a scene and the relative width of the bracket asked for, and an observer where it has any, to an outcome."""
 
 
-def _dem_static(scene: Scene, tolerance: float) -> Outcome:
+def _dem_static(scene: Scene, tolerance: float, observe: "StaticObserver | None" = None) -> Outcome:
     """`dem.static.dem_static`, imported when it is wanted, as `_dem_dynamic` is."""
+    from dem.pushover import nobody
     from dem.static import dem_static
 
-    return dem_static(scene, tolerance)
+    return dem_static(scene, tolerance, observe=observe or nobody)
 
 
-def _dem_dynamic(scene: Scene, tolerance: float) -> Outcome:
+def _dem_dynamic(scene: Scene, tolerance: float, observe: "Observer | None" = None) -> Outcome:
     """`dem.dynamic.dem_dynamic`, imported when it is wanted, for its compiler takes a second to load."""
     from dem.dynamic import dem_dynamic
+    from dynamics import nobody
 
-    return dem_dynamic(scene, tolerance)
+    return dem_dynamic(scene, tolerance, observe=observe or nobody)
+
+
+def _fem(scene: Scene, tolerance: float, observe: "Observer | None" = None) -> Outcome:
+    """`fem_interface.model.fem`, imported when it is wanted; whether a wall locks is asked of its rigid blocks."""
+    from dem import equilibrium
+    from dem.limit import locks
+    from dynamics import nobody
+    from fem_interface.model import fem
+
+    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), observe=observe or nobody)
 
 
 MODELS: dict[str, Model] = {
@@ -34,10 +50,14 @@ MODELS: dict[str, Model] = {
     "limit-nonassociated": limit_nonassociated,
     "dem-static": _dem_static,
     "dem-dynamic": _dem_dynamic,
+    "fem": _fem,
 }
 
 IN_MOTION = ("dem-dynamic", "fem")
 """Models that bring blocks forward in time, and can be stopped with an answer so far."""
+
+OBSERVED = ("dem-static", *IN_MOTION)
+"""Models whose states can be observed as they are found."""
 
 TOLERANCE = 0.01
 
@@ -56,7 +76,9 @@ def check_tolerance(tolerance: float) -> None:
         raise SceneError("--tolerance", "must be a number above 0 and below 1", tolerance)
 
 
-def run_model(name: str, scene: Scene, tolerance: float = TOLERANCE) -> Outcome:
+def run_model(
+    name: str, scene: Scene, tolerance: float = TOLERANCE, observe: "Observer | StaticObserver | None" = None
+) -> Outcome:
     """Run a model by name.
 
     Parameters
@@ -67,6 +89,8 @@ def run_model(name: str, scene: Scene, tolerance: float = TOLERANCE) -> Outcome:
         The scene.
     tolerance
         Relative width of the bracket asked for.
+    observe
+        Looks at the states of a model of `OBSERVED`, of its own kind; others are not observed.
 
     Returns
     -------
@@ -81,6 +105,8 @@ def run_model(name: str, scene: Scene, tolerance: float = TOLERANCE) -> Outcome:
     check_model(name)
     check_tolerance(tolerance)
     try:
+        if observe is not None and name in OBSERVED:
+            return MODELS[name](scene, tolerance, observe=observe)
         return MODELS[name](scene, tolerance)
     except SceneError:
         raise

@@ -24,7 +24,7 @@ from scene import Scene
 
 from .kinematics import control_row, movable_freedoms
 from .limit import FALLS, locks, stands_under_dead_load
-from .pushover import State, Way, lengthened, state_of
+from .pushover import State, StaticObserver, Way, lengthened, nobody, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system
 

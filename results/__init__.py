@@ -1,8 +1,11 @@
-"""What every model returns, and its round trip to disk."""
+"""What every model returns, and its round trip to disk.
+
+Files for ParaView and pictures are made by modules of their own, imported by name: none of them can change a number.
+"""
 
 from .mechanism import fastest_corner_by_one
 from .outcome import Outcome, Status
-from .store import StoreError, load_outcome, save_outcome, write_atomically
+from .store import StoreError, load_outcome, load_scene, save_outcome, write_atomically
 
 __all__ = [
     "Outcome",
@@ -10,6 +13,7 @@ __all__ = [
     "StoreError",
     "fastest_corner_by_one",
     "load_outcome",
+    "load_scene",
     "save_outcome",
     "write_atomically",
 ]

@@ -9,11 +9,18 @@ import io
 import json
 import os
 import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+
+from scene import Scene
 
 from .outcome import ARRAYS, Outcome
+from .plain_scene import ROOT, scene_from_arrays, scene_to_arrays
 
 RECORD = "outcome.json"
 
@@ -38,7 +45,7 @@ def write_atomically(path: Path, content: bytes) -> None:
         raise
 
 
-def save_outcome(outcome: Outcome, folder: Path, key: str = "") -> None:
+def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | None = None) -> None:
     """Write an outcome into a folder of its own.
 
     Parameters
@@ -49,9 +56,12 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "") -> None:
         The folder; made if missing.
     key
         What the outcome was computed from, given back by `load_outcome`.
+    scene
+        The wall it is about, given back by `load_scene`.
     """
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, **{name: getattr(outcome, name) for name in ARRAYS})
+    kept: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
+    np.savez_compressed(buffer, allow_pickle=False, **kept, **(scene_to_arrays(scene) if scene else {}))
     content = buffer.getvalue()
     arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
     write_atomically(folder / arrays, content)
@@ -76,6 +86,23 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
     StoreError
         If there is no outcome, or anything about it is missing, damaged or not what was written.
     """
+    with _trusted(folder) as (record, stored):
+        arrays: dict[str, Any] = {name: stored[name] for name in ARRAYS}
+        scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}
+        return Outcome(**scalars, **arrays), str(record["key"])
+
+
+def load_scene(folder: Path) -> Scene:
+    """Read back the scene of an outcome; StoreError as of `load_outcome`, or where none was kept."""
+    with _trusted(folder) as (_, stored):
+        if ROOT not in stored:
+            raise StoreError(f"{folder}: holds an outcome without its scene")
+        return scene_from_arrays(stored)
+
+
+@contextmanager
+def _trusted(folder: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
+    """Give the record and the arrays of a folder, if they are what was written."""
     try:
         record = json.loads((folder / RECORD).read_bytes())
         content = (folder / record["arrays"]).read_bytes()
@@ -83,9 +110,7 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
         if _seal(record, content) != seal:
             raise StoreError(f"{folder}: is not what {RECORD} vouches for")
         with np.load(io.BytesIO(content)) as stored:
-            arrays = {name: stored[name] for name in ARRAYS}
-        scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}
-        return Outcome(**scalars, **arrays), str(record["key"])
+            yield record, stored
     except OSError as error:
         raise StoreError(f"{folder}: holds no outcome: {error.strerror or error}") from error
     except (ValueError, KeyError, TypeError, AttributeError) as error:

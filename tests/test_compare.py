@@ -118,7 +118,7 @@ def test_a_model_that_breaks_on_one_scene_does_not_lose_the_others(
     def fragile(scene: object, tolerance: float) -> object:
         if getattr(scene, "title", "") == "broken":
             raise ZeroDivisionError("division by zero")
-        return sound(scene, tolerance)  # type: ignore[arg-type]
+        return sound(scene, tolerance)
 
     monkeypatch.setitem(MODELS, "limit", fragile)
     scenes = {"good": panel(), "bad": panel(title="broken")}

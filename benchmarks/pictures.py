@@ -1,0 +1,78 @@
+"""Write and draw one moment of a wall of 20 000 blocks: median and spread of five, after one to warm up."""
+
+import statistics
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from results import Outcome, fastest_corner_by_one, write_atomically
+from results.frame import Frame, Stage, mechanism_frame
+from results.painting import Painter
+from results.pictures import mechanism_picture, png, show_mechanism
+from results.rendering import why_not_drawn
+from results.series import Series
+from scene import Scene, scene_from_dict
+
+WALL = {
+    "wall": {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 48.0, "height": 6.0},
+    "block": {"density": 1800.0},
+    "joint": {"friction": 0.6},
+    "support": {"kind": "base"},
+    "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+}
+RUNS = 6
+
+
+def sheared(scene: Scene) -> Outcome:
+    """A wall whose courses have slid one on the other, the farther up the farther."""
+    height = np.where(scene.wall, scene.blocks.centroid[:, 1], 0.0)
+    motion = fastest_corner_by_one(scene.blocks, height[:, None] * np.array([1.0, 0.0, 0.0]))
+    return Outcome("20 000 blocks", "limit", "collapse", 0.3, motion=motion)
+
+
+def timed(action: Callable[[], object]) -> str:
+    """Median and spread of the seconds that something takes."""
+    seconds = []
+    for _ in range(RUNS):
+        start = time.perf_counter()
+        action()
+        seconds.append(time.perf_counter() - start)
+    rest = seconds[1:]
+    return f"median {statistics.median(rest):.2f} s ({min(rest):.2f} … {max(rest):.2f}), first {seconds[0]:.2f} s"
+
+
+def main() -> None:
+    """Print what it takes."""
+    scene = scene_from_dict(WALL)
+    outcome = sheared(scene)
+    frame = mechanism_frame(scene, outcome)
+    assert frame is not None
+    print(f"{scene.wall.sum()} blocks, {len(scene.joints)} joints")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        print(f"write a moment of blocks and joints: {timed(lambda: write(scene, frame, folder))}")
+        if why_not_drawn():
+            print(why_not_drawn())
+            return
+        painter = Painter()
+        print(f"draw the mechanism: {timed(lambda: draw(scene, outcome, painter, folder / 'mechanism.png'))}")
+        painter.close()
+
+
+def write(scene: Scene, frame: Frame, folder: Path) -> None:
+    """Write one moment of a series of its own."""
+    Series(Stage.of_rigid_blocks(scene), folder).add(frame)
+
+
+def draw(scene: Scene, outcome: Outcome, painter: Painter, path: Path) -> None:
+    """Draw and write a picture of a mechanism."""
+    shown = show_mechanism(scene, outcome)
+    assert shown is not None
+    write_atomically(path, png(mechanism_picture(shown, outcome, painter)))
+
+
+if __name__ == "__main__":
+    main()

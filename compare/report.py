@@ -1,0 +1,93 @@
+"""The report of a comparison: one HTML page that holds everything, and needs nothing from anywhere."""
+
+import base64
+import html
+import platform
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from .fingerprint import LIBRARIES, code_digest
+from .table import Comparison, Sheet, cost_sheets, multiplier_sheets
+
+DRAWN_WITH = ("pyvista", "vtk", "matplotlib")
+
+STYLE = """
+body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
+th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid #ddd; white-space: nowrap; }
+th { border-bottom: 2px solid #888; }
+figure { margin: 1.5rem 0; } img { max-width: 100%; height: auto; } figcaption { color: #555; font-size: 0.85rem; }
+"""
+
+
+def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: float, why_no_plates: str = "") -> str:
+    """Write the page.
+
+    Parameters
+    ----------
+    comparison
+        What was run.
+    pictures
+        PNG files of charts and plates, in the order in which they are to stand.
+    tolerance
+        Relative width of the brackets that was asked for.
+    why_no_plates
+        Why there are no pictures of mechanisms; empty where there are.
+    """
+    costs = cost_sheets(comparison)
+    parts = [
+        "<h1>Masonry walls from their description to their collapse</h1>",
+        f"<p>{len(comparison.campaign)} cases: {len(comparison.scenes)} walls by {len(comparison.models)} models.</p>",
+        "<h2>Collapse multipliers</h2>",
+        *(_table(sheet) for sheet in multiplier_sheets(comparison)),
+        "<h2>Charts and mechanisms</h2>",
+        *([f"<p>{html.escape(why_no_plates)}</p>"] if why_no_plates else []),
+        *map(_figure, pictures),
+        "<h2>Cost</h2>",
+        *(_table(sheet) for sheet in costs),
+        "<h2>What was run</h2>",
+        _table(_provenance(comparison, tolerance)),
+    ]
+    return "\n".join(
+        [
+            '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
+            '<meta name="viewport" content="width=device-width, initial-scale=1">',
+            '<link rel="icon" href="data:,">',
+            f"<title>runningbond: comparison</title>\n<style>{STYLE}</style>\n</head>\n<body>",
+            *parts,
+            "</body>\n</html>\n",
+        ]
+    )
+
+
+def _provenance(comparison: Comparison, tolerance: float) -> Sheet:
+    written = datetime.now(UTC).isoformat(timespec="seconds")
+    rows = [
+        ("models", ", ".join(comparison.models)),
+        ("tolerance", f"{tolerance:g}"),
+        ("written", written),
+        ("runningbond", f"{version('runningbond')}, sources {code_digest()[:16]}"),
+        ("Python", f"{platform.python_version()} on {platform.system()} {platform.machine()}"),
+        *((name, version(name)) for name in (*LIBRARIES, *DRAWN_WITH)),
+    ]
+    return Sheet("Versions", ("what", "which"), rows)
+
+
+def _table(sheet: Sheet) -> str:
+    heads = "".join(f"<th>{html.escape(head)}</th>" for head in sheet.heads)
+    rows = "\n".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in sheet.rows)
+    title = html.escape(sheet.title)
+    return (
+        f'<h3>{title}</h3>\n<div class="wide"><table data-title="{title}">\n<thead><tr>{heads}</tr></thead>\n'
+        f"<tbody>\n{rows}\n</tbody>\n</table></div>"
+    )
+
+
+def _figure(path: Path) -> str:
+    data = base64.b64encode(path.read_bytes()).decode()
+    name = html.escape(path.stem)
+    return f'<figure><img alt="{name}" src="data:image/png;base64,{data}"><figcaption>{name}.png</figcaption></figure>'
