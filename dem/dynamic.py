@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics import Criteria, Observer, Run, collapse_by_steps, nobody, settle
-from dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP, LOCAL, VISCOUS
+from dynamics import Observer, Run, collapse_by_steps, finite_curve, nobody
+from dynamics.verdict import BUDGET, FIRST_STEP, LOCAL, VISCOUS
 from results import Outcome
 from scene import Array, Scene
 
@@ -20,9 +20,6 @@ from .equilibrium import equilibrium
 from .finite_system import FiniteRun
 from .limit import locks
 from .rigid_system import contact_points, rigid_system
-
-PIECES, SOFT = 4000, 20
-"""Rows of a pushover curve if all blocks move as far as the control point, and those in which they gather speed."""
 
 
 def dem_dynamic(
@@ -104,17 +101,11 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
         For a scene that is not of this kind.
     """
     run = FiniteRun(scene, local=local, viscous=VISCOUS)
-    state = run.at_rest()
-    settle(run, state, 0.0, Criteria(collapse=COLLAPSE * scene.block_size))
     block, at, direction = scene.control_point
-    steps = max(1, round(distance / (speed * PIECES * run.dt)))
-    power = speed * float(np.abs(run.system.live).sum())
-    curve = []
-    for piece in range(PIECES):
-        multiplier = run.drive(state, power * min(1.0, (piece + 1) / SOFT), steps)
-        control = (run.outline.points(block, np.tile(at, (len(block), 1)), state.motion) - at) @ direction
-        moved = (run.outline.corners(state.motion) - scene.blocks.vertices) @ direction
-        curve.append((control.mean(), moved.max(), multiplier))
-        if curve[-1][0] >= distance:
-            break
-    return np.array(curve)
+
+    def measure(motion: Array) -> tuple[float, float]:
+        control = (run.outline.points(block, np.tile(at, (len(block), 1)), motion) - at) @ direction
+        moved = (run.outline.corners(motion) - scene.blocks.vertices) @ direction
+        return float(control.mean()), float(moved.max())
+
+    return finite_curve(run, scene, distance, speed, measure)

@@ -1,6 +1,7 @@
 """Blocks in motion: the system, its integration, its load controls and its verdict."""
 
 from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive, settled_load_steps
+from .finite_run import FiniteRun, FiniteState, finite_curve
 from .run import Criteria, Ledger, Observer, Run, Verdict, moved_by, nobody, settle
 from .system import BlockSystem, Restraint, State
 from .time_step import block_frequency_squared, mass_factor, stable_step
@@ -10,6 +11,8 @@ __all__ = [
     "BlockSystem",
     "Criteria",
     "Drive",
+    "FiniteRun",
+    "FiniteState",
     "Ledger",
     "LoadSteps",
     "Observer",
@@ -20,6 +23,7 @@ __all__ = [
     "block_frequency_squared",
     "collapse_by_steps",
     "drive",
+    "finite_curve",
     "load_steps",
     "mass_factor",
     "moved_by",

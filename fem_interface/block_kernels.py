@@ -17,7 +17,8 @@ kernel = compiled.kernel
 
 
 @kernel
-def _to_nodes(shapes: Any, motion: Array, table: Array, nodal: Array) -> None:
+def to_nodes(shapes: Any, motion: Array, table: Array, nodal: Array) -> None:
+    """Displacements of the nodes on joints, from modal coordinates ``(nd,)``."""
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
         phi = table[entry : entry + width * modes].reshape(width, modes)
@@ -26,7 +27,8 @@ def _to_nodes(shapes: Any, motion: Array, table: Array, nodal: Array) -> None:
 
 
 @kernel
-def _to_modes(shapes: Any, nodal: Array, table: Array, product: Array, force: Array) -> None:
+def to_modes(shapes: Any, nodal: Array, table: Array, product: Array, force: Array) -> None:
+    """Subtract from modal forces ``(nd,)`` those of the nodes on joints."""
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
         phi = table[entry : entry + width * modes].reshape(modes, width)
@@ -42,7 +44,7 @@ def _to_modes(shapes: Any, nodal: Array, table: Array, product: Array, force: Ar
 def gather_modes(motion: Array, geometry: Any, opening: Array, slip: Array) -> None:
     """Opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``."""
     shapes, table, _, start, places, shares, _, still, nodal, _ = geometry
-    _to_nodes(shapes, motion, table, nodal)
+    to_nodes(shapes, motion, table, nodal)
     # What does not move shares the last entries, which scatter has written to.
     nodal[still[0] :] = 0.0
     points = shares.shape[1]
@@ -86,4 +88,4 @@ def scatter_modes(normal: Array, tangential: Array, geometry: Any, force: Array)
                             nodal[a + e] -= share * traction[e]
                         for e in range(low, high):
                             nodal[b + e] += share * traction[e]
-    _to_modes(shapes, nodal, table, product, force)
+    to_modes(shapes, nodal, table, product, force)

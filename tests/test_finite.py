@@ -12,12 +12,12 @@ from scipy.integrate import solve_ivp
 
 from compare import published_scene
 from dem import jump_operator, mass_matrix_diagonal
-from dem.contacts import Outline, find_contacts
 from dem.dynamic import finite_pushover
-from dem.finite_system import FiniteRun, FiniteState, finite_system
+from dem.finite_system import FiniteRun, finite_system
 from dem.rigid_system import contact_points
-from dynamics import BlockSystem, Criteria, State, settle
+from dynamics import BlockSystem, Criteria, FiniteState, State, settle
 from joints import joint_stiffness
+from joints.contacts import Outline, find_contacts
 from scene import Array, Mortar, Scene, SceneError, Stiffness
 from tests.test_dem import pile, rectangle
 from tests.test_dynamics import GRAVITY, STIFF, block_on_base

@@ -110,7 +110,7 @@ def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys:
         (["run", ".", "--model", "limit"], "it is a folder"),
         (["run", "panel-01"], "--model"),
         (["run", "panel-01", "--model", "limt"], 'did you mean "limit"?'),
-        (["run", "panel-01", "--model", "fem"], "must be one of homog, limit, limit-nonassociated, dem-static, dem-d"),
+        (["run", "panel-01", "--model", "fern"], "must be one of homog, limit, limit-nonassociated, dem-static, dem-d"),
         (["run", "panel-01", "--model", "limit", "--tolerance", "nan"], "--tolerance"),
         (["run", "panel-01", "--model", "limit", "--tolerance", "2"], "--tolerance"),
         (["run", "panel-01", "--model", "limit", "--tolerance", "small"], "--tolerance"),

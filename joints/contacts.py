@@ -1,6 +1,6 @@
 """Which sides of which blocks face each other, near enough to touch before anyone looks again."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from scene import Array, Blocks, Indices, Mask, Scene, SceneError
 
-from .finite_kernels import gather_finite, place_outline
+from .side_kernels import gather_finite, place_outline
 
 MARGIN = 0.02
 """Least distance up to which sides count as near, in sizes of the smallest block (root of its area).
@@ -136,6 +136,8 @@ class Contacts:
         Tilt of side against side, less the turns of the blocks [rad].
     area : (n,) float
         Area [m²] the end stands for.
+    glued : (n,) bool
+        Whether the end is of a joint of the undeformed wall and has not been lost since; none is when first found.
     """
 
     motion: Array
@@ -144,13 +146,21 @@ class Contacts:
     inwards: Array
     tilt: Array
     area: Array
+    glued: Mask
 
     def __len__(self) -> int:
         return len(self.inwards)
 
     def chosen(self, rows: Mask | Indices) -> "Contacts":
         """Some of these."""
-        return Contacts(self.motion, self.margin, self.ends[rows], self.inwards[rows], self.tilt[rows], self.area[rows])
+        return replace(
+            self,
+            ends=self.ends[rows],
+            inwards=self.inwards[rows],
+            tilt=self.tilt[rows],
+            area=self.area[rows],
+            glued=self.glued[rows],
+        )
 
     @property
     def key(self) -> Indices:
@@ -171,7 +181,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
 
     None of those left out touches before some block has moved by half the margin.
     """
-    e, f = _facing_sides(outline, motion, margin)
+    e, f = facing_sides(outline, motion, margin)
     blocks, after = outline.blocks, outline.blocks.successor
     owner = blocks.owner
     spin = motion[2::3]
@@ -190,6 +200,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
         np.repeat([1.0, -1.0], n),
         np.tile(tilt, 2),
         np.tile(area, 2),
+        np.zeros(2 * n, dtype=bool),
     )
     near = np.abs(jumps(outline, both, motion)[0]) < margin
     # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
@@ -216,7 +227,7 @@ def resting(outline: Outline, contacts: Contacts, motion: Array) -> tuple[Indice
     return np.where(on_f, v, w), np.where(on_f, f, e)
 
 
-def _facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indices, Indices]:
+def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indices, Indices]:
     """Sides e of one block and f of another, of lower number, that face each other and whose boxes are near."""
     blocks = outline.blocks
     corners, arcs = outline.corners(motion), outline.placed(motion)[1]
@@ -237,6 +248,15 @@ def _area(outline: Outline, e: Indices, f: Indices) -> Array:
     Sides that meet later are given half the shorter one as a joint, which is what running bond gives them from the
     start. The area sets a penalty stiffness, on which a dry wall's resistance hardly depends.
     """
+    start, stop = outline.blocks.vertices, outline.blocks.vertices[outline.blocks.successor]
+    length = np.hypot(*(stop - start).T)
+    overlap = overlaps(outline, e, f)
+    shared: Array = np.where(overlap > 0, overlap, np.minimum(length[e], length[f]) / 2)
+    return shared * outline.thickness / 2
+
+
+def overlaps(outline: Outline, e: Indices, f: Indices) -> Array:
+    """Length of the joint that facing sides made on the undeformed wall, ``(n,)`` [m]; zero where they made none."""
     blocks = outline.blocks
     start, stop = blocks.vertices, blocks.vertices[blocks.successor]
     run = stop - start
@@ -246,5 +266,4 @@ def _area(outline: Outline, e: Indices, f: Indices) -> Array:
     gap = np.abs([np.einsum("ij,ij->i", point[e] - start[f], outline.normal[f]) for point in (start, stop)])
     overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)
     joined = (gap.max(axis=0) <= blocks.tolerance) & (overlap > blocks.tolerance)
-    shared: Array = np.where(joined, overlap, np.minimum(length[e], length[f]) / 2)
-    return shared * outline.thickness / 2
+    return np.where(joined, overlap, 0.0)

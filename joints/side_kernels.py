@@ -19,10 +19,10 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from joints import compiled
 from scene import Array
 
-kernel = compiled.kernel
+from .compiled import kernel
+
 Geometry: TypeAlias = tuple[Any, ...]
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 

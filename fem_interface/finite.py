@@ -1,0 +1,73 @@
+"""Pushover of deformable blocks at finite displacements."""
+
+import numpy as np
+
+from dynamics import finite_curve
+from dynamics.verdict import VISCOUS
+from scene import Array, Scene
+
+from .finite_system import FiniteRun
+from .finite_wall import finite_wall
+from .modes import ModeCount
+
+
+def fem_pushover(
+    scene: Scene,
+    distance: float,
+    *,
+    cells: int = 1,
+    modes: ModeCount = "all",
+    speed: float = 5e-4,
+    local: float = 0.2,
+) -> Array:
+    """Pushover curve of a scene's deformable blocks at finite displacements, past its peak.
+
+    Blocks turn, slide off their neighbours and come to rest on others. The live load's power is kept constant, and
+    the multiplier follows. Joints that soften hold the two sides that they glued until they are broken; what touches
+    afterwards is dry.
+
+    Parameters
+    ----------
+    scene
+        The scene, on a base or a fixed first course; its joints need a stiffness and either no cohesion or both
+        fracture energies, its blocks a stiffness unless `modes` is 3.
+    distance
+        Displacement of the control point at which to stop [m].
+    cells
+        Cells in half a block along the course, and in a block's height.
+    modes
+        Modes of each block: 3 rigid motions, 6 with the uniform strains, or all of its mesh.
+    speed
+        Mean speed of the blocks along the live load [m/s]. What moves faster than it falls into place is borne by
+        its inertia: halve the speed until the curve settles. Softer joints allow longer steps.
+    local
+        Local damping; less than at rest, for it drags on what moves.
+
+    Returns
+    -------
+    (n, 3) float
+        Displacement of the control point, and of the corner that has moved farthest, along the live load [m]; and
+        the mean multiplier since the last row.
+
+    Raises
+    ------
+    SceneError
+        For a scene that is not of this kind.
+    """
+    blocks = finite_wall(scene, cells, modes)
+    run = FiniteRun(blocks, local=local, viscous=VISCOUS)
+    held, at, direction = scene.control_point
+    wall, corners = blocks.wall, blocks.node[blocks.first[:-1]]
+    # How the deformations move the control point, in the frames of the blocks that have it.
+    rows = np.array([[wall.displacement_row(int(b), at, axis) for axis in np.eye(2)] for b in held])
+    rows[:, :, wall.rigid] = 0.0
+    arm = at - scene.blocks.centroid[held]
+
+    def measure(motion: Array) -> tuple[float, float]:
+        cosine, sine, x, y = blocks.outline.placed(blocks.rigid(motion))[0][held].T
+        px, py = (arm + rows @ motion).T
+        control = np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py]) - at
+        moved = (blocks.positions(motion)[corners] - scene.blocks.vertices) @ direction
+        return float((control @ direction).mean()), float(moved.max())
+
+    return finite_curve(run, scene, distance, speed, measure)

@@ -1,0 +1,285 @@
+"""Kinematics of deformable blocks at finite displacements, each in a frame that turns with it.
+
+A node is at c + u + R(θ) (X + Σ φ_k q_k): centroid, translation and rotation of its block, and small deformations in
+the block's frame. A side of a block is the polygon of its nodes, and lies on a side of another block at the two ends
+of their overlap, as the sides of rigid blocks do (`joints.side_kernels`): there the corner of one block, rounded or
+sharp, rests on a facet of the other. Nodes inside a side rest on the other one's facets too, once they are farther
+from its corners than half a facet, where the ends of the overlap bear for them.
+
+Tractions are forces on the two facets at the point where they touch: on their blocks' rigid coordinates as they are,
+so that linear and angular momentum are kept to rounding, and on their nodes with the share of the displacement that
+the jumps have in them, turned back into the block's frame and projected on its modes.
+"""
+
+import math
+from typing import Any, TypeAlias
+
+from joints import compiled
+from scene import Array, Indices
+
+from .block_kernels import to_modes, to_nodes
+
+kernel = compiled.kernel
+Geometry: TypeAlias = tuple[Any, ...]
+
+
+@kernel
+def place_nodes(motion: Array, deformable: Any, nodes: Any, placed: tuple[Array, Array]) -> None:
+    """Write cosine, sine and centroid of the blocks ``(nb, 4)`` and the facets in space ``(no, 5)``.
+
+    `deformable` is as in `block_kernels`, of the deformations only: shapes, tables forward and backward, the first
+    entry that never moves, displacements of the nodes and a buffer of products. `nodes` is where the blocks' rigid
+    coordinates stand ``(nb, 3)``, their centroids, and of each node the block, the place from its centroid, the
+    places of its displacements and the next node counter-clockwise. A facet's row is the node that it starts from,
+    its direction and one over its length.
+    """
+    shapes, forward, _, still, nodal, _ = deformable
+    rigid, centroid, owner, arm, place, following = nodes
+    turned, facets = placed
+    to_nodes(shapes, motion, forward, nodal)
+    nodal[still[0] :] = 0.0
+    for i in range(turned.shape[0]):
+        spin = motion[rigid[i, 2]]
+        turned[i, 0] = math.cos(spin)
+        turned[i, 1] = math.sin(spin)
+        turned[i, 2] = centroid[i, 0] + motion[rigid[i, 0]]
+        turned[i, 3] = centroid[i, 1] + motion[rigid[i, 1]]
+    for j in range(owner.size):
+        b = owner[j]
+        c, s = turned[b, 0], turned[b, 1]
+        x, y = arm[j, 0] + nodal[place[j, 0]], arm[j, 1] + nodal[place[j, 1]]
+        facets[j, 0] = turned[b, 2] + c * x - s * y
+        facets[j, 1] = turned[b, 3] + s * x + c * y
+    for j in range(owner.size):
+        k = following[j]
+        dx, dy = facets[k, 0] - facets[j, 0], facets[k, 1] - facets[j, 1]
+        inverse = 1.0 / math.sqrt(dx * dx + dy * dy)
+        facets[j, 2] = dx * inverse
+        facets[j, 3] = dy * inverse
+        facets[j, 4] = inverse
+
+
+@kernel
+def _place_arcs(facets: Array, ends: Indices, shares: Array, radius: Array, successor: Indices, arcs: Array) -> None:
+    """Write the centres of the arcs at the two ends of each side ``(nv, 4)``.
+
+    An arc touches its side's first or last facet in a share of it that is given, an inset away from the corner.
+    """
+    for side in range(arcs.shape[0]):
+        for end in range(2):
+            j = ends[side, end]
+            r = radius[successor[side]] if end == 1 else radius[side]
+            along = shares[side, end] / facets[j, 4]
+            arcs[side, 2 * end] = facets[j, 0] + along * facets[j, 2] - r * facets[j, 3]
+            arcs[side, 2 * end + 1] = facets[j, 1] + along * facets[j, 3] + r * facets[j, 2]
+
+
+@kernel
+def _facet_at(along: float, begin: Array, first: int, last: int) -> int:
+    """Facet of a side, from its first to its last, that a way along the side from its first corner leads to."""
+    while last > first:
+        middle = (first + last + 1) // 2
+        if begin[middle] <= along:
+            first = middle
+        else:
+            last = middle - 1
+    return first
+
+
+@kernel
+def _angle(nx: float, ny: float, fx: float, fy: float) -> float:
+    """Angle from one unit vector f to another n."""
+    return math.atan2(fx * ny - fy * nx, fx * nx + fy * ny)
+
+
+@kernel
+def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
+    """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``.
+
+    `geometry` is `deformable` and `nodes` of `place_nodes`; of the nodes the way along their side and the length of
+    the facet that starts there; of the sides the first and the last facet, the share of each in which its arc
+    touches it, and their length, whole and between the arcs; of the corners the next one, inset and radius; `ends`,
+    whether inwards is along the tangent (1), against it (−1) or the contact is a node inside a side (0), and the
+    area; and, written, the placed blocks, facets and arcs, per contact the point, the normal, the facets' shares and
+    the stretch along which slip is measured, and the facets of b and a and whether a's corner rests on b.
+    """
+    deformable, nodes, sides, ends, inwards, _, placed, arcs, contact, touched = geometry
+    begin, length, outer, shares, whole, straight, successor, inset, radius = sides
+    place_nodes(motion, deformable, nodes, placed)
+    facets = placed[1]
+    _place_arcs(facets, outer, shares, radius, successor, arcs)
+    for k in range(inwards.size):
+        v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
+        sense = inwards[k]
+        stretch = 1.0
+        of_a = False
+        if sense == 0.0:
+            # A node inside a side; the row has it in place of a corner v, beyond the number of corners.
+            of_a = ends[k, 2] == 1
+            side = e if of_a else f
+            node = v - radius.size
+            x, y = facets[node, 0], facets[node, 1]
+            # Sides are straight but for small deformations, so that any facet has their direction.
+            j, last = outer[side, 0], outer[side, 1]
+            if last > j:
+                along = (x - facets[j, 0]) * facets[j, 2] + (y - facets[j, 1]) * facets[j, 3]
+                j = _facet_at(along, begin, j, last)
+            tx, ty = facets[j, 2], facets[j, 3]
+            share = ((x - facets[j, 0]) * tx + (y - facets[j, 1]) * ty) * facets[j, 4]
+            away = (x - facets[j, 0]) * ty - (y - facets[j, 1]) * tx
+            moved = begin[j] + share * length[j]
+            stretch = length[j] * facets[j, 4]
+            inside = min(moved - inset[side], whole[side] - inset[successor[side]] - moved)
+            beyond = 0.5 * min(length[node], length[node - 1]) - inside
+            away = away if away > beyond else beyond
+            b, share_b, a, share_a = node, 0.0, j, share
+            nx, ny = ty, -tx
+            if of_a:
+                b, share_b, a, share_a = j, share, node, 0.0
+                nx, ny = -ty, tx
+        else:
+            # Side e's last corner lies at f's first one where inwards is along the tangent.
+            low = sense > 0.0
+            of_e, of_f = (1, 0) if low else (0, 1)
+            vx, vy = arcs[e, 2 * of_e], arcs[e, 2 * of_e + 1]
+            wx, wy = arcs[f, 2 * of_f], arcs[f, 2 * of_f + 1]
+            b, share_b = outer[e, of_e], shares[e, of_e]
+            a, share_a = outer[f, of_f], shares[f, of_f]
+            r_v, r_w = radius[v], radius[w]
+            x, y, behind = vx, vy, r_v
+            j, last = outer[f, 0], outer[f, 1]
+            if last > j:
+                along = (vx - facets[j, 0]) * facets[j, 2] + (vy - facets[j, 1]) * facets[j, 3]
+                j = _facet_at(along, begin, j, last)
+            tx, ty = facets[j, 2], facets[j, 3]
+            share = ((vx - facets[j, 0]) * tx + (vy - facets[j, 1]) * ty) * facets[j, 4]
+            along = begin[j] + share * length[j]
+            on_f = along - inset[w] if low else whole[f] - inset[w] - along
+            on_e, i, share_e = 0.0, j, share
+            if on_f < 0.0:
+                i, last = outer[e, 0], outer[e, 1]
+                if last > i:
+                    along = (wx - facets[i, 0]) * facets[i, 2] + (wy - facets[i, 1]) * facets[i, 3]
+                    i = _facet_at(along, begin, i, last)
+                share_e = ((wx - facets[i, 0]) * facets[i, 2] + (wy - facets[i, 1]) * facets[i, 3]) * facets[i, 4]
+                along = begin[i] + share_e * length[i]
+                on_e = whole[e] - inset[v] - along if low else along - inset[v]
+            if on_f >= 0.0 or (on_e < 0.0 and r_v + r_w == 0.0):
+                nx, ny = ty, -tx
+                away = (vx - facets[j, 0]) * nx + (vy - facets[j, 1]) * ny - r_v
+                moved = sense * on_f
+                if r_v > 0.0:
+                    moved -= r_v * _angle(facets[b, 3], -facets[b, 2], -nx, -ny)
+                a, share_a, stretch = j, share, length[j] * facets[j, 4]
+                beyond = on_f - straight[f]
+                far = ends[k, 3]
+                if r_v + radius[far] == 0.0:
+                    # A sharp corner near the far end is no deeper in than it is far from coming out there.
+                    away = away if away > beyond else beyond
+                elif beyond > 0.0:
+                    a, share_a, stretch = outer[f, 1 - of_f], shares[f, 1 - of_f], 1.0
+                    dx, dy = vx - arcs[f, 2 * (1 - of_f)], vy - arcs[f, 2 * (1 - of_f) + 1]
+                    away, moved, nx, ny = _far_arcs(
+                        dx, dy, r_v, radius[far], facets[b, 2], facets[b, 3], facets[a, 2], facets[a, 3]
+                    )
+                    moved += sense * straight[f]
+            elif on_e >= 0.0:
+                of_a = True
+                x, y, behind = wx, wy, -r_w
+                nx, ny = -facets[i, 3], facets[i, 2]
+                away = (facets[i, 0] - wx) * nx + (facets[i, 1] - wy) * ny - r_w
+                moved = -sense * on_e
+                if r_w > 0.0:
+                    moved += r_w * _angle(-nx, -ny, -facets[a, 3], facets[a, 2])
+                b, share_b, stretch = i, share_e, length[i] * facets[i, 4]
+                beyond = on_e - straight[e]
+                far = ends[k, 2]
+                if r_w + radius[far] == 0.0:
+                    away = away if away > beyond else beyond
+                elif beyond > 0.0:
+                    b, share_b, stretch = outer[e, 1 - of_e], shares[e, 1 - of_e], 1.0
+                    dx, dy = arcs[e, 2 * (1 - of_e)] - wx, arcs[e, 2 * (1 - of_e) + 1] - wy
+                    away, moved, nx, ny = _far_arcs(
+                        dx, dy, radius[far], r_w, facets[b, 2], facets[b, 3], facets[a, 2], facets[a, 3]
+                    )
+                    moved -= sense * straight[e]
+            else:
+                of_a = True
+                dx, dy = vx - wx, vy - wy
+                distance = math.hypot(dx, dy)
+                away = distance - r_v - r_w
+                nx, ny = dx / distance, dy / distance
+                moved = r_v * _angle(nx, ny, -facets[b, 3], facets[b, 2])
+                moved += r_w * _angle(nx, ny, facets[a, 3], -facets[a, 2])
+            x -= behind * nx
+            y -= behind * ny
+        opening[k] = away
+        slip[k] = moved
+        contact[k, 0] = x
+        contact[k, 1] = y
+        contact[k, 2] = nx
+        contact[k, 3] = ny
+        contact[k, 4] = share_b
+        contact[k, 5] = share_a
+        contact[k, 6] = stretch
+        touched[k, 0] = b
+        touched[k, 1] = a
+        touched[k, 2] = 1 if of_a else 0
+
+
+@kernel
+def _far_arcs(
+    dx: float, dy: float, r_v: float, r_w: float, ex: float, ey: float, fx: float, fy: float
+) -> tuple[float, float, float, float]:
+    """Opening, slip and normal of two arcs by which blocks come off each other's sides; see `joints.side_kernels`."""
+    distance = math.hypot(dx, dy)
+    away, nx, ny = distance - r_v - r_w, dx / distance, dy / distance
+    turn_e = _angle(nx, ny, -ey, ex)
+    turn_f = _angle(nx, ny, fy, -fx)
+    if abs(turn_e + turn_f) > 0.5 * math.pi:
+        away = abs(away)
+    return away, r_v * turn_e + r_w * turn_f, nx, ny
+
+
+@kernel
+def scatter_deformable(normal: Array, tangential: Array, geometry: Geometry, force: Array) -> None:
+    """Subtract from forces ``(nd,)`` what the contacts' tractions ``(np,)`` do on the modes."""
+    deformable, nodes, area, placed, contact, touched = (
+        geometry[0],
+        geometry[1],
+        geometry[5],
+        geometry[6],
+        geometry[8],
+        geometry[9],
+    )
+    shapes, _, backward, _, nodal, product = deformable
+    rigid, _, owner, _, place, following = nodes
+    turned, facets = placed
+    nodal[:] = 0.0
+    for k in range(normal.size):
+        if normal[k] == 0.0 and tangential[k] == 0.0:
+            continue
+        x, y, nx, ny = contact[k, 0], contact[k, 1], contact[k, 2], contact[k, 3]
+        pull, shear = area[k] * normal[k], area[k] * tangential[k] * contact[k, 6]
+        fx = -pull * nx + shear * ny
+        fy = -pull * ny - shear * nx
+        # On b, and the opposite on a.
+        for side in range(2):
+            j, share = touched[k, side], contact[k, 4 + side]
+            p, after = owner[j], following[j]
+            c, s = turned[p, 0], turned[p, 1]
+            force[rigid[p, 0]] += fx
+            force[rigid[p, 1]] += fy
+            force[rigid[p, 2]] += (x - turned[p, 2]) * fy - (y - turned[p, 3]) * fx
+            tx, ty, along = facets[j, 2], facets[j, 3], share / facets[j, 4]
+            # The point may be off the facet by a penetration or a radius: a couple on its two nodes.
+            off_x, off_y = x - facets[j, 0] - along * tx, y - facets[j, 1] - along * ty
+            couple = (off_x * fy - off_y * fx) * facets[j, 4]
+            gx, gy = (1.0 - share) * fx + couple * ty, (1.0 - share) * fy - couple * tx
+            hx, hy = fx - gx, fy - gy
+            nodal[place[j, 0]] -= c * gx + s * gy
+            nodal[place[j, 1]] -= c * gy - s * gx
+            nodal[place[after, 0]] -= c * hx + s * hy
+            nodal[place[after, 1]] -= c * hy - s * hx
+            fx, fy = -fx, -fy
+    to_modes(shapes, nodal, backward, product, force)
