@@ -30,6 +30,8 @@ def printed_energies(length: float, cohesion: float, tension: float, young: floa
 def fractured(scene: Scene, energies: Energies) -> tuple[list[JointMaterial], Indices]:
     """Materials of a scene's joints with their fracture energies, and which of them each joint is of, ``(nj,)``.
 
+    Inner joints are not of mortar, and always have the energies of the scene.
+
     Raises
     ------
     SceneError
@@ -40,11 +42,15 @@ def fractured(scene: Scene, energies: Energies) -> tuple[list[JointMaterial], In
     formula = corrected_energies if energies == "corrected" else printed_energies
     length = _printed_length(scene) if energies == "printed" else scene.joints.length
     # Lengths that differ by rounding make one material.
-    keys = np.column_stack([scene.material_of_joint, np.rint(length / scene.blocks.tolerance)])
+    rounded = np.where(scene.joints.inner, 0.0, np.rint(length / scene.blocks.tolerance))
+    keys = np.column_stack([scene.material_of_joint, rounded])
     _, first, kind = np.unique(keys, axis=0, return_index=True, return_inverse=True)
     materials = []
     for joint in first:
         material = scene.joint_materials[scene.material_of_joint[joint]]
+        if scene.joints.inner[joint]:
+            materials.append(material)
+            continue
         if not isinstance(material.elasticity, Mortar):
             raise SceneError("joint.mortar", f'is missing; "{energies}" fracture energies follow from it')
         _, tension, _ = truncated_cone(material)

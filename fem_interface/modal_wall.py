@@ -8,6 +8,8 @@ import numpy as np
 from meshing import WallMesh
 from scene import Array, Indices, PointLoad, Scene
 
+from .cracks import Pieces
+from .loads import Loads, inner_mass
 from .operators import Interface
 from .templates import Template, nodes_of, triangles_of
 
@@ -21,18 +23,27 @@ class ModalWall:
 
     Parameters
     ----------
-    scene, mesh
-        The wall and its mesh.
+    pieces
+        The wall and its mesh. Where its blocks may crack, their triangles are what is called a block here.
     templates
         Its movable blocks.
     interface
         Its joint points.
     """
 
-    scene: Scene
-    mesh: WallMesh
+    pieces: Pieces
     templates: list[Template]
     interface: Interface
+
+    @property
+    def scene(self) -> Scene:
+        """The wall."""
+        return self.pieces.scene
+
+    @property
+    def mesh(self) -> WallMesh:
+        """Its mesh."""
+        return self.pieces.mesh
 
     @cached_property
     def first(self) -> Indices:
@@ -86,9 +97,20 @@ class ModalWall:
         pieces = np.split(motion, self.first[1:])[:-1]
         return [piece.reshape(-1, len(t.blocks)) for piece, t in zip(pieces, self.templates, strict=True)]
 
-    def body_force(self, acceleration: tuple[float, float]) -> Array:
+    def nodal_force(self, force: Array) -> Array:
+        """Modal forces of forces on the nodes ``(nn, 2)`` [N], ``(nd,)`` [N]; the transpose of `displacement`."""
+        found = np.zeros(self.first[-1] + 1)
+        for template, into in zip(self.templates, self.split(found), strict=True):
+            shape = template.modes.shape
+            nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
+            into += shape.T @ force[nodes].transpose(0, 2, 1).reshape(len(shape), -1)
+        return found
+
+    def body_force(self, acceleration: tuple[float, float], loads: Loads = "consistent") -> Array:
         """Modal forces of an acceleration [m/s²] of all blocks, ``(nd,)`` [N]."""
-        return self._of_modes([template.modes.inert @ acceleration for template in self.templates])
+        if loads == "consistent":
+            return self._of_modes([template.modes.inert @ acceleration for template in self.templates])
+        return self.nodal_force(inner_mass(self.pieces)[:, None] * acceleration)
 
     def displacement_row(self, block: int, at: Array, direction: Array) -> Array:
         """Displacement of a point ``(2,)`` of a movable block along a direction, per coordinate, ``(nd,)``.
@@ -105,17 +127,25 @@ class ModalWall:
         self.split(found)[template][:, row] = np.einsum("c,x,cxm->m", shares[best], direction, shape)
         return found
 
-    def live_load(self) -> Array:
+    def live_load(self, loads: Loads = "consistent") -> Array:
         """Load that λ multiplies, ``(nd,)`` [N]; a point load is shared equally by the blocks it touches."""
         live = self.scene.load.live
         if isinstance(live, PointLoad):
-            shared = self.scene.loaded_blocks
-            force = np.array(live.force) / len(shared)
-            return np.asarray(sum(self.displacement_row(int(b), np.array(live.at), force) for b in shared))
+            return self._at_load(np.array(live.at), np.array(live.force))
         gravity = float(np.hypot(*self.scene.load.gravity))
-        return self.body_force((gravity * live.direction[0], gravity * live.direction[1]))
+        return self.body_force((gravity * live.direction[0], gravity * live.direction[1]), loads)
 
     def control_row(self) -> Array:
         """Displacement of the control point along the live load, ``(nd,)``; see `results.Outcome`."""
         blocks, at, direction = self.scene.control_point
+        if isinstance(self.scene.load.live, PointLoad):
+            return self._at_load(at, direction)
         return np.asarray(sum(self.displacement_row(int(b), at, direction) for b in blocks)) / len(blocks)
+
+    def _at_load(self, at: Array, direction: Array) -> Array:
+        """Mean displacement where a point load acts, of the blocks it touches and in each of its pieces there."""
+        touched = self.scene.loaded_blocks
+        owner, times = self.pieces.owner[touched], np.bincount(self.pieces.owner[touched])
+        share = 1 / (times[owner] * np.count_nonzero(times))
+        rows = [s * self.displacement_row(int(b), at, direction) for s, b in zip(share, touched, strict=True)]
+        return np.asarray(sum(rows))

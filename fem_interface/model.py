@@ -9,16 +9,18 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from dynamics import Observer, Run, collapse_by_steps, nobody
 from dynamics.verdict import BUDGET, FIRST_STEP, LOCAL, VISCOUS
 from joints import Rule
 from results import Outcome
 from scene import Scene
 
+from .cracks import Cracks
 from .fracture import Energies
+from .loads import Loads
 from .modes import ModeCount
+from .operators import PointsOn
+from .piece_run import PieceRun
 from .runs import modal_wall
 from .stable import largest_scaling
 from .system import system_of
@@ -31,6 +33,9 @@ def fem(
     cells: int = 1,
     modes: ModeCount = "all",
     rule: Rule | None = None,
+    points: PointsOn = "elements",
+    cracks: Cracks = "joints",
+    loads: Loads = "consistent",
     mass_scaling: bool = True,
     energies: Energies = "given",
     collapse: float | None = None,
@@ -52,7 +57,13 @@ def fem(
     modes
         Modes of each block: 3 rigid motions, 6 with the uniform strains, or all of its mesh.
     rule
-        Quadrature rule of the joint elements; two Lobatto points where none is given.
+        Quadrature rule of the joints; two Lobatto points where none is given.
+    points
+        Whether the rule is laid on each joint element or on each joint whole, as for rigid blocks.
+    cracks
+        Whether blocks stay whole or may crack between all of their triangles, at the scene's `inner_joint`.
+    loads
+        Whether loads proportional to mass act as it does, or at inner nodes as in the paper.
     mass_scaling
         Make deformable modes heavy enough not to limit the time step.
     energies
@@ -74,19 +85,21 @@ def fem(
     -------
     Outcome
         `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `force` lists the points joint element by joint element, `motion` the blocks' rigid part.
+        it fell. `force` lists the points joint element by joint element, those inside blocks last; `motion` is
+        the blocks' rigid part.
     """
     start = time.perf_counter()
-    wall = modal_wall(scene, cells, modes, rule)
-    system = system_of(wall, mass_scaling=mass_scaling, energies=energies)
+    wall = modal_wall(scene, cells, modes, rule, points, cracks)
+    system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
+    damping = {"local": LOCAL, "viscous": VISCOUS}
+    run = Run(system, **damping) if cracks == "joints" else PieceRun(system, wall, **damping)
     factor = largest_scaling(wall, system.mass)
-    element = np.tile(wall.interface.element, len(wall.interface.weights))
     outcome = collapse_by_steps(
         scene,
         "fem",
-        Run(system, local=LOCAL, viscous=VISCOUS),
+        run,
         tolerance,
-        point_order=np.argsort(element, kind="stable"),
+        point_order=wall.interface.listing,
         locks=locks,
         note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",
         collapse=collapse,

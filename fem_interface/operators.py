@@ -4,6 +4,7 @@ Degrees of freedom are node by node, x before y: 2i and 2i + 1 are the displacem
 """
 
 from dataclasses import dataclass, fields
+from typing import Literal, TypeAlias
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
@@ -14,6 +15,9 @@ from skfem.models.elasticity import linear_elasticity, plane_stress
 from joints import JointPoints, Rule, lobatto
 from meshing import WallMesh
 from scene import Array, Indices, Scene, SceneError
+
+PointsOn: TypeAlias = Literal["elements", "joints"]
+"""What a quadrature rule is laid on: every joint element, or every joint whole, however many elements it has."""
 
 
 def stiffness_matrix(points: Array, triangles: Indices, young: float, poisson: float, thickness: float) -> csr_array:
@@ -41,7 +45,8 @@ def _mesh(points: Array, triangles: Indices) -> MeshTri:
 class Interface:
     """Points on the joint elements of a mesh, and how the displacements of the elements' nodes reach them.
 
-    The points are numbered like `points`: the first points of all elements, then all second ones, and so on.
+    The points are numbered like `points`: the first points of all elements, then all second ones, and so on. Where
+    a rule is laid on whole joints, an element comes once for each point in it, and has one point each time.
 
     Parameters
     ----------
@@ -63,6 +68,12 @@ class Interface:
     weights: Array
     points: JointPoints
 
+    @property
+    def listing(self) -> Indices:
+        """Order that lists the points joint by joint, element by element and along the tangent, ``(np,)``."""
+        along = (self.points.position * self.points.tangent).sum(axis=1)
+        return np.lexsort((along, np.tile(self.element, len(self.weights))))
+
     def arranged(self, order: Indices) -> "Interface":
         """The same elements ``(ne,)`` in another order."""
         ne = len(order)
@@ -75,8 +86,8 @@ class Interface:
         )
 
 
-def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None) -> Interface:
-    """Lay a quadrature rule on every joint element, moved in from the joints' ends by their inset.
+def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: PointsOn = "elements") -> Interface:
+    """Lay a quadrature rule on the joints, moved in from their ends by their inset.
 
     Parameters
     ----------
@@ -85,24 +96,26 @@ def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None) -> Interfa
     scene
         The scene.
     rule
-        Quadrature rule of each element; two Lobatto points where none is given.
+        Quadrature rule; two Lobatto points where none is given.
+    points
+        What the rule is laid on: each joint element, or each joint whole, whose points are then those of rigid
+        blocks.
 
     Raises
     ------
     SceneError
         If the inset leaves nothing of a joint's last element.
     """
+    if points not in ("elements", "joints"):
+        raise ValueError(f'points = {points!r}: must be "elements" or "joints"')
     rule = rule or lobatto()
-    a0, a1, b1, b0 = mesh.interfaces.T
-    joint = mesh.joint
+    inset = np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
+    element, local, share = (_on_elements if points == "elements" else _on_joints)(mesh, scene, rule, inset)
+    a0, a1, b1, b0 = mesh.interfaces[element].T
     run = mesh.points[a1] - mesh.points[a0]
     length = np.hypot(*run.T)
     tangent = run / length[:, None]
     normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
-
-    inset = np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint[joint]]
-    low, high = _ends_moved_in(joint, length, inset)
-    local = low[:, None] + (high - low)[:, None] * (rule.nodes + 1) / 2
     wall = _mesh(mesh.points, mesh.triangles)
     weights, position = _tabulated(wall, a0, a1, local)
     weights_b, position_b = _tabulated(wall, b0, b1, local)
@@ -110,31 +123,61 @@ def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None) -> Interfa
         raise ValueError("the two sides of a joint element do not face each other")
     if np.abs(weights - weights_b).max(initial=0.0) > 1e-9:
         raise ValueError("the two sides of a joint element are divided differently")
-    n = len(rule.nodes)
-    area = scene.thickness * length * rule.weights[:, None] / 2
-    points = JointPoints(
-        np.tile(joint, n),
-        np.tile(scene.joints.block[joint], (n, 1)),
+    n = local.shape[1]
+    found = JointPoints(
+        np.tile(mesh.joint[element], n),
+        np.tile(mesh.block[np.column_stack([a0, b0])], (n, 1)),
         position.transpose(1, 0, 2).reshape(-1, 2),
         np.tile(normal, (n, 1)),
         np.tile(tangent, (n, 1)),
-        area.ravel(),
+        (scene.thickness * length * share.T).ravel(),
     )
-    nodes = np.column_stack([a0, a1, b0, b1])
-    return Interface(np.arange(len(nodes)), nodes, normal, weights.transpose(1, 0, 2).copy(), points)
+    return Interface(element, np.column_stack([a0, a1, b0, b1]), normal, weights.transpose(1, 0, 2).copy(), found)
 
 
-def _ends_moved_in(joint: Indices, length: Array, inset: Array) -> tuple[Array, Array]:
-    """Part of each element that its rule is laid on, from `low` to `high` in [0, 1]."""
+def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tuple[Indices, Array, Array]:
+    """Lay a rule on every joint element.
+
+    Parameters
+    ----------
+    inset : (nj,) float
+        Distance by which the rule keeps from the ends of each joint [m].
+
+    Returns
+    -------
+    (ne,) int
+        The elements.
+    (ne, n) float
+        Points of each, from 0 at its first end to 1 at its last.
+    (ne, n) float
+        Part of the element's length that each stands for.
+    """
+    joint = mesh.joint
+    length = np.hypot(*(mesh.points[mesh.interfaces[:, 1]] - mesh.points[mesh.interfaces[:, 0]]).T)
     first = np.diff(joint, prepend=-1) != 0
     last = np.diff(joint, append=-1) != 0
-    low, high = np.where(first, inset / length, 0.0), np.where(last, 1 - inset / length, 1.0)
+    kept = inset[joint] / length
+    low, high = np.where(first, kept, 0.0), np.where(last, 1 - kept, 1.0)
     if (low >= high).any():
         worst = int(np.argmax(low - high))
+        name = "inner_joint.inset" if scene.joints.inner[joint[worst]] else "joint.inset"
         raise SceneError(
-            "joint.inset", f"must leave something of a joint element {length[worst]:.4g} m long", float(inset[worst])
+            name, f"must leave something of a joint element {length[worst]:.4g} m long", float(inset[joint[worst]])
         )
-    return low, high
+    local = low[:, None] + (high - low)[:, None] * (rule.nodes + 1) / 2
+    return np.arange(len(joint)), local, np.tile(rule.weights / 2, (len(joint), 1))
+
+
+def _on_joints(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tuple[Indices, Array, Array]:
+    """Lay a rule on every joint whole; see `_on_elements`, of whose elements only those with a point are named."""
+    elements = np.bincount(mesh.joint, minlength=len(scene.joints))
+    along = 0.5 + (0.5 - inset / scene.joints.length)[:, None] * rule.nodes
+    # The elements of a joint are equally long. A point where two meet is taken to the first of them.
+    scaled = along * elements[:, None]
+    place = np.clip(np.ceil(scaled - 1e-9).astype(np.int64) - 1, 0, elements[:, None] - 1)
+    element = (np.cumsum(elements) - elements)[:, None] + place
+    share = elements[:, None] * rule.weights / 2
+    return element.ravel(), (scaled - place).reshape(-1, 1), share.reshape(-1, 1)
 
 
 def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tuple[Array, Array]:

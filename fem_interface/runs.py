@@ -13,9 +13,10 @@ from joints import Rule
 from meshing import wall_mesh
 from scene import Indices, Scene
 
+from .cracks import Cracks, pieces
 from .modal_wall import ModalWall
 from .modes import ModeCount
-from .operators import interface
+from .operators import PointsOn, interface
 from .templates import templates
 
 RESOLUTION = 1e-9
@@ -51,9 +52,17 @@ def find_runs(wall: ModalWall) -> tuple[Indices, Indices]:
     return order, np.append(np.flatnonzero(~goes_on), ne)
 
 
-def modal_wall(scene: Scene, cells: int = 1, modes: ModeCount = "all", rule: Rule | None = None) -> ModalWall:
+def modal_wall(
+    scene: Scene,
+    cells: int = 1,
+    modes: ModeCount = "all",
+    rule: Rule | None = None,
+    points: PointsOn = "elements",
+    cracks: Cracks = "joints",
+) -> ModalWall:
     """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_system`."""
-    mesh = wall_mesh(scene, cells)
-    wall = ModalWall(scene, mesh, templates(mesh, scene, modes), interface(mesh, scene, rule))
+    found = pieces(scene, wall_mesh(scene, cells), cracks)
+    joints = interface(found.mesh, found.scene, rule, points)
+    wall = ModalWall(found, templates(found.mesh, found.scene, modes), joints)
     order, _ = find_runs(wall)
-    return replace(wall, interface=wall.interface.arranged(order))
+    return replace(wall, interface=joints.arranged(order))

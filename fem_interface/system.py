@@ -12,9 +12,12 @@ from joints.wall import wall_strength
 from scene import Scene
 
 from .block_kernels import gather_modes, scatter_modes
+from .cracks import Cracks
 from .fracture import Energies, fractured
+from .loads import Loads
 from .modal_wall import ModalWall
 from .modes import ModeCount
+from .operators import PointsOn
 from .runs import find_runs, modal_wall
 from .stable import scaled_modes
 
@@ -31,6 +34,9 @@ def fem_system(
     modes: ModeCount = "all",
     rule: Rule | None = None,
     *,
+    points: PointsOn = "elements",
+    cracks: Cracks = "joints",
+    loads: Loads = "consistent",
     damping: float = DAMPING,
     mass_scaling: bool = True,
     energies: Energies = "given",
@@ -46,7 +52,13 @@ def fem_system(
     modes
         Modes of each block: 3 rigid motions, 6 with the uniform strains, or all of its mesh.
     rule
-        Quadrature rule of the joint elements; two Lobatto points where none is given.
+        Quadrature rule of the joints; two Lobatto points where none is given.
+    points
+        Whether the rule is laid on each joint element or on each joint whole, as for rigid blocks.
+    cracks
+        Whether blocks stay whole or may crack between all of their triangles, at the scene's `inner_joint`.
+    loads
+        Whether loads proportional to mass act as it does, or at inner nodes.
     damping
         Viscous damping ratio of the deformable modes.
     mass_scaling
@@ -59,19 +71,24 @@ def fem_system(
     SceneError
         If the scene gives its joints or its blocks no stiffness.
     """
-    wall = modal_wall(scene, cells, modes, rule)
-    return system_of(wall, damping=damping, mass_scaling=mass_scaling, energies=energies)
+    wall = modal_wall(scene, cells, modes, rule, points, cracks)
+    return system_of(wall, loads=loads, damping=damping, mass_scaling=mass_scaling, energies=energies)
 
 
 def system_of(
-    wall: ModalWall, *, damping: float = DAMPING, mass_scaling: bool = True, energies: Energies = "given"
+    wall: ModalWall,
+    *,
+    loads: Loads = "consistent",
+    damping: float = DAMPING,
+    mass_scaling: bool = True,
+    energies: Energies = "given",
 ) -> BlockSystem:
     """Block system of a wall in modal coordinates; see `fem_system`."""
     scene, points = wall.scene, wall.interface.points
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     strength = wall_strength(scene, points)
     materials, of_joint = fractured(scene, energies)
-    dead, live = wall.body_force(scene.load.gravity), wall.live_load()
+    dead, live = wall.body_force(scene.load.gravity, loads), wall.live_load(loads)
     largest = float(np.abs(dead[wall.rigid[:, :2]]).max())
     strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
     return BlockSystem(

@@ -1,0 +1,102 @@
+"""Where the load multiplier of deformable blocks settles: joint quadrature, mesh, modes, lumped loads and load steps.
+
+Prints a Markdown table, one row a run as it ends: the bracket of λ and how far its middle lies from that of
+`dem-dynamic`. From the project's directory, for all walls (panel-06 takes longest) or some of them:
+
+    python -m benchmarks.fem_study
+    python -m benchmarks.fem_study panel-04 wall-w1
+"""
+
+import sys
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from compare import published_scene
+from dem.dynamic import dem_dynamic
+from dynamics.verdict import FIRST_STEP
+from fem_interface.model import fem
+from joints import Rule, gauss, lobatto
+from results import Outcome
+from scene import BlockMaterial, Scene
+
+WALLS = {"panel-02": 2, "panel-04": 4, "panel-06": 2, "wall-w1": 4}
+"""Walls, and the finest mesh that each is taken to, in cells."""
+
+INSET = 0.02
+"""Distance of wall-w1's contacts from the ends of its joints [m], with which its λ is unique."""
+
+RULES = {"Lobatto 2": lobatto(), "Lobatto 3": lobatto(3), "Gauss 2": gauss(2)}
+
+
+@dataclass(frozen=True)
+class Case:
+    """One run of a wall."""
+
+    rule: str = "Lobatto 2"
+    points: Literal["elements", "joints"] = "elements"
+    cells: int = 1
+    modes: Literal[3, 6, "all"] = "all"
+    loads: Literal["consistent", "inner"] = "consistent"
+    first_step: float = FIRST_STEP
+
+    def run(self, scene: Scene) -> Outcome:
+        """The wall's collapse in this case."""
+        rule: Rule = RULES[self.rule]
+        return fem(
+            scene,
+            cells=self.cells,
+            modes=self.modes,
+            rule=rule,
+            points=self.points,
+            loads=self.loads,
+            first_step=self.first_step,
+        )
+
+    def __str__(self) -> str:
+        return f"{self.rule} | {self.points} | {self.cells} | {self.modes} | {self.loads} | {self.first_step:g}"
+
+
+def cases(finest: int) -> list[Case]:
+    """What is varied, one thing at a time."""
+    on: tuple[Literal["elements", "joints"], ...] = ("elements", "joints")
+    modes: tuple[Literal[3, 6], ...] = (3, 6)
+    found = [Case(rule, points) for points in on for rule in RULES]
+    found += [Case(rule, cells=cells) for rule in ("Lobatto 2", "Gauss 2") for cells in (2, 4) if cells <= finest]
+    found += [Case(modes=count) for count in modes]
+    found.append(Case(loads="inner"))
+    return found + [Case(first_step=step) for step in (0.04, 0.06)]
+
+
+def wall(name: str) -> Scene:
+    """A published wall, its blocks of 1000 GPa as the paper's are."""
+    scene = published_scene(name)
+    inset = INSET if name == "wall-w1" else 0.0
+    block = BlockMaterial(scene.block.density, 1e12, 0.0)
+    return replace(scene, block=block, joint=replace(scene.joint, inset=inset))
+
+
+def row(name: str, case: str, outcome: Outcome, reference: float | None) -> str:
+    """A row of the table."""
+    if outcome.multiplier is None or reference is None:
+        return f"| {name} | {case} | {outcome.status} | |"
+    change = outcome.multiplier / reference - 1
+    return f"| {name} | {case} | {outcome.lower:.4f}–{outcome.upper:.4f} | {100 * change:+.1f} % |"
+
+
+def main() -> None:
+    """Print the table."""
+    print("| wall | rule | on | cells | modes | loads | first step | λ | to `dem-dynamic` |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for name in sys.argv[1:] or WALLS:
+        scene = wall(name)
+        for step in (FIRST_STEP, 0.04, 0.06):
+            rigid = dem_dynamic(scene, first_step=step)
+            if step == FIRST_STEP:
+                reference = rigid.multiplier
+            print(row(name, f"`dem-dynamic` | joints | | 3 | | {step:g}", rigid, reference), flush=True)
+        for case in cases(WALLS.get(name, 1)):
+            print(row(name, str(case), case.run(scene), reference), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,187 @@
+"""Potential cracks inside blocks: every triangle a piece of its own, held to the next by an inner joint.
+
+The scene says of what strength and stiffness inner joints are (`Scene.inner_joint`), and rigid blocks crack along
+their axis. In the mesh of such a scene that axis is one more line of edges between triangles; here all the others
+become joints too, of the same material. The paper puts such interfaces between all of its triangles (Sec. 5).
+"""
+
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from meshing import WallMesh
+from scene import Array, Blocks, Indices, Joints, Mask, Pins, Scene, SceneError
+
+Cracks: TypeAlias = Literal["joints", "blocks"]
+"""Where a wall may crack: at its joints, or between all triangles of its blocks too."""
+
+SAME = 1e-6
+"""How far the corners of congruent triangles may differ, as a fraction of the smallest one's size."""
+
+
+@dataclass(frozen=True, eq=False)
+class Pieces:
+    """What stays whole of a wall: its blocks, or their triangles.
+
+    Parameters
+    ----------
+    scene
+        The wall, with the pieces for its blocks. A joint between blocks keeps its number, and names the pieces at
+        its first end; it lies on as many more as it has elements.
+    mesh
+        Its mesh.
+    owner : (np,) int
+        Block that each piece is part of.
+    node : (nn,) int
+        Node of the whole blocks' mesh where each node is.
+    """
+
+    scene: Scene
+    mesh: WallMesh
+    owner: Indices
+    node: Indices
+
+
+def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
+    """Leave blocks whole, or part the movable ones into triangles.
+
+    Raises
+    ------
+    SceneError
+        If blocks are to crack and the scene does not say at what strength.
+    """
+    if cracks not in ("joints", "blocks"):
+        raise ValueError(f'cracks = {cracks!r}: must be "joints" or "blocks"')
+    if cracks == "joints":
+        return Pieces(scene, mesh, np.arange(len(scene.blocks)), np.arange(len(mesh.points)))
+    if scene.inner_joint is None:
+        raise SceneError("inner_joint", "is missing; cracks inside blocks need its strength and its stiffness")
+    return _in_triangles(scene, mesh)
+
+
+def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
+    loose = ~scene.fixed[mesh.triangle_block]
+    parts = np.where(scene.fixed, 1, np.bincount(mesh.triangle_block, minlength=len(scene.blocks)))
+    owner = np.repeat(np.arange(len(parts)), parts)
+    held = scene.fixed[owner]
+    # Triangles come in the order of their blocks, so the movable ones in that of their pieces.
+    piece = (np.cumsum(parts) - parts)[mesh.triangle_block]
+    piece[loose] = np.flatnonzero(~held)
+    first_node, node, triangles = _apart(mesh, owner, held, piece)
+    points, block = mesh.points[node], np.repeat(np.arange(len(owner)), np.diff(first_node))
+
+    edges = _Edges(mesh, triangles)
+    a0, a1, b1, b0 = mesh.interfaces.T
+    between = edges.nodes(a0, a1), edges.nodes(b1, b0)
+    inside = edges.inner(loose)
+    sides = [np.concatenate(pair) for pair in zip(between, inside, strict=True)]
+    joint = np.concatenate([mesh.joint, len(scene.joints) + np.arange(len(inside[0]))])
+    first = np.searchsorted(joint, np.arange(joint[-1] + 1))
+    outlines = [scene.blocks.polygon(owner[k]) if held[k] else points[first_node[k] :][:3] for k in range(len(owner))]
+    parted = replace(
+        scene,
+        blocks=Blocks.from_polygons(outlines),
+        fixed=held,
+        wall=scene.wall[owner],
+        pins=_pins(scene, mesh, block, node),
+        joints=Joints(
+            np.column_stack([block[side[first, 0]] for side in sides]),
+            np.concatenate([scene.joints.ends, points[inside[0]]]),
+            np.concatenate([scene.joints.inner, np.ones(len(inside[0]), dtype=bool)]),
+        ),
+    )
+    shape = _shapes(points, first_node, held)
+    interfaces = np.concatenate(sides, axis=1)
+    return Pieces(parted, WallMesh(points, first_node, block, shape, triangles, piece, interfaces, joint), owner, node)
+
+
+def _apart(mesh: WallMesh, owner: Indices, held: Mask, piece: Indices) -> tuple[Indices, Indices, Indices]:
+    """Give every piece nodes of its own.
+
+    Parameters
+    ----------
+    owner, held : (np,)
+        Block of each piece, and whether it is that block whole.
+    piece : (nt,) int
+        Piece of each triangle.
+
+    Returns
+    -------
+    (np + 1,) int
+        First node of each piece.
+    (nn,) int
+        Node of the mesh that each of the new ones is.
+    (nt, 3) int
+        The triangles, on the new nodes.
+    """
+    count = np.where(held, np.diff(mesh.first_node)[owner], 3)
+    first = np.concatenate([[0], np.cumsum(count)])
+    node = np.repeat(mesh.first_node[owner] - first[:-1], count) + np.arange(first[-1])
+    triangles = np.where(
+        held[piece][:, None],
+        mesh.triangles - (mesh.first_node[owner] - first[:-1])[piece][:, None],
+        first[piece][:, None] + np.arange(3),
+    )
+    loose = ~held[piece]
+    node[triangles[loose]] = mesh.triangles[loose]
+    return first, node, triangles
+
+
+class _Edges:
+    """Edges of triangles, each in the sense in which its triangle runs round: from old nodes to those of its piece."""
+
+    def __init__(self, mesh: WallMesh, triangles: Indices) -> None:
+        self._count = len(mesh.points)
+        self._old = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+        self._new = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+        key = self._key(*self._old.T)
+        self._order = np.argsort(key)
+        self._sorted = key[self._order]
+
+    def _key(self, start: Indices, stop: Indices) -> Indices:
+        return start * self._count + stop
+
+    def _find(self, start: Indices, stop: Indices) -> tuple[Indices, Mask]:
+        """Number of each edge, and whether it is there at all."""
+        key = self._key(start, stop)
+        at = np.minimum(np.searchsorted(self._sorted, key), len(self._sorted) - 1)
+        return self._order[at], np.asarray(self._sorted[at] == key)
+
+    def nodes(self, start: Indices, stop: Indices) -> Indices:
+        """Nodes of the pieces on given edges ``(n, 2)``."""
+        edge, there = self._find(start, stop)
+        if not there.all():
+            raise ValueError("a joint element does not lie on sides of triangles")
+        return self._new[edge]
+
+    def inner(self, loose: Mask) -> tuple[Indices, Indices]:
+        """Nodes a0, a1 and b1, b0 of the two sides of every edge between two loose triangles."""
+        start, stop = self._old.T
+        across, there = self._find(stop, start)
+        here = np.arange(len(start))
+        one = np.flatnonzero(there & (here < across) & np.repeat(loose, 3))
+        return self._new[one], self._new[across[one]]
+
+
+def _shapes(points: Array, first_node: Indices, held: Mask) -> Indices:
+    """Shape of each piece: the same for congruent triangles, node by node; held pieces each have their own."""
+    corner = points[first_node[:-1][~held][:, None] + np.arange(3)]
+    side = corner[:, 1:] - corner[:, :1]
+    size = np.sqrt(np.abs(np.linalg.det(side)).min())
+    _, shape = np.unique(np.rint(side.reshape(-1, 4) / (SAME * size)), axis=0, return_inverse=True)
+    found = np.empty(len(held), dtype=np.int64)
+    found[~held] = shape.ravel()
+    found[held] = len(shape) + np.arange(held.sum())
+    return found
+
+
+def _pins(scene: Scene, mesh: WallMesh, block: Indices, node: Indices) -> Pins:
+    """Pins of the pieces: each of those that meet at a pinned corner is held there."""
+    found = []
+    for k, (owner, point) in enumerate(zip(scene.pins.block, scene.pins.point, strict=True)):
+        there = np.flatnonzero(mesh.block[node] == owner)
+        near = np.hypot(*(mesh.points[node[there]] - point).T) <= scene.blocks.tolerance
+        found += [(k, piece) for piece in block[there[near]]]
+    pin, piece = np.array(found, dtype=np.int64).reshape(-1, 2).T
+    return Pins(piece, scene.pins.point[pin], scene.pins.direction[pin])

@@ -1,0 +1,64 @@
+"""Where the loads of a block's weight act on its mesh: everywhere, or lumped at its inner nodes as in the paper."""
+
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from scene import Array, Mask, SceneError
+
+from .cracks import Pieces
+
+Loads: TypeAlias = Literal["consistent", "inner"]
+"""Loads proportional to mass: consistent with it, or lumped at nodes inside the blocks (the paper's Sec. 5)."""
+
+
+def inner_mass(wall: Pieces) -> Array:
+    """Mass of each movable block lumped at its inner nodes, ``(nn,)`` [kg]; nothing at all other nodes.
+
+    Each node bears in the manner of the triangles round it, m_i = A_i (α + β · (x_i − c)), with α and β such that
+    the block's mass and its centroid c are right. Between the pieces of a cracked block its nodes' masses are
+    shared as A_i is.
+
+    Raises
+    ------
+    SceneError
+        If the inner nodes of a block are too few.
+    """
+    mesh = wall.mesh
+    owner, count = wall.owner[mesh.block], int(wall.owner[-1]) + 1
+    corner = mesh.points[mesh.triangles]
+    side = corner[:, 1:] - corner[:, :1]
+    area = np.linalg.det(side) / 2
+    of_node = np.bincount(mesh.triangles.ravel(), np.repeat(area / 3, 3), minlength=len(mesh.points))
+    of_node[_on_outline(wall)] = 0.0
+
+    weight = np.bincount(wall.owner, wall.scene.blocks.area, minlength=count)
+    first = [np.bincount(wall.owner, wall.scene.blocks.area * x, minlength=count) for x in wall.scene.blocks.centroid.T]
+    centre = np.column_stack(first) / weight[:, None]
+    reach = (mesh.points - centre[owner]) / np.sqrt(weight)[owner, None]
+    terms = np.column_stack([np.ones(len(reach)), reach])
+    moments = np.zeros((count, 3, 3))
+    np.add.at(moments, owner, of_node[:, None, None] * terms[:, :, None] * terms[:, None, :])
+    share = np.linalg.pinv(moments / weight[:, None, None], rcond=1e-9, hermitian=True)[:, 0]
+    found = of_node / weight[owner] * (terms * share[owner]).sum(axis=1)
+
+    still = np.bincount(wall.owner, wall.scene.fixed, minlength=count) > 0
+    held = np.column_stack([np.bincount(owner, found * term, minlength=count) for term in terms.T])
+    lost = ~still & (np.abs(held - [1, 0, 0]).max(axis=1) > 1e-9)
+    if lost.any():
+        piece = int(np.argmax(wall.owner == np.argmax(lost)))
+        raise SceneError(
+            wall.scene.blocks.name(piece), "has no inner nodes that could bear its load; take more cells a block"
+        )
+    mass = wall.scene.block.density * wall.scene.thickness * weight
+    return np.where(still[owner], 0.0, found * mass[owner])
+
+
+def _on_outline(wall: Pieces) -> Mask:
+    """Whether each node lies on the outline of its block, ``(nn,)``: an edge that one triangle alone has does."""
+    nodes = wall.node[wall.mesh.triangles]
+    edges = np.sort(np.stack([nodes, np.roll(nodes, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edge, times = np.unique(edges, axis=0, return_counts=True)
+    outer = np.zeros(int(wall.node.max()) + 1, dtype=bool)
+    outer[edge[times == 1].ravel()] = True
+    return outer[wall.node]

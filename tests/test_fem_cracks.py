@@ -1,0 +1,338 @@
+"""Cracks inside deformable blocks: triangles held together by inner joints of a strength of their own."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_array, diags_array
+from scipy.sparse.linalg import spsolve
+
+from dynamics import Criteria, Run, State, settle
+from fem_interface import nodal_jump
+from fem_interface.fracture import fractured
+from fem_interface.modal_wall import ModalWall
+from fem_interface.model import fem
+from fem_interface.piece_run import PieceRun
+from fem_interface.runs import modal_wall
+from fem_interface.system import system_of
+from joints.point_kernel import FRICTION_WORK
+from joints.softening_kernel import DAMAGE
+from scene import Array, BlockMaterial, Indices, JointMaterial, Load, Scene, SceneError, Stiffness, build_scene
+from tests.walls import panel
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+
+
+def wall(inner: dict[str, Any] | None, stiffness: float = 1e12, **changes: Any) -> Scene:
+    """A small wall whose blocks may crack at joints of a stiffness [Pa/m] in either direction."""
+    size = {"wall__length": 0.48, "wall__height": 0.12, "block__young": 1e10, "block__poisson": 0.2}
+    tables: dict[str, Any] = {**size, "joint__mortar": MORTAR, **changes}
+    if inner is not None:
+        tables["inner_joint"] = {
+            "friction": 0.6,
+            "normal_stiffness": stiffness,
+            "shear_stiffness": stiffness,
+            **inner,
+        }
+    return panel(**tables)
+
+
+STRONG = {"cohesion": 1e9}
+SPEED = 2e-3
+"""At which a block is torn apart [m/s]."""
+
+POINT = {"kind": "point", "at": [0.24, 0.12], "force": [0, -1]}
+
+
+def drawing() -> Scene:
+    """Two irregular blocks on a base, in gmsh's own triangulation."""
+    blocks = [
+        np.array([[0.0, 0], [0.5, 0], [0.42, 0.6], [0, 0.5]]),
+        np.array([[0.5, 0], [1.1, 0], [1.0, 0.55], [0.42, 0.6]]),
+    ]
+    return build_scene(
+        "drawing",
+        blocks,
+        thickness=0.1,
+        block=BlockMaterial(2000.0, 3e9, 0.3),
+        joint=JointMaterial(0.6, 1e3, 1e3, Stiffness(1e11, 4e10)),
+        load=Load(),
+        inner_joint=JointMaterial(0.7, 1e5, 1e5, Stiffness(1e12, 4e11)),
+    )
+
+
+def corners() -> Scene:
+    return wall(STRONG, joint__cohesion=1e5, support__kind="corners", load={"gravity": 0.0, "live": POINT})
+
+
+def elastic_stiffness(found: ModalWall) -> csr_array:
+    """Stiffness in modal coordinates of a wall whose joints stay elastic."""
+    system = system_of(found)
+    jumps = []
+    for k in range(len(system.mass)):
+        motion, opening, slip = np.zeros(len(system.mass)), *np.zeros((2, system.law.points))
+        motion[k] = 1.0
+        system.gather(motion, system.geometry, opening, slip)
+        jumps.append(np.concatenate([opening, slip]))
+    B = csr_array(np.array(jumps).T)
+    weight = np.concatenate([system.law.normal_stiffness * system.area, system.law.shear_stiffness * system.area])
+    return csr_array(B.T @ (B * weight[:, None]) + diags_array(system.stiffness))
+
+
+def elastic_displacement(found: ModalWall) -> float:
+    """Displacement of the control point under dead and live load, all joints elastic [m]."""
+    system = system_of(found)
+    moving = np.flatnonzero(np.isfinite(system.mass))
+    K = elastic_stiffness(found)[moving][:, moving]
+    return float(system.control[moving] @ spsolve(K.tocsc(), (system.dead + system.live)[moving]))
+
+
+# --- geometry ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("cells", [1, 2])
+@pytest.mark.parametrize("make", [lambda: wall(STRONG), drawing, corners])
+def test_every_triangle_is_a_piece_and_every_edge_inside_a_block_a_joint(make: Any, cells: int) -> None:
+    """The edges of the mesh, counted: three a triangle are outline, joint or inner; weight and outline are kept."""
+    scene = make()
+    whole, found = modal_wall(scene, cells), modal_wall(scene, cells, cracks="blocks")
+    moving = ~scene.fixed[whole.mesh.triangle_block]
+    assert (~found.scene.fixed).sum() == moving.sum()
+    assert found.scene.mass[~found.scene.fixed].sum() == pytest.approx(scene.mass[~scene.fixed].sum(), rel=1e-12)
+    edges = np.sort(whole.mesh.triangles[moving][:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    twice = (np.unique(edges, axis=0, return_counts=True)[1] == 2).sum()
+    assert len(found.mesh.joint) - len(whole.mesh.joint) == twice
+    assert found.scene.joints.inner.sum() == scene.joints.inner.sum() + twice
+    points = found.interface.points
+    facing = found.mesh.points[found.interface.nodes[:, :2]] - found.mesh.points[found.interface.nodes[:, 2:]]
+    assert np.abs(facing).max() <= scene.blocks.tolerance
+    assert ((_between(found, points.block) * points.normal).sum(axis=1) > 0).all()
+    assert found.pieces.owner.max() + 1 == len(scene.blocks)
+    assert np.abs(found.mesh.points - whole.mesh.points[found.pieces.node]).max() == 0
+
+
+def _between(found: ModalWall, block: Indices) -> Array:
+    """From the pieces on side a to those on side b."""
+    centroid = found.scene.blocks.centroid
+    return np.asarray(centroid[block[:, 1]] - centroid[block[:, 0]])
+
+
+def test_the_axis_of_a_block_that_may_crack_is_one_more_edge_of_its_mesh() -> None:
+    """Blocks that the scene cuts in halves have the triangles of whole ones."""
+    cut, plain = (modal_wall(scene, 2).mesh for scene in (wall(STRONG), wall(None)))
+
+    def centres(mesh: Any) -> Array:
+        found = mesh.points[mesh.triangles].mean(axis=1)
+        return np.asarray(found[np.lexsort(np.round(found.T, 9))])
+
+    assert np.abs(centres(cut) - centres(plain)).max() < 1e-12
+
+
+def test_equal_cells_have_four_templates() -> None:
+    assert len(modal_wall(wall(STRONG, wall__height=0.24), 2, cracks="blocks").templates) == 4
+
+
+@pytest.mark.parametrize("make", [lambda: wall(STRONG), drawing])
+@pytest.mark.parametrize("on", ["elements", "joints"])
+def test_whole_blocks_open_no_inner_joint(make: Any, on: Any) -> None:
+    """Continuous displacements have no jump there, and those of whole blocks at the joints between them."""
+    scene = make()
+    whole, found = (modal_wall(scene, 2, points=on, cracks=cracks) for cracks in ("joints", "blocks"))
+    u = np.random.default_rng(3).normal(size=whole.mesh.points.shape)
+    parts = []
+    for wall_, nodal in ((whole, u), (found, u[found.pieces.node])):
+        jump = nodal_jump(wall_.interface, len(wall_.mesh.points))
+        order = wall_.interface.listing
+        parts.append([(jump.opening @ nodal.ravel())[order], (jump.slip @ nodal.ravel())[order]])
+    n = len(parts[0][0])
+    for before, after in zip(*parts, strict=True):
+        assert after[:n] == pytest.approx(before, abs=1e-12)
+        assert np.abs(after[n:]).max() < 1e-12
+
+
+@pytest.mark.parametrize("make", [lambda: wall(STRONG), drawing])
+@pytest.mark.parametrize("loads", ["consistent", "inner"])
+def test_loads_on_pieces_have_the_resultant_of_their_block(make: Any, loads: Any) -> None:
+    """Momentum that gravity and the live load give to each block, and none of rotation."""
+    scene = make()
+    found = modal_wall(scene, 2, cracks="blocks")
+    system = system_of(found, loads=loads)
+    run = PieceRun(system, found)
+    state = State.at_rest(system)
+    state.motion = np.where(np.isfinite(system.mass), (system.dead + 0.4 * system.live) / system.mass, 0.0)
+    accelerated = run.motion_of_blocks(state)[~scene.fixed]
+    assert accelerated == pytest.approx(np.tile([0.4 * 9.81, -9.81, 0.0], (len(accelerated), 1)), abs=1e-10)
+
+
+def test_blocks_move_as_wholes_where_their_pieces_do() -> None:
+    """Rigid motions of all blocks, given to their pieces, are read back."""
+    scene = drawing()
+    found = modal_wall(scene, cracks="blocks")
+    run = PieceRun(system_of(found), found)
+    rigid = np.random.default_rng(4).normal(size=(len(scene.blocks), 3))
+    rigid[scene.fixed] = 0.0
+    owner = found.pieces.owner
+    arm = found.scene.blocks.centroid - scene.blocks.centroid[owner]
+    of_piece = rigid[owner]
+    of_piece[:, :2] += rigid[owner, 2:] * np.column_stack([-arm[:, 1], arm[:, 0]])
+    state = State.at_rest(run.system)
+    state.motion[found.rigid] = of_piece
+    state.velocity[found.rigid] = 2 * of_piece
+    assert run.motion_of_blocks(state) == pytest.approx(rigid, abs=1e-12)
+    assert run.velocity_of_blocks(state) == pytest.approx(2 * rigid, abs=1e-12)
+
+
+def test_cracks_need_a_scene_that_says_how_strong_blocks_are() -> None:
+    with pytest.raises(SceneError, match="inner_joint: is missing; cracks inside blocks") as refused:
+        fem(wall(None), cracks="blocks")
+    assert "\n" not in str(refused.value)
+    with pytest.raises(ValueError, match="cracks = 'everywhere'"):
+        modal_wall(wall(STRONG), cracks="everywhere")  # type: ignore[arg-type]
+
+
+def test_an_inset_wider_than_an_inner_edge_is_refused_by_its_name() -> None:
+    with pytest.raises(SceneError, match=r"inner_joint\.inset = 0.025"):
+        modal_wall(wall({**STRONG, "inset": 0.025}), 2, cracks="blocks")
+
+
+def test_inner_joints_have_their_own_fracture_energies_not_those_of_mortar() -> None:
+    scene = wall({**STRONG, "fracture_energy_1": 7.0}, joint__cohesion=1e5)
+    found = modal_wall(scene, cracks="blocks").scene
+    materials, of_joint = fractured(found, "corrected")
+    inner = {materials[k].fracture_energy_1 for k in of_joint[found.joints.inner]}
+    between = {materials[k].fracture_energy_1 for k in of_joint[~found.joints.inner]}
+    assert inner == {7.0}
+    assert not between & {7.0, None}
+
+
+# --- strong inner joints -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("load", [{}, {"load": {"gravity": 0.0, "live": POINT}}])
+def test_stiff_inner_joints_leave_the_elastic_response_of_whole_blocks(load: dict[str, Any]) -> None:
+    """What they add to the compliance falls as 1 / k: slope −1 ± 0.05 over two decades."""
+    whole = elastic_displacement(modal_wall(wall(None, **load)))
+    walls = [wall(STRONG, k, **load) for k in (1e13, 1e14, 1e15)]
+    added = [elastic_displacement(modal_wall(scene, cracks="blocks")) / whole - 1 for scene in walls]
+    assert np.diff(np.log10(added)) == pytest.approx(-1.0, abs=0.05)
+    assert added[-1] < 1e-3
+
+
+def test_strong_blocks_do_not_crack() -> None:
+    """λ of a small wall whose triangles are held together by stiff and strong joints is that of whole blocks."""
+    size = {"wall__length": 0.24, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.12}
+    whole = fem(wall(None, **size))
+    cracked = fem(wall(STRONG, 2e11, **size), cracks="blocks")
+    assert whole.multiplier is not None
+    assert whole.multiplier < 0.55
+    assert whole.status == cracked.status == "collapse"
+    assert cracked.multiplier == pytest.approx(whole.multiplier, rel=0.01)
+    assert cracked.dofs is not None
+    assert whole.dofs is not None
+    assert cracked.dofs > 2 * whole.dofs
+    assert cracked.motion.shape == (len(wall(STRONG, **size).blocks), 3)
+
+
+# --- weak inner joints ---------------------------------------------------------------------------------------
+
+
+def pulled_apart(direction: int, energies: tuple[float, float]) -> tuple[Run, State, ModalWall]:
+    """A block torn in two halves on its axis: its left end is held and its right one drawn away, x or y."""
+    brittle = {"cohesion": 2e5, "tensile_strength": 1e5}
+    fracture = {"fracture_energy_1": energies[0], "fracture_energy_2": energies[1]}
+    size = {"wall__length": 0.24, "wall__height": 0.06, "joint__friction": 0.0, "block__poisson": 0.0}
+    found = modal_wall(wall({**brittle, **fracture}, 1e11, **size), cracks="blocks")
+    system = system_of(found)
+    centroid = found.scene.blocks.centroid
+    moving = ~found.scene.fixed
+    # In opening the two outermost triangles are held and all others free; in shear both halves are, whole.
+    reach = np.abs(centroid[:, 0] - 0.12) - (0.09 if direction == 0 else 0.0)
+    held, drawn = (np.flatnonzero(moving & (reach > 0) & (sense * (centroid[:, 0] - 0.12) > 0)) for sense in (-1, 1))
+    assert len(held) == len(drawn) == (1 if direction == 0 else 4)
+    mass = system.mass.copy()
+    for k, blocks in ((np.inf, held), (1e15, drawn)):
+        for template, first in zip(found.templates, found.first, strict=False):
+            n, modes = len(template.blocks), len(template.modes.mass)
+            rows = np.flatnonzero(np.isin(template.blocks, blocks))
+            mass[(first + n * np.arange(modes)[:, None] + rows).ravel()] = k
+    nothing = np.zeros_like(mass)
+    run = Run(replace(system, mass=mass, dead=nothing, live=nothing))
+    state = State.at_rest(run.system)
+    state.velocity[found.rigid[drawn, direction]] = SPEED
+    return run, state, found
+
+
+@pytest.mark.parametrize("direction", [0, 1])
+def test_a_block_torn_apart_dissipates_the_energy_of_its_crack(direction: int) -> None:
+    """G_I × area where its halves are drawn apart, G_II × area where they are sheared; nothing elsewhere."""
+    energies = (20.0, 35.0)
+    run, state, found = pulled_apart(direction, energies)
+    spent = np.zeros(run.system.law.points)
+    wanted = 1.2 * 2 * energies[direction] / (1e5 if direction == 0 else 2e5) + 1e-5
+    while state.steps * run.dt * SPEED < wanted:
+        run.hold(state, 0.0, 500)
+        after = run.system.area * state.history[FRICTION_WORK]
+        assert (after - spent).min() >= -1e-12 * after.max()
+        spent = after
+    points = found.interface.points
+    crack = np.abs(points.position[:, 0] - 0.12) < 1e-9
+    crack &= found.scene.joints.inner[points.joint] & (np.abs(points.normal[:, 0]) > 0.99)
+    assert run.system.area[crack].sum() == pytest.approx(0.06 * 0.12, rel=1e-12)
+    assert spent[crack].sum() == pytest.approx(energies[direction] * 0.06 * 0.12, rel=1e-3)
+    assert state.history[DAMAGE][crack] == pytest.approx(1.0)
+    assert not state.history[DAMAGE][~crack & found.scene.joints.inner[points.joint]].any()
+    assert spent[~crack].sum() < 1e-3 * spent.sum()
+
+
+def test_weaker_blocks_never_carry_more() -> None:
+    """λ of a tall block on a rough base: b / h as a whole, less as its triangles hold together less, at last none."""
+    size = {
+        "wall__length": 0.12,
+        "wall__height": 0.24,
+        "wall__block_width": 0.24,
+        "wall__block_height": 0.24,
+        "joint__friction": 3.0,
+    }
+    found = [fem(wall({"cohesion": c}, 1e11, **size), cracks="blocks") for c in (1e6, 1e3, 3e2)]
+    assert [outcome.status for outcome in found] == ["collapse", "collapse", "infeasible"]
+    assert found[0].multiplier == pytest.approx(0.5, rel=0.01)
+    assert found[1].upper is not None
+    assert found[1].upper < 0.45
+
+
+@pytest.mark.parametrize("energy", [None, 0.0, 5.0])
+def test_dissipation_never_falls_where_blocks_crack(energy: float | None) -> None:
+    """Point by point, between blocks and inside them, through rest and collapse; and the ledger closes."""
+    brittle = {"cohesion": 300.0, "fracture_energy_1": energy, "fracture_energy_2": energy}
+    inner = {key: value for key, value in brittle.items() if value is not None}
+    found = modal_wall(wall(inner, 1e11), cracks="blocks")
+    run = Run(system_of(found))
+    state = State.at_rest(run.system)
+    spent, damped = state.history[FRICTION_WORK].copy(), 0.0
+    for k in range(60):
+        run.hold(state, 0.05 * k, 200)
+        assert (state.history[FRICTION_WORK] >= spent - 1e-12 * np.abs(spent).max()).all()
+        spent = state.history[FRICTION_WORK].copy()
+        ledger = run.ledger(state)
+        assert ledger.damped >= damped
+        damped = ledger.damped
+        assert np.isfinite(state.motion).all()
+    inside = found.scene.joints.inner[found.interface.points.joint]
+    assert spent[inside].max() > 0
+    assert spent[~inside].max() > 0
+    assert abs(ledger.residual) < 0.01 * abs(ledger.external)
+
+
+def test_pinned_corners_of_cracked_blocks_do_not_move() -> None:
+    scene = corners()
+    found = modal_wall(scene, cracks="blocks")
+    run = PieceRun(system_of(found), found)
+    state = State.at_rest(run.system)
+    assert settle(run, state, 1e3, Criteria(collapse=1.0, rest=1e-4)) == "stable"
+    u = found.displacement(state.motion)
+    for point, direction in zip(scene.pins.point, scene.pins.direction, strict=True):
+        pinned = np.hypot(*(found.mesh.points - point).T) < 1e-9
+        pinned &= ~found.scene.fixed[found.mesh.block]
+        assert pinned.sum() == 2
+        assert np.abs(u[pinned] @ direction).max() < 1e-12 * np.abs(u).max()
