@@ -9,6 +9,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from .fingerprint import LIBRARIES, code_digest
+from .published import BARALDI, CONCENTRATED
 from .table import Comparison, Sheet, cost_sheets, multiplier_sheets
 
 DRAWN_WITH = ("pyvista", "vtk", "matplotlib")
@@ -43,7 +44,7 @@ def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: flo
         "<h1>Masonry walls from their description to their collapse</h1>",
         f"<p>{len(comparison.campaign)} cases: {len(comparison.scenes)} walls by {len(comparison.models)} models.</p>",
         "<h2>Collapse multipliers</h2>",
-        *(_table(sheet) for sheet in multiplier_sheets(comparison)),
+        *map(_table, _paper_in_one(multiplier_sheets(comparison))),
         "<h2>Charts and mechanisms</h2>",
         *([f"<p>{html.escape(why_no_plates)}</p>"] if why_no_plates else []),
         *map(_figure, pictures),
@@ -62,6 +63,21 @@ def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: flo
             "</body>\n</html>\n",
         ]
     )
+
+
+def _paper_in_one(sheets: Sequence[Sheet]) -> list[Sheet]:
+    """The paper's two tables as one, its sixteen panels in a row; what only one of them prints is left blank."""
+    paper = [sheet for sheet in sheets if sheet.title in (BARALDI, CONCENTRATED)]
+    if len(paper) < 2:
+        return list(sheets)
+    heads = list(dict.fromkeys(head for sheet in paper for head in sheet.heads))
+    rows = [
+        [dict(zip(sheet.heads, row, strict=True)).get(head, "") for head in heads]
+        for sheet in paper
+        for row in sheet.rows
+    ]
+    others = [sheet for sheet in sheets if sheet not in paper]
+    return [Sheet("; ".join(sheet.title for sheet in paper), heads, rows), *others]
 
 
 def _provenance(comparison: Comparison, tolerance: float) -> Sheet:

@@ -9,7 +9,7 @@ from scene import Array
 from .run import Criteria, Observer, Run, Verdict, nobody, settle
 from .system import State
 
-RAMP, RAMP_WEIGHTLESS = 4, 20
+RAMP, RAMP_WEIGHTLESS = 4, 10
 """Length of the ramp to each load, in times that the wall took to rest under the first one.
 
 Loads put on at once send waves through the wall. Under its own weight it hardly minds. A wall without weight has no

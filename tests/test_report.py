@@ -153,8 +153,8 @@ def test_the_pictures_of_a_report_are_whole(page: Path, drawn: list[Path]) -> No
 
 def test_the_table_has_the_sixteen_published_panels(page: Path, comparison: Comparison) -> None:
     tables = read(page).tables
-    baraldi = [title for title in tables if title.startswith("Baraldi") and "seconds" not in title]
-    rows = [row for title in baraldi for row in tables[title][1:]]
+    (paper,) = (title for title in tables if title.startswith("Baraldi") and "seconds" not in title)
+    rows = tables[paper][1:]
     assert [row[0] for row in rows] == [case.name for case in PUBLISHED if not case.name.startswith("wall")]
     assert len(rows) == 16
     row = rows[0]
