@@ -54,7 +54,11 @@ def test_bracket_stays_where_it_is(name: str) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize(("name", "bound"), [("point-load-2", 99.3e3), ("point-load-4", 260.4e3)])
 def test_walls_without_weight_are_loaded_slower_until_the_bracket_stays(name: str, bound: float) -> None:
-    """The paper's concentrated loads: the bracket, its rate error, and the associated bound above it."""
+    """The paper's concentrated loads: the bracket, its rate error, and the associated bound above it.
+
+    Motions followed twice as far before they count as a collapse move it by 2 % at most; cut off at a twentieth of a
+    block, as walls with a weight are, the first would bear a fifth less.
+    """
     scene = published_scene(name)
     outcome = dem_dynamic(scene)
     assert outcome.status == "collapse"
@@ -64,7 +68,7 @@ def test_walls_without_weight_are_loaded_slower_until_the_bracket_stays(name: st
     assert outcome.lower <= bound * 1.001
     slipped = dem_dynamic(scene, collapse=1.6)
     assert slipped.lower is not None
-    assert slipped.lower == pytest.approx(outcome.lower, rel=0.01)
+    assert slipped.lower == pytest.approx(outcome.lower, rel=0.02)
 
 
 @pytest.mark.parametrize("name", ["wall-w1", "wall-w2", "wall-w3", "panel-02", "panel-04", "point-load-quarter"])
