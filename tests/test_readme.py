@@ -31,7 +31,7 @@ def test_commands_run_one_after_the_other(wall: Path) -> None:
     assert len(lines) >= 5
     draws = not why_not_drawn()
     for line in lines:
-        assert command(line.split()) == (0 if draws or not line.startswith("render") else 2), line
+        assert command(line.split()) == (0 if draws or not line.startswith("render") else 3), line
 
 
 def test_python_lines_run(wall: Path, capsys: pytest.CaptureFixture[str]) -> None:
