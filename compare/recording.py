@@ -10,6 +10,7 @@ from dem.pushover import State as StaticState
 from dem.rigid_system import contact_points
 from dem.static_system import StaticSystem
 from dynamics import Criteria, Run, State
+from dynamics.run import CALM
 from fem_interface.modal_wall import ModalWall
 from fem_interface.runs import modal_wall
 from joints.softening_kernel import DAMAGE, softening_kernel
@@ -22,9 +23,6 @@ from results.vtk_messages import VtkError
 from scene import Array, Scene
 
 from .models import IN_MOTION
-
-CALM_LOOKS = 3
-"""Looks in a row at which a wall must be at rest, as in `dynamics.settle`."""
 
 FALL = 12
 """Most moments of a fall that are kept."""
@@ -126,7 +124,7 @@ class MotionRecorder(Recorder):
         if multiplier != self._multiplier:
             self._next_load(multiplier)
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
-        if self._calm == CALM_LOOKS:
+        if self._calm == CALM:
             self.keep(self.frame(run, state, multiplier))
             self._looks = []
         elif not self._looks or state.steps >= self._looks[-1][0] + self._stride:

@@ -11,6 +11,7 @@ from rich.text import Text
 
 from homog import homog
 from results import Outcome
+from results.outcome import number
 from scene import Scene, SceneError
 
 from .campaign import Campaign
@@ -163,7 +164,7 @@ def _printed_number(label: str, values: Mapping[str, float]) -> str:
     """A printed value with the three decimals that papers give, or nothing."""
     if label not in values:
         return ""
-    return _number(values[label]) if label == CORRECTED else f"{values[label]:.3f}"
+    return number(values[label]) if label == CORRECTED else f"{values[label]:.3f}"
 
 
 def _cell(campaign: Campaign, name: str, model: str) -> str:
@@ -179,12 +180,12 @@ def _cell(campaign: Campaign, name: str, model: str) -> str:
 def _bracket(outcome: Outcome) -> str:
     lower, upper, multiplier = outcome.lower, outcome.upper, outcome.multiplier
     if lower is not None and upper is not None and upper - lower > ALIKE * abs(upper):
-        return f"{_number(lower)} – {_number(upper)}"
+        return f"{number(lower)} – {number(upper)}"
     if multiplier is not None:
-        return _number(multiplier)
+        return number(multiplier)
     if upper is not None:
-        return f"≤ {_number(upper)}"
-    return "" if lower is None else f"≥ {_number(lower)}"
+        return f"≤ {number(upper)}"
+    return "" if lower is None else f"≥ {number(lower)}"
 
 
 def _cost(campaign: Campaign, name: str, model: str) -> str:
@@ -194,10 +195,3 @@ def _cost(campaign: Campaign, name: str, model: str) -> str:
     dofs = "–" if outcome.dofs is None else str(outcome.dofs)
     steps = "–" if outcome.steps is None else str(outcome.steps)
     return f"{dofs} / {steps} / {outcome.seconds:.2g}"
-
-
-def _number(value: float) -> str:
-    """Four decimals for a multiplier of order one, whole newtons for a force."""
-    if value != 0 and abs(value) < 0.01:
-        return f"{value:.3g}"
-    return f"{value:.4f}" if abs(value) < 100 else f"{value:,.0f}"

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics import Observer, Run, collapse_by_steps, finite_curve, nobody
-from dynamics.verdict import BUDGET, FIRST_STEP, LOCAL, VISCOUS
+from dynamics.verdict import BUDGET, FIRST_STEP
 from results import Outcome
 from scene import Array, Scene
 
@@ -59,7 +59,7 @@ def dem_dynamic(
     outcome = collapse_by_steps(
         scene,
         "dem-dynamic",
-        Run(rigid_system(scene), local=LOCAL, viscous=VISCOUS),
+        Run(rigid_system(scene)),
         tolerance,
         point_order=np.argsort(contact_points(scene).joint, kind="stable"),
         locks=lambda: locks(equilibrium(scene)),
@@ -100,7 +100,7 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
     SceneError
         For a scene that is not of this kind.
     """
-    run = FiniteRun(scene, local=local, viscous=VISCOUS)
+    run = FiniteRun(scene, local=local)
     block, at, direction = scene.control_point
 
     def measure(motion: Array) -> tuple[float, float]:

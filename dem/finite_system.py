@@ -7,6 +7,7 @@ import numpy as np
 
 import dynamics
 from dynamics import BlockSystem, block_frequency_squared
+from dynamics.run import LOCAL, VISCOUS
 from joints import wall_points
 from joints.contacts import Contacts, Outline, find_contacts, resting
 from joints.laws import kernel_law
@@ -70,7 +71,7 @@ class FiniteRun(dynamics.FiniteRun):
     """
 
     def __init__(
-        self, scene: Scene, system: BlockSystem | None = None, *, local: float = 0.5, viscous: float = 0.1
+        self, scene: Scene, system: BlockSystem | None = None, *, local: float = LOCAL, viscous: float = VISCOUS
     ) -> None:
         system = system or finite_system(scene)
         outline = Outline.of(scene)

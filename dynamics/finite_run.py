@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from joints.contacts import Contacts, Outline, find_contacts
 from joints.point_kernel import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE
@@ -258,11 +259,12 @@ def finite_curve(
     steps = max(1, round(distance / (speed * PIECES * run.dt)))
     power = speed * float(np.abs(run.system.live).sum())
     curve = []
-    for piece in range(PIECES):
-        multiplier = run.drive(state, power * min(1.0, (piece + 1) / SOFT), steps)
-        curve.append((*measure(state.motion), multiplier))
-        if curve[-1][0] >= distance:
-            break
+    with threadpool_limits(limits=1, user_api="blas"):  # as in `verdict`
+        for piece in range(PIECES):
+            multiplier = run.drive(state, power * min(1.0, (piece + 1) / SOFT), steps)
+            curve.append((*measure(state.motion), multiplier))
+            if curve[-1][0] >= distance:
+                break
     return np.array(curve)
 
 

@@ -14,6 +14,12 @@ from .stepping import stepper, work_arrays
 from .system import BlockSystem, State
 from .time_step import stable_step
 
+LOCAL, VISCOUS = 0.5, 0.1
+"""Local damping α, and the joints' viscous damping ratio at the highest frequency."""
+
+CALM = 3
+"""Looks in a row at which a wall must be balanced to be at rest: one in full motion may pass through balance."""
+
 Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
 
 Observer: TypeAlias = Callable[["Run", State, float], None]
@@ -60,8 +66,8 @@ class Run:
         self,
         system: BlockSystem,
         *,
-        local: float = 0.5,
-        viscous: float = 0.1,
+        local: float = LOCAL,
+        viscous: float = VISCOUS,
         dt: float | None = None,
     ) -> None:
         self.system = system
@@ -186,9 +192,8 @@ def settle(
 ) -> Verdict:
     """Hold a load until the wall rests or falls.
 
-    It rests when the unbalanced force is below the threshold at three looks in a row, so that a wall passing
-    through balance in full motion is not mistaken for one at rest. It falls when it has moved far and does not slow
-    down, so that a wall that slips and is caught is not mistaken for one in collapse.
+    It rests when the unbalanced force is below the threshold at `CALM` looks in a row. It falls when it has moved far
+    and does not slow down, so that a wall that slips and is caught is not mistaken for one in collapse.
     """
     start = state.motion.copy()
     fall = Fall(criteria.collapse)
@@ -197,7 +202,7 @@ def settle(
         run.hold(state, multiplier, criteria.interval)
         observe(run, state, multiplier)
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
-        if calm == 3:
+        if calm == CALM:
             return "stable"
         if fall.goes_on(moved_by(run.system, state, start), state.steps):
             return "collapse"

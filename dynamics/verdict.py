@@ -13,9 +13,6 @@ from .controls import LoadSteps, settled_load_steps
 from .run import Criteria, Observer, Run, nobody
 from .system import State
 
-LOCAL, VISCOUS = 0.5, 0.1
-"""Local damping α, and the joints' viscous damping ratio at the highest frequency."""
-
 COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 0.8
 """Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_size`).
 

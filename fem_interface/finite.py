@@ -3,7 +3,6 @@
 import numpy as np
 
 from dynamics import finite_curve
-from dynamics.verdict import VISCOUS
 from scene import Array, Scene
 
 from .finite_system import FiniteRun
@@ -55,7 +54,7 @@ def fem_pushover(
         For a scene that is not of this kind.
     """
     blocks = finite_wall(scene, cells, modes)
-    run = FiniteRun(blocks, local=local, viscous=VISCOUS)
+    run = FiniteRun(blocks, local=local)
     held, at, direction = scene.control_point
     wall, corners = blocks.wall, blocks.node[blocks.first[:-1]]
     # How the deformations move the control point, in the frames of the blocks that have it.

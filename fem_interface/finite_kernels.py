@@ -87,6 +87,19 @@ def _facet_at(along: float, begin: Array, first: int, last: int) -> int:
 
 
 @kernel
+def _onto(x: float, y: float, facets: Array, begin: Array, ends: Indices) -> tuple[int, float]:
+    """Facet of a side, given its first and last, that a point lies over, and its share of the way along that facet.
+
+    Sides are straight but for small deformations, so that any facet has their direction.
+    """
+    j, last = ends[0], ends[1]
+    if last > j:
+        along = (x - facets[j, 0]) * facets[j, 2] + (y - facets[j, 1]) * facets[j, 3]
+        j = _facet_at(along, begin, j, last)
+    return j, ((x - facets[j, 0]) * facets[j, 2] + (y - facets[j, 1]) * facets[j, 3]) * facets[j, 4]
+
+
+@kernel
 def _angle(nx: float, ny: float, fx: float, fy: float) -> float:
     """Angle from one unit vector f to another n."""
     return math.atan2(fx * ny - fy * nx, fx * nx + fy * ny)
@@ -119,13 +132,8 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
             side = e if of_a else f
             node = v - radius.size
             x, y = facets[node, 0], facets[node, 1]
-            # Sides are straight but for small deformations, so that any facet has their direction.
-            j, last = outer[side, 0], outer[side, 1]
-            if last > j:
-                along = (x - facets[j, 0]) * facets[j, 2] + (y - facets[j, 1]) * facets[j, 3]
-                j = _facet_at(along, begin, j, last)
+            j, share = _onto(x, y, facets, begin, outer[side])
             tx, ty = facets[j, 2], facets[j, 3]
-            share = ((x - facets[j, 0]) * tx + (y - facets[j, 1]) * ty) * facets[j, 4]
             away = (x - facets[j, 0]) * ty - (y - facets[j, 1]) * tx
             moved = begin[j] + share * length[j]
             stretch = length[j] * facets[j, 4]
@@ -147,21 +155,13 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
             a, share_a = outer[f, of_f], shares[f, of_f]
             r_v, r_w = radius[v], radius[w]
             x, y, behind = vx, vy, r_v
-            j, last = outer[f, 0], outer[f, 1]
-            if last > j:
-                along = (vx - facets[j, 0]) * facets[j, 2] + (vy - facets[j, 1]) * facets[j, 3]
-                j = _facet_at(along, begin, j, last)
+            j, share = _onto(vx, vy, facets, begin, outer[f])
             tx, ty = facets[j, 2], facets[j, 3]
-            share = ((vx - facets[j, 0]) * tx + (vy - facets[j, 1]) * ty) * facets[j, 4]
             along = begin[j] + share * length[j]
             on_f = along - inset[w] if low else whole[f] - inset[w] - along
             on_e, i, share_e = 0.0, j, share
             if on_f < 0.0:
-                i, last = outer[e, 0], outer[e, 1]
-                if last > i:
-                    along = (wx - facets[i, 0]) * facets[i, 2] + (wy - facets[i, 1]) * facets[i, 3]
-                    i = _facet_at(along, begin, i, last)
-                share_e = ((wx - facets[i, 0]) * facets[i, 2] + (wy - facets[i, 1]) * facets[i, 3]) * facets[i, 4]
+                i, share_e = _onto(wx, wy, facets, begin, outer[e])
                 along = begin[i] + share_e * length[i]
                 on_e = whole[e] - inset[v] - along if low else along - inset[v]
             if on_f >= 0.0 or (on_e < 0.0 and r_v + r_w == 0.0):

@@ -13,7 +13,7 @@ import numpy as np
 
 import dynamics
 from dynamics import BlockSystem, Restraint, block_frequency_squared, stable_step
-from dynamics.verdict import LOCAL, VISCOUS
+from dynamics.run import LOCAL, VISCOUS
 from joints.contacts import Contacts
 from joints.laws import kernel_law
 from joints.point_kernel import KernelLaw

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from dynamics import Observer, Run, collapse_by_steps, nobody
-from dynamics.verdict import BUDGET, FIRST_STEP, LOCAL, VISCOUS
+from dynamics.verdict import BUDGET, FIRST_STEP
 from joints import Rule
 from results import Outcome
 from scene import Scene
@@ -69,7 +69,7 @@ def fem(
     energies
         Where the joints' fracture energies come from; without any, joints are perfectly plastic.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in heights of the lowest block;
+        Displacement at which a wall that does not slow down is in collapse, in block sizes;
         by default 0.05, for a wall without weight 0.8.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not.
@@ -91,8 +91,7 @@ def fem(
     start = time.perf_counter()
     wall = modal_wall(scene, cells, modes, rule, points, cracks)
     system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
-    damping = {"local": LOCAL, "viscous": VISCOUS}
-    run = Run(system, **damping) if cracks == "joints" else PieceRun(system, wall, **damping)
+    run = Run(system) if cracks == "joints" else PieceRun(system, wall)
     factor = largest_scaling(wall, system.mass)
     outcome = collapse_by_steps(
         scene,

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics import block_frequency_squared, mass_factor, stable_step
-from dynamics.verdict import LOCAL, VISCOUS
+from dynamics.run import LOCAL, VISCOUS
 from joints.wall import wall_stiffness
 from scene import Array
 

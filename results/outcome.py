@@ -89,3 +89,10 @@ class Outcome:
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")
 ARRAYS = {"motion": 3, "force": 2, "curve": 2}
 """Array fields and their number of columns."""
+
+
+def number(value: float) -> str:
+    """Four decimals for a multiplier of order one, whole newtons for a force."""
+    if value != 0 and abs(value) < 0.01:
+        return f"{value:.3g}"
+    return f"{value:.4f}" if abs(value) < 100 else f"{value:,.0f}"

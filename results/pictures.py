@@ -11,7 +11,7 @@ import numpy as np
 from scene import PointLoad, Scene
 
 from .frame import Stage, State, mechanism_frame
-from .outcome import Outcome
+from .outcome import Outcome, number
 from .painting import DRAWN, FAST, STATE_COLOURS, STILL, Colouring, Painter, View, wall_size
 from .shown import Shown
 from .signs import SIZE, draw_load, draw_supports, with_signs
@@ -123,13 +123,6 @@ def newtons(scene: Scene) -> bool:
     """Whether λ is a force in newtons: that of a point load of one newton."""
     live = scene.load.live
     return isinstance(live, PointLoad) and math.isclose(math.hypot(*live.force), 1.0)
-
-
-def number(value: float) -> str:
-    """Four decimals for a multiplier of order one, whole newtons for a force."""
-    if value != 0 and abs(value) < 0.01:
-        return f"{value:.3g}"
-    return f"{value:.4f}" if abs(value) < 100 else f"{value:,.0f}"
 
 
 def png(figure: "Figure", dpi: float = DPI) -> bytes:

@@ -13,7 +13,7 @@ import dem.finite_system
 from compare import published_scene
 from dem.dynamic import finite_pushover
 from dynamics import BlockSystem, Criteria, FiniteState, Run, State, settle
-from dynamics.verdict import LOCAL, VISCOUS
+from dynamics.run import LOCAL, VISCOUS
 from fem_interface.finite import fem_pushover
 from fem_interface.finite_system import FiniteRun, finite_system
 from fem_interface.finite_wall import FiniteWall, finite_wall

@@ -21,12 +21,12 @@ from results import Outcome, load_outcome, save_outcome
 from results.album import draw_folder
 from results.frame import State, mechanism_frame
 from results.mechanism import carried
+from results.outcome import number
 from results.painting import FAST, HELD, STATE_COLOURS, STILL, Painter, View, outline
 from results.pictures import (
     mechanism_picture,
     multiplier_text,
     newtons,
-    number,
     png,
     show_mechanism,
     show_undeformed,

@@ -45,7 +45,7 @@ from typing import Any
 import numpy as np
 
 from dynamics import Run, State
-from dynamics.verdict import LOCAL, VISCOUS
+from dynamics.run import LOCAL, VISCOUS
 from fem_interface import Template, block_modes, lumped_mass, stiffness_matrix
 from fem_interface.modal_wall import ModalWall
 from fem_interface.runs import modal_wall
