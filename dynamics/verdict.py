@@ -13,7 +13,7 @@ from .controls import LoadSteps, settled_load_steps
 from .run import Criteria, Observer, Run, nobody
 from .system import State
 
-COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 0.8
+COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 1.6
 """Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_size`).
 
 A wall without weight may slip far and be caught by the pressure that the slip itself brings about; at small
@@ -90,13 +90,19 @@ def collapse_by_steps(
     with threadpool_limits(limits=1, user_api="blas"):
         found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=found.taken)
-    outcome = _judge(outcome, scene, run, found, point_order, locks)
+    outcome = _judge(outcome, scene, run, found, tolerance, point_order, locks)
     message = "; ".join(part for part in (outcome.message, note) if part)
     return replace(outcome, message=message)
 
 
 def _judge(
-    outcome: Outcome, scene: Scene, run: Run, found: LoadSteps, point_order: Indices, locks: Callable[[], bool]
+    outcome: Outcome,
+    scene: Scene,
+    run: Run,
+    found: LoadSteps,
+    tolerance: float,
+    point_order: Indices,
+    locks: Callable[[], bool],
 ) -> Outcome:
     if found.borne is None:
         if found.interrupted:
@@ -130,7 +136,7 @@ def _judge(
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     if found.verdict == "undecided":
-        return replace(outcome, message=_undecided(found))
+        return replace(outcome, message=_undecided(found, tolerance))
     slowed = "" if found.rate_error is None else f"; loading at half the speed moved it by {found.rate_error:.0e}"
     return replace(
         outcome,
@@ -141,8 +147,8 @@ def _judge(
     )
 
 
-def _undecided(found: LoadSteps) -> str:
-    if found.rate_error is None:
+def _undecided(found: LoadSteps, tolerance: float) -> str:
+    if found.rate_error is None or found.rate_error <= tolerance * (found.lower or 0.0):
         return "the budget ran out inside this bracket: the wall neither rested nor fell"
     return f"the slower the loading, the more it bears: the last slowing moved it by {found.rate_error:.2g}"
 
