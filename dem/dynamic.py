@@ -41,7 +41,7 @@ def dem_dynamic(
         Relative width of the bracket.
     collapse
         Displacement at which a wall that does not slow down is in collapse, in block sizes;
-        by default 0.05, for a wall without weight 0.8.
+        by default 0.05, for a wall without weight 1.6.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not.
     budget

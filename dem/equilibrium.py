@@ -98,8 +98,7 @@ def equilibrium(scene: Scene) -> Equilibrium:
 
     dead, live = dead_load(scene)[free] * scale, live_load(scene)[free] * scale
     live_size = float(np.abs(live).max())
-    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
-    force_unit = float(np.abs(dead).max()) or strongest or live_size
+    force_unit = float(np.abs(dead).max()) or strength.strongest or live_size
 
     def rows(operator: csr_array) -> csc_array:
         return csc_array(operator[:, free].T * scale[:, None])

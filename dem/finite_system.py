@@ -6,16 +6,16 @@ from typing import Any
 import numpy as np
 
 import dynamics
-from dynamics import BlockSystem, block_frequency_squared
+from dynamics import BlockSystem, block_frequency_squared, force_unit, joint_shares
 from dynamics.run import LOCAL, VISCOUS
-from joints import wall_points
+from joints import wall_points, wall_strength
 from joints.contacts import Contacts, Outline, find_contacts, resting
 from joints.laws import kernel_law
 from joints.point_kernel import KernelLaw
 from joints.side_kernels import gather_finite, scatter_finite
 from scene import Array, Indices, Scene, SceneError
 
-from .rigid_system import force_unit, loads_and_masses
+from .rigid_system import loads_and_masses
 
 
 def finite_system(scene: Scene) -> BlockSystem:
@@ -34,6 +34,7 @@ def finite_system(scene: Scene) -> BlockSystem:
     if scene.inner_joint is not None:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
     restraint, mass, dead, live, control = loads_and_masses(scene)
+    rigid = np.arange(len(mass)).reshape(-1, 3)
     outline = Outline.of(scene)
     contacts = find_contacts(outline, np.zeros_like(mass), outline.margin)
     law = _law(scene, contacts)
@@ -49,11 +50,11 @@ def finite_system(scene: Scene) -> BlockSystem:
         gather=gather_finite,
         scatter=scatter_finite,
         geometry=contacts.geometry(outline),
-        rigid=np.arange(len(mass)).reshape(-1, 3),
+        rigid=rigid,
         restraint=restraint,
         block_frequency_squared=_frequency_squared(outline, contacts, law, mass),
         control=control,
-        force_unit=force_unit(scene, dead, live, wall_points(scene)),
+        force_unit=force_unit(dead, live, rigid, wall_strength(scene, wall_points(scene))),
     )
 
 
@@ -104,11 +105,7 @@ def _law(scene: Scene, contacts: Contacts) -> KernelLaw:
 
 
 def _frequency_squared(outline: Outline, contacts: Contacts, law: KernelLaw, mass: Array) -> float:
-    """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
-
-    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a²; c = √(m_b / m_a) shares a contact between two blocks
-    of different mass, and a held one takes no share.
-    """
+    """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness."""
     geometry = contacts.geometry(outline)
     gather_finite(contacts.motion, geometry, *np.zeros((2, len(contacts))))
     centroid, contact = geometry[7][0][:, 2:], geometry[8]
@@ -118,8 +115,7 @@ def _frequency_squared(outline: Outline, contacts: Contacts, law: KernelLaw, mas
     b, a = outline.blocks.owner[contacts.ends[:, :2].astype(np.int64)].T
     for block, other in ((a, b), (b, a)):
         arm = contact[:, :2] - centroid[block]
-        with np.errstate(invalid="ignore"):
-            part = 1 + np.nan_to_num(np.sqrt(mass[3 * block] / mass[3 * other]), nan=0.0, posinf=0.0)
+        part = joint_shares(mass[3 * np.column_stack([block, other])], 0.5)[:, 0]
         for direction, stiffness in ((n, law.normal_stiffness), (t, law.shear_stiffness)):
             row = np.column_stack([direction, arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]])
             np.add.at(own, block, (part * stiffness * contacts.area)[:, None, None] * row[:, :, None] * row[:, None, :])

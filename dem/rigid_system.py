@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics import BlockSystem, Restraint, block_frequency_squared
+from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares
 from joints import JointPoints, wall_points, wall_strength
 from joints.laws import kernel_law
 from joints.point_kernel import KernelLaw
@@ -25,17 +25,7 @@ from .runs import Runs, find_runs
 
 def contact_points(scene: Scene) -> JointPoints:
     """Two contact points a joint in the order of the kernels: all joints' first ones, then all second ones."""
-    points = wall_points(scene)
-    joint = _runs(scene, points).joint
-    order = np.concatenate([2 * joint, 2 * joint + 1])
-    return JointPoints(
-        points.joint[order],
-        points.block[order],
-        points.position[order],
-        points.normal[order],
-        points.tangent[order],
-        points.area[order],
-    )
+    return _in_runs(scene)[0]
 
 
 def rigid_system(scene: Scene) -> BlockSystem:
@@ -46,8 +36,7 @@ def rigid_system(scene: Scene) -> BlockSystem:
     SceneError
         If the scene gives its joints no stiffness.
     """
-    points = contact_points(scene)
-    runs = _runs(scene, wall_points(scene))
+    points, runs = _in_runs(scene)
     law = kernel_law(scene.joint_materials, scene.material_of_joint[points.joint])
     restraint, mass, dead, live, control = loads_and_masses(scene)
     rigid = runs.block[:, None] + len(scene.blocks) * np.arange(3)
@@ -68,16 +57,8 @@ def rigid_system(scene: Scene) -> BlockSystem:
         restraint=Restraint(rigid.ravel()[restraint.freedom], restraint.basis),
         block_frequency_squared=largest_frequency_squared(scene, points, law),
         control=control[order],
-        force_unit=force_unit(scene, dead, live, points),
+        force_unit=force_unit(dead[order], live, rigid, wall_strength(scene, points)),
     )
-
-
-def force_unit(scene: Scene, dead: Array, live: Array, points: JointPoints) -> float:
-    """Force [N] by which unbalanced ones are measured: the largest weight, or what the strongest point bears."""
-    strength = wall_strength(scene, points)
-    largest = float(np.abs(dead.reshape(-1, 3)[:, :2]).max())
-    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
-    return largest or strongest or float(np.abs(live).max())
 
 
 def loads_and_masses(scene: Scene) -> tuple[Restraint, Array, Array, Array, Array]:
@@ -97,10 +78,12 @@ def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw)
     return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0))
 
 
-def _runs(scene: Scene, points: JointPoints) -> Runs:
-    """Runs of a scene with two points a joint, each joint's in the sense of its tangent."""
+def _in_runs(scene: Scene) -> tuple[JointPoints, Runs]:
+    """Contact points in the order of the kernels, and the runs that make it."""
+    points = wall_points(scene)
     reach = points.position[1::2] - points.position[::2]
-    return find_runs(scene, np.hypot(reach[:, 0], reach[:, 1]) / 2)
+    runs = find_runs(scene, np.hypot(reach[:, 0], reach[:, 1]) / 2)
+    return points.part(np.concatenate([2 * runs.joint, 2 * runs.joint + 1])), runs
 
 
 def _geometry(runs: Runs, points: JointPoints) -> tuple[NDArray[Any], ...]:
@@ -132,16 +115,10 @@ def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
 
 
 def _own_frequencies(scene: Scene, points: JointPoints, law: KernelLaw, share: float) -> Array:
-    """Bound of each movable block's largest ω² against its own side of its joints, ``(nb,)`` [1/s²].
-
-    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a², so a joint's energy may be split between its sides.
-    With c = (m_b / m_a)^share, and nothing for a side that is held, two blocks of different mass share it fairly.
-    """
+    """Bound of each movable block's largest ω² against its own side of its joints, ``(nb,)`` [1/s²]."""
     n = len(scene.blocks)
     jump = jump_operator(points, scene.blocks.centroid)
-    mass = np.where(scene.fixed, np.inf, scene.mass)[points.block]
-    ratio = np.column_stack([mass[:, 0] / mass[:, 1], mass[:, 1] / mass[:, 0]])
-    part = 1 + np.nan_to_num(ratio, nan=1.0, posinf=0.0) ** share
+    part = joint_shares(np.where(scene.fixed, np.inf, scene.mass)[points.block], share)
     own = np.zeros((n, 3, 3))
     sides = ((jump.opening, law.normal_stiffness), (jump.slip, law.shear_stiffness))
     for operator, stiffness in ((operator, k * points.area) for operator, k in sides):

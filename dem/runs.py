@@ -51,7 +51,7 @@ def find_runs(scene: Scene, half: Array) -> Runs:
     half : (nj,) float
         Half the distance [m] between the two points of each joint.
     """
-    place = np.argsort(_column_by_column(scene))
+    place = np.argsort(scene.column_by_column)
     shape = np.column_stack([*_normals(scene).T, half, *_arms(scene).T])
     size = float(np.ptp(scene.blocks.extent(scene.wall), axis=0).max())
     rounded = np.rint(shape / [RESOLUTION, RESOLUTION, *[RESOLUTION * size] * 5]).astype(np.int64)
@@ -63,19 +63,6 @@ def find_runs(scene: Scene, half: Array) -> Runs:
     begin = np.flatnonzero(np.append(len(order) > 0, ~goes_on))
     start = np.append(begin, len(order))
     return Runs(place, order, start, a[begin], b[begin], shape[order][begin])
-
-
-def _column_by_column(scene: Scene) -> Indices:
-    """Blocks from left to right and, within a column, from the bottom up; columns of alternate courses apart.
-
-    Where the two kinds of columns are as high, runs then go on from one column to the next.
-    """
-    centroid = scene.blocks.centroid
-    low, high = scene.blocks.extent(scene.wall)
-    pitch = scene.bond.width if scene.bond else float((high - low)[0])
-    column = np.rint((centroid[:, 0] - low[0]) / (RESOLUTION * (high - low).max()))
-    quarter = np.rint(4 * (centroid[:, 0] - low[0]) / pitch) % 4
-    return np.lexsort((centroid[:, 1], column, quarter))
 
 
 def _normals(scene: Scene) -> Array:

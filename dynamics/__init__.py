@@ -3,8 +3,8 @@
 from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive, settled_load_steps
 from .finite_run import FiniteRun, FiniteState, finite_curve
 from .run import Criteria, Ledger, Observer, Run, Verdict, moved_by, nobody, settle
-from .system import BlockSystem, Restraint, State
-from .time_step import block_frequency_squared, mass_factor, stable_step
+from .system import BlockSystem, Restraint, State, force_unit
+from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
 from .verdict import collapse_by_steps
 
 __all__ = [
@@ -24,6 +24,8 @@ __all__ = [
     "collapse_by_steps",
     "drive",
     "finite_curve",
+    "force_unit",
+    "joint_shares",
     "load_steps",
     "mass_factor",
     "moved_by",

@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from joints import PointStrength
 from joints.point_kernel import KernelLaw
 from scene import Array, Indices
 
@@ -88,6 +89,21 @@ class BlockSystem:
     def freedoms(self) -> int:
         """Number of modes that move."""
         return int(np.isfinite(self.mass).sum())
+
+
+def force_unit(dead: Array, live: Array, rigid: Indices, strength: PointStrength) -> float:
+    """Force [N] by which unbalanced ones are measured: the largest weight, or what the strongest point carries.
+
+    Parameters
+    ----------
+    dead, live : (nd,) float
+        Modal loads [N].
+    rigid : (nb, 3) int
+        Where the blocks' rigid coordinates stand.
+    strength
+        Strength of the joint points.
+    """
+    return float(np.abs(dead[rigid[:, :2]]).max()) or strength.strongest or float(np.abs(live).max())
 
 
 @dataclass(eq=False)

@@ -28,6 +28,24 @@ def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: flo
     return SAFETY * 2 / math.sqrt(frequency_squared) * lagged / math.sqrt(1 + local)
 
 
+def joint_shares(mass: Array, exponent: float) -> Array:
+    """Factors on the two sides' own energy in a joint, by which together they exceed that of the jump, ``(n, 2)``.
+
+    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a². With c = (m_b / m_a)^exponent, and nothing for a
+    side that is held, two blocks of different mass share a joint fairly.
+
+    Parameters
+    ----------
+    mass : (n, 2) float
+        Masses of the blocks on either side [kg], inf where one is held.
+    exponent
+        0 shares by halves, 1 by mass.
+    """
+    with np.errstate(invalid="ignore"):
+        ratio = mass / mass[:, ::-1]
+    return np.asarray(1 + np.nan_to_num(ratio, nan=1.0, posinf=0.0) ** exponent)
+
+
 def block_frequency_squared(stiffness: Array, mass: Array) -> Array:
     """Largest ω² of blocks against their own share of their joints' energy, ``(nb,)`` [1/s²].
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import dynamics
-from dynamics import BlockSystem, Restraint, block_frequency_squared, stable_step
+from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares, stable_step
 from dynamics.run import LOCAL, VISCOUS
 from joints.contacts import Contacts
 from joints.laws import kernel_law
@@ -31,8 +31,6 @@ def finite_system(blocks: FiniteWall, *, damping: float = DAMPING, mass_scaling:
     wall, contacts = blocks.wall, blocks.undeformed
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     dead, live = wall.body_force(wall.scene.load.gravity), wall.live_load()
-    strength = wall_strength(wall.scene, wall.interface.points)
-    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
     law = contact_law(wall.scene.joint, contacts)
     system = BlockSystem(
         mass=scaled.mass,
@@ -49,7 +47,7 @@ def finite_system(blocks: FiniteWall, *, damping: float = DAMPING, mass_scaling:
         restraint=Restraint(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3))),
         block_frequency_squared=scaled.frequency_squared,
         control=wall.control_row(),
-        force_unit=float(np.abs(dead[wall.rigid[:, :2]]).max()) or strongest or float(np.abs(live).max()),
+        force_unit=force_unit(dead, live, wall.rigid, wall_strength(wall.scene, wall.interface.points)),
     )
     return replace(
         system, block_frequency_squared=_frequency_squared(blocks, system, contacts, scaled.frequency_squared)
@@ -117,8 +115,7 @@ def contact_law(joint: JointMaterial, contacts: Contacts) -> KernelLaw:
 def _frequency_squared(blocks: FiniteWall, system: BlockSystem, contacts: Contacts, guess: float) -> float:
     """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
 
-    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a²; c = √(m_b / m_a) shares a contact between two blocks
-    of different mass, and a held one takes no share. The viscosity of the deformations counts as in `stable`.
+    The viscosity of the deformations counts as in `stable`.
     """
     own = _contact_stiffness(blocks, system, contacts)
     square = guess
@@ -162,7 +159,7 @@ def _contact_stiffness(
             at = (1 - share) * shape[nodes[:, 0]] + share * shape[nodes[:, 1]]
             cosine, sine, x, y = turned[block].T
             arm = contact[here, :2] - np.column_stack([x, y])
-            part = 1 + np.sqrt(mass[block] / mass[owner[here, 1 - side]])
+            part = joint_shares(mass[np.column_stack([block, owner[here, 1 - side]])], 0.5)[:, 0]
             for direction, stiffness in directions:
                 dx, dy = direction[here].T
                 local = np.column_stack([cosine * dx + sine * dy, cosine * dy - sine * dx])

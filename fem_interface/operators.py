@@ -3,7 +3,7 @@
 Degrees of freedom are node by node, x before y: 2i and 2i + 1 are the displacement of node i [m].
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -12,7 +12,7 @@ from skfem import Basis, BilinearForm, ElementTriP1, ElementVector, FacetBasis, 
 from skfem.helpers import dot
 from skfem.models.elasticity import linear_elasticity, plane_stress
 
-from joints import JointPoints, Rule, lobatto
+from joints import JointPoints, Rule, lobatto, wall_inset
 from meshing import WallMesh
 from scene import Array, Indices, Scene, SceneError
 
@@ -78,11 +78,12 @@ class Interface:
         """The same elements ``(ne,)`` in another order."""
         ne = len(order)
         of_points = (np.arange(len(self.weights))[:, None] * ne + order).ravel()
-        points = JointPoints(
-            **{field.name: getattr(self.points, field.name)[of_points] for field in fields(JointPoints)}
-        )
         return Interface(
-            self.element[order], self.nodes[order], self.normal[order], self.weights[:, order].copy(), points
+            self.element[order],
+            self.nodes[order],
+            self.normal[order],
+            self.weights[:, order].copy(),
+            self.points.part(of_points),
         )
 
 
@@ -109,7 +110,7 @@ def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: Po
     if points not in ("elements", "joints"):
         raise ValueError(f'points = {points!r}: must be "elements" or "joints"')
     rule = rule or lobatto()
-    inset = np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
+    inset = wall_inset(scene)
     element, local, share = (_on_elements if points == "elements" else _on_joints)(mesh, scene, rule, inset)
     a0, a1, b1, b0 = mesh.interfaces[element].T
     run = mesh.points[a1] - mesh.points[a0]

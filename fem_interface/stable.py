@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics import block_frequency_squared, mass_factor, stable_step
+from dynamics import block_frequency_squared, joint_shares, mass_factor, stable_step
 from dynamics.run import LOCAL, VISCOUS
 from joints.wall import wall_stiffness
 from scene import Array
@@ -124,17 +124,11 @@ def _all_kinds(wall: ModalWall) -> list[list[_Kind]]:
 
 
 def _kinds(wall: ModalWall, share: float) -> list[_Kind]:
-    """Blocks that differ in their mesh, their pins or their joints.
-
-    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a², so a joint's energy may be split between its sides.
-    With c = (m_b / m_a)^share, and nothing for a side that is held, two blocks of different mass share it fairly.
-    """
+    """Blocks that differ in their mesh, their pins or their joints."""
     joint = wall.interface
     n, ne, _ = joint.weights.shape
     block = joint.points.block[:ne]
-    mass = np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block]
-    ratio = np.column_stack([mass[:, 0] / mass[:, 1], mass[:, 1] / mass[:, 0]])
-    part = 1 + np.nan_to_num(ratio, nan=1.0, posinf=0.0) ** share
+    part = joint_shares(np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block], share)
     normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne])
     springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)
 

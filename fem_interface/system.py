@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics import BlockSystem, Restraint
+from dynamics import BlockSystem, Restraint, force_unit
 from joints import Rule
 from joints.laws import kernel_law
 from joints.wall import wall_strength
@@ -86,11 +86,8 @@ def system_of(
     """Block system of a wall in modal coordinates; see `fem_system`."""
     scene, points = wall.scene, wall.interface.points
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    strength = wall_strength(scene, points)
     materials, of_joint = fractured(scene, energies)
     dead, live = wall.body_force(scene.load.gravity, loads), wall.live_load(loads)
-    largest = float(np.abs(dead[wall.rigid[:, :2]]).max())
-    strongest = float(max(strength.tension.max(initial=0.0), strength.shear.max(initial=0.0)))
     return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,
@@ -106,7 +103,7 @@ def system_of(
         restraint=_restraint(wall),
         block_frequency_squared=scaled.frequency_squared,
         control=wall.control_row(),
-        force_unit=largest or strongest or float(np.abs(live).max()),
+        force_unit=force_unit(dead, live, wall.rigid, wall_strength(scene, points)),
     )
 
 

@@ -39,7 +39,8 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
         If blocks are to deform and the scene does not say how stiff they are.
     """
     alike: dict[tuple[int, bytes], list[int]] = {}
-    for block in _column_by_column(scene):
+    order = scene.column_by_column
+    for block in order[~scene.fixed[order]]:
         alike.setdefault(_likeness(mesh, scene, int(block)), []).append(int(block))
     found = []
     for blocks in alike.values():
@@ -47,18 +48,6 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
         most = max(4, LARGE // modes.shape.size)
         found += [Template(np.array(blocks[i : i + most]), modes) for i in range(0, len(blocks), most)]
     return found
-
-
-def _column_by_column(scene: Scene) -> Indices:
-    """Movable blocks from left to right, and from the bottom up within a column; alternate courses' columns apart.
-
-    So the joints of one kind come in long runs, in which one joint's blocks follow the last one's.
-    """
-    low, high = scene.blocks.extent(scene.wall)
-    pitch = scene.bond.width if scene.bond else float((high - low)[0])
-    x, y = (scene.blocks.centroid - low).T
-    order = np.lexsort((y, np.rint(x / (1e-6 * pitch)), np.rint(4 * x / pitch) % 4))
-    return order[~scene.fixed[order]]
 
 
 def nodes_of(mesh: WallMesh, block: int) -> slice:

@@ -5,7 +5,7 @@ from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw, resultant_law
 from .stiffness import joint_stiffness
-from .wall import wall_points, wall_stiffness, wall_strength
+from .wall import wall_inset, wall_points, wall_stiffness, wall_strength
 
 __all__ = [
     "JointPoints",
@@ -20,6 +20,7 @@ __all__ = [
     "lobatto",
     "point_strength",
     "resultant_law",
+    "wall_inset",
     "wall_points",
     "wall_stiffness",
     "wall_strength",

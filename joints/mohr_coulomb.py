@@ -37,6 +37,11 @@ class PointStrength:
     tension: Array
     shear: Array
 
+    @property
+    def strongest(self) -> float:
+        """Largest force that a point carries without pressure [N]; zero for dry joints."""
+        return float(max(self.tension.max(initial=0.0), self.shear.max(initial=0.0)))
+
     def violation(self, normal: Array, tangential: Array) -> Array:
         """Force [N] by which point forces ``(np,)`` lie outside the set; not positive inside it."""
         pressure = self.tension - normal

@@ -4,7 +4,7 @@ A joint separates block a from block b. Its normal n points from a to b, its tan
 The jump is u_b − u_a: opening is a positive normal jump, tension a positive normal traction.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -77,6 +77,10 @@ class JointPoints:
 
     def __len__(self) -> int:
         return len(self.joint)
+
+    def part(self, chosen: Indices) -> "JointPoints":
+        """Some of the points, or all in another order."""
+        return JointPoints(**{column.name: getattr(self, column.name)[chosen] for column in fields(self)})
 
 
 def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, inset: float | Array = 0.0) -> JointPoints:

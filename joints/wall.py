@@ -11,8 +11,12 @@ from .stiffness import joint_stiffness
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
     """Lay a quadrature rule on every joint of a scene, its ends moved in by the joint's inset."""
-    inset = np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
-    return joint_points(scene.joints, scene.thickness, rule, inset)
+    return joint_points(scene.joints, scene.thickness, rule, wall_inset(scene))
+
+
+def wall_inset(scene: Scene) -> Array:
+    """Distance [m] by which the points of each joint of a scene keep from its ends, ``(nj,)``."""
+    return np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
 
 
 def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:

@@ -18,6 +18,9 @@ from .refusal import SceneError
 from .segments import Joints, find_joints
 from .supports import NO_PINS, Pins, SupportKind, corner_pins, first_course
 
+SAME_COLUMN = 1e-9
+"""Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
@@ -107,6 +110,19 @@ class Scene:
         top = movable[height >= height.max() - blocks.tolerance]
         corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
         return blocks.owner[corner], blocks.vertices[corner[0]], direction
+
+    @cached_property
+    def column_by_column(self) -> Indices:
+        """Blocks from left to right and, within a column, from the bottom up; columns of alternate courses apart.
+
+        Where they are numbered so, joints of one kind come in long runs, in which one joint's blocks follow the
+        last one's; where the two kinds of columns are as high, runs go on from one column to the next.
+        """
+        low, high = self.blocks.extent(self.wall)
+        pitch = self.bond.width if self.bond else float((high - low)[0])
+        x, y = (self.blocks.centroid - low).T
+        column = np.rint(x / (SAME_COLUMN * (high - low).max()))
+        return np.lexsort((y, column, np.rint(4 * x / pitch) % 4))
 
     @property
     def block_size(self) -> float:

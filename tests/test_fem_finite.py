@@ -25,6 +25,7 @@ from joints.softening_kernel import DAMAGE
 from scene import Array, Mortar, Scene, SceneError, Stiffness
 from tests.test_dem import pile, rectangle
 from tests.test_dynamics import GRAVITY
+from tests.test_finite import check_energy_of_a_fall
 from tests.walls import panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
@@ -365,17 +366,7 @@ def test_energy_is_accounted_for_while_a_wall_falls_to_pieces(inset: float) -> N
         block__poisson=0.2,
     )
     run = FiniteRun(finite_wall(scene))
-    state = run.at_rest()
-    settle(run, state, 0.0, Criteria(collapse=0.006))
-    found = {id(state.contacts): state.contacts}
-    while np.abs(state.motion).max() < 0.4:
-        run.hold(state, 0.55, 100)
-        found[id(state.contacts)] = state.contacts
-        ledger = run.ledger(state)
-        if np.abs(state.motion).max() > 0.01:
-            assert abs(ledger.residual) < 0.01 * abs(ledger.external)
-    assert len(found) > 20
-    assert ledger.friction > 0
+    check_energy_of_a_fall(run)
 
 
 def test_a_glued_block_slides_once_its_joint_is_broken_and_is_dry_wherever_it_comes_to_lie() -> None:

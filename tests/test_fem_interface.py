@@ -681,6 +681,22 @@ def test_energies_need_a_mortar_to_follow_from() -> None:
         fem_system(wall(joint=stiff), energies="corrected")
 
 
+def check_dissipation(run: Run, steps: int) -> State:
+    """Push a wall harder and harder until it falls: no point ever gives back what it spent, and the ledger closes."""
+    state = State.at_rest(run.system)
+    spent, damped = state.history[FRICTION_WORK].copy(), 0.0
+    for k in range(60):
+        run.hold(state, 0.05 * k, steps)
+        assert (state.history[FRICTION_WORK] >= spent - 1e-12 * np.abs(spent).max()).all()
+        spent = state.history[FRICTION_WORK].copy()
+        ledger = run.ledger(state)
+        assert ledger.damped >= damped
+        damped = ledger.damped
+        assert np.isfinite(state.motion).all()
+    assert abs(ledger.residual) < 0.01 * abs(ledger.external)
+    return state
+
+
 @pytest.mark.parametrize("energy", [None, 0.0, 20.0])
 @pytest.mark.parametrize("cohesion", [0.0, 2e3])
 def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
@@ -688,18 +704,8 @@ def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
     scene = wall(1e10, joint__cohesion=cohesion)
     joint = replace(scene.joint, fracture_energy_1=energy, fracture_energy_2=energy)
     run = Run(fem_system(replace(scene, joint=joint)))
-    state = State.at_rest(run.system)
-    spent, damped = state.history[FRICTION_WORK].copy(), 0.0
-    for k in range(60):
-        run.hold(state, 0.05 * k, 100)
-        assert (state.history[FRICTION_WORK] >= spent - 1e-12 * np.abs(spent).max()).all()
-        spent = state.history[FRICTION_WORK].copy()
-        ledger = run.ledger(state)
-        assert ledger.damped >= damped
-        damped = ledger.damped
-        assert np.isfinite(state.motion).all()
-    assert spent.max() > 0
-    assert abs(ledger.residual) < 0.01 * abs(ledger.external)
+    state = check_dissipation(run, 100)
+    assert state.history[FRICTION_WORK].max() > 0
     if energy is not None:
         assert state.history[DAMAGE].max() <= 1
 

@@ -3,8 +3,8 @@
 Prints a Markdown table, one row a run as it ends: the bracket of λ and how far its middle lies from that of
 `dem-dynamic`. From the project's directory, for all walls (panel-06 takes longest) or some of them:
 
-    python -m benchmarks.fem_study
-    python -m benchmarks.fem_study panel-04 wall-w1
+    python benchmarks/studies/fem_study.py
+    python benchmarks/studies/fem_study.py panel-04 wall-w1
 """
 
 import sys
