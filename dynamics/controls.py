@@ -1,5 +1,6 @@
 """Load controls: steps with bisection, a ramp, and work-conjugate displacement control."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -231,14 +232,45 @@ def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200
     state = start.copy()
     speed = _work_displacement(run, distance) / (steps * run.dt)
     soft = max(1, pieces // 20)
-    curve = []
+    pace = (pieces, soft, steps // pieces)
+    found = push(run, state, distance, speed, pace, lambda motion: (float(system.control @ motion),))
+    return Drive(found, float(found[soft:, 1].max(initial=found[0, 1])), float("inf"), state)
+
+
+def push(
+    run: Run,
+    state: State,
+    distance: float,
+    power: float,
+    pace: tuple[int, int, int],
+    measure: Callable[[Array], tuple[float, ...]],
+) -> Array:
+    """Push a wall, in place, at a power of the live load, and follow its curve.
+
+    Parameters
+    ----------
+    distance
+        First measure [m] at which to stop.
+    power
+        Power of the live load at λ = 1 [W].
+    pace
+        Most rows of the curve, those over which the power is brought up, and steps to a row.
+    measure
+        What is measured of a motion ``(nd,)``, the displacement of the control point [m] first.
+
+    Returns
+    -------
+    (n, m + 1) float
+        The measures, and the mean multiplier since the last row.
+    """
+    pieces, soft, steps = pace
+    curve: list[tuple[float, ...]] = []
     for piece in range(pieces):
-        multiplier = run.drive(state, speed * min(1.0, (piece + 1) / soft), steps // pieces)
-        curve.append((system.control @ state.motion, multiplier))
+        multiplier = run.drive(state, power * min(1.0, (piece + 1) / soft), steps)
+        curve.append((*measure(state.motion), multiplier))
         if curve[-1][0] >= distance:
             break
-    found = np.array(curve)
-    return Drive(found, float(found[soft:, 1].max(initial=found[0, 1])), float("inf"), state)
+    return np.array(curve)
 
 
 def settled_drive(

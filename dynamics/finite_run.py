@@ -12,6 +12,7 @@ from joints.contacts import Contacts, Outline, find_contacts
 from joints.point_kernel import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE
 from scene import Array, Indices, Scene
 
+from .controls import push
 from .run import Criteria, Ledger, Run, settle
 from .system import BlockSystem, State
 from .verdict import COLLAPSE
@@ -258,14 +259,8 @@ def finite_curve(
     settle(run, state, 0.0, Criteria(collapse=COLLAPSE * scene.block_size))
     steps = max(1, round(distance / (speed * PIECES * run.dt)))
     power = speed * float(np.abs(run.system.live).sum())
-    curve = []
     with threadpool_limits(limits=1, user_api="blas"):  # as in `verdict`
-        for piece in range(PIECES):
-            multiplier = run.drive(state, power * min(1.0, (piece + 1) / SOFT), steps)
-            curve.append((*measure(state.motion), multiplier))
-            if curve[-1][0] >= distance:
-                break
-    return np.array(curve)
+        return push(run, state, distance, power, (PIECES, SOFT, steps), measure)
 
 
 def _finite(state: State) -> FiniteState:

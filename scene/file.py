@@ -62,6 +62,8 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     block_material = _block_material(block)
     joint_material = _joint_material(joint)
     inner_material = _joint_material(inner) if inner else None
+    if inner_material and joint_material.elasticity and not inner_material.elasticity:
+        raise SceneError("inner_joint.mortar", "is missing; joint has a stiffness, and models that need it need both")
     kind = cast(SupportKind, support.choice("kind", SUPPORT_KINDS))
     support.finish()
     loads = _load(load)

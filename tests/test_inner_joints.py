@@ -92,11 +92,12 @@ def test_a_drawing_is_cut_through_the_centroids() -> None:
             'inner_joint.cohesoin = 1.0: is not a key of [inner_joint]; did you mean "cohesion"',
         ),
         ({**WEAK, "cohesion": 1.0, "tensile_strength": 9.0}, "inner_joint.tensile_strength = 9.0"),
+        ({"friction": 0.6}, "inner_joint.mortar: is missing; joint has a stiffness"),
     ],
 )
 def test_bad_inner_joints_are_refused_by_name(inner: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError) as refused:
-        scene_from_dict(content(inner_joint=inner))
+        scene_from_dict(content(inner_joint=inner, joint__mortar=MORTAR))
     assert message in str(refused.value)
 
 
