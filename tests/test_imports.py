@@ -67,7 +67,10 @@ def test_no_room_stands_outside_the_design() -> None:
     rooms = {path.parent.name for path in ROOT.glob("*/__init__.py")} - {"tests"}
     with (ROOT / "pyproject.toml").open("rb") as file:
         packages = set(tomllib.load(file)["tool"]["setuptools"]["packages"])
-    assert rooms == packages
+    assert {package.split(".")[0] for package in packages} == rooms
+    assert packages == {
+        ".".join(path.parent.relative_to(ROOT).parts) for room in rooms for path in (ROOT / room).rglob("__init__.py")
+    }
     assert rooms <= set(MAY_IMPORT)
 
 
