@@ -168,7 +168,7 @@ class MotionRecorder(Recorder):
         if self._wall is None:
             return frame
         displacement = self._wall.displacement(state.motion)
-        return replace(frame, displacement=displacement, stress=stresses(self._wall, displacement))
+        return replace(frame, displacement=displacement, stress=stresses(self._wall, state.motion))
 
 
 def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
@@ -186,15 +186,10 @@ def _triangles(wall: ModalWall) -> Triangles:
     return Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
 
 
-def stresses(wall: ModalWall, displacement: Array) -> Array:
-    """Plane stress σ_x, σ_y, τ_xy of each triangle, ``(nt, 3)`` [Pa], for displacements of its nodes ``(nn, 2)``."""
-    material = wall.scene.block
-    young, poisson = material.young or 0.0, material.poisson
-    corners = wall.mesh.triangles
-    place, moved = wall.mesh.points[corners], displacement[corners]
-    sides = place[:, 1:] - place[:, :1]
-    gradient = np.linalg.solve(sides, moved[:, 1:] - moved[:, :1])  # of u_j along x_i
-    strain_x, strain_y, shear = gradient[:, 0, 0], gradient[:, 1, 1], gradient[:, 0, 1] + gradient[:, 1, 0]
+def stresses(wall: ModalWall, motion: Array) -> Array:
+    """Mean plane stress σ_x, σ_y, τ_xy of each triangle, ``(nt, 3)`` [Pa], after a motion ``(nd,)``."""
+    young, poisson = wall.scene.block.young or 0.0, wall.scene.block.poisson
+    strain_x, strain_y, shear = wall.strain(motion).T
     plane = young / (1 - poisson**2)
     return np.column_stack(
         [

@@ -15,7 +15,7 @@ def fem_pushover(
     distance: float,
     *,
     cells: int = 1,
-    modes: ModeCount = "all",
+    modes: ModeCount | None = None,
     speed: float = 5e-4,
     local: float = 0.2,
 ) -> Array:
@@ -35,7 +35,7 @@ def fem_pushover(
     cells
         Cells in half a block along the course, and in a block's height.
     modes
-        Modes of each block: 3 rigid motions, 6 with the uniform strains, or all of its mesh.
+        Modes of each block (`ModeCount`), 10 by default.
     speed
         Mean speed of the blocks along the live load [m/s]. What moves faster than it falls into place is borne by
         its inertia: halve the speed until the curve settles. Softer joints allow longer steps.

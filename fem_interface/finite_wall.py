@@ -232,7 +232,7 @@ class FiniteWall:
         )
 
 
-def finite_wall(scene: Scene, cells: int = 1, modes: ModeCount = "all") -> FiniteWall:
+def finite_wall(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> FiniteWall:
     """Mesh a scene whose blocks are to move far.
 
     Raises

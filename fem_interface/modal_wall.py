@@ -92,6 +92,17 @@ class ModalWall:
             found[nodes] = (shape @ Q).reshape(-1, 2, len(template.blocks)).transpose(0, 2, 1)
         return found
 
+    def strain(self, motion: Array) -> Array:
+        """Mean strains ε_x, ε_y and γ_xy of each triangle, ``(nt, 3)``; zero where nothing moves."""
+        triangle_block = self.mesh.triangle_block
+        order = np.argsort(triangle_block, kind="stable")
+        first = np.searchsorted(triangle_block[order], np.arange(len(self.scene.blocks)))
+        found = np.zeros((len(triangle_block), 3))
+        for template, Q in zip(self.templates, self.split(motion), strict=True):
+            triangles = order[first[template.blocks] + np.arange(len(template.strain) // 3)[:, None]]
+            found[triangles] = (template.strain @ Q).reshape(-1, 3, len(template.blocks)).transpose(0, 2, 1)
+        return found
+
     def split(self, motion: Array) -> list[Array]:
         """Coordinates of each template's blocks, ``(m, n)`` each."""
         pieces = np.split(motion, self.first[1:])[:-1]

@@ -7,9 +7,21 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
-from skfem import Basis, BilinearForm, ElementTriP1, ElementVector, FacetBasis, MeshTri, asm
-from skfem.helpers import dot
+from scipy.sparse import coo_array, csr_array, vstack
+from skfem import (
+    Basis,
+    BilinearForm,
+    ElementTriP0,
+    ElementTriP1,
+    ElementTriP2,
+    ElementTriP3,
+    ElementVector,
+    FacetBasis,
+    LinearForm,
+    MeshTri,
+    asm,
+)
+from skfem.helpers import dot, grad
 from skfem.models.elasticity import linear_elasticity, plane_stress
 
 from joints import JointPoints, Rule, lobatto, wall_inset
@@ -20,16 +32,49 @@ PointsOn: TypeAlias = Literal["elements", "joints"]
 """What a quadrature rule is laid on: every joint element, or every joint whole, however many elements it has."""
 
 
-def stiffness_matrix(points: Array, triangles: Indices, young: float, poisson: float, thickness: float) -> csr_array:
-    """Plane-stress stiffness of nodes ``(nn, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [N/m]."""
-    basis = Basis(_mesh(points, triangles), ElementVector(ElementTriP1()))
+ELEMENTS = {1: ElementTriP1, 2: ElementTriP2, 3: ElementTriP3}
+"""Triangles by the degree of their displacement; the first are those of constant strain."""
+
+
+def stiffness_matrix(
+    points: Array, triangles: Indices, young: float, poisson: float, thickness: float, degree: int = 1
+) -> csr_array:
+    """Plane-stress stiffness of vertices ``(nv, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [N/m].
+
+    With constant strain the nodes are the vertices; see `nodes_of_degree`.
+    """
+    basis = _basis(points, triangles, degree)
     return csr_array(thickness * asm(linear_elasticity(*plane_stress(young, poisson)), basis))
 
 
-def mass_matrix(points: Array, triangles: Indices, density: float, thickness: float) -> csr_array:
-    """Consistent mass of nodes ``(nn, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [kg]."""
-    basis = Basis(_mesh(points, triangles), ElementVector(ElementTriP1()))
+def mass_matrix(points: Array, triangles: Indices, density: float, thickness: float, degree: int = 1) -> csr_array:
+    """Consistent mass of vertices ``(nv, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [kg]."""
+    basis = _basis(points, triangles, degree)
     return csr_array(density * thickness * asm(BilinearForm(lambda u, v, _: dot(u, v)), basis))
+
+
+def strain_matrix(points: Array, triangles: Indices, degree: int = 1) -> csr_array:
+    """Mean strains ε_x, ε_y and γ_xy of each triangle per nodal displacement, ``(3 nt, 2 nn)`` [1/m]."""
+    basis = _basis(points, triangles, degree)
+    uniform = basis.with_element(ElementTriP0())
+    area = asm(LinearForm(lambda v, _: v), uniform)
+    forms = [
+        lambda u, v, _: grad(u)[0, 0] * v,
+        lambda u, v, _: grad(u)[1, 1] * v,
+        lambda u, v, _: (grad(u)[0, 1] + grad(u)[1, 0]) * v,
+    ]
+    strains = [asm(BilinearForm(form), basis, uniform) / area[:, None] for form in forms]
+    order = np.arange(3 * len(triangles)).reshape(3, -1).T.ravel()
+    return csr_array(vstack(strains, format="csr")[order])
+
+
+def nodes_of_degree(points: Array, triangles: Indices, degree: int) -> Array:
+    """Nodes of triangles whose displacement has some degree, ``(nn, 2)`` [m]; the vertices stand first."""
+    return np.ascontiguousarray(_basis(points, triangles, degree).doflocs[:, ::2].T)
+
+
+def _basis(points: Array, triangles: Indices, degree: int) -> Basis:
+    return Basis(_mesh(points, triangles), ElementVector(ELEMENTS[degree]()))
 
 
 def lumped_mass(points: Array, triangles: Indices, density: float, thickness: float) -> Array:

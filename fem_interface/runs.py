@@ -15,7 +15,7 @@ from scene import Indices, Scene
 
 from .cracks import Cracks, pieces
 from .modal_wall import ModalWall
-from .modes import ModeCount
+from .modes import BENDING, ModeCount
 from .operators import PointsOn, interface
 from .templates import templates
 
@@ -55,7 +55,7 @@ def find_runs(wall: ModalWall) -> tuple[Indices, Indices]:
 def modal_wall(
     scene: Scene,
     cells: int = 1,
-    modes: ModeCount = "all",
+    modes: ModeCount | None = None,
     rule: Rule | None = None,
     points: PointsOn = "elements",
     cracks: Cracks = "joints",
@@ -63,6 +63,8 @@ def modal_wall(
     """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_system`."""
     found = pieces(scene, wall_mesh(scene, cells), cracks)
     joints = interface(found.mesh, found.scene, rule, points)
+    if modes is None:
+        modes = BENDING if cracks == "joints" else "all"
     wall = ModalWall(found, templates(found.mesh, found.scene, modes), joints)
     order, _ = find_runs(wall)
     return replace(wall, interface=joints.arranged(order))

@@ -31,7 +31,7 @@ ROUNDING = 1e-14
 def fem_system(
     scene: Scene,
     cells: int = 1,
-    modes: ModeCount = "all",
+    modes: ModeCount | None = None,
     rule: Rule | None = None,
     *,
     points: PointsOn = "elements",
@@ -50,7 +50,7 @@ def fem_system(
     cells
         Cells in half a block along the course, and in a block's height.
     modes
-        Modes of each block: 3 rigid motions, 6 with the uniform strains, or all of its mesh.
+        Modes of each block (`ModeCount`): 10 by default, all where blocks may crack.
     rule
         Quadrature rule of the joints; two Lobatto points where none is given.
     points

@@ -1,14 +1,14 @@
 """Templates: what congruent blocks, held alike, have in common: one mesh, one set of modes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshing import WallMesh
 from scene import Array, Indices, Scene, SceneError
 
-from .modes import ModeCount, Modes, block_modes
-from .operators import mass_matrix, stiffness_matrix
+from .modes import ModeCount, Modes, block_modes, degree_of
+from .operators import mass_matrix, nodes_of_degree, stiffness_matrix, strain_matrix
 
 LARGE = 200_000
 """Multiplications of one matrix product; larger ones are cut up, or the library would start threads."""
@@ -24,10 +24,13 @@ class Template:
         The blocks, column by column.
     modes
         Modes that all of them have.
+    strain : (3 nt, m) float
+        Mean strains ε_x, ε_y and γ_xy of each of their triangles per coordinate [1/m].
     """
 
     blocks: Indices
     modes: Modes
+    strain: Array
 
 
 def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
@@ -44,9 +47,9 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
         alike.setdefault(_likeness(mesh, scene, int(block)), []).append(int(block))
     found = []
     for blocks in alike.values():
-        modes = _modes(mesh, scene, blocks[0], count)
+        modes, strain = _modes(mesh, scene, blocks[0], count)
         most = max(4, LARGE // modes.shape.size)
-        found += [Template(np.array(blocks[i : i + most]), modes) for i in range(0, len(blocks), most)]
+        found += [Template(np.array(blocks[i : i + most]), modes, strain) for i in range(0, len(blocks), most)]
     return found
 
 
@@ -85,14 +88,21 @@ def _likeness(mesh: WallMesh, scene: Scene, block: int) -> tuple[int, bytes]:
     return int(mesh.shape[block]), held_displacements(mesh, scene, block).tobytes()
 
 
-def _modes(mesh: WallMesh, scene: Scene, block: int, count: ModeCount) -> Modes:
+def _modes(mesh: WallMesh, scene: Scene, block: int, count: ModeCount) -> tuple[Modes, Array]:
+    """Modes of a block, found on triangles of their own degree and taken at the nodes of the mesh; their strains."""
     material = scene.block
-    points, triangles = mesh.points[nodes_of(mesh, block)], triangles_of(mesh, block)
+    degree = degree_of(count)
+    corners, triangles = mesh.points[nodes_of(mesh, block)], triangles_of(mesh, block)
+    points = nodes_of_degree(corners, triangles, degree)
     if count == 3:
         K = np.zeros((2 * len(points), 2 * len(points)))
     elif material.young is None:
         raise SceneError("block.young", "is missing; this model needs it unless its blocks are rigid")
     else:
-        K = stiffness_matrix(points, triangles, material.young, material.poisson, scene.thickness).toarray()
-    M = mass_matrix(points, triangles, material.density, scene.thickness).toarray()
-    return block_modes(points, K, M, held_displacements(mesh, scene, block), count)
+        K = stiffness_matrix(corners, triangles, material.young, material.poisson, scene.thickness, degree).toarray()
+    M = mass_matrix(corners, triangles, material.density, scene.thickness, degree).toarray()
+    held = held_displacements(mesh, scene, block)
+    further = np.zeros((len(held), len(M) - held.shape[1]))
+    modes = block_modes(points, K, M, np.hstack([held, further]), count)
+    strain = strain_matrix(corners, triangles, degree) @ modes.shape
+    return replace(modes, rigid=modes.rigid[: 2 * len(corners)], shape=modes.shape[: 2 * len(corners)]), strain

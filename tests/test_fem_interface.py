@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.linalg import block_diag
+from scipy.linalg import block_diag, null_space
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import eigsh, splu, spsolve
 from skfem import Basis, ElementTriP1, MeshTri
@@ -18,12 +18,13 @@ from dem import jump_operator, mass_matrix_diagonal
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from dynamics import BlockSystem, Criteria, Run, State, settle
-from fem_interface import lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface import block_modes, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
 from fem_interface.fracture import corrected_energies, fractured, printed_energies
 from fem_interface.loads import inner_mass
 from fem_interface.modal_wall import ModalWall
 from fem_interface.model import fem
-from fem_interface.modes import rigid_motions, uniform_strains
+from fem_interface.modes import ModeCount, degree_of, polynomials, rigid_motions
+from fem_interface.operators import nodes_of_degree
 from fem_interface.runs import find_runs, modal_wall
 from fem_interface.stable import scaled_modes
 from fem_interface.system import fem_system, system_of
@@ -230,7 +231,8 @@ def test_patch_of_irregular_blocks_carries_uniform_strain_exactly(strain: tuple[
     place = place.ravel()
     weld = csr_array((np.ones(len(points)), (np.arange(len(points)), place)))
     both = csr_array(np.kron(weld.toarray(), np.eye(2)))
-    exact = uniform_strains(points) @ strain
+    e_x, e_y, e_xy = strain
+    exact = (points @ [[e_x, e_xy], [e_xy, e_y]]).ravel()
     outer = np.asarray(np.abs(points - 0.5).max(axis=1) > 0.5 - 1e-9)
     assert 0 < (~outer).sum() < len(points)
     at = np.zeros(weld.shape[1], dtype=np.int64)
@@ -261,16 +263,25 @@ def test_lumped_mass_is_exact_in_translation_and_too_much_in_rotation() -> None:
     assert lumped[2, 2] > 1.15 * exact[2, 2]
 
 
-def test_bending_error_of_a_brick_falls_with_the_mesh(capsys: pytest.CaptureFixture[str]) -> None:
-    """A brick of 240 × 60 mm as a cantilever, against Timoshenko's beam: below 20 % from four cells on, order 2."""
-    scene = panel(wall__length=0.24, wall__height=0.06)
-    length, height, depth, young = 0.24, 0.06, 0.12, 1e9
-    beam = length**3 / (3 * young * depth * height**3 / 12) + length / (5 / 6 * young / 2 * depth * height)
+BRICK, DEPTH, YOUNG = (0.24, 0.06), 0.12, 1e9
+
+
+def _beam() -> float:
+    """Deflection of a brick of 240 × 60 mm as a cantilever under a force of 1 N, after Timoshenko [m]."""
+    length, height = BRICK
+    bending = length**3 / (3 * YOUNG * DEPTH * height**3 / 12)
+    return bending + length / (5 / 6 * YOUNG / 2 * DEPTH * height)
+
+
+def test_bending_error_of_constant_strain_falls_with_the_mesh(capsys: pytest.CaptureFixture[str]) -> None:
+    """All modes of a brick's triangles as a cantilever: below 20 % from four cells on, order 2."""
+    length, height = BRICK
+    scene = panel(wall__length=length, wall__height=height)
     errors = []
     for cells in (1, 2, 4, 8):
         mesh = wall_mesh(scene, cells)
         points, triangles = mesh.points[nodes_of(mesh, 0)], triangles_of(mesh, 0)
-        K = stiffness_matrix(points, triangles, young, 0.0, depth).tocsr()
+        K = stiffness_matrix(points, triangles, YOUNG, 0.0, DEPTH).tocsr()
         free = np.repeat(points[:, 0] > 1e-9, 2)
         tip = np.flatnonzero(points[:, 0] > length - 1e-9)
         force = np.zeros((len(points), 2))
@@ -278,36 +289,112 @@ def test_bending_error_of_a_brick_falls_with_the_mesh(capsys: pytest.CaptureFixt
         force[tip, 1] = np.where(inner, 1.0, 0.5) / cells
         u = np.zeros(2 * len(points))
         u[free] = spsolve(K[free][:, free].tocsc(), force.ravel()[free])
-        errors.append(1 - u.reshape(-1, 2)[tip, 1].mean() / beam)
+        errors.append(1 - u.reshape(-1, 2)[tip, 1].mean() / _beam())
     with capsys.disabled():
         print("\nbending error of a brick, 1, 2, 4, 8 cells high:", " ".join(f"{error:.1%}" for error in errors))
     assert errors[2] < 0.2
     assert math.log2(errors[2] / errors[3]) > 1.7
 
 
+def test_bending_error_of_a_brick_on_the_default_mesh(capsys: pytest.CaptureFixture[str]) -> None:
+    """Held and loaded at the ends of its head joints, in the modes that `fem` takes."""
+    scene = panel(wall__length=BRICK[0], wall__height=BRICK[1], joint__mortar=MORTAR, block__young=YOUNG)
+    errors = {}
+    for count in (6, None, 20):
+        found = modal_wall(scene, modes=count)
+        points, modes = found.mesh.points, found.templates[0].modes
+        shape = modes.shape[: 2 * len(points)].reshape(-1, 2, len(modes.mass))
+        corner = np.flatnonzero(np.abs(shape[:, 0, 2]) > BRICK[1] / 2 - 1e-9)
+        left, right = (
+            corner[side(points[corner, 0] - BRICK[0] / 2) > BRICK[0] / 2 - 1e-9] for side in (np.negative, abs)
+        )
+        held, tip = shape[left].reshape(4, -1), shape[np.setdiff1d(right, left), 1].mean(axis=0)
+        errors[count] = 1 - tip @ _held_response(modes.stiffness, held, tip) / _beam()
+    with capsys.disabled():
+        print("\nbending error of a brick, 6, 10, 20 modes:", " ".join(f"{error:.1%}" for error in errors.values()))
+    assert 0 < errors[20] < 0.01 < errors[None] < 0.06
+
+
+def _held_response(stiffness: Array, held: Array, force: Array) -> Array:
+    """Coordinates ``(m,)`` under a modal force, with some displacements ``(n, m)`` held at zero."""
+    free = null_space(held)
+    return np.asarray(free @ np.linalg.solve(free.T @ (stiffness[:, None] * free), free.T @ force))
+
+
 # --- modes and templates -------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("count", [3, 6, "all"])
+@pytest.mark.parametrize("count", [3, 6, 9, 20, "all"])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_mass_and_stiffness_are_diagonal_in_the_modes(make: Any, count: Literal[3, 6, "all"]) -> None:
+def test_mass_and_stiffness_are_diagonal_in_the_modes(make: Any, count: ModeCount) -> None:
+    """On triangles of the modes' own degree, at whose vertices the wall's joints see them."""
     scene = make()
     found = modal_wall(scene, 1, count)
     assert scene.block.young is not None
+    degree = degree_of(count)
     for template in found.templates:
         block, modes = int(template.blocks[0]), template.modes
-        points, triangles = found.mesh.points[nodes_of(found.mesh, block)], triangles_of(found.mesh, block)
-        M = mass_matrix(points, triangles, scene.block.density, scene.thickness).toarray()
-        K = stiffness_matrix(points, triangles, scene.block.young, scene.block.poisson, scene.thickness).toarray()
-        assert modes.shape.shape[1] == (2 * len(points) if count == "all" else min(count, 2 * len(points)))
-        assert modes.shape.T @ M @ modes.shape == pytest.approx(np.diag(modes.mass), abs=1e-11 * modes.mass.max())
-        stiff = modes.shape.T @ K @ modes.shape
-        assert np.abs(stiff - np.diag(modes.stiffness)).max() <= 1e-11 * np.abs(K).max()
-        assert modes.mass[0] == pytest.approx(scene.mass[block], rel=1e-12)
-        if count == 6:  # uniform strains, and nothing else
-            span = np.hstack([modes.rigid, uniform_strains(points)])
-            left = modes.shape - span @ np.linalg.lstsq(span, modes.shape)[0]
-            assert np.abs(left).max() < 1e-12 * np.abs(modes.shape).max()
+        corners, triangles = found.mesh.points[nodes_of(found.mesh, block)], triangles_of(found.mesh, block)
+        M = mass_matrix(corners, triangles, scene.block.density, scene.thickness, degree).toarray()
+        K = stiffness_matrix(
+            corners, triangles, scene.block.young, scene.block.poisson, scene.thickness, degree
+        ).toarray()
+        points = nodes_of_degree(corners, triangles, degree)
+        assert (points[: len(corners)] == corners).all()
+        whole = block_modes(points, K, M, np.zeros((0, len(M))), count)
+        assert whole.shape.shape[1] == (len(M) if count == "all" else min(count, len(M)))
+        assert whole.shape.T @ M @ whole.shape == pytest.approx(np.diag(whole.mass), abs=1e-11 * whole.mass.max())
+        stiff = whole.shape.T @ K @ whole.shape
+        assert np.abs(stiff - np.diag(whole.stiffness)).max() <= 1e-11 * np.abs(K).max()
+        assert whole.mass[0] == pytest.approx(scene.mass[block], rel=1e-12)
+        assert np.abs(modes.shape - whole.shape[: 2 * len(corners)]).max() < 1e-9 * np.abs(whole.shape).max()
+        if count not in (3, "all"):  # polynomials of that degree and nothing else, all those of first degree among them
+            span, first = polynomials(points, degree), polynomials(points, 1)
+            left = whole.shape - span @ np.linalg.lstsq(span, whole.shape)[0]
+            assert np.abs(left).max() < 1e-11 * np.abs(whole.shape).max()
+            left = first - whole.shape @ np.linalg.lstsq(whole.shape, first)[0]
+            assert np.abs(left).max() < 1e-11 * np.abs(first).max()
+
+
+@pytest.mark.parametrize("count", range(7, 21))
+def test_square_blocks_bend_one_way_as_easily_as_the_other(count: int) -> None:
+    """Where two modes are alike both are taken, so that a quarter turn leaves the block's flexibility as it is."""
+    side = {"wall__block_width": 0.06, "wall__length": 0.06, "wall__height": 0.06}
+    found = modal_wall(panel(joint__mortar=MORTAR, block__young=1e10, **side), modes=count)
+    points, modes = found.mesh.points[found.mesh.block == 0] - 0.03, found.templates[0].modes
+    corner = np.flatnonzero(np.abs(points).min(axis=1) > 0.03 - 1e-9)
+    points, shape = points[corner], modes.shape[:, 3:].reshape(len(points), 2, -1)[corner]
+    quarter = np.array([[0.0, -1.0], [1.0, 0.0]])
+    onto = np.argmin(np.hypot(*(points[:, None] @ quarter.T - points).transpose(2, 0, 1)), axis=1)
+    turned = np.zeros_like(shape)
+    turned[onto] = np.einsum("xy,nym->nxm", quarter, shape)
+    flexibility, image = (s.reshape(2 * len(s), -1) / np.sqrt(modes.stiffness[3:]) for s in (shape, turned))
+    assert image @ image.T == pytest.approx(flexibility @ flexibility.T, abs=1e-9 * (flexibility**2).max())
+
+
+def test_modes_of_third_degree_hold_the_bending_of_beams() -> None:
+    """By a moment that varies with a shear force: displacements and energy to 1e-9.
+
+    A beam of a material without lateral contraction: u = −(M + S x / 2) x y / EI + (S / GI) (y³ / 6 − h² y / 8) and
+    v = (M + S x / 3) x² / 2EI, energy ∫ (M + S x)² / 2EI + (6/5) S² / 2GA.
+    """
+    length, height, depth, young, moment, shear = 0.24, 0.06, 0.12, 1e9, 0.3, 2.0
+    scene = panel(wall__length=length, wall__height=height, block__young=young)
+    mesh = wall_mesh(scene)
+    block = (mesh.points[nodes_of(mesh, 0)], triangles_of(mesh, 0))
+    K = stiffness_matrix(*block, young, 0.0, depth, 3).toarray()
+    M = mass_matrix(*block, 1800.0, depth, 3).toarray()
+    points = nodes_of_degree(*block, 3)
+    modes = block_modes(points, K, M, np.zeros((0, len(M))), 20)
+    EI, GI, GA = young * depth * height**3 / 12, young / 2 * depth * height**3 / 12, young / 2 * depth * height
+    x, y = (points - [length / 2, height / 2]).T
+    u = -(moment + shear * x / 2) * x * y / EI + shear / GI * (y**3 / 6 - height**2 * y / 8)
+    v = (moment + shear * x / 3) * x**2 / (2 * EI)
+    exact = np.column_stack([u, v]).ravel()
+    energy = (moment**2 * length + shear**2 * length**3 / 12) / (2 * EI) + 6 / 5 * shear**2 * length / (2 * GA)
+    Q = np.linalg.lstsq(modes.shape, exact)[0]
+    assert np.abs(modes.shape @ Q - exact).max() < 1e-9 * np.abs(exact).max()
+    assert 0.5 * modes.stiffness @ Q**2 == pytest.approx(energy, rel=1e-9)
 
 
 def test_congruent_blocks_share_a_template_and_blocks_of_their_own_shape_have_theirs() -> None:
@@ -316,11 +403,9 @@ def test_congruent_blocks_share_a_template_and_blocks_of_their_own_shape_have_th
 
 
 @pytest.mark.parametrize("cells", [1, 2])
-@pytest.mark.parametrize("count", [3, 6, "all"])
+@pytest.mark.parametrize("count", [3, 6, 10, "all"])
 @pytest.mark.parametrize("make", [wall, patch, triangle_wall])
-def test_kernels_are_the_nodal_jump_operator_and_its_transpose(
-    make: Any, count: Literal[3, 6, "all"], cells: int
-) -> None:
+def test_kernels_are_the_nodal_jump_operator_and_its_transpose(make: Any, count: ModeCount, cells: int) -> None:
     found = modal_wall(make(), cells, count, lobatto(3), "joints" if count == 6 else "elements")
     system = system_of(found)
     jump = nodal_jump(found.interface, len(found.mesh.points))
@@ -348,8 +433,8 @@ def test_elements_of_a_wall_of_equal_blocks_come_in_long_runs() -> None:
 
 
 @pytest.mark.parametrize("kind", ["corners", "pinned-corners"])
-@pytest.mark.parametrize("count", [3, 6, "all"])
-def test_pinned_corners_do_not_move(kind: str, count: Literal[3, 6, "all"]) -> None:
+@pytest.mark.parametrize("count", [3, 6, 10, "all"])
+def test_pinned_corners_do_not_move(kind: str, count: ModeCount) -> None:
     live = {"kind": "point", "at": [0.24, 0.24], "force": [0, -1]}
     scene = wall(joint__cohesion=1e5, support__kind=kind, load={"gravity": 0.0, "live": live})
     found = modal_wall(scene, 1, count)
@@ -400,7 +485,7 @@ class NodalSteps:
 def test_modal_step_is_the_nodal_step(changes: dict[str, Any]) -> None:
     """All modes, no mass scaling: the same displacements to 1e-12 for 500 steps, while joints slide and open."""
     scene = wall(5e9, **changes)
-    found = modal_wall(scene)
+    found = modal_wall(scene, modes="all")
     system = system_of(found, damping=0.0, mass_scaling=False)
     run = Run(system, local=0.0, viscous=0.1)
     state = State.at_rest(system)
@@ -542,10 +627,11 @@ def test_a_block_without_inner_nodes_bears_no_lumped_load() -> None:
 # --- mass scaling --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("young", [5e9, 5e10, 1e12])
-def test_mass_scaling_keeps_the_first_twenty_frequencies(young: float) -> None:
-    """Of the square panel, within 2e-3."""
-    found = modal_wall(panel(wall__height=1.44, joint__mortar=MORTAR, block__young=young))
+@pytest.mark.parametrize("young", [5e9, 5e10, 2e11, 1e12])
+@pytest.mark.parametrize(("height", "modes"), [(1.44, "all"), (1.44, None), (0.72, None)])
+def test_mass_scaling_keeps_the_first_twenty_frequencies(height: float, modes: ModeCount | None, young: float) -> None:
+    """Of the square panel and of one half as high, within 2e-3."""
+    found = modal_wall(panel(wall__height=height, joint__mortar=MORTAR, block__young=young), modes=modes)
     scaled = scaled_modes(found, 0.05)
     K = _modal_stiffness(found)
     exact, slowed = (_lowest_frequencies(K, mass[np.isfinite(mass)]) for mass in (found.mass, scaled.mass))
@@ -553,20 +639,25 @@ def test_mass_scaling_keeps_the_first_twenty_frequencies(young: float) -> None:
     assert (slowed <= exact * (1 + 1e-9)).all()
 
 
-def test_stiff_blocks_take_the_step_of_rigid_ones() -> None:
-    """At 1000 GPa mass scaling gives the step of rigid blocks, to 1 %; without it it is twenty times shorter."""
+@pytest.mark.parametrize(("modes", "shorter"), [(6, 0.01), ("all", 0.01), (None, 0.15)])
+def test_stiff_blocks_take_the_step_of_rigid_ones(modes: ModeCount | None, shorter: float) -> None:
+    """At 1000 GPa mass scaling gives the step of rigid blocks; without it it is twenty times shorter.
+
+    Where blocks bend as they should they do so at less than twice the frequency of rigid ones on their joints, and
+    the damping of such a mode costs a little of the step.
+    """
     scene = panel(joint__mortar=MORTAR, block__young=1e12)
     rigid = fem_system(scene, modes=3).block_frequency_squared
-    scaled, unscaled = (fem_system(scene, mass_scaling=on).block_frequency_squared for on in (True, False))
-    assert math.sqrt(scaled / rigid) == pytest.approx(1, abs=0.01)
-    assert math.sqrt(unscaled / rigid) > 20
+    scaled = fem_system(scene, modes=modes).block_frequency_squared
+    assert 1 < math.sqrt(scaled / rigid) < 1 + shorter
+    assert math.sqrt(fem_system(scene, mass_scaling=False).block_frequency_squared / rigid) > 15
 
 
 @pytest.mark.parametrize("young", [1e9, 1e12])
 def test_statics_do_not_feel_the_mass(young: float) -> None:
     """A glued wall at rest has the displacements of the sparse solution, to 1e-6 of the largest."""
     scene = wall(young, joint={**GLUE})
-    found = modal_wall(scene)
+    found = modal_wall(scene, modes="all")
     system = system_of(found)
     run = Run(system)
     state = State.at_rest(system)
@@ -734,7 +825,7 @@ def test_stiff_blocks_fall_at_the_load_of_rigid_ones(changes: dict[str, Any]) ->
     assert ours.force.shape == theirs.force.shape
     assert ours.dofs is not None
     assert theirs.dofs is not None
-    assert ours.dofs > 4 * theirs.dofs
+    assert ours.dofs > 3 * theirs.dofs
 
 
 @pytest.mark.parametrize("number", [4, *(pytest.param(k, marks=pytest.mark.long) for k in (1, 2, 3, 5, 6, 8, 9))])
@@ -805,7 +896,7 @@ def test_blocks_without_a_stiffness_are_refused_unless_rigid() -> None:
 
 def test_an_unknown_number_of_modes_is_refused() -> None:
     with pytest.raises(ValueError, match="modes = 4"):
-        fem_system(wall(), modes=4)  # type: ignore[arg-type]
+        fem_system(wall(), modes=4)
 
 
 def test_a_block_held_at_both_corners_without_a_joint_only_deforms() -> None:
@@ -813,7 +904,7 @@ def test_a_block_held_at_both_corners_without_a_joint_only_deforms() -> None:
     live = {"kind": "point", "at": [0.12, 0.06], "force": [0, -1]}
     size: dict[str, Any] = {"wall__length": 0.24, "wall__height": 0.06, "support__kind": "pinned-corners"}
     scene = wall(1e10, **size, load={"gravity": 0.0, "live": live})
-    found = modal_wall(scene)
+    found = modal_wall(scene, modes="all")
     run = Run(system_of(found))
     state = State.at_rest(run.system)
     assert settle(run, state, 1e3, Criteria(collapse=1.0, rest=1e-9)) == "stable"

@@ -180,7 +180,7 @@ def read_materials(akantu: Any, scene: Scene) -> None:
 
 def as_in_akantu(scene: Scene) -> ModalWall:
     """A wall with Akantu's masses and joint points."""
-    wall = modal_wall(scene, rule=gauss(2))
+    wall = modal_wall(scene, modes="all", rule=gauss(2))
 
     def lumped(template: Template) -> Template:
         block = int(template.blocks[0])
@@ -229,7 +229,7 @@ def seconds_by_turns(calls: list[Callable[[], None]]) -> list[list[float]]:
 
 def compare_steps(akantu: Any, scene: Scene) -> tuple[str, list[str]]:
     """Lines of the two tables for one wall."""
-    wall = modal_wall(scene)
+    wall = modal_wall(scene, modes="all")
     n_triangles, n_joints = len(wall_triangles(wall)), len(wall.mesh.interfaces)
     n = n_triangles + n_joints
     size = f"{scene.wall.sum():6d} {n_triangles:10d} {n_joints:7d}"

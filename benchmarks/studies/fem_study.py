@@ -15,6 +15,7 @@ from compare import published_scene
 from dem.dynamic import dem_dynamic
 from dynamics.verdict import FIRST_STEP
 from fem_interface.model import fem
+from fem_interface.modes import BENDING, ModeCount
 from joints import Rule, gauss, lobatto
 from results import Outcome
 from scene import BlockMaterial, Scene
@@ -35,7 +36,7 @@ class Case:
     rule: str = "Lobatto 2"
     points: Literal["elements", "joints"] = "elements"
     cells: int = 1
-    modes: Literal[3, 6, "all"] = "all"
+    modes: ModeCount = BENDING
     loads: Literal["consistent", "inner"] = "consistent"
     first_step: float = FIRST_STEP
 
@@ -59,7 +60,7 @@ class Case:
 def cases(finest: int) -> list[Case]:
     """What is varied, one thing at a time."""
     on: tuple[Literal["elements", "joints"], ...] = ("elements", "joints")
-    modes: tuple[Literal[3, 6], ...] = (3, 6)
+    modes: tuple[ModeCount, ...] = (3, 6, 20, "all")
     found = [Case(rule, points) for points in on for rule in RULES]
     found += [Case(rule, cells=cells) for rule in ("Lobatto 2", "Gauss 2") for cells in (2, 4) if cells <= finest]
     found += [Case(modes=count) for count in modes]
