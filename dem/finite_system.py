@@ -54,7 +54,7 @@ def finite_system(scene: Scene) -> BlockSystem:
         restraint=restraint,
         block_frequency_squared=_frequency_squared(outline, contacts, law, mass),
         control=control,
-        force_unit=force_unit(dead, live, rigid, wall_strength(scene, wall_points(scene))),
+        force_unit=force_unit(scene, np.arange(len(mass)) // 3, mass, live, wall_strength(scene, wall_points(scene))),
     )
 
 

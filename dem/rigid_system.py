@@ -57,7 +57,7 @@ def rigid_system(scene: Scene) -> BlockSystem:
         restraint=Restraint(rigid.ravel()[restraint.freedom], restraint.basis),
         block_frequency_squared=largest_frequency_squared(scene, points, law),
         control=control[order],
-        force_unit=force_unit(dead[order], live, rigid, wall_strength(scene, points)),
+        force_unit=force_unit(scene, order // 3, mass[order], live, wall_strength(scene, points)),
     )
 
 

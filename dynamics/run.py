@@ -102,9 +102,8 @@ class Run:
         return float(mean)
 
     def unbalanced(self, state: State) -> float:
-        """Largest unbalanced force of the last step, relative to the force unit."""
-        moving = np.isfinite(self.system.mass)
-        return float(np.abs(state.unbalanced[moving]).max() / self.system.force_unit)
+        """Largest unbalanced force of the last step, relative to its block's weight."""
+        return self.system.measure(state.unbalanced)
 
     def forces(self, state: State) -> tuple[Array, Array]:
         """Normal and tangential force at each point ``(np,)`` [N], without a change of state."""
@@ -167,7 +166,7 @@ class Criteria:
     Parameters
     ----------
     rest
-        Unbalanced force, relative to the force unit, below which the wall is at rest.
+        Unbalanced force, in the system's units, below which the wall is at rest.
     collapse
         Displacement [m] of any block since the load was raised at which a wall that does not slow down is in
         collapse.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from joints import PointStrength
 from joints.point_kernel import KernelLaw
-from scene import Array, Indices
+from scene import Array, Indices, Scene
 
 Kernel: TypeAlias = Callable[..., Any]
 
@@ -65,8 +65,8 @@ class BlockSystem:
         Largest ω² [1/s²] of any block against its share of its joints: an upper bound of the system's.
     control : (nd,) float
         Displacement of the control point along the live load, per modal motion.
-    force_unit : float
-        Force [N] against which unbalanced forces are measured.
+    force_unit : (nd,) float
+        Force of each mode against which its unbalanced one is measured; inf where a mode is held.
     """
 
     mass: Array
@@ -83,27 +83,42 @@ class BlockSystem:
     restraint: Restraint
     block_frequency_squared: float
     control: Array
-    force_unit: float
+    force_unit: Array
 
     @property
     def freedoms(self) -> int:
         """Number of modes that move."""
         return int(np.isfinite(self.mass).sum())
 
+    def measure(self, force: Array) -> float:
+        """Largest of modal forces ``(nd,)``, each in its unit."""
+        return float((np.abs(force) / self.force_unit).max())
 
-def force_unit(dead: Array, live: Array, rigid: Indices, strength: PointStrength) -> float:
-    """Force [N] by which unbalanced ones are measured: the largest weight, or what the strongest point carries.
+
+def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength: PointStrength) -> Array:
+    """Force by which unbalanced ones are measured, ``(nd,)``: its own block's weight, in each mode.
+
+    A small block beside large ones falls as freely as they do, under forces that are nothing to them. Moments and
+    other modal forces are those that accelerate the mode as much, F (m / m_b)^{1/2}. Without weight the force of all
+    blocks is what the strongest point carries.
 
     Parameters
     ----------
-    dead, live : (nd,) float
-        Modal loads [N].
-    rigid : (nb, 3) int
-        Where the blocks' rigid coordinates stand.
+    scene
+        The wall.
+    block : (nd,) int
+        Block of each mode.
+    mass : (nd,) float
+        Modal masses, not scaled; inf where a mode is held.
+    live : (nd,) float
+        Modal live load.
     strength
         Strength of the joint points.
     """
-    return float(np.abs(dead[rigid[:, :2]]).max()) or strength.strongest or float(np.abs(live).max())
+    gravity = float(np.hypot(*scene.load.gravity))
+    each = np.full(len(scene.blocks), strength.strongest or float(np.abs(live).max()))
+    force = gravity * scene.mass if gravity > 0 else each
+    return np.asarray(force[block] * np.sqrt(mass / scene.mass[block]))
 
 
 @dataclass(eq=False)

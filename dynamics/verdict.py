@@ -85,7 +85,7 @@ def collapse_by_steps(
     if collapse is None:
         collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
     criteria = Criteria(collapse=collapse * scene.block_size, budget=budget)
-    first = first_step * system.force_unit / float(np.abs(system.live).max())
+    first = first_step / system.measure(system.live)
     # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
     with threadpool_limits(limits=1, user_api="blas"):
         found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)

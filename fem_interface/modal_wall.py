@@ -71,6 +71,12 @@ class ModalWall:
         return self._of_modes([template.modes.stiffness for template in self.templates])
 
     @cached_property
+    def block(self) -> Indices:
+        """Block of each coordinate, ``(nd,)``; of the last, which never moves, the last block."""
+        each = [np.tile(template.blocks, len(template.modes.mass)) for template in self.templates]
+        return np.concatenate([*each, [len(self.scene.blocks) - 1]])
+
+    @cached_property
     def rigid(self) -> Indices:
         """Where each block's rigid coordinates stand, ``(nb, 3)``; the last coordinate of all for fixed blocks."""
         found = np.full((len(self.scene.blocks), 3), self.first[-1])

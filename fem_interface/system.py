@@ -103,7 +103,7 @@ def system_of(
         restraint=_restraint(wall),
         block_frequency_squared=scaled.frequency_squared,
         control=wall.control_row(),
-        force_unit=force_unit(dead, live, wall.rigid, wall_strength(scene, points)),
+        force_unit=force_unit(scene, wall.block, wall.mass, live, wall_strength(scene, points)),
     )
 
 

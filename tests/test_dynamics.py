@@ -66,7 +66,7 @@ def oscillator(stiffness: float = 1.0, viscosity: float = 0.0) -> BlockSystem:
         restraint=Restraint(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3))),
         block_frequency_squared=stiffness,
         control=np.ones(1),
-        force_unit=1.0,
+        force_unit=np.ones(1),
     )
 
 

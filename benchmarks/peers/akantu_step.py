@@ -208,7 +208,7 @@ def likeness(theirs: AkantuWall, wall: ModalWall, run: Run) -> str:
     moving = ~wall.scene.fixed[wall.mesh.block]
     departure = np.linalg.norm(ours[moving] - fall)
     normal, tangential = run.forces(state)
-    pressed = normal < -1e-6 * run.system.force_unit
+    pressed = normal < -1e-6 * float(np.abs(run.system.dead).max())
     sliding = pressed & (np.abs(tangential) > 0.999 * wall.scene.joint_materials[0].friction * np.abs(normal))
     return (
         f"{1e3 * STEPS * run.dt:10.3f} {1e6 * np.abs(ours).max():11.3f} {pressed.mean():8.0%} {sliding.mean():8.0%} "
