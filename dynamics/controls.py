@@ -21,6 +21,9 @@ the slower it is loaded.
 SLOWINGS = 4
 """How often a wall without weight is loaded anew, half as fast each time, until its bracket stays where it is."""
 
+RESOLVED = 10
+"""Least width of a bracket, in live loads that a wall would be held to bear though nothing balances them."""
+
 GROWTH = 1 / 8
 """Largest step, once the first ones are borne, as a fraction of the load."""
 
@@ -82,7 +85,7 @@ def load_steps(
     first
         First step of the multiplier.
     tolerance
-        Relative width of the bracket at which to stop.
+        Relative width of the bracket at which to stop; it stops as well where the criterion of rest sees no more.
     criteria
         When a load counts as borne.
     most
@@ -125,7 +128,8 @@ def _search(
     found.lower, found.borne = 0.0, state
     found.rests.append((0.0, state))
     step, steps_to_rest, neutral = first, state.steps, None
-    while found.upper is None or found.upper - found.lower > tolerance * found.upper:
+    narrowest = RESOLVED * criteria.rest / run.system.measure(run.system.live)
+    while found.upper is None or found.upper - found.lower > max(tolerance * found.upper, narrowest):
         trial = _next_trial(found, step, neutral, tolerance)
         if trial > most:
             found.verdict = "undecided"

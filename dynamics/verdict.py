@@ -138,6 +138,8 @@ def _judge(
     if found.verdict == "undecided":
         return replace(outcome, message=_undecided(found, tolerance))
     slowed = "" if found.rate_error is None else f"; loading at half the speed moved it by {found.rate_error:.0e}"
+    if found.upper - found.lower > tolerance * found.upper:
+        slowed += "; wider than the tolerance because loads as small as their difference would not be seen at rest"
     return replace(
         outcome,
         status="collapse",
