@@ -156,9 +156,14 @@ def _undecided(found: LoadSteps, tolerance: float) -> str:
 
 
 def _unaccounted(run: Run, state: State) -> float:
-    """Share of the work of the loads that the energy ledger misses."""
+    """Share of the work of the loads that the energy ledger misses.
+
+    Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
+    """
     ledger = run.ledger(state)
-    return abs(ledger.residual) / abs(ledger.external) if ledger.external else 0.0
+    dead = float(run.system.dead @ state.motion)
+    work = abs(dead) + abs(ledger.external - dead)
+    return abs(ledger.residual) / work if work else 0.0
 
 
 def _curve(run: Run, found: LoadSteps) -> Array:
