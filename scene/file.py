@@ -15,6 +15,9 @@ from .supports import SUPPORT_KINDS, SupportKind
 from .table import Table
 from .wall import Scene, build_scene
 
+LEAST_FRICTION = 1e-6
+"""Least tan φ that is not 0: what is smaller drowns in a linear program's tolerance, cohesion / tan φ with it."""
+
 
 def read_scene(path: str | Path) -> Scene:
     """Read a scene file.
@@ -144,13 +147,17 @@ def _joint_material(joint: Table) -> JointMaterial:
 
 def _friction(joint: Table) -> float:
     angle = joint.optional_number("friction_angle", least=0.0, below=90.0)
-    if angle is None:
-        return joint.number("friction", least=0.0)
-    if "friction" in joint:
+    if angle is not None and "friction" in joint:
         raise SceneError(
             joint.key("friction_angle"), f"does not go with {joint.key('friction')}; give one of them", angle
         )
-    return math.tan(math.radians(angle))
+    friction = joint.number("friction", least=0.0) if angle is None else math.tan(math.radians(angle))
+    if 0 < friction < LEAST_FRICTION:
+        key, value = ("friction", friction) if angle is None else ("friction_angle", angle)
+        raise SceneError(
+            joint.key(key), f"must be 0, for joints without friction, or such that tan φ ≥ {LEAST_FRICTION:g}", value
+        )
+    return friction
 
 
 def _tensile_strength(joint: Table, friction: float, cohesion: float) -> float:
@@ -165,8 +172,6 @@ def _tensile_strength(joint: Table, friction: float, cohesion: float) -> float:
         return given or 0.0
     apex = cohesion / friction
     if given is None:
-        if not math.isfinite(apex):
-            raise SceneError(joint.key("friction"), "is so small that cohesion / friction is infinite", friction)
         return apex
     if given > apex * (1 + 1e-3):
         raise SceneError(

@@ -28,6 +28,11 @@ FREE = {"wall__length": None, "wall__height": None}
         ({"joint__friction": -0.6}, "joint.friction = -0.6: must be a number at least 0"),
         ({"joint__friction": "rough"}, "joint.friction = 'rough': must be a number"),
         ({"joint__friction": True}, "joint.friction = True: must be a number"),
+        (
+            {"joint__friction": 1e-9},
+            "joint.friction = 1e-09: must be 0, for joints without friction, or such that tan φ ≥ 1e-06",
+        ),
+        ({"joint": {"friction_angle": 1e-9}}, "joint.friction_angle = 1e-09: must be 0"),
         ({"joint__friction": float("nan")}, "joint.friction = nan: must be a number"),
         ({"block__density": float("inf")}, "block.density = inf: must be a number"),
         ({"block__density": 10**400}, "block.density"),
@@ -60,6 +65,10 @@ FREE = {"wall__length": None, "wall__height": None}
         ({"joint__normal_stiffness": 1e9}, "joint.shear_stiffness: is missing"),
         ({"support__kind": "rollers"}, "support.kind = 'rollers': must be one of"),
         ({"support__kind": "fixed-first-course", "wall__height": 0.06}, "holds every block"),
+        (
+            {"support__kind": "corners", "wall__height": 0.06, "wall__length": 0.24},
+            "holds the only block at both corners",
+        ),
         ({"load__gravity": 0}, "load.gravity = 0.0: leaves a lateral load nothing to push with"),
         ({"load__live": {"kind": "lateral", "at": [0, 0]}}, "load.live.at = [0, 0]: is not a key"),
         ({"load__live": POINT | {"at": [5, 5]}}, "load.live.at = [5.0, 5.0]: touches no block that can move"),
