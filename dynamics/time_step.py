@@ -12,8 +12,8 @@ SAFETY = 0.9
 def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: float = 0.0) -> float:
     """Time step [s] at which central differences stay bounded.
 
-    Δt = 0.9 · (2/ω) (√(1 + ξ²) − ξ) / √(1 + α): lagged viscous damping narrows the limit 2/ω, and so does local
-    damping, exactly by √(1 + α).
+    Δt = 0.9 · (2/ω') (√(1 + ξ'²) − ξ') with ω' = √(1 + α) ω and ξ' = √(1 + α) ξ: local damping makes 1 + α times as
+    large what slows a mode down, its lagged viscous force included. Exact for α or ξ alone; for both, safe.
 
     Parameters
     ----------
@@ -24,8 +24,9 @@ def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: flo
     local
         α of the local damping.
     """
-    lagged = math.sqrt(1 + damping_ratio**2) - damping_ratio
-    return SAFETY * 2 / math.sqrt(frequency_squared) * lagged / math.sqrt(1 + local)
+    enlarged = math.sqrt(1 + local)
+    ratio = enlarged * damping_ratio
+    return SAFETY * 2 / (enlarged * math.sqrt(frequency_squared)) * (math.sqrt(1 + ratio**2) - ratio)
 
 
 def joint_shares(mass: Array, exponent: float) -> Array:

@@ -126,9 +126,27 @@ def test_lagged_viscous_damping_narrows_the_step(ratio: float) -> None:
     assert _grows(Run(oscillator(viscosity=2 * ratio), local=0.0, viscous=0.0, dt=1.001 * edge))
 
 
+@pytest.mark.parametrize("local", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("ratio", [0.1, 0.3])
+def test_local_damping_enlarges_the_lagged_viscous_force_too(local: float, ratio: float) -> None:
+    """Together they narrow the step by more than by the product of what each does alone."""
+    edge = stable_step(1.0, ratio, local) / 0.9
+    assert edge < 2 * (math.sqrt(1 + ratio**2) - ratio) / math.sqrt(1 + local)
+    assert not _grows(Run(oscillator(viscosity=2 * ratio), local=local, viscous=0.0, dt=0.999 * edge))
+    assert _grows(Run(oscillator(viscosity=2 * ratio), local=local, viscous=0.0, dt=1.001 * edge))
+
+
+@pytest.mark.parametrize("local", [0.5, 0.95])
+@pytest.mark.parametrize("ratio", [1.0, 3.0])
+def test_the_stable_step_is_safe_under_heavy_damping(local: float, ratio: float) -> None:
+    dt = stable_step(1.0, ratio, local)
+    assert not _grows(Run(oscillator(viscosity=2 * ratio), local=local, viscous=0.0, dt=dt))
+
+
 def test_stable_step_stays_a_tenth_inside_both_limits() -> None:
     assert stable_step(4.0) == pytest.approx(0.9)
-    assert stable_step(1.0, 0.3, 0.5) == pytest.approx(0.9 * 2 * (math.sqrt(1.09) - 0.3) / math.sqrt(1.5))
+    assert stable_step(1.0, 0.3) == pytest.approx(0.9 * 2 * (math.sqrt(1.09) - 0.3))
+    assert stable_step(1.0, 0.0, 0.5) == pytest.approx(0.9 * 2 / math.sqrt(1.5))
 
 
 def test_mass_scaling_leaves_rigid_modes_alone_and_brings_stiff_ones_inside_the_step() -> None:
