@@ -20,6 +20,7 @@ h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid #ddd; white-space: nowrap; }
+.wrapped th, .wrapped td { white-space: normal; vertical-align: top; }
 th { border-bottom: 2px solid #888; }
 figure { margin: 1.5rem 0; } img { max-width: 100%; height: auto; } figcaption { color: #555; font-size: 0.85rem; }
 """
@@ -39,26 +40,30 @@ def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: flo
     why_no_plates
         Why there are no pictures of mechanisms; empty where there are.
     """
-    costs = cost_sheets(comparison)
     parts = [
         "<h1>Masonry walls from their description to their collapse</h1>",
         f"<p>{len(comparison.campaign)} cases: {len(comparison.scenes)} walls by {len(comparison.models)} models.</p>",
         "<h2>Collapse multipliers</h2>",
-        *map(_table, _paper_in_one(multiplier_sheets(comparison))),
+        *map(table_html, _paper_in_one(multiplier_sheets(comparison))),
         "<h2>Charts and mechanisms</h2>",
         *([f"<p>{html.escape(why_no_plates)}</p>"] if why_no_plates else []),
-        *map(_figure, pictures),
+        *map(figure_html, pictures),
         "<h2>Cost</h2>",
-        *(_table(sheet) for sheet in costs),
+        *map(table_html, cost_sheets(comparison)),
         "<h2>What was run</h2>",
-        _table(_provenance(comparison, tolerance)),
+        table_html(_provenance(comparison, tolerance)),
     ]
+    return page_html("comparison", parts)
+
+
+def page_html(subject: str, parts: Sequence[str]) -> str:
+    """One page of parts, which needs nothing from anywhere."""
     return "\n".join(
         [
             '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             '<link rel="icon" href="data:,">',
-            f"<title>runningbond: comparison</title>\n<style>{STYLE}</style>\n</head>\n<body>",
+            f"<title>runningbond: {subject}</title>\n<style>{STYLE}</style>\n</head>\n<body>",
             *parts,
             "</body>\n</html>\n",
         ]
@@ -93,17 +98,20 @@ def _provenance(comparison: Comparison, tolerance: float) -> Sheet:
     return Sheet("Versions", ("what", "which"), rows)
 
 
-def _table(sheet: Sheet) -> str:
+def table_html(sheet: Sheet, wrapped: bool = False) -> str:
+    """A table under its title; its cells hold sentences where it is `wrapped`."""
     heads = "".join(f"<th>{html.escape(head)}</th>" for head in sheet.heads)
     rows = "\n".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in sheet.rows)
     title = html.escape(sheet.title)
+    kind = ' class="wrapped"' if wrapped else ""
     return (
-        f'<h3>{title}</h3>\n<div class="wide"><table data-title="{title}">\n<thead><tr>{heads}</tr></thead>\n'
+        f'<h3>{title}</h3>\n<div class="wide"><table{kind} data-title="{title}">\n<thead><tr>{heads}</tr></thead>\n'
         f"<tbody>\n{rows}\n</tbody>\n</table></div>"
     )
 
 
-def _figure(path: Path) -> str:
+def figure_html(path: Path) -> str:
+    """A PNG file, in the page itself."""
     data = base64.b64encode(path.read_bytes()).decode()
     name = html.escape(path.stem)
     return f'<figure><img alt="{name}" src="data:image/png;base64,{data}"><figcaption>{name}.png</figcaption></figure>'
