@@ -2,7 +2,7 @@
 
 from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive, settled_load_steps
 from .finite_run import FiniteRun, FiniteState, finite_curve
-from .run import Criteria, Ledger, Observer, Run, Verdict, moved_by, nobody, settle
+from .run import Criteria, Ledger, Observer, Run, Unstable, Verdict, moved_by, nobody, settle
 from .system import BlockSystem, Restraint, State, force_unit
 from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
 from .verdict import collapse_by_steps
@@ -19,6 +19,7 @@ __all__ = [
     "Restraint",
     "Run",
     "State",
+    "Unstable",
     "Verdict",
     "block_frequency_squared",
     "collapse_by_steps",

@@ -199,9 +199,9 @@ def _next_trial(found: LoadSteps, step: float, neutral: float | None, tolerance:
 
 def ramp(run: Run, state: State, start: float, stop: float, steps: int, interval: int = 20) -> None:
     """Raise the multiplier evenly from `start` to `stop` over a number of steps, in place."""
-    pieces = max(1, steps // interval)
+    pieces, given = max(1, steps // interval), run.given(state)
     for k in range(pieces):
-        run.hold(state, start + (stop - start) * (k + 0.5) / pieces, interval)
+        run.hold(state, start + (stop - start) * (k + 0.5) / pieces, interval, given=given)
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,8 +269,9 @@ def push(
     """
     pieces, soft, steps = pace
     curve: list[tuple[float, ...]] = []
+    given = run.given(state)
     for piece in range(pieces):
-        multiplier = run.drive(state, power * min(1.0, (piece + 1) / soft), steps)
+        multiplier = run.drive(state, power * min(1.0, (piece + 1) / soft), steps, given=given)
         curve.append((*measure(state.motion), multiplier))
         if curve[-1][0] >= distance:
             break

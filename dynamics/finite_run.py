@@ -1,5 +1,6 @@
 """Blocks at finite displacements, whose contacts are sought anew as they move, and what they have been through kept."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -127,22 +128,22 @@ class FiniteRun(Run, ABC):
         fresh = self._fresh_history(contacts, motion)
         return FiniteState(motion, np.zeros(nd), fresh, np.zeros(nd), np.zeros(nd), contacts=contacts)
 
-    def hold(self, state: State, multiplier: float, steps: int, dead: float = 1.0) -> None:
+    def hold(self, state: State, multiplier: float, steps: int, dead: float = 1.0, *, given: float = math.inf) -> None:
         """Take steps under constant loads, as in `Run`."""
         finite = _finite(state)
         while steps > 0:
             piece = min(steps, self._look(finite))
-            super().hold(finite, multiplier, piece, dead)
+            super().hold(finite, multiplier, piece, dead, given=given)
             finite.time += piece * self.dt
             steps -= piece
 
-    def drive(self, state: State, speed: float, steps: int) -> float:
+    def drive(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
         """Take steps with the live load's power kept at `speed` [W]; returns the mean multiplier."""
         finite = _finite(state)
         total, left = 0.0, steps
         while left > 0:
             piece = min(left, self._look(finite))
-            total += piece * super().drive(finite, speed, piece)
+            total += piece * super().drive(finite, speed, piece, given=given)
             finite.time += piece * self.dt
             left -= piece
         return total / steps

@@ -47,6 +47,23 @@ class Ledger:
         return self.external - self.kinetic - self.elastic - self.joint - self.friction - self.damped
 
 
+class Unstable(ArithmeticError):
+    """A run that spent more energy than it was supplied with, which a long time step makes of nothing.
+
+    Parameters
+    ----------
+    steps
+        Steps after which that was found.
+    step, safe
+        Time step that was taken, and one that is safe [s].
+    """
+
+    def __init__(self, steps: int, step: float, safe: float) -> None:
+        found = f"unstable: more energy was spent than supplied after {steps} time steps of {step:.4g} s"
+        super().__init__(f"{found}; a step of {safe:.4g} s is safe")
+        self.steps = steps
+
+
 class Run:
     """A system in motion.
 
@@ -72,7 +89,8 @@ class Run:
     ) -> None:
         self.system = system
         self.local = local
-        self.dt = dt or stable_step(system.block_frequency_squared, viscous, local)
+        self.safe_step = stable_step(system.block_frequency_squared, viscous, local)
+        self.dt = dt or self.safe_step
         self._viscosity = 2 * viscous / math.sqrt(system.block_frequency_squared) / self.dt
         self._hold, self._drive = stepper(system.gather, system.law.kernel, system.scatter)
         modes = (system.stiffness, system.viscosity, 1 / system.mass)
@@ -80,26 +98,59 @@ class Run:
         self._arrays = (system.geometry, system.law.parameters, modes, restraint)
         self._work = work_arrays(len(system.mass), system.law.points)
 
-    def hold(self, state: State, multiplier: float, steps: int, dead: float = 1.0) -> None:
-        """Take steps under constant loads: `multiplier` times the live one and `dead` times the dead one."""
+    def hold(self, state: State, multiplier: float, steps: int, dead: float = 1.0, *, given: float = math.inf) -> None:
+        """Take steps under constant loads: `multiplier` times the live one and `dead` times the dead one.
+
+        Parameters
+        ----------
+        state
+            Brought forward in place.
+        multiplier, dead
+            Factors on the live and the dead load.
+        steps
+            How many steps.
+        given
+            Energy [J] of the state besides the work of its loads, of `given`; inf does not watch the energy.
+
+        Raises
+        ------
+        Unstable
+            As soon as the energy that is watched does not add up; the state is left as it is then.
+        """
         system = self.system
         load = dead * system.dead + multiplier * system.live
         before = float(load @ state.motion)
-        self._hold(steps, self.dt, self.local, self._viscosity, load, *self._arrays, _histories(state), self._work)
+        watch = (state.steps, given + state.external - before, system.area)
+        coefficients = (steps, self.dt, self.local, self._viscosity)
+        taken, sound = self._hold(*coefficients, load, *self._arrays, _histories(state), self._work, watch)
         state.external += float(load @ state.motion) - before
-        state.steps += steps
+        self._account(state, taken, sound)
 
-    def drive(self, state: State, speed: float, steps: int) -> float:
-        """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier."""
+    def drive(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
+        """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier.
+
+        `given` watches the energy as in `hold`.
+        """
         system = self.system
         before = float(system.dead @ state.motion)
+        watch = (state.steps, given + state.external - before, system.area)
         coefficients = (steps, self.dt, self.local, self._viscosity)
-        mean, worked = self._drive(
-            *coefficients, system.dead, system.live, speed, *self._arrays, _histories(state), self._work
+        loads = (system.dead, system.live, speed)
+        taken, sound, mean, worked = self._drive(
+            *coefficients, *loads, *self._arrays, _histories(state), self._work, watch
         )
         state.external += float(system.dead @ state.motion) - before + worked
-        state.steps += steps
+        self._account(state, taken, sound)
         return float(mean)
+
+    def given(self, state: State) -> float:
+        """Energy [J] of a state that its loads did not supply: none but for one that was set in motion by hand."""
+        return max(0.0, -self.ledger(state).residual)
+
+    def _account(self, state: State, taken: int, sound: bool) -> None:
+        state.steps += taken
+        if not sound:
+            raise Unstable(state.steps, self.dt, self.safe_step)
 
     def unbalanced(self, state: State) -> float:
         """Largest unbalanced force of the last step, relative to its block's weight."""
@@ -193,12 +244,17 @@ def settle(
 
     It rests when the unbalanced force is below the threshold at `CALM` looks in a row. It falls when it has moved far
     and does not slow down, so that a wall that slips and is caught is not mistaken for one in collapse.
+
+    Raises
+    ------
+    Unstable
+        If it spends more energy than the load and the state at the start can have supplied.
     """
-    start = state.motion.copy()
+    start, given = state.motion.copy(), run.given(state)
     fall = Fall(criteria.collapse)
     calm = 0
     for _ in range(criteria.budget // criteria.interval):
-        run.hold(state, multiplier, criteria.interval)
+        run.hold(state, multiplier, criteria.interval, given=given)
         observe(run, state, multiplier)
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
         if calm == CALM:

@@ -15,11 +15,26 @@ from typing import Any
 import numpy as np
 
 from joints import compiled
+from joints.point_kernel import FRICTION_WORK
 from scene import Array, Indices
 
 from .system import Kernel
 
 kernel = compiled.kernel
+
+LOOK = 100
+"""Steps between two looks at the energy."""
+
+CERTAIN = 0.05
+"""Share of the energy in motion and in springs that a stable run certainly was supplied with.
+
+Of the work W of the loads, central differences make energy E in motion and in springs and energy D spent, with
+W = D + E + R to rounding, where |R| ≤ (Δt / Δt_critical) E for velocities are half a step behind. A stable run has
+W ≥ D + (1 − Δt / Δt_critical) E, then; this share holds up to 0.95 of the critical step.
+"""
+
+TOO_MUCH = 2.0
+"""Energy spent, in energies supplied, that no stable run comes to: 1, but friction is added up step by step."""
 
 
 @kernel
@@ -66,6 +81,27 @@ def _update(
         velocity[i] = after
 
 
+@kernel
+def _sound(supplied: float, modes: Any, area: Array, state: Any) -> bool:
+    """Whether no more energy has been spent [J] than was supplied; not where either is no number.
+
+    The joints' viscosity is left out: at high frequencies its work is told too large.
+    """
+    stiffness, _, mobility = modes
+    motion, velocity, history, damped, _ = state
+    kept = 0.0
+    spent = 0.0
+    for i in range(motion.size):
+        if mobility[i] > 0.0:
+            kept += 0.5 * velocity[i] * velocity[i] / mobility[i]
+        kept += 0.5 * stiffness[i] * motion[i] * motion[i]
+        spent += damped[i]
+    for i in range(area.size):
+        spent += area[i] * history[FRICTION_WORK, i]
+    # Local damping that makes a mode unstable gives energy instead of taking it.
+    return max(spent, 0.0) + CERTAIN * kept <= TOO_MUCH * supplied
+
+
 @cache
 def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kernel]:
     """Compile the two loops of a model: at a constant load, and at a prescribed work-conjugate speed.
@@ -73,8 +109,10 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
     Returns
     -------
     hold, drive
-        ``hold(steps, dt, local, joint_viscosity, load, …)`` and ``drive(…, load, live, speed, …)``, the latter
-        returning the mean multiplier of its steps and the work of the live load.
+        ``hold(steps, dt, local, joint_viscosity, load, …)`` and ``drive(…, load, live, speed, …)``. Both return the
+        steps taken and whether no more energy is spent than was supplied; they look every `LOOK` steps of the state's
+        life, and stop where it is not so. The latter also returns the mean multiplier of its steps and the work of
+        the live load.
     """
 
     @kernel
@@ -115,12 +153,21 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         restraint: Any,
         state: Any,
         work: Any,
-    ) -> None:
+        watch: Any,
+    ) -> tuple[int, bool]:
         stiffness, viscosity, mobility = modes
         motion, velocity, history, damped, force = state
-        for _ in range(steps):
+        before, given, area = watch
+        for step in range(steps):
             respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
             _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+            if (before + step + 1) % LOOK == 0 and given < np.inf:
+                supplied = given
+                for i in range(motion.size):
+                    supplied += load[i] * motion[i]
+                if not _sound(supplied, modes, area, state):
+                    return step + 1, False
+        return steps, True
 
     @kernel
     def drive(
@@ -137,15 +184,17 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         restraint: Any,
         state: Any,
         work: Any,
-    ) -> tuple[float, float]:
+        watch: Any,
+    ) -> tuple[int, bool, float, float]:
         stiffness, viscosity, mobility = modes
         motion, velocity, history, damped, force = state
+        already, given, area = watch
         response = 0.0
         for i in range(live.size):
             response += live[i] * mobility[i] * live[i]
         total = 0.0
         worked = 0.0
-        for _ in range(steps):
+        for step in range(steps):
             respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
             pushed = 0.0
             before = 0.0
@@ -168,7 +217,13 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
             multiplier += returned
             total += multiplier
             worked += 0.5 * multiplier * dt * (before + speed)
-        return total / steps, worked
+            if (already + step + 1) % LOOK == 0 and given < np.inf:
+                supplied = given + worked
+                for i in range(motion.size):
+                    supplied += load[i] * motion[i]
+                if not _sound(supplied, modes, area, state):
+                    return step + 1, False, total / (step + 1), worked
+        return steps, True, total / steps, worked
 
     return hold, drive
 

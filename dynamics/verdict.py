@@ -10,7 +10,7 @@ from results import Outcome, fastest_corner_by_one
 from scene import Array, Indices, Scene
 
 from .controls import LoadSteps, settled_load_steps
-from .run import Criteria, Observer, Run, nobody
+from .run import Criteria, Observer, Run, Unstable, nobody
 from .system import State
 
 COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 1.6
@@ -79,7 +79,8 @@ def collapse_by_steps(
     -------
     Outcome
         `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `curve` has every state at rest, and ends in the fall.
+        it fell. `curve` has every state at rest, and ends in the fall. ``failed`` where the run makes up energy,
+        as one with too long a time step does.
     """
     system = run.system
     if collapse is None:
@@ -87,11 +88,15 @@ def collapse_by_steps(
     criteria = Criteria(collapse=collapse * scene.block_size, budget=budget)
     first = first_step / system.measure(system.live)
     # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
-    with threadpool_limits(limits=1, user_api="blas"):
-        found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
-    outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=found.taken)
-    outcome = _judge(outcome, scene, run, found, tolerance, point_order, locks)
-    message = "; ".join(part for part in (outcome.message, note) if part)
+    outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
+    try:
+        with threadpool_limits(limits=1, user_api="blas"):
+            found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
+    except Unstable as error:
+        return replace(outcome, status="failed", steps=error.steps, message=str(error))
+    outcome = _judge(replace(outcome, steps=found.taken), scene, run, found, tolerance, point_order, locks)
+    long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
+    message = "; ".join(part for part in (outcome.message, note, long if run.dt > run.safe_step else "") if part)
     return replace(outcome, message=message)
 
 
