@@ -47,7 +47,9 @@ def finite_system(blocks: FiniteWall, *, damping: float = DAMPING, mass_scaling:
         restraint=Restraint(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3))),
         block_frequency_squared=scaled.frequency_squared,
         control=wall.control_row(),
-        force_unit=force_unit(wall.scene, wall.block, wall.mass, live, wall_strength(wall.scene, wall.interface.points)),
+        force_unit=force_unit(
+            wall.scene, wall.block, wall.mass, live, wall_strength(wall.scene, wall.interface.points)
+        ),
     )
     return replace(
         system, block_frequency_squared=_frequency_squared(blocks, system, contacts, scaled.frequency_squared)
