@@ -91,8 +91,8 @@ class BlockSystem:
         return int(np.isfinite(self.mass).sum())
 
     def measure(self, force: Array) -> float:
-        """Largest of modal forces ``(nd,)``, each in its unit."""
-        return float((np.abs(force) / self.force_unit).max())
+        """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
+        return float((np.abs(force) / self.force_unit)[np.isfinite(self.mass)].max())
 
 
 def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength: PointStrength) -> Array:
