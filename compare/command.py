@@ -7,6 +7,7 @@ import signal
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -178,6 +179,7 @@ def compare(
     tolerance: float = TOLERANCE,
     out: Path = Path("comparison"),
     jobs: int = -1,
+    cluster: str | None = None,
     fresh: Annotated[bool, Parameter(negative="")] = False,
 ) -> int:
     """Run models on scenes and tabulate them beside the published values.
@@ -196,6 +198,8 @@ def compare(
         Folder for results, tables and charts.
     jobs
         Number of processes; -1 is one a core.
+    cluster
+        Run on the workers of a Dask cluster: the address of its scheduler, such as tcp://host:8786, or its file.
     fresh
         Compute again what is already there.
     """
@@ -205,19 +209,20 @@ def compare(
     check_tolerance(tolerance)
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+    _check_cluster(cluster, jobs)
     walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
     out.mkdir(parents=True, exist_ok=True)
     console = Console(stderr=True)
     try:
-        campaign = _run_with_progress(walls, chosen, out, tolerance, jobs, fresh, console)
+        campaign = _run_with_progress(walls, chosen, out, tolerance, jobs, cluster, fresh, console)
     except Interrupted as stopped:
         total, again = len(walls) * len(chosen), "the same command without --fresh" if fresh else "the same command"
-        console.print(
-            f"Interrupted: {stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on.",
-            soft_wrap=True,
-            markup=False,
-        )
-        return STOPPED
+        kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
+        why = f"runningbond: {stopped.reason}" if stopped.reason else "Interrupted"
+        console.print(f"{why}: {kept}", soft_wrap=True, markup=False, highlight=False)
+        if isinstance(stopped.__cause__, OSError):
+            return BAD_INPUT
+        return NO_ANSWER if stopped.reason else STOPPED
     _report(Comparison(walls, chosen, campaign, published), out, tolerance)
     failed = [cell for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for name, model in failed:
@@ -292,6 +297,16 @@ def _find_out_with_progress(experiments: Sequence[str], out: Path, console: Cons
     return found
 
 
+def _check_cluster(cluster: str | None, jobs: int) -> None:
+    """Refuse a cluster that cannot be used."""
+    if cluster is None:
+        return
+    if jobs != -1:
+        raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
+    if find_spec("distributed") is None:
+        raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
+
+
 def _whole(_: type, tokens: Sequence[Token]) -> int:
     """Read a whole number; cyclopts would round any other."""
     if not tokens[0].value.lstrip("+-").isdecimal():
@@ -349,6 +364,7 @@ def _run_with_progress(
     out: Path,
     tolerance: float,
     jobs: int,
+    cluster: str | None,
     fresh: bool,
     console: Console,
 ) -> Campaign:
@@ -360,7 +376,16 @@ def _run_with_progress(
         def advance(cell: Cell) -> None:
             bar.update(task, advance=1, description=f"{cell[0]}, {cell[1]}")
 
-        return run_campaign(walls, models, folder=out, tolerance=tolerance, jobs=jobs, fresh=fresh, progress=advance)
+        return run_campaign(
+            walls,
+            models,
+            folder=out,
+            tolerance=tolerance,
+            jobs=jobs,
+            cluster=cluster,
+            fresh=fresh,
+            progress=advance,
+        )
 
 
 def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
