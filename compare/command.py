@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from meshing import check_suffix, wall_mesh, write_mesh
-from results import Outcome, StoreError, load_scene, save_outcome, write_atomically
+from results import Outcome, StoreError, load_scene, make_folder, save_outcome, write_atomically
 from results.painting import Colouring
 from results.rendering import why_not_drawn
 from results.vtk_messages import VtkError
@@ -40,6 +40,7 @@ app = App(
     help="From the description of a masonry wall to its collapse.",
     version=lambda: version("runningbond"),
     result_action="return_value",
+    suppress_keyboard_interrupt=False,
 )
 
 
@@ -72,7 +73,7 @@ def run(
     check_tolerance(tolerance)
     wall = read_scene(find_scene(scene))
     if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
+        make_folder(out)
     stopped = _interruptions(model)
     recorder = None
     if out is not None and model in OBSERVED:
@@ -132,10 +133,7 @@ def render(
     view
         Open a window instead, where there is a screen.
     """
-    try:
-        load_scene(folder)
-    except StoreError as error:
-        raise SceneError(str(folder), str(error).removeprefix(f"{folder}: ")) from error
+    load_scene(folder)  # refused before anything is tried
     if view:
         if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
             raise SceneError("--view", "needs a screen; without it pictures are written")
@@ -211,7 +209,7 @@ def compare(
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
     _check_cluster(cluster, jobs)
     walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     console = Console(stderr=True)
     try:
         campaign = _run_with_progress(walls, chosen, out, tolerance, jobs, cluster, fresh, console)
@@ -248,7 +246,7 @@ def stability(*experiments: str, out: Path = Path("stability")) -> int:
     from .stability.report import check_experiments, summary, write_report
 
     check_experiments(experiments)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     console = Console(stderr=True, highlight=False)
     try:
         found = _find_out_with_progress(experiments or EXPERIMENTS, out, console)
@@ -437,7 +435,20 @@ def _as_text(outcome: Outcome) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and leave with its exit code."""
-    sys.exit(command(arguments))
+    heard: list[int] = []
+
+    def stop(number: int, frame: object) -> None:
+        heard.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        code = command(arguments)
+    except Exception:
+        if not heard:
+            raise
+        code = _stopped()  # within an import or a callback, libraries make another error of it
+    sys.exit(code)
 
 
 def command(arguments: Sequence[str] | None = None) -> int:
@@ -447,7 +458,7 @@ def command(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.reconfigure(errors="replace")
     try:
         result = app(tokens, exit_on_error=False, print_error=False)
-    except (SceneError, CycloptsError) as error:
+    except (SceneError, StoreError, CycloptsError) as error:
         return _refuse(str(error))
     except VtkError as error:
         print(f"runningbond: {error}", file=sys.stderr)
@@ -458,8 +469,13 @@ def command(arguments: Sequence[str] | None = None) -> int:
     except OSError as error:
         return _refuse(f"{error.filename or 'output'}: {error.strerror or error}")
     except KeyboardInterrupt:
-        return STOPPED
+        return _stopped()
     return result if isinstance(result, int) else DONE
+
+
+def _stopped() -> int:
+    print("runningbond: interrupted; every file is whole, or as it was before", file=sys.stderr)
+    return STOPPED
 
 
 def _refuse(message: str) -> int:

@@ -19,6 +19,7 @@ from results.frame import Frame, Stage, Triangles, mechanism_frame, states_of_po
 from results.mechanism import rigid_jumps
 from results.painting import DRAWN, wall_size
 from results.series import Series
+from results.store import RECORD
 from results.vtk_messages import VtkError
 from scene import Array, Scene
 
@@ -52,12 +53,15 @@ class Recorder:
     def __init__(self, stage: Stage, folder: Path) -> None:
         self.stage = stage
         self._series = Series(stage, folder)
+        self._folder = folder
         self._broken: OSError | VtkError | None = None
 
     def keep(self, frame: Frame) -> None:
         """Write a moment."""
         if self._broken is None:
             try:
+                if not len(self._series):  # an outcome that is there is of another run
+                    (self._folder / RECORD).unlink(missing_ok=True)
                 self._series.add(frame)
             except (OSError, VtkError) as error:
                 self._broken = error

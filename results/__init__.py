@@ -5,7 +5,7 @@ Files for ParaView and pictures are made by modules of their own, imported by na
 
 from .mechanism import fastest_corner_by_one
 from .outcome import Outcome, Status
-from .store import StoreError, load_outcome, load_scene, save_outcome, write_atomically
+from .store import StoreError, load_outcome, load_scene, make_folder, save_outcome, write_atomically
 
 __all__ = [
     "Outcome",
@@ -14,6 +14,7 @@ __all__ = [
     "fastest_corner_by_one",
     "load_outcome",
     "load_scene",
+    "make_folder",
     "save_outcome",
     "write_atomically",
 ]

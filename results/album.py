@@ -6,11 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from scene import Scene
+
 from .painting import Colouring, Painter, fill_plotter, look_at
 from .pictures import mechanism_picture, moment_picture, png, show_mechanism, show_undeformed
 from .series import moments, read_grid
 from .shown import Shown
-from .store import load_outcome, load_scene, write_atomically
+from .store import StoreError, load_outcome, load_scene, write_atomically
+from .vtk_messages import VtkError
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -51,7 +54,7 @@ def draw_folder(folder: Path, colouring: Colouring = "displacement") -> list[Pat
     Raises
     ------
     StoreError
-        If the folder holds no outcome that can be trusted, or not its scene.
+        If the folder holds no outcome that can be trusted, or not its scene, or a damaged time series.
     """
     with closing(Painter()) as painter:
         return _draw_mechanism(folder, colouring, painter) + _draw_series(folder, colouring, painter)
@@ -89,7 +92,15 @@ def _draw_series(folder: Path, colouring: Colouring, painter: Painter) -> list[P
 def _moments(folder: Path, colouring: Colouring) -> list[Shown]:
     scene = load_scene(folder)
     pairs = zip(moments(folder, "blocks"), moments(folder, "joints"), strict=False)
-    return [Shown.of_grids(scene, read_grid(blocks), read_grid(joints), colouring) for blocks, joints in pairs]
+    return [_shown(scene, blocks, joints, colouring) for blocks, joints in pairs]
+
+
+def _shown(scene: Scene, blocks: Path, joints: Path, colouring: Colouring) -> Shown:
+    try:
+        return Shown.of_grids(scene, read_grid(blocks), read_grid(joints), colouring)
+    except (VtkError, ValueError, KeyError, IndexError, AttributeError) as error:
+        what = "are damaged or of another wall; another run replaces them"
+        raise StoreError(f"{blocks}, {joints.name}: {what}") from error
 
 
 def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:

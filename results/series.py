@@ -6,7 +6,7 @@ from typing import Any
 
 from .frame import Frame, Stage
 from .grids import Grid, Grids
-from .store import write_atomically
+from .store import StoreError, write_atomically
 from .vtk_messages import vtk_errors_raised
 
 KINDS = ("blocks", "joints")
@@ -60,18 +60,27 @@ class Series:
             files = [(number, self._file(kind, number)) for number in self._numbers]
             write_atomically(self._folder / f"{kind}.pvd", _pvd(files, self._folder))
             for number in dropped:
-                self._file(kind, number).unlink()
+                self._file(kind, number).unlink(missing_ok=True)  # of another run into the same folder
 
     def _file(self, kind: str, number: int) -> Path:
         return self._folder / "frames" / f"{kind}-{number:04d}.vtu"
 
 
 def moments(folder: Path, kind: str) -> list[Path]:
-    """VTU files that a folder's ``blocks.pvd`` or ``joints.pvd`` lists, in order; none where there is no such file."""
+    """VTU files that a folder's ``blocks.pvd`` or ``joints.pvd`` lists, in order; none where there is no such file.
+
+    Raises
+    ------
+    StoreError
+        If the list is damaged.
+    """
     path = folder / f"{kind}.pvd"
     if not path.is_file():
         return []
-    return [folder / entry.attrib["file"] for entry in ET.parse(path).getroot().iter("DataSet")]
+    try:
+        return [folder / entry.attrib["file"] for entry in ET.parse(path).getroot().iter("DataSet")]
+    except (ET.ParseError, KeyError) as error:
+        raise StoreError(f"{path}: is damaged: {error}") from error
 
 
 def read_grid(path: Path) -> Grid:

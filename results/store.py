@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scene import Scene
+from scene.alone import alone
 
 from .outcome import ARRAYS, Outcome
 from .plain_scene import ROOT, scene_from_arrays, scene_to_arrays
@@ -30,8 +31,15 @@ class StoreError(Exception):
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file so that it is there whole, or as it was before."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    """Write a file so that it is there whole, or as it was before; an OSError names the file."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _write_beside(path, content)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def _write_beside(path: Path, content: bytes) -> None:
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as file:
@@ -43,6 +51,15 @@ def write_atomically(path: Path, content: bytes) -> None:
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and see that it takes files, before anything is computed for it; an OSError names the folder."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(folder)) from error
 
 
 def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | None = None) -> None:
@@ -64,13 +81,15 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
     np.savez_compressed(buffer, allow_pickle=False, **kept, **(scene_to_arrays(scene) if scene else {}))
     content = buffer.getvalue()
     arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
-    write_atomically(folder / arrays, content)
     scalars = {"key": key, "arrays": arrays, **outcome.summary()}
     record = {**scalars, "sha256": _seal(scalars, content)}
-    write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
-    for stale in folder.glob("arrays-*.npz"):
-        if stale.name != arrays:
-            stale.unlink(missing_ok=True)
+    make_folder(folder)
+    with alone(folder):  # or another writer would take these arrays for stale ones
+        write_atomically(folder / arrays, content)
+        write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
+        for stale in (*folder.glob("arrays-*.npz"), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{RECORD}.*")):
+            if stale.name != arrays:
+                stale.unlink(missing_ok=True)
 
 
 def _seal(scalars: dict[str, object], content: bytes) -> str:
@@ -104,8 +123,9 @@ def load_scene(folder: Path) -> Scene:
 def _trusted(folder: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
     """Give the record and the arrays of a folder, if they are what was written."""
     try:
-        record = json.loads((folder / RECORD).read_bytes())
-        content = (folder / record["arrays"]).read_bytes()
+        with alone(folder, reading=True):
+            record = json.loads((folder / RECORD).read_bytes())
+            content = (folder / record["arrays"]).read_bytes()
         seal = record.pop("sha256")
         if _seal(record, content) != seal:
             raise StoreError(f"{folder}: is not what {RECORD} vouches for")
