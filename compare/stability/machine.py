@@ -284,8 +284,7 @@ def _message(said: str, printed: str = "") -> str:
 @contextmanager
 def started(work: Work, folder: Path) -> Iterator["subprocess.Popen[str]"]:
     """Start a command in processes of its own, and wait until it is in the middle of its work."""
-    program = "from compare.command import main; main()"
-    line = [sys.executable, "-c", program, *work.arguments(folder)]
+    line = [sys.executable, "-m", "runningbond", *work.arguments(folder)]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
     try:
         deadline = time.monotonic() + PATIENCE

@@ -2,12 +2,16 @@
 
 import os
 import signal
+import subprocess
+import sys
 import threading
+import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 import pytest
 from matplotlib.figure import Figure
 
@@ -204,6 +208,16 @@ def test_ctrl_c_is_no_traceback_where_a_library_makes_another_error_of_it(
         signal.signal(signal.SIGINT, before)
     assert left.value.code == 130
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_ctrl_c_while_the_suite_is_loading_is_no_traceback() -> None:
+    line = [sys.executable, "-m", "runningbond", "run", "panel-04", "--model", "limit"]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while psutil.Process(process.pid).cpu_times().user < 0.3:  # Python itself has started, and imports what it needs
+        time.sleep(0.005)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=60) == ("", "")
+    assert process.returncode == -signal.SIGINT
 
 
 @pytest.mark.long
