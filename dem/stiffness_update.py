@@ -8,10 +8,11 @@ what force a mode without stiffness keeps: here the one it had before the increm
 nothing in a joint that detaches, whose forces the rest must take over.
 
 It is known to fail. Released modes come and go: sets of violated conditions that were met before prove a *cycle*, as
-nothing but the set enters the next solution. Loose blocks make the matrix *singular*, often far below collapse.
-Others *wander* from set to set. `benchmarks/static_pushover.py` runs it on the dry published walls with several
-increments and both readings of l_c, and counts how the runs end and how many do so below the collapse load of
-`dem_static`, the robust variant. The curve up to there is what the method gives.
+nothing but the set enters the next solution. Loose blocks make the matrix *singular*. Others may *wander* from set to
+set. And a step may converge on forces that break Eq. 3: it is asked of the forces that the full stiffness would give,
+not of those that are kept. ``runningbond stability stiffness-update`` runs it on the dry published walls with several
+increments and both readings of l_c, and tells at which share of the collapse load of `dem_static`, the robust variant,
+the runs end, and how. The curve up to there is what the method gives.
 """
 
 from dataclasses import dataclass
@@ -47,6 +48,8 @@ class StiffnessUpdate:
     ----------
     curve : (n, 2) float
         Displacement of the control point [m] and λ of the converged load steps, the dead load's first.
+    excess : (n,) float
+        Largest excess over Eq. 3 of the forces with which each of them converged, relative to its largest joint force.
     status : tuple of str
         How each load step ended; all but the last converged.
     solves : int
@@ -54,6 +57,7 @@ class StiffnessUpdate:
     """
 
     curve: Array
+    excess: Array
     status: tuple[UpdateStatus, ...]
     solves: int
 
@@ -98,6 +102,12 @@ class ResultantWall:
         motion = solved[: len(load)]
         return motion if np.abs(motion).max() * largest <= SINGULAR * np.abs(load).max() else None
 
+    def excess(self, force: Array) -> float:
+        """Largest excess of actions ``(nj, 3)`` over Eq. 3 as a force, relative to the largest one."""
+        arms = np.column_stack([np.ones_like(self.law.arm), np.ones_like(self.law.arm), self.law.arm])
+        largest = float(np.abs(force / arms).max())
+        return max(0.0, float((self.law.excess(force) / arms).max())) / largest if largest > 0 else 0.0
+
     def actions(self, motion: Array) -> Array:
         """Actions ``(nj, 3)`` that intact joints add in a motion ``(nd,)``."""
         return np.asarray(self.law.stiffness * (self.jump @ motion).reshape(3, -1).T)
@@ -139,6 +149,7 @@ def stiffness_update(scene: Scene, increment: float, most: float, arm: float = 0
     force = np.zeros_like(wall.law.stiffness)
     motion = np.zeros_like(wall.dead)
     rows: list[tuple[float, float]] = []
+    excess: list[float] = []
     ends: list[UpdateStatus] = []
     solves = 0
     for multiplier in np.arange(round(most / increment) + 1) * increment:
@@ -149,7 +160,8 @@ def stiffness_update(scene: Scene, increment: float, most: float, arm: float = 0
             break
         force, motion = step.force, motion + step.motion
         rows.append((float(control @ motion), float(multiplier)))
-    return StiffnessUpdate(np.array(rows).reshape(-1, 2), tuple(ends), solves)
+        excess.append(wall.excess(force))
+    return StiffnessUpdate(np.array(rows).reshape(-1, 2), np.array(excess), tuple(ends), solves)
 
 
 @dataclass(frozen=True, eq=False)
