@@ -74,8 +74,11 @@ def loads_and_masses(scene: Scene) -> tuple[Restraint, Array, Array, Array, Arra
 
 
 def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw) -> float:
-    """Bound of the system's largest ω² [1/s²], the best of a few ways to share the joints' energy."""
-    return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0))
+    """Bound of the system's largest ω² [1/s²], the best of a few ways to share the joints' energy.
+
+    A single block held at both corners has no joint and no frequency: it does not move, and any will do.
+    """
+    return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0)) or 1.0
 
 
 def _in_runs(scene: Scene) -> tuple[JointPoints, Runs]:
@@ -102,11 +105,12 @@ def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
     for k, block in enumerate(blocks):
         held = rows[scene.pins.block == block, 3 * block : 3 * block + 3]
         inertia = mass[3 * block : 3 * block + 3]
-        # Null space of the pins in the metric of the mass, whose vectors are then mass-orthogonal.
+        # Null space of the pins in the metric of the mass, whose vectors are then mass-orthogonal; of the block's own
+        # mass, a coordinate is its root mean square displacement [m].
         root = np.sqrt(inertia)
         _, size, vectors = np.linalg.svd(held / root)
         rank = int((size > 1e-9 * size.max()).sum())
-        free = (vectors[rank:] / root).T * root.min()
+        free = (vectors[rank:] / root).T * root[0]
         bases[k, :, : 3 - rank] = free
         modal = np.full(3, np.inf)
         modal[: 3 - rank] = (free**2 * inertia[:, None]).sum(axis=0)

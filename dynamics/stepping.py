@@ -136,9 +136,14 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         else:
             gather(motion, geometry, opening, slip)
         law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
-        force[:] = load
-        scatter(normal, tangential, geometry, force)
-        _project(force, freedom, basis)
+        if freedom.size:
+            force[:] = 0.0
+            scatter(normal, tangential, geometry, force)
+            _project(force, freedom, basis)
+            force += load
+        else:
+            force[:] = load
+            scatter(normal, tangential, geometry, force)
 
     @kernel
     def hold(

@@ -137,11 +137,14 @@ def _softest(points: Array, K: Array, M: Array, count: int) -> Array:
 
 
 def _free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
-    """Rigid motions that leave the held points alone, mass-orthogonal, ``(3, 3)``, and their masses ``(3,)``."""
+    """Rigid motions that leave the held points alone, mass-orthogonal, ``(3, 3)``, and their masses ``(3,)``.
+
+    With pins they are of the block's own mass: their coordinates are its root mean square displacement [m].
+    """
     if len(held) == 0:
         return np.eye(3), inertia.copy()
     root = np.sqrt(inertia)
-    found = null_space(held / root, rcond=1e-9) / root[:, None] * root.min()
+    found = null_space(held / root, rcond=1e-9) / root[:, None] * root[0]
     free, mass = np.zeros((3, 3)), np.full(3, np.inf)
     free[:, : found.shape[1]] = found
     mass[: found.shape[1]] = (found**2 * inertia[:, None]).sum(axis=0)
