@@ -8,11 +8,12 @@ x = (q, r, λ). The tangent has the same pattern in every step: its entries are 
 entries.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import csr_array
+from scipy.linalg import qr
+from scipy.sparse import csc_array, csr_array
 
 from joints import PointLaw, PointResponse, wall_stiffness
 from scene import Array, Indices, Scene
@@ -162,6 +163,15 @@ class StaticSystem:
         return band(row, column, np.concatenate([home, held]), 0.1 * scene.lowest_block)
 
 
+def _independent(pins: csc_array) -> csc_array:
+    """Pins that do not follow from others: a block pinned at both corners has four, and three motions."""
+    if pins.shape[1] == 0:
+        return pins
+    _, triangle, order = qr(pins.toarray(), mode="economic", pivoting=True)
+    size = np.abs(np.diag(triangle))
+    return csc_array(pins[:, np.sort(order[: len(size)][size > 1e-9 * size[0]])])
+
+
 def static_system(scene: Scene) -> StaticSystem:
     """Set up the static equations of a scene.
 
@@ -171,7 +181,10 @@ def static_system(scene: Scene) -> StaticSystem:
         If the scene gives its joints no stiffness.
     """
     system = equilibrium(scene)
+    system = replace(system, reaction=_independent(system.reaction))
     normal, shear = (k * system.points.area for k in wall_stiffness(scene, system.points.joint))
-    length = system.force_unit / float(max(normal.max(), shear.max()))
+    # A single block held at both corners has no joint, and does not move.
+    stiffest = float(max(normal.max(initial=0.0), shear.max(initial=0.0))) or 1.0
+    length = system.force_unit / stiffest
     scale = length / system.force_unit
     return StaticSystem(system, PointLaw(system.strength, normal * scale, shear * scale), length)

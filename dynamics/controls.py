@@ -128,7 +128,7 @@ def _search(
     found.lower, found.borne = 0.0, state
     found.rests.append((0.0, state))
     step, steps_to_rest, neutral = first, state.steps, None
-    narrowest = RESOLVED * criteria.rest / run.system.measure(run.system.live)
+    narrowest = RESOLVED * criteria.rest / (run.system.measure(run.system.live) or 1.0)
     while found.upper is None or found.upper - found.lower > max(tolerance * found.upper, narrowest):
         trial = _next_trial(found, step, neutral, tolerance)
         if trial > most:

@@ -116,7 +116,7 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
         Strength of the joint points.
     """
     gravity = float(np.hypot(*scene.load.gravity))
-    each = np.full(len(scene.blocks), strength.strongest or float(np.abs(live).max()))
+    each = np.full(len(scene.blocks), strength.strongest or float(np.abs(live).max()) or 1.0)
     force = gravity * scene.mass if gravity > 0 else each
     return np.asarray(force[block] * np.sqrt(mass / scene.mass[block]))
 

@@ -86,7 +86,7 @@ def collapse_by_steps(
     if collapse is None:
         collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
     criteria = Criteria(collapse=collapse * scene.block_size, budget=budget)
-    first = first_step / system.measure(system.live)
+    first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
     try:

@@ -226,8 +226,6 @@ def _check(scene: Scene) -> None:
     if scene.fixed.all():
         raise SceneError("support.kind", "holds every block; give the wall more than one course", "fixed-first-course")
     _refuse_floating_blocks(scene)
-    if len(scene.joints) == 0:
-        raise SceneError("support.kind", "holds the only block at both corners; give the wall more than one block")
     for name, material, chosen in (
         ("joint.inset", scene.joint, ~scene.joints.inner),
         ("inner_joint.inset", scene.inner_joint, scene.joints.inner),

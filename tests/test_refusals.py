@@ -65,10 +65,6 @@ FREE = {"wall__length": None, "wall__height": None}
         ({"joint__normal_stiffness": 1e9}, "joint.shear_stiffness: is missing"),
         ({"support__kind": "rollers"}, "support.kind = 'rollers': must be one of"),
         ({"support__kind": "fixed-first-course", "wall__height": 0.06}, "holds every block"),
-        (
-            {"support__kind": "corners", "wall__height": 0.06, "wall__length": 0.24},
-            "holds the only block at both corners",
-        ),
         ({"load__gravity": 0}, "load.gravity = 0.0: leaves a lateral load nothing to push with"),
         ({"load__live": {"kind": "lateral", "at": [0, 0]}}, "load.live.at = [0, 0]: is not a key"),
         ({"load__live": POINT | {"at": [5, 5]}}, "load.live.at = [5.0, 5.0]: touches no block that can move"),
