@@ -28,6 +28,12 @@ from .point_kernel import (
 PLASTIC_SLIP, DAMAGE, SLIPPED = 4, 5, 6
 """Rows of the history beside those of every law: slip that stays [m], damage, and the length of its path [m]."""
 
+NEVER = 1e30
+"""Opening [m] at which a joint that is perfectly plastic in opening ends to soften.
+
+Damage on the way there is small, but must not vanish when it is squared; that of slip without end must.
+"""
+
 
 def softening_constants(material: JointMaterial) -> tuple[float, ...]:
     """Constants of `softening_kernel`: those of `coulomb_kernel`, then δ_e, δ_c [m] and 1 / s_c [1/m]."""
@@ -35,14 +41,14 @@ def softening_constants(material: JointMaterial) -> tuple[float, ...]:
     k_n, _, tension, shear, friction, _ = sound
     cohesion = shear + friction * tension
     first = tension / k_n
-    last = max(_end_of_softening(material.fracture_energy_1, tension), first * (1 + 1e-9))
-    return *sound, first, last, 1 / _end_of_softening(material.fracture_energy_2, cohesion)
+    last = max(_end_of_softening(material.fracture_energy_1, tension, NEVER), first * (1 + 1e-9))
+    return *sound, first, last, 1 / _end_of_softening(material.fracture_energy_2, cohesion, NEVER**9)
 
 
-def _end_of_softening(energy: float | None, strength: float) -> float:
+def _end_of_softening(energy: float | None, strength: float, never: float) -> float:
     """Jump at which a linear branch from a strength has spent an energy [m]; tiny for none of either."""
     if energy is None:
-        return 1e300
+        return never
     return max(2 * energy / strength if strength > 0 else 0.0, 1e-15)
 
 
