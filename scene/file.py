@@ -141,6 +141,10 @@ def _joint_material(joint: Table) -> JointMaterial:
         fracture_energy_1=joint.optional_number("fracture_energy_1", least=0.0),
         fracture_energy_2=joint.optional_number("fracture_energy_2", least=0.0),
     )
+    if material.fracture_energy_1 is None and material.fracture_energy_2 is not None:
+        raise SceneError(
+            joint.key("fracture_energy_1"), "is missing; what a joint loses in slip it loses in opening as well"
+        )
     joint.finish()
     return material
 

@@ -17,57 +17,12 @@ from compare.command import command
 from dem import dead_load, jump_operator, limit, limit_nonassociated, live_load, movable_freedoms, pin_operator
 from joints import joint_points, point_strength
 from scene import Scene, SceneError, scene_from_dict
-from tests.walls import content, write_toml
+from tests.scenes import spoilt, walls
+from tests.walls import write_toml
 
 LIMITS = ("limit", "limit-nonassociated")
 FEW: dict[str, Any] = {"deadline": None, "derandomize": True, "suppress_health_check": list(HealthCheck)}
 MANY: dict[str, Any] = {"deadline": None, "max_examples": 2000, "suppress_health_check": list(HealthCheck)}
-
-widths = st.sampled_from([0.5, 1, 1.5, -0.5, -1])
-patterns = st.lists(st.lists(widths, min_size=1, max_size=5), min_size=1, max_size=5)
-odd = st.sampled_from([0, -1, float("nan"), float("inf"), 1e300, 5e-324, "", "x", True, [], {}, [[]], 10**30, "\x00"])
-kinds = st.sampled_from(["base", "base", "fixed-first-course", "corners", "pinned-corners"])
-
-
-@st.composite
-def walls(draw: st.DrawFn) -> dict[str, Any]:
-    """Running bond of every kind that there is, loaded sideways or at a point that it has."""
-    half, courses = draw(st.integers(2, 8)), draw(st.integers(2, 5))
-    friction = draw(st.one_of(st.just(0.0), st.floats(0.01, 3)))
-    cohesion = draw(st.sampled_from([0.0, 0.0, 1e2, 1e4]))
-    joint: dict[str, Any] = {"friction": friction, "cohesion": cohesion, "inset": draw(st.sampled_from([0.0, 0.01]))}
-    if friction == 0.0 or draw(st.booleans()):
-        joint["tensile_strength"] = draw(st.floats(0, 1)) * (cohesion / friction if friction else cohesion)
-    lateral = draw(st.booleans())
-    live: dict[str, Any] = {"kind": "lateral"}
-    if not lateral:
-        at = [0.12 * draw(st.integers(0, 2 * half)) / 2, 0.06 * courses]
-        live = {"kind": "point", "at": at, "force": [draw(st.floats(-1, 1)), -draw(st.floats(0.01, 1))]}
-    return content(
-        joint=joint,
-        wall__length=0.12 * half,
-        wall__height=0.06 * courses,
-        wall__first_course=draw(st.sampled_from(["full", "half"])),
-        wall__ends=draw(st.sampled_from(["flush", "flush", "toothed"])) if half % 2 == 0 and half > 2 else "flush",
-        support__kind=draw(kinds),
-        block__density=draw(st.floats(1, 1e5)),
-        load={"gravity": 9.81 if lateral else draw(st.sampled_from([9.81, 0.0])), "live": live},
-    )
-
-
-@st.composite
-def spoilt(draw: st.DrawFn) -> dict[str, Any]:
-    """A wall with a key or two set to nonsense, or an arbitrary pattern of courses."""
-    scene = draw(walls())
-    if draw(st.booleans()):
-        scene["wall"] |= {"courses": draw(patterns)}
-        for key in ("length", "height", "first_course", "ends"):
-            scene["wall"].pop(key, None)
-    for _ in range(draw(st.integers(0, 2))):
-        table = draw(st.sampled_from(["wall", "block", "joint", "support", "load"]))
-        if scene[table]:
-            scene[table][draw(st.sampled_from([*scene[table], "unheard_of", "drawing"]))] = draw(odd)
-    return scene
 
 
 def _run(scene: dict[str, Any], model: str) -> tuple[int, str, str]:

@@ -32,6 +32,7 @@ FREE = {"wall__length": None, "wall__height": None}
             {"joint__friction": 1e-9},
             "joint.friction = 1e-09: must be 0, for joints without friction, or such that tan φ ≥ 1e-06",
         ),
+        ({"joint__fracture_energy_2": 5.0}, "joint.fracture_energy_1: is missing"),
         ({"joint": {"friction_angle": 1e-9}}, "joint.friction_angle = 1e-09: must be 0"),
         ({"joint__friction": float("nan")}, "joint.friction = nan: must be a number"),
         ({"block__density": float("inf")}, "block.density = inf: must be a number"),
