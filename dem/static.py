@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from joints import stiffness_note
 from results import Outcome
 from scene import Scene
 
@@ -85,7 +86,8 @@ def dem_static(
     # Bands are too narrow for a second thread to gain anything.
     with threadpool_limits(limits=1, user_api="blas"):
         found = _found(scene, system, tolerance, first_step, collapse, budget, observe)
-    return replace(found, seconds=time.perf_counter() - start)
+    message = "; ".join(part for part in (found.message, _window(system, found, collapse)) if part)
+    return replace(found, message=message, seconds=time.perf_counter() - start)
 
 
 def _found(
@@ -110,6 +112,16 @@ def _found(
         observe(system, state)
     found = _judged(found, way, climb, tolerance)
     return replace(found, steps=budget - way.budget)
+
+
+def _window(system: StaticSystem, found: Outcome, collapse: float) -> str:
+    """What there is to say of the stiffness of joints."""
+    equations, law = system.equilibrium, system.law
+    spring = equations.force_unit / system.length_unit
+    overlap = float((-found.force[:, 0] / (law.normal_stiffness * spring)).max()) if len(found.force) else 0.0
+    stiffest = spring * float(max(law.normal_stiffness.max(), law.shear_stiffness.max()))
+    size = equations.scene.lowest_block
+    return stiffness_note(overlap, collapse * size, size, stiffest, equations.force_unit)
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from joints import stiffness_note
 from results import Outcome, fastest_corner_by_one
 from scene import Array, Indices, Scene
 
@@ -96,8 +97,23 @@ def collapse_by_steps(
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     outcome = _judge(replace(outcome, steps=found.taken), scene, run, found, tolerance, point_order, locks)
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
-    message = "; ".join(part for part in (outcome.message, note, long if run.dt > run.safe_step else "") if part)
-    return replace(outcome, message=message)
+    undecided = outcome.status == "undecided" and not found.interrupted
+    followed = f"each load was followed for at most {budget * run.dt:.2g} s" if undecided else ""
+    too_long = long if run.dt > run.safe_step else ""
+    parts = (outcome.message, note, followed, too_long, _window(scene, run, found, criteria))
+    return replace(outcome, message="; ".join(part for part in parts if part))
+
+
+def _window(scene: Scene, run: Run, found: LoadSteps, criteria: Criteria) -> str:
+    """What there is to say of the stiffness of joints; at rest, or in a fall under the dead load."""
+    state, law = found.borne or found.fallen, run.system.law
+    if state is None:
+        return ""
+    normal, _ = run.forces(state)
+    springs = law.normal_stiffness * run.system.area
+    overlap = float((-normal / springs).max(initial=0.0))
+    stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * run.system.area).max(initial=0.0)))
+    return stiffness_note(overlap, criteria.collapse, scene.block_size, stiffest, run.system.force_unit)
 
 
 def _judge(

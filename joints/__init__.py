@@ -6,6 +6,7 @@ from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw, resultant_law
 from .stiffness import joint_stiffness
 from .wall import wall_inset, wall_points, wall_stiffness, wall_strength
+from .window import stiffness_note
 
 __all__ = [
     "JointPoints",
@@ -20,6 +21,7 @@ __all__ = [
     "lobatto",
     "point_strength",
     "resultant_law",
+    "stiffness_note",
     "wall_inset",
     "wall_points",
     "wall_stiffness",

@@ -232,5 +232,10 @@ def _brackets(axes: Axes, kinds: Sequence[Stiffness], colour: str, aside: float)
         if outcome is not None and outcome.lower is not None and outcome.upper is not None:
             paler = 1.0 if outcome.status == "collapse" else 0.4
             axes.plot(
-                [aside * kind.young] * 2, [outcome.lower, outcome.upper], color=colour, lw=4, solid_capstyle="butt"
+                [aside * kind.young] * 2,
+                [outcome.lower, outcome.upper],
+                color=colour,
+                lw=4,
+                alpha=paler,
+                solid_capstyle="butt",
             )

@@ -1,0 +1,45 @@
+"""Whether joints are as stiff as the methods that follow blocks through displacements take them to be."""
+
+import numpy as np
+
+SOFT = 0.02
+"""Overlap of two blocks, in displacements that count as collapse, above which joints are too soft.
+
+The overlap at a wall's base is that of one joint; its top settles by half as many of them as there are courses. At
+this share of a collapse of 0.05 block sizes, 1 ‰ of a block, a hundred courses settle by as much as a fall.
+"""
+
+STIFF = 1e-5
+"""Force that rounding in displacements as large as a collapse may amount to, in units of force: that of rest."""
+
+EPSILON = float(np.finfo(np.float64).eps)
+
+
+def stiffness_note(overlap: float, collapse: float, size: float, stiffness: float, force_unit: float) -> str:
+    """What an outcome's message is to say of stiffnesses that its numbers suffer from; empty for others.
+
+    Parameters
+    ----------
+    overlap
+        Largest depth of one block in another at rest [m].
+    collapse
+        Displacement that counts as collapse [m].
+    size
+        Size of a block [m].
+    stiffness
+        Largest stiffness of a joint point [N/m].
+    force_unit
+        Force by which unbalanced ones are measured [N].
+    """
+    if overlap > SOFT * collapse:
+        return (
+            f"joints are too soft: blocks overlap by {overlap / size:.1e} of their size, "
+            f"and elastic motion may pass for collapse above {SOFT * collapse / size:.0e}"
+        )
+    rounding = EPSILON * collapse * stiffness / force_unit
+    if rounding > STIFF:
+        return (
+            f"joints are too stiff: in displacements of a collapse rounding makes forces of {rounding:.1e} "
+            f"of the largest load, and rest is known to {STIFF:.0e}"
+        )
+    return ""
