@@ -113,8 +113,11 @@ class Search:
     frictionless: bool = False
 
 
-def search(system: Equilibrium, pressure: Array) -> Search:
-    """Run the sequence from a first pressure ``(np,)``, certifying every second program."""
+def search(system: Equilibrium, pressure: Array, high: float = np.inf) -> Search:
+    """Run the sequence from a first pressure ``(np,)``, certifying every second program.
+
+    A certificate whose loads all reach `high` is enough by itself.
+    """
     certificates: list[Certificate] = []
     in_a_row = 0
     for k in range(MOST_PROGRAMS):
@@ -128,7 +131,7 @@ def search(system: Equilibrium, pressure: Array) -> Search:
             if certificate is not None:
                 certificates.append(certificate)
             in_a_row = in_a_row + 1 if certificate is not None else 0
-            if in_a_row == ENOUGH:
+            if in_a_row == ENOUGH or (certificate is not None and certificate.least.multiplier >= high):
                 return Search(certificates, k + 1)
         weight = (k + 1.0) ** -0.5
         pressure = (1 - weight) * pressure + weight * program.pressure
@@ -156,7 +159,7 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
         The scene.
     tolerance
         Relative width of the interval asked for. A wider one is reported as it is, for the load itself
-        is not unique.
+        is not unique. The search ends with the first certificate that is this close to the associated bound.
 
     Returns
     -------
@@ -182,7 +185,9 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
 def _collapse(found: Outcome, system: Equilibrium, associated: ForceSolution, tolerance: float) -> Outcome:
     bounded = associated.status == "optimal"
     first = associated if bounded else solve_forces(system, coulomb(system.strength), "zero")
-    searched = search(system, first.pressure)
+    # Between a certificate and the associated bound nothing is left to be found out, if they lie that close.
+    high = (1 - tolerance) * associated.multiplier if bounded else np.inf
+    searched = search(system, first.pressure, high)
     found = replace(found, steps=1 + searched.programs)
     if not searched.certificates:
         if searched.frictionless:
