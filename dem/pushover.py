@@ -112,9 +112,11 @@ class Way:
 
     def follow(self, budget: int) -> list[State]:
         """States of rest at growing displacements after the last load's, until one falls or the budget is spent."""
-        if len(self.rests) < 2:
+        origin, last = self.rests[0].displacement, self.rests[-1]
+        # At a load that is the bracket's other end to the last digit, a wall rests where it did.
+        before = next((rest for rest in reversed(self.rests) if rest.displacement != last.displacement), None)
+        if before is None:
             return []
-        origin, before, last = self.rests[0].displacement, self.rests[-2], self.rests[-1]
         states, nd = [before, last], self.system.freedoms
         stride = STRIDE * (last.displacement - origin)
         while budget > 0 and stride > 0 and np.abs(states[-1].x[:nd] - last.x[:nd]).max() < self.far:

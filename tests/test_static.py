@@ -325,6 +325,13 @@ def test_panels_collapse_below_limit_analysis(name: str) -> None:
     check_against_limit_analysis(name)
 
 
+def test_curve_goes_on_from_two_rests_at_one_displacement() -> None:
+    """Panel 1 slides at 0.6, and is tried there twice: of two states that are one nothing is divided by nothing."""
+    outcome = dem_static(published_scene("panel-01"), 0.05)
+    assert outcome.lower == pytest.approx(0.6, rel=1e-6)
+    assert np.isfinite(outcome.curve).all()
+
+
 LONG = [f"panel-{n:02}" for n in (3, 6, 7, 8, 9, 10, 11, 12)] + [f"point-load-{n}" for n in (4, 2, 1, "quarter")]
 
 
