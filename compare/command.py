@@ -1,4 +1,4 @@
-"""The command line: ``runningbond run``, ``compare``, ``stability``, ``render`` and ``mesh``."""
+"""The command line: every command of ``runningbond``."""
 
 import io
 import json
@@ -22,6 +22,9 @@ from results.rendering import why_not_drawn
 from results.vtk_messages import VtkError
 from scene import Scene, SceneError, read_scene
 
+from .advice import TOLERANCE as ADVISED
+from .advice import Advice
+from .advice_lines import advice_json, answer_lines, rung_line
 from .campaign import Campaign, Cell, Interrupted, run_campaign
 from .fingerprint import fingerprint
 from .models import IN_MOTION, MODELS, OBSERVED, TOLERANCE, check_model, check_tolerance, run_model
@@ -90,6 +93,43 @@ def run(
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+@app.command
+def advise(
+    scene: str,
+    /,
+    *,
+    tolerance: float = ADVISED,
+    finite: Annotated[bool, Parameter(negative="")] = False,
+    json: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Answer with the cheapest models that a scene needs, and say why each was or was not run.
+
+    Parameters
+    ----------
+    scene
+        Scene file, or the name of a published scene such as panel-01.
+    tolerance
+        Relative width of the bracket asked for.
+    finite
+        Follow the wall at finite displacements in the end, however small they may be.
+    json
+        Print one JSON object and nothing else.
+    """
+    check_tolerance(tolerance)
+    advice = Advice(read_scene(find_scene(scene)), tolerance, finite)
+    if not json:
+        print(f"{advice.scene.title}: λ to {100 * tolerance:g} %", flush=True)
+    stopped: list[int] = []
+    for rung in advice.climb():
+        if not json:
+            print(rung_line(rung), flush=True)
+        if stopped:
+            return STOPPED
+        stopped = _interruptions((rung.onward or "").removesuffix(", finite"))
+    print(advice_json(advice) if json else answer_lines(advice), flush=True)
+    return NO_ANSWER if advice.outcome().status in UNDECIDED else DONE
 
 
 def _record(scene: Scene, outcome: Outcome, out: Path, recorder: "Recorder | None") -> None:

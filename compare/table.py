@@ -173,11 +173,12 @@ def _cell(campaign: Campaign, name: str, model: str) -> str:
     outcome = campaign.outcomes.get((name, model))
     if outcome is None:
         return "not run"
-    bracket = _bracket(outcome)
-    return bracket if outcome.status == "collapse" else f"{outcome.status} {bracket}".strip()
+    found = bracket(outcome)
+    return found if outcome.status == "collapse" else f"{outcome.status} {found}".strip()
 
 
-def _bracket(outcome: Outcome) -> str:
+def bracket(outcome: Outcome) -> str:
+    """Bracket of an outcome as tables print it, as one number where it is that narrow; empty without one."""
     lower, upper, multiplier = outcome.lower, outcome.upper, outcome.multiplier
     if lower is not None and upper is not None and upper - lower > ALIKE * abs(upper):
         return f"{number(lower)} – {number(upper)}"
