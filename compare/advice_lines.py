@@ -30,7 +30,11 @@ def advice_json(advice: Advice) -> str:
     found = advice.outcome().summary()
     kept = ("scene", "model", "status", "multiplier", "lower", "upper", "seconds", "message")
     answer = {key: found[key] for key in kept}
-    extra = {"lowest": advice.lowest, "bound": advice.bound, "rungs": [_rung(rung) for rung in advice.rungs]}
+    extra = {
+        "lowest": advice.known.lowest,
+        "bound": advice.known.bound,
+        "rungs": [_rung(rung) for rung in advice.rungs],
+    }
     return json.dumps({**answer, **extra}, allow_nan=False)
 
 

@@ -23,7 +23,7 @@ from results.vtk_messages import VtkError
 from scene import Scene, SceneError, read_scene
 
 from .advice import TOLERANCE as ADVISED
-from .advice import Advice
+from .advice import advice_on
 from .advice_lines import advice_json, answer_lines, rung_line
 from .campaign import Campaign, Cell, Interrupted, run_campaign
 from .fingerprint import fingerprint
@@ -118,9 +118,9 @@ def advise(
         Print one JSON object and nothing else.
     """
     check_tolerance(tolerance)
-    advice = Advice(read_scene(find_scene(scene)), tolerance, finite)
+    advice = advice_on(read_scene(find_scene(scene)), tolerance, finite=finite)
     if not json:
-        print(f"{advice.scene.title}: λ to {100 * tolerance:g} %", flush=True)
+        print(f"{advice.known.scene.title}: λ to {100 * tolerance:g} %", flush=True)
     stopped: list[int] = []
     for rung in advice.climb():
         if not json:
