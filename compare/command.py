@@ -381,6 +381,48 @@ def mesh(
     return DONE
 
 
+@app.command
+def study(*, out: Path = Path("study"), jobs: Annotated[int, Parameter(converter=_whole)] = 1) -> int:
+    """Measure every model and its knobs on walls whose answer is known: error against cost.
+
+    Measurements are kept as they come: an interrupted study goes on where it was.
+
+    Parameters
+    ----------
+    out
+        Folder for the table, the charts and the page.
+    jobs
+        Number of processes side by side; with more than one, seconds are worth less.
+    """
+    if jobs < 1:
+        raise SceneError("--jobs", "must be a number of processes, 1 or more", jobs)
+    from .accuracy import all_cases, run_study
+    from .accuracy.conclusions import conclusions
+    from .accuracy.page import write_page
+
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    console = Console(stderr=True)
+    try:
+        with _progress(console) as bar:
+            task = bar.add_task("measuring", total=len(all_cases()))
+            rows = run_study(out, jobs=jobs, progress=lambda case: bar.update(task, advance=1, description=str(case)))
+    except KeyboardInterrupt:
+        console.print(f"Interrupted: what is measured is kept in {out}; the same command goes on.", markup=False)
+        return STOPPED
+    written = write_page(rows, out)
+    print("\n".join(conclusions(rows)))
+    print(f"written: {', '.join(map(str, written))}")
+    failed = [row for row in rows if row.status == "failed"]
+    for row in failed:
+        console.print(f"{row.case}: {row.message}", markup=False)
+    return NO_ANSWER if failed else DONE
+
+
+def _progress(console: Console) -> Progress:
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    return Progress(*columns, console=console)
+
+
 def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, PublishedCase]]:
     """Scenes by name, and the published cases among them."""
     walls: dict[str, Scene] = {}
@@ -407,8 +449,7 @@ def _run_with_progress(
     console: Console,
 ) -> Campaign:
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console) as bar:
+    with _progress(console) as bar:
         task = bar.add_task("comparing", total=len(walls) * len(models))
 
         def advance(cell: Cell) -> None:
