@@ -407,7 +407,9 @@ def study(*, out: Path = Path("study"), jobs: Annotated[int, Parameter(converter
             task = bar.add_task("measuring", total=len(all_cases()))
             rows = run_study(out, jobs=jobs, progress=lambda case: bar.update(task, advance=1, description=str(case)))
     except KeyboardInterrupt:
-        console.print(f"Interrupted: what is measured is kept in {out}; the same command goes on.", markup=False)
+        console.print(
+            f"Interrupted: what is measured is kept in {out}; the same command goes on.", soft_wrap=True, markup=False
+        )
         return STOPPED
     written = write_page(rows, out)
     print("\n".join(conclusions(rows)))

@@ -20,6 +20,13 @@ from .rows import Row
 FLOOR = 1e-4
 """Error below which all are drawn alike: zero, or below the digits of the answers that are published."""
 
+LEGEND_ROWS = 3
+
+FREE = "homog"
+"""Model that is not drawn: a closed form costs nothing."""
+
+DRIVEN = "driven, steps"
+
 MARKS = {
     "": "o",
     "joint rule": "s",
@@ -28,7 +35,7 @@ MARKS = {
     "mass scaling": "X",
     "tolerance": "P",
     "first step": "v",
-    "driven, steps": "*",
+    DRIVEN: "*",
 }
 """Marks of the knobs; a model as it is has the first one, filled."""
 
@@ -63,6 +70,7 @@ def error_against_freedoms(rows: Sequence[Row]) -> Figure | None:
 
 def _errors(rows: Sequence[Row], what: str, cost: Callable[[Row], float | None], *, ratios: bool) -> Figure | None:
     judged = [row for row in rows if row.part == "accuracy" and row.error is not None and cost(row)]
+    judged = [row for row in judged if row.model != FREE]
     walls = [wall for wall in VARIED if any(row.wall == wall for row in judged)]
     if not walls:
         return None
@@ -105,7 +113,7 @@ def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Callable[[Row], float | 
             MARKS[rows[i].knob],
             color=colour if plain else "none",
             mec="white" if plain else colour,
-            ms=11 if plain else 9 if rows[i].knob == "driven, steps" else 7,
+            ms=11 if plain else 9 if rows[i].knob == DRIVEN else 7,
             mew=0.8 if plain else 1.5,
             zorder=3 if plain else 2,
         )
@@ -134,12 +142,14 @@ def _name_settings(axes: Axes, rows: Sequence[Row], x: Sequence[float], y: Seque
     plain = {row.model: error for row, error in zip(rows, y, strict=True) if not row.knob}
     for row, cost, error in zip(rows, x, y, strict=True):
         if row.knob and not 1 / CHANGED < error / plain.get(row.model, error) < CHANGED:
+            driven = row.knob == DRIVEN
             axes.annotate(
                 row.setting,
                 (cost, error),
-                xytext=(7, 0),
+                xytext=(0, 7) if driven else (7, 0),
                 textcoords="offset points",
-                va="center",
+                ha="center" if driven else "left",
+                va="bottom" if driven else "center",
                 fontsize=8,
                 color=OURS[row.model][0],
             )
@@ -154,13 +164,16 @@ def _legend(figure: Figure, rows: Sequence[Row]) -> None:
     models = [model for model in OURS if any(row.model == model for row in rows)]
     knobs = [knob for knob in MARKS if any(row.knob == knob for row in rows)]
     handles = [Line2D([], [], ls="none", marker="o", ms=10, color=OURS[model][0], label=model) for model in models]
+    handles += [Line2D([], [], ls="none", label=" ")] * (-len(handles) % LEGEND_ROWS)
     handles += [
         Line2D([], [], ls="none", marker=MARKS[knob], ms=8, mfc="none", mec="0.3", mew=1.4, label=f"{knob} changed")
         for knob in knobs
         if knob
     ]
     handles.append(Line2D([], [], color="0.55", lw=1.4, label="nothing is cheaper and better"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=10)
+    figure.legend(
+        handles=handles, loc="outside lower center", ncols=-(-len(handles) // LEGEND_ROWS), frameon=False, fontsize=10
+    )
 
 
 def growth_chart(rows: Sequence[Row]) -> Figure | None:

@@ -19,7 +19,7 @@ from .study import TABLE
 from .walls import INSET
 
 CAPTIONS = {
-    "accuracy-seconds": "Error against processor seconds",
+    "accuracy-seconds": "Error against processor seconds; homog, which costs nothing, is left out",
     "accuracy-freedoms": "Error against degrees of freedom",
     "accuracy-growth": "Growth of cost with the number of blocks",
     "accuracy-stiffness": "What a physical second costs where blocks are ever stiffer",
