@@ -41,9 +41,8 @@ CASES = [Case("accuracy", wall, model) for wall in ("stack-of-5", "panel-02") fo
 
 def answered(case: Case, stop: threading.Event) -> Measurement:
     """An answer made up for the test."""
-    return Measurement(
-        Answer("collapse", 0.5, 0.4, 0.5, 15, 7, "a message, with a comma"), (0.3, 0.1, 0.2), (0.2,), 1.5
-    )
+    said = Answer("collapse", 0.5, 0.4, 0.5, 15, 7, "a message, with a comma")
+    return Measurement(said, (0.3, 0.1, 0.2), (0.2, 0.2, 0.2), (4.0, 2.0, 9.0), 1.5)
 
 
 def remembering(seen: list[Case]) -> Callable[[Case, threading.Event], Measurement]:
@@ -119,6 +118,7 @@ def test_a_study_measures_nothing_twice(tmp_path: Path) -> None:
     assert rows[:2] == first
     assert read_csv((tmp_path / "study.csv").read_text()) == rows
     assert (rows[0].wall_s, rows[0].wall_s_min, rows[0].wall_s_max, rows[0].runs) == (0.2, 0.1, 0.3, 3)
+    assert (rows[0].ratio, rows[0].ratio_min, rows[0].ratio_max) == (4, 2, 9)
     assert rows[0].error == pytest.approx(0.5 / 0.46 - 1)
     assert rows[0].machine == machine()
     assert not any(part in rows[0].machine for part in (os.uname().nodename, str(Path.home())))
@@ -198,6 +198,8 @@ def test_a_measurement_has_its_answer_its_seconds_and_its_memory() -> None:
     found = measure_apart(Case("accuracy", "stack-of-5", "dem-static"))
     assert found.answer.value == pytest.approx(0.46, rel=1e-6)
     assert len(found.wall_s) == len(found.cpu_s) == 3
+    assert len(found.ratio) == 3
+    assert min(found.ratio) > 0
     assert min(found.wall_s) > 0
     assert min(found.cpu_s) > 0
     assert found.memory_mb is not None
@@ -376,6 +378,7 @@ def table() -> list[Row]:
                 cpu_s=seconds,
                 cpu_s_min=0.9 * seconds,
                 cpu_s_max=1.2 * seconds,
+                ratio=seconds / 0.04,
                 memory_mb=1.0,
                 machine=machine(),
             )

@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike
 from scene import Array
 
 from ..figures import OURS, bare, save
-from .findings import CHANGED, REFERENCE, exponent, growth, stiffness
+from .findings import CHANGED, exponent, growth, stiffness
 from .fits import pareto_front
 from .knobs import VARIED
+from .measure import REFERENCE
 from .rows import Row
 
 FLOOR = 1e-4

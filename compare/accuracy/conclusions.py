@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 from .findings import (
     CHANGED,
     PATH,
-    REFERENCE,
     Setting,
     cheapest,
     dearer,
@@ -18,6 +17,7 @@ from .findings import (
     times,
 )
 from .knobs import VARIED
+from .measure import REFERENCE
 from .rows import TOO_LONG, Row
 from .walls import TURNED
 

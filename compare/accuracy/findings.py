@@ -9,10 +9,8 @@ from ..figures import OURS
 from ..table import Sheet
 from .fits import slope
 from .knobs import VARIED
+from .measure import REFERENCE
 from .rows import TOO_LONG, Row
-
-REFERENCE = "limit"
-"""Model whose seconds on the same wall are the unit of ratios: they hold from machine to machine, seconds do not."""
 
 PATH = ("dem-static", "dem-dynamic", "fem")
 """Models that follow a path to the collapse."""
@@ -92,7 +90,6 @@ def times(ratio: float) -> str:
 def records(rows: Iterable[Row], walls: Sequence[str] | None = None) -> dict[Setting, Record]:
     """Record of each setting on walls brought to collapse, all of them or some; without a number it has none."""
     judged = [row for row in rows if row.part == "accuracy" and row.question == "collapse"]
-    unit = {row.wall: row.cpu_s for row in judged if row.model == REFERENCE and row.cpu_s}
     of_setting: dict[Setting, list[Row]] = {}
     for row in judged:
         if (walls is None or row.wall in walls) and row.status != "not applicable":
@@ -100,12 +97,12 @@ def records(rows: Iterable[Row], walls: Sequence[str] | None = None) -> dict[Set
     found = {}
     for setting, own in of_setting.items():
         certified = [row for row in own if row.known == "certified" and row.model == "limit-nonassociated"]
-        answered = [row for row in own if row not in certified and row.error is not None and row.wall in unit]
+        answered = [row for row in own if row not in certified and row.error is not None and row.ratio is not None]
         if answered:
             found[setting] = Record(
                 [row.wall for row in answered],
                 [row.error or 0.0 for row in answered],
-                [(row.cpu_s or 0.0) / unit[row.wall] for row in answered],
+                [row.ratio or 0.0 for row in answered],
                 [row.wall for row in own if row not in answered and row not in certified],
                 [row.wall for row in certified],
             )

@@ -10,6 +10,7 @@ import resource
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -29,6 +30,9 @@ RUNS, CHEAP = 3, 3.0
 LONGEST = 60
 """Processor seconds after which a run is broken off."""
 
+REFERENCE = "limit"
+"""Model whose processor seconds on the same wall are the unit of ratios, which hold from machine to machine."""
+
 MEGABYTE = 1e6
 POLL = 0.2
 """Seconds between two looks at a process."""
@@ -36,11 +40,25 @@ POLL = 0.2
 
 @dataclass(frozen=True)
 class Measurement:
-    """What a case came to: its answer, seconds of its runs by the clock and of the processor, and memory [MB]."""
+    """What a case came to.
+
+    Parameters
+    ----------
+    answer
+        What the model said.
+    wall_s, cpu_s
+        Seconds of each run by the clock, and of the processor.
+    ratio
+        Processor seconds of each run in those of the reference on the same wall, run just before; empty where the
+        reference has no answer to the question.
+    memory_mb
+        The most memory that a run took beyond what its process held before [MB].
+    """
 
     answer: Answer
     wall_s: tuple[float, ...] = ()
     cpu_s: tuple[float, ...] = ()
+    ratio: tuple[float, ...] = ()
     memory_mb: float | None = None
 
 
@@ -57,18 +75,38 @@ def measure(case: Case) -> Measurement:
     from .questions import ask
 
     wall, settings = wall_of(case), settings_of(case.model, case.knob, case.setting)
+    compared = wall.question == "collapse"
+
+    def reference() -> Answer:
+        return ask(wall.question, REFERENCE, wall.scene, {})
+
+    def run() -> Answer:
+        return ask(wall.question, case.model, wall.scene, settings)
+
     ask(wall.question, case.model, _small(case), settings)
-    held = _start_of_memory()
+    if compared:
+        reference()
     times: list[tuple[float, float]] = []
+    units: list[float] = []
+    memory: list[float] = []
     while not times or (len(times) < RUNS and times[0][1] <= CHEAP):
+        if compared:
+            units.append(_timed(reference)[2])
         _limit_time()
-        clock, processor = time.perf_counter(), time.process_time()
-        found = ask(wall.question, case.model, wall.scene, settings)
-        times.append((time.perf_counter() - clock, time.process_time() - processor))
-        if len(times) == 1:
-            memory = max(0.0, _most_memory() - held) / MEGABYTE
+        held = _start_of_memory()
+        found, *seconds = _timed(run)
+        memory.append(max(0.0, _most_memory() - held) / MEGABYTE)
+        times.append((seconds[0], seconds[1]))
     wall_s, cpu_s = zip(*times, strict=True)
-    return Measurement(found, wall_s, cpu_s, memory)
+    ratio = tuple(a / b for a, b in zip(cpu_s, units, strict=True)) if compared else ()
+    return Measurement(found, wall_s, cpu_s, ratio, max(memory))
+
+
+def _timed(run: Callable[[], Answer]) -> tuple[Answer, float, float]:
+    """An answer, and its seconds by the clock and of the processor."""
+    clock, processor = time.perf_counter(), time.process_time()
+    found = run()
+    return found, time.perf_counter() - clock, time.process_time() - processor
 
 
 def _small(case: Case) -> Scene:
@@ -125,7 +163,8 @@ def measure_apart(case: Case, stop: Event | None = None) -> Measurement:
         last = (complaint.strip().splitlines() or [f"signal {-process.returncode}"])[-1]
         raise Killed(f"its process ended without an answer: {last}")
     found = json.loads(out.splitlines()[-1])
-    return Measurement(Answer(**found["answer"]), tuple(found["wall_s"]), tuple(found["cpu_s"]), found["memory_mb"])
+    wall_s, cpu_s, ratio = (tuple(found[name]) for name in ("wall_s", "cpu_s", "ratio"))
+    return Measurement(Answer(**found["answer"]), wall_s, cpu_s, ratio, found["memory_mb"])
 
 
 @cache

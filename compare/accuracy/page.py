@@ -12,8 +12,8 @@ from ..report import page, picture, table
 from ..table import Sheet
 from .charts import draw_charts
 from .conclusions import conclusions
-from .findings import REFERENCE, sheets
-from .measure import CHEAP, LONGEST, RUNS
+from .findings import sheets
+from .measure import CHEAP, LONGEST, REFERENCE, RUNS
 from .rows import FAILED, Row
 from .study import TABLE
 from .walls import INSET
@@ -40,8 +40,8 @@ HOW = (
     "way.",
     "Every case runs in a process of its own, on one thread, after an untimed run that loads the kernels: "
     f"{RUNS} times, or once if it takes more than {CHEAP:g} s; seconds are medians, of the processor. Ratios are to "
-    f"one run of `{REFERENCE}` on the same wall. A run that would take more than {LONGEST} s is broken off and left "
-    "out.",
+    f"`{REFERENCE}` on the same wall, run in turn in the same process. A run that would take more than {LONGEST} s is "
+    "broken off and left out.",
 )
 """How the study is made, for its reader."""
 

@@ -34,8 +34,10 @@ class Row:
         Timed runs, of which the seconds are the median, the least and the most.
     wall_s, wall_s_min, wall_s_max, cpu_s, cpu_s_min, cpu_s_max
         Seconds by the clock, and of the processor.
+    ratio, ratio_min, ratio_max
+        Processor seconds in those of the reference, run by run in one process.
     memory_mb
-        Memory that the first run took beyond what its process held before [MB].
+        The most memory that a run took beyond what its process held before [MB].
     machine, key
         Processor, cores and Python; digest of scene, settings, code and machine.
     """
@@ -64,6 +66,9 @@ class Row:
     cpu_s: float | None = None
     cpu_s_min: float | None = None
     cpu_s_max: float | None = None
+    ratio: float | None = None
+    ratio_min: float | None = None
+    ratio_max: float | None = None
     memory_mb: float | None = None
     message: str = ""
     machine: str = ""

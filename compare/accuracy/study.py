@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from threading import Event
+from typing import Any
 
 from results import write_atomically
 
@@ -136,12 +137,16 @@ def _row(case: Case, measure: Callable[[Case, Event], Measurement], stop: Event)
     return replace(
         row,
         **vars(found.answer),
+        **_spread("wall_s", found.wall_s),
+        **_spread("cpu_s", found.cpu_s),
+        **_spread("ratio", found.ratio),
         runs=len(found.wall_s),
-        wall_s=statistics.median(found.wall_s),
-        wall_s_min=min(found.wall_s),
-        wall_s_max=max(found.wall_s),
-        cpu_s=statistics.median(found.cpu_s),
-        cpu_s_min=min(found.cpu_s),
-        cpu_s_max=max(found.cpu_s),
         memory_mb=found.memory_mb,
     )
+
+
+def _spread(name: str, values: Sequence[float]) -> dict[str, Any]:
+    """Median, least and most of what was measured, if anything was."""
+    if not values:
+        return {}
+    return {name: statistics.median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
