@@ -246,7 +246,7 @@ def test_a_compressed_cell_is_blocks_and_joints_in_series(name: str) -> None:
     assert wall.answer is not None
     assert wall.scene.bond is not None
     excess = joint_stiffness(wall.scene.joint).normal * wall.scene.bond.height / (wall.scene.block.young or 0.0)
-    for modes in (6, "all"):
+    for modes in (6, 10, "all"):
         assert ask("compression", "fem", wall.scene, {"modes": modes}).value == pytest.approx(wall.answer[0], rel=1e-9)
     for model, settings in (("homog", {}), ("dem-static", {}), ("fem", {"modes": 3})):
         found = ask("compression", model, wall.scene, settings)

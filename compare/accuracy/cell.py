@@ -29,7 +29,7 @@ def rigid_cell(scene: Scene) -> tuple[Array, int]:
     return _condensed(scene, points, inside, jump.opening @ spread, jump.slip @ spread, np.zeros(6)), 6
 
 
-def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount = "all") -> tuple[Array, int]:
+def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> tuple[Array, int]:
     """The same of blocks in triangles, in as many modes as `fem` takes."""
     wall = modal_wall(scene, cells, modes, RULE)
     jump = nodal_jump(wall.interface, len(wall.mesh.points))

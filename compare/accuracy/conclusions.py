@@ -7,7 +7,6 @@ from .findings import (
     PATH,
     Setting,
     cheapest,
-    dearer,
     exponent,
     growth,
     label,
@@ -15,6 +14,7 @@ from .findings import (
     records,
     stiffness,
     times,
+    turned,
 )
 from .knobs import VARIED
 from .measure import REFERENCE
@@ -85,17 +85,14 @@ def _cheapest(rows: Sequence[Row]) -> Iterator[str]:
 def _knobs(rows: Sequence[Row]) -> Iterator[str]:
     """Settings by what they change: the largest error for worse or for better, or nothing but the cost."""
     kinds: dict[str, list[str]] = {WORSE: [], BETTER: [], ALIKE: []}
-    for setting, record in records(rows).items():
-        plain = records(rows, record.walls).get((setting[0], "", ""))
-        if not setting[1] or plain is None:
-            continue
+    for one in turned(rows):
+        record, plain, name = one.record, one.plain, label(one.setting)
         change = max(record.worst, EXACT) / max(plain.worst, EXACT)
-        cost = f"at {times(dearer(record, plain))} times the cost"
-        errors = f"{percent(record.worst)} instead of {percent(plain.worst)}"
         if 1 / CHANGED < change < CHANGED:
-            kinds[ALIKE].append(f"`{label(setting)}` {times(dearer(record, plain))}")
+            kinds[ALIKE].append(f"`{name}` {times(one.dearer)}")
         else:
-            kinds[WORSE if change > 1 else BETTER].append(f"`{label(setting)}` {errors} {cost}")
+            errors = f"{percent(record.worst)} instead of {percent(plain.worst)}"
+            kinds[WORSE if change > 1 else BETTER].append(f"`{name}` {errors} at {times(one.dearer)} times the cost")
     for kind, settings in kinds.items():
         if settings:
             yield f"**{kind}:** {'; '.join(settings)}."

@@ -124,9 +124,32 @@ def cheapest(
     return min(good)[1] if good else None
 
 
-def dearer(record: Record, plain: Record) -> float:
-    """How many times dearer one setting is than another on the same walls, in the median."""
-    return statistics.median(a / b for a, b in zip(record.ratios, plain.ratios, strict=True))
+@dataclass(frozen=True)
+class Turned:
+    """A setting beside its model as it is, on the walls where both gave a number."""
+
+    setting: Setting
+    record: Record
+    plain: Record
+
+    @property
+    def dearer(self) -> float:
+        """How many times the cost it has, in the median."""
+        return statistics.median(a / b for a, b in zip(self.record.ratios, self.plain.ratios, strict=True))
+
+
+def turned(rows: Sequence[Row]) -> list[Turned]:
+    """Every knob that was turned on walls brought to collapse."""
+    everywhere = records(rows)
+    found = []
+    for setting, record in everywhere.items():
+        plain = everywhere.get((setting[0], "", ""))
+        if setting[1] and plain is not None:
+            both = [wall for wall in record.walls if wall in plain.walls]
+            if both:
+                there = records(rows, [*both, *record.unanswered])
+                found.append(Turned(setting, there[setting], records(rows, both)[setting[0], "", ""]))
+    return found
 
 
 def models_sheet(rows: Sequence[Row]) -> Sheet:
@@ -149,14 +172,10 @@ def knobs_sheet(rows: Sequence[Row]) -> Sheet:
     """Every knob, beside its model as it is on the same walls."""
     heads = ["model", "knob", "setting", "walls", "largest error", "as it is", "cost, times as it is", "no number on"]
     body = []
-    for setting, record in records(rows).items():
-        model, knob, turned = setting
-        plain = records(rows, record.walls).get((model, "", ""))
-        if not knob or plain is None:
-            continue
-        cost = dearer(record, plain)
-        errors = (percent(record.worst), percent(plain.worst))
-        body.append([model, knob, turned, str(len(record.walls)), *errors, times(cost), ", ".join(record.unanswered)])
+    for one in turned(rows):
+        record = one.record
+        errors = (percent(record.worst), percent(one.plain.worst))
+        body.append([*one.setting, str(len(record.walls)), *errors, times(one.dearer), ", ".join(record.unanswered)])
     return Sheet("Knobs, one turned at a time", heads, body)
 
 

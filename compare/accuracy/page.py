@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from pathlib import Path
 
+from fem_interface.modes import BENDING
 from results import write_atomically
 
 from ..report import page, picture, table
@@ -34,8 +35,8 @@ HOW = (
     "excluded. A model is not judged by its own certificates.",
     "The error is that of the multiplier which a model reports: the middle of a bracket of `dem-dynamic` and `fem`, "
     "the lower end of one of `limit-nonassociated` and `dem-static`. A knob is turned alone: without, `fem` has two "
-    "Lobatto points a joint element, one cell in half a block, all modes and scaled masses, brackets are 1 % wide, and "
-    "loads are held until the wall rests or falls. *Driven* walls are pushed at a prescribed work-conjugate speed "
+    f"Lobatto points a joint element, one cell in half a block, {BENDING} modes and scaled masses, brackets are 1 % "
+    "wide, and loads are held until the wall rests or falls. *Driven* walls are pushed at a prescribed work-conjugate speed "
     "instead, in so many time steps over a twentieth of a block if all of it moved as far, and λ is the largest on the "
     "way.",
     "Every case runs in a process of its own, on one thread, after an untimed run that loads the kernels: "

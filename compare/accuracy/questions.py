@@ -128,7 +128,7 @@ def _shear(model: str, scene: Scene, **settings: Any) -> Answer:
     return _modulus(2, model, scene, **settings)
 
 
-def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount = "all") -> Answer:
+def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
     """A2222 or A1212 of a periodic cell; the energy of a shear E12 is 4 A1212 / 2."""
     if model == "homog":
         joint = joint_stiffness(scene.joint)
