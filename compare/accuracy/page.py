@@ -36,9 +36,9 @@ HOW = (
     "The error is that of the multiplier which a model reports: the middle of a bracket of `dem-dynamic` and `fem`, "
     "the lower end of one of `limit-nonassociated` and `dem-static`. A knob is turned alone: without, `fem` has two "
     f"Lobatto points a joint element, one cell in half a block, {BENDING} modes and scaled masses, brackets are 1 % "
-    "wide, and loads are held until the wall rests or falls. *Driven* walls are pushed at a prescribed work-conjugate speed "
-    "instead, in so many time steps over a twentieth of a block if all of it moved as far, and λ is the largest on the "
-    "way.",
+    "wide, and loads are held until the wall rests or falls. *Driven* walls are pushed at a prescribed work-conjugate "
+    "speed instead, in so many time steps over a twentieth of a block if all of it moved as far, and λ is the largest "
+    "on the way.",
     "Every case runs in a process of its own, on one thread, after an untimed run that loads the kernels: "
     f"{RUNS} times, or once if it takes more than {CHEAP:g} s; seconds are medians, of the processor. Ratios are to "
     f"`{REFERENCE}` on the same wall, run in turn in the same process. A run that would take more than {LONGEST} s is "
