@@ -57,7 +57,15 @@ def write_page(rows: Sequence[Row], folder: Path) -> list[Path]:
 
 def markdown(rows: Sequence[Row], charts: Sequence[Path]) -> str:
     """The page in Markdown; charts lie beside it."""
-    parts = ["# Speed against accuracy", "", *_paragraphs(HOW), "## What it says", ""]
+    parts = [
+        "# Speed against accuracy",
+        "",
+        "What `runningbond study` printed.",
+        "",
+        *_paragraphs(HOW),
+        "## What it says",
+        "",
+    ]
     parts += [f"- {sentence}" for sentence in conclusions(rows)]
     parts += ["", f"Measured on {_machines(rows)}{_failures(rows)}", ""]
     parts += ["## Charts", ""]

@@ -84,7 +84,7 @@ def _kept(path: Path) -> dict[Case, Row]:
     """Rows of a table that are still good; what failed is tried again."""
     try:
         rows = read_csv(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, TypeError, ValueError):  # not there, or damaged
         return {}
     known = set(all_cases())
     return {row.case: row for row in rows if row.status != FAILED and row.case in known and row.key == key_of(row.case)}
