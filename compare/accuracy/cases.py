@@ -64,6 +64,8 @@ def all_cases() -> tuple[Case, ...]:
 def _accuracy() -> Iterator[Case]:
     for name, wall in accuracy_walls().items():
         for model in ASKED[wall.question]:
+            if model == "homog" and wall.question == "collapse" and wall.known != "certified":
+                continue  # a continuum of one block, or one that is no running bond, says nothing
             if name != "cell-shear" or model != "fem":  # deformable blocks have no closed form
                 yield Case("accuracy", name, model)
             yield from _turned("accuracy", name, model)
