@@ -9,7 +9,7 @@ from pathlib import Path
 from fem_interface.modes import BENDING
 from results import write_atomically
 
-from ..report import page, picture, table
+from ..report import figure_html, page_html, table_html
 from ..table import Sheet
 from .charts import draw_charts
 from .conclusions import conclusions
@@ -82,8 +82,8 @@ def report(rows: Sequence[Row], charts: Sequence[Path]) -> str:
     parts += ["<h2>What it says</h2>", "<ul>"]
     parts += [f"<li>{_inline(sentence)}</li>" for sentence in conclusions(rows)]
     parts += ["</ul>", f"<p>Measured on {_inline(_machines(rows) + _failures(rows))}</p>"]
-    parts += ["<h2>Charts</h2>", *map(picture, charts), "<h2>Tables</h2>", *map(table, sheets(rows))]
-    return page("speed against accuracy", [*parts, "<h2>Every run</h2>", table(_everything(rows))])
+    parts += ["<h2>Charts</h2>", *map(figure_html, charts), "<h2>Tables</h2>", *map(table_html, sheets(rows))]
+    return page_html("speed against accuracy", [*parts, "<h2>Every run</h2>", table_html(_everything(rows))])
 
 
 def _paragraphs(texts: Sequence[str]) -> list[str]:
