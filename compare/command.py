@@ -318,10 +318,9 @@ def _find_out_with_progress(experiments: Sequence[str], out: Path, console: Cons
         raise Stopped
 
     before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
-    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     found = Findings()
     try:
-        with Progress(*columns, console=console) as bar:
+        with _progress(console) as bar:
             task = bar.add_task("stability", total=len(experiments))
             for name, finding in findings(experiments, out, lambda name: bar.update(task, description=name)):
                 if isinstance(finding, str):

@@ -237,7 +237,7 @@ def _seconds(row: Row | None) -> str:
 
 def _memory(rows: Sequence[Row]) -> str:
     timed = [row for row in rows if row.memory_mb is not None]
-    return f"{max(timed, key=lambda row: row.blocks).memory_mb:.0f}" if timed else ""
+    return f"{max(timed, key=lambda row: row.blocks).memory_mb:.1f}" if timed else ""
 
 
 @dataclass(frozen=True)
