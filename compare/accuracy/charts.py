@@ -21,6 +21,9 @@ from .rows import Row
 FLOOR = 1e-4
 """Error below which all are drawn alike: zero, or below the digits of the answers that are published."""
 
+RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1
+"""Models with three freedoms a block, and the ratio by which they stand apart."""
+
 LEGEND_ROWS = 3
 
 FREE = "homog"
@@ -61,17 +64,27 @@ def draw_charts(rows: Sequence[Row], folder: Path) -> list[Path]:
 
 def error_against_seconds(rows: Sequence[Row]) -> Figure | None:
     """Error against processor seconds, on the second axis in those of the limit program on the same wall."""
-    return _errors(rows, "processor seconds", lambda row: row.cpu_s, ratios=True)
+    return _errors(rows, "processor seconds", _seconds, _draw_seconds)
 
 
 def error_against_freedoms(rows: Sequence[Row]) -> Figure | None:
-    """Error against degrees of freedom."""
-    return _errors(rows, "degrees of freedom", lambda row: row.dofs, ratios=False)
+    """Error against degrees of freedom; models with the same number of them stand side by side."""
+    return _errors(rows, "degrees of freedom", _freedoms, _draw_freedoms)
 
 
-def _errors(rows: Sequence[Row], what: str, cost: Callable[[Row], float | None], *, ratios: bool) -> Figure | None:
-    judged = [row for row in rows if row.part == "accuracy" and row.error is not None and cost(row)]
-    judged = [row for row in judged if row.model != FREE]
+def _seconds(row: Row) -> float:
+    return row.cpu_s or 0.0
+
+
+def _freedoms(row: Row) -> float:
+    return float(row.dofs or 0)
+
+
+def _errors(
+    rows: Sequence[Row], what: str, cost: Callable[[Row], float], draw: Callable[[Axes, Sequence[Row]], None]
+) -> Figure | None:
+    judged = [row for row in rows if row.part == "accuracy" and row.error is not None and row.model != FREE]
+    judged = [row for row in judged if cost(row) > 0]
     walls = [wall for wall in VARIED if any(row.wall == wall for row in judged)]
     if not walls:
         return None
@@ -80,9 +93,7 @@ def _errors(rows: Sequence[Row], what: str, cost: Callable[[Row], float | None],
     for one in axes[len(walls) :]:
         one.set_visible(False)
     for one, wall in zip(axes, walls, strict=False):
-        own = [row for row in judged if row.wall == wall]
-        unit = next((row.cpu_s for row in own if row.model == REFERENCE), None) if ratios else None
-        _draw_errors(one, own, cost, unit)
+        draw(one, [row for row in judged if row.wall == wall])
         one.set_title(TITLES.get(wall, wall), fontsize=11, loc="left", fontweight="bold")
         one.set_xlabel(what)
         one.set_ylabel("relative error of λ" if one.get_subplotspec().is_first_col() else "")
@@ -90,12 +101,35 @@ def _errors(rows: Sequence[Row], what: str, cost: Callable[[Row], float | None],
     return figure
 
 
-def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Callable[[Row], float | None], unit: float | None) -> None:
-    x = [float(cost(row) or 0.0) for row in rows]
+def _draw_seconds(axes: Axes, rows: Sequence[Row]) -> None:
+    seconds = [_seconds(row) for row in rows]
+    _draw_errors(axes, rows, seconds, seconds)
+    unit = next((row.cpu_s for row in rows if row.model == REFERENCE), None)
+    if unit is not None:
+        ratio = axes.secondary_xaxis("top", functions=_in_units(unit))
+        ratio.set_xlabel(f"times the {REFERENCE} program on the same wall", fontsize=9, color="0.35")
+        ratio.tick_params(colors="0.35")
+
+
+def _draw_freedoms(axes: Axes, rows: Sequence[Row]) -> None:
+    freedoms = [_freedoms(row) for row in rows]
+    place = {model: i - (len(RIGID) - 1) / 2 for i, model in enumerate(RIGID)}
+    aside = [x * ASIDE ** place.get(row.model, 0.0) for x, row in zip(freedoms, rows, strict=True)]
+    _draw_errors(axes, rows, freedoms, aside)
+    ticks: list[int] = []
+    for number in sorted({row.dofs or 0 for row in rows}):
+        if not ticks or number > 1.35 * ticks[-1]:
+            ticks.append(number)
+    axes.set_xticks(ticks, [f"{number:,}" for number in ticks])
+    axes.minorticks_off()
+
+
+def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequence[float]) -> None:
+    """Draw errors at `x`, next to their `cost`, and the front of those that nothing beats."""
     y = [max(row.error or 0.0, FLOOR) for row in rows]
     axes.set(xscale="log", yscale="log", ylim=(FLOOR / 1.8, 1.3))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
-    front = pareto_front(x, y)
+    front = pareto_front(cost, y)
     right = 3 * max(x)
     axes.step(
         [x[front[0]], *(x[i] for i in front), right],
@@ -132,10 +166,6 @@ def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Callable[[Row], float | 
     )
     _name_settings(axes, rows, x, y)
     bare(axes)
-    if unit is not None:
-        ratio = axes.secondary_xaxis("top", functions=_in_units(unit))
-        ratio.set_xlabel(f"times the {REFERENCE} program on the same wall", fontsize=9, color="0.35")
-        ratio.tick_params(colors="0.35")
 
 
 def _name_settings(axes: Axes, rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> None:
@@ -143,14 +173,15 @@ def _name_settings(axes: Axes, rows: Sequence[Row], x: Sequence[float], y: Seque
     plain = {row.model: error for row, error in zip(rows, y, strict=True) if not row.knob}
     for row, cost, error in zip(rows, x, y, strict=True):
         if row.knob and not 1 / CHANGED < error / plain.get(row.model, error) < CHANGED:
-            driven = row.knob == DRIVEN
+            # Above the mark where those of others stand beside it.
+            above = row.knob == DRIVEN and row.model != "fem"
             axes.annotate(
                 row.setting,
                 (cost, error),
-                xytext=(0, 7) if driven else (7, 0),
+                xytext=(-3, 7) if above else (7, 0),
                 textcoords="offset points",
-                ha="center" if driven else "left",
-                va="bottom" if driven else "center",
+                ha="left",
+                va="bottom" if above else "center",
                 fontsize=8,
                 color=OURS[row.model][0],
             )
@@ -182,7 +213,7 @@ def growth_chart(rows: Sequence[Row]) -> Figure | None:
     found = growth(rows)
     if not found:
         return None
-    figure = Figure(figsize=(8, 5.6), layout="constrained")
+    figure = Figure(figsize=(8, 6.2), layout="constrained")
     axes = figure.add_subplot(xscale="log", yscale="log")
     for model, own in found.items():
         colour, marker = OURS[model]
@@ -196,7 +227,7 @@ def growth_chart(rows: Sequence[Row]) -> Figure | None:
     axes.minorticks_off()
     axes.set(xlabel="blocks of a square panel, b/a = 2", ylabel="processor seconds to the collapse load")
     axes.grid(color="0.9", lw=0.7)
-    axes.legend(frameon=False, fontsize=10, loc="upper left")
+    figure.legend(frameon=False, fontsize=10, loc="outside lower center", ncols=2)
     bare(axes)
     smallest = next((row.cpu_s for row in found.get(REFERENCE, ()) if row.blocks == sizes[0]), None)
     if smallest:

@@ -21,7 +21,7 @@ from .walls import INSET
 
 CAPTIONS = {
     "accuracy-seconds": "Error against processor seconds; homog, which costs nothing, is left out",
-    "accuracy-freedoms": "Error against degrees of freedom",
+    "accuracy-freedoms": "Error against degrees of freedom; models with as many stand side by side",
     "accuracy-growth": "Growth of cost with the number of blocks",
     "accuracy-stiffness": "What a physical second costs where blocks are ever stiffer",
 }
