@@ -147,11 +147,15 @@ def _far(rows: Sequence[Row]) -> Iterator[str]:
 
 def _growth(rows: Sequence[Row]) -> Iterator[str]:
     found = growth(rows)
-    powers = {model: exponent(own) for model, own in found.items()}
-    parts = [f"`{model}` {power:.2f}" for model, power in powers.items() if power is not None]
+    sizes = sorted({row.blocks for own in found.values() for row in own})
+    parts = []
+    for model, own in found.items():
+        power = exponent(own)
+        if power is not None:
+            less = "" if own[-1].blocks == sizes[-1] else f" (up to {own[-1].blocks})"
+            parts.append(f"`{model}` {power:.2f}{less}")
     if not parts:
         return
-    sizes = sorted({row.blocks for own in found.values() for row in own})
     left_out = [f"`{row.model}` on {row.blocks}" for row in rows if row.part == "growth" and row.status == TOO_LONG]
     none = f" Left out, for a run takes more than a minute: {', '.join(left_out)}." if left_out else ""
     yield (
