@@ -113,7 +113,8 @@ def _window(scene: Scene, run: Run, found: LoadSteps, criteria: Criteria) -> str
     springs = law.normal_stiffness * run.system.area
     overlap = float((-normal / springs).max(initial=0.0))
     stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * run.system.area).max(initial=0.0)))
-    return stiffness_note(overlap, criteria.collapse, scene.block_size, stiffest, run.system.force_unit)
+    smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
+    return stiffness_note(overlap, criteria.collapse, scene.block_size, stiffest, smallest)
 
 
 def _judge(

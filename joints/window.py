@@ -29,7 +29,7 @@ def stiffness_note(overlap: float, collapse: float, size: float, stiffness: floa
     stiffness
         Largest stiffness of a joint point [N/m].
     force_unit
-        Force by which unbalanced ones are measured [N].
+        Smallest force by which unbalanced ones are measured [N].
     """
     if overlap > SOFT * collapse:
         return (
@@ -40,6 +40,6 @@ def stiffness_note(overlap: float, collapse: float, size: float, stiffness: floa
     if rounding > STIFF:
         return (
             f"joints are too stiff: in displacements of a collapse rounding makes forces of {rounding:.1e} "
-            f"of the largest load, and rest is known to {STIFF:.0e}"
+            f"of the smallest block's load, and rest is known to {STIFF:.0e}"
         )
     return ""
