@@ -10,6 +10,7 @@ the climb, and what its bracket means.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from results import Outcome
 from scene import Scene, SceneError
@@ -100,11 +101,13 @@ class Advice:
         if model in FINITE:
             way = max(known.way or 0.0, known.tolerance)
             return finite_peak(known.scene, FINITE[model], known.tolerance, way, known.bound)
-        if model == "fem" and known.needs.cracks:
-            from fem_interface.model import fem
+        return run_model(model, known.scene, known.tolerance, **self._asked(model))
 
-            return fem(known.scene, known.tolerance, cracks="blocks")
-        return run_model(model, known.scene, known.tolerance)
+    def _asked(self, model: str) -> dict[str, Any]:
+        """What is asked of a model besides: no more than is wanted."""
+        if model == "dem-static":
+            return {"past": 0}
+        return {"cracks": "blocks"} if model == "fem" and self.known.needs.cracks else {}
 
 
 def advice_on(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:

@@ -1,6 +1,6 @@
 """What a model is going to cost, from what it cost on the published walls and what this machine has taken so far.
 
-    seconds = pace · at_100 · (n / 100)^growth · (COARSE / tolerance)^finer
+    seconds = pace · (at_100 · (n / 100)^growth · (COARSE / tolerance)^finer + LOADING)
 
 with n blocks. `LAWS` is printed by `benchmarks/studies/cost_laws.py` from the table of a comparison; pace is how much
 slower the machine at hand was in the rungs already climbed, so that the laws hold from one to the next.
@@ -13,11 +13,16 @@ from dataclasses import dataclass
 from results import Outcome
 from scene import Scene
 
+from .models import IN_MOTION
+
 COARSE = 0.01
 """Tolerance of the comparison that the laws were found in."""
 
-FINER = {"dem-static": 0.3, "dem-dynamic": 0.45, "fem": 0.35}
+FINER = {"dem-static": 0.10, "dem-dynamic": 0.32, "fem": 0.27}
 """Power of the tolerance in the cost of models that bisect; the others have none."""
+
+LOADING = 3.0
+"""Seconds until the kernels of blocks in motion are there, once a process: `dem-dynamic` and `fem` wait for them."""
 
 CRACKED = 6.0
 """How many times more degrees of freedom fem has where blocks crack between all triangles."""
@@ -69,13 +74,15 @@ class Estimate:
 def estimate(model: str, scene: Scene, tolerance: float, pace: float = 1.0) -> Estimate:
     """What a model will take on a scene."""
     law = LAWS[model]
-    seconds = pace * law.at_100 * (_blocks(scene) / 100) ** law.growth
+    seconds = law.at_100 * (_blocks(scene) / 100) ** law.growth
     seconds *= (COARSE / tolerance) ** FINER.get(model, 0.0)
     if not any(scene.load.gravity):
         seconds *= law.weightless
     if model == "fem" and scene.inner_joint is not None:
         seconds *= CRACKED
-    return Estimate(seconds, law.spread)
+    if model in IN_MOTION:
+        seconds += LOADING
+    return Estimate(pace * seconds, law.spread)
 
 
 def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> float:

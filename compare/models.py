@@ -3,7 +3,7 @@
 import difflib
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from dem import limit, limit_nonassociated
 from homog import homog
@@ -18,12 +18,12 @@ Model: TypeAlias = Callable[..., Outcome]
 """From a scene and the relative width of the bracket asked for, and an observer where it has any, to an outcome."""
 
 
-def _dem_static(scene: Scene, tolerance: float, observe: "StaticObserver | None" = None) -> Outcome:
+def _dem_static(scene: Scene, tolerance: float, observe: "StaticObserver | None" = None, **asked: Any) -> Outcome:
     """`dem.static.dem_static`, imported when it is wanted, as `_dem_dynamic` is."""
     from dem.pushover import nobody
     from dem.static import dem_static
 
-    return dem_static(scene, tolerance, observe=observe or nobody)
+    return dem_static(scene, tolerance, observe=observe or nobody, **asked)
 
 
 def _dem_dynamic(scene: Scene, tolerance: float, observe: "Observer | None" = None) -> Outcome:
@@ -34,14 +34,14 @@ def _dem_dynamic(scene: Scene, tolerance: float, observe: "Observer | None" = No
     return dem_dynamic(scene, tolerance, observe=observe or nobody)
 
 
-def _fem(scene: Scene, tolerance: float, observe: "Observer | None" = None) -> Outcome:
+def _fem(scene: Scene, tolerance: float, observe: "Observer | None" = None, **asked: Any) -> Outcome:
     """`fem_interface.model.fem`, imported when it is wanted; whether a wall locks is asked of its rigid blocks."""
     from dem import equilibrium
     from dem.limit import locks
     from dynamics import nobody
     from fem_interface.model import fem
 
-    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), observe=observe or nobody)
+    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), observe=observe or nobody, **asked)
 
 
 MODELS: dict[str, Model] = {
@@ -77,7 +77,11 @@ def check_tolerance(tolerance: float) -> None:
 
 
 def run_model(
-    name: str, scene: Scene, tolerance: float = TOLERANCE, observe: "Observer | StaticObserver | None" = None
+    name: str,
+    scene: Scene,
+    tolerance: float = TOLERANCE,
+    observe: "Observer | StaticObserver | None" = None,
+    **asked: Any,
 ) -> Outcome:
     """Run a model by name.
 
@@ -91,6 +95,8 @@ def run_model(
         Relative width of the bracket asked for.
     observe
         Looks at the states of a model of `OBSERVED`, of its own kind; others are not observed.
+    asked
+        What else is asked of that model, by its own names.
 
     Returns
     -------
@@ -106,8 +112,8 @@ def run_model(
     check_tolerance(tolerance)
     try:
         if observe is not None and name in OBSERVED:
-            return MODELS[name](scene, tolerance, observe=observe)
-        return MODELS[name](scene, tolerance)
+            return MODELS[name](scene, tolerance, observe=observe, **asked)
+        return MODELS[name](scene, tolerance, **asked)
     except SceneError:
         raise
     except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback

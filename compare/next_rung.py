@@ -7,8 +7,8 @@ from results import Outcome
 from .finite import FINITE
 from .knowledge import Knowledge
 
-WORTH = 2.0
-"""How many times the cost of following one history a certificate, which holds for all of them, is worth."""
+WORTH = 1.25
+"""How many times the cost of following one history a certificate, which holds for all of them, is worth: a choice."""
 
 PATHS = ("dem-static", "dem-dynamic", "fem")
 """Models that follow the wall to its fall at small displacements, each after what it can do more than the last."""

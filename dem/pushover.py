@@ -24,6 +24,9 @@ LONGER, SHORTER = 1.15, 0.3
 STRIDE = 0.05
 """Longest step of prescribed displacement, relative to the displacement so far."""
 
+ROUNDING = 1e-12
+"""Step of the displacement, relative to the displacement so far, that has no direction but rounding's."""
+
 ATTEMPTS = ((1.0, False), (0.25, False), (1.0, True))
 """Lengths of such a step that are tried in turn, and whether the wall may creep: only where it snaps."""
 
@@ -112,16 +115,17 @@ class Way:
 
     def follow(self, budget: int) -> list[State]:
         """States of rest at growing displacements after the last load's, until one falls or the budget is spent."""
-        origin, last = self.rests[0].displacement, self.rests[-1]
-        # At a load that is the bracket's other end to the last digit, a wall rests where it did.
-        before = next((rest for rest in reversed(self.rests) if rest.displacement != last.displacement), None)
-        if before is None:
+        if len(self.rests) < 2:
             return []
+        origin, before, last = self.rests[0].displacement, self.rests[-2], self.rests[-1]
         states, nd = [before, last], self.system.freedoms
         stride = STRIDE * (last.displacement - origin)
         while budget > 0 and stride > 0 and np.abs(states[-1].x[:nd] - last.x[:nd]).max() < self.far:
             before, now = states[-2:]
-            onward = (now.x - before.x) / (now.displacement - before.displacement)
+            advance = now.displacement - before.displacement
+            if abs(advance) <= ROUNDING * abs(now.displacement - origin):
+                break
+            onward = (now.x - before.x) / advance
             for share, creeps in ATTEMPTS:
                 ahead = share * stride
                 control = Control(now.displacement + ahead)

@@ -45,7 +45,7 @@ BUDGET = 20_000
 """Linear systems after which a wall is given up."""
 
 PAST = 500
-"""Linear systems that are spent on the curve past the largest load, and on a closer look at the bracket."""
+"""Linear systems that are spent past the largest load."""
 
 
 def dem_static(
@@ -55,6 +55,7 @@ def dem_static(
     first_step: float = FIRST_STEP,
     collapse: float = COLLAPSE,
     budget: int = BUDGET,
+    past: int = PAST,
     observe: StaticObserver = nobody,
 ) -> Outcome:
     """Collapse of a scene under growing loads, each held until the wall rests or falls, at small displacements.
@@ -72,6 +73,8 @@ def dem_static(
         Motion of a block that is a fall unless it slows down, in heights of the lowest block.
     budget
         Linear systems after which it is given up.
+    past
+        Linear systems that are spent on the curve past the largest load, and on a closer look at the bracket.
     observe
         Called with every state at rest as it is found, and in the end with those past the largest load.
 
@@ -85,7 +88,7 @@ def dem_static(
     system = static_system(scene)
     # Bands are too narrow for a second thread to gain anything.
     with threadpool_limits(limits=1, user_api="blas"):
-        found = _found(scene, system, tolerance, first_step, collapse, budget, observe)
+        found = _found(scene, system, tolerance, first_step, collapse, budget, past, observe)
     message = "; ".join(part for part in (found.message, _window(system, found, collapse)) if part)
     return replace(found, message=message, seconds=time.perf_counter() - start)
 
@@ -97,6 +100,7 @@ def _found(
     first_step: float,
     collapse: float,
     budget: int,
+    past: int,
     observe: StaticObserver,
 ) -> Outcome:
     found = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
@@ -107,7 +111,7 @@ def _found(
         return _fallen(replace(found, steps=rest.solves), system)
     way = Way(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
     observe(system, way.rests[0])
-    climb = _climb(way, first_step, tolerance)
+    climb = _climb(way, first_step, tolerance, past)
     for state in climb.past:
         observe(system, state)
     found = _judged(found, way, climb, tolerance)
@@ -132,7 +136,7 @@ class Climb:
     past: list[State]
 
 
-def _climb(way: Way, first_step: float, tolerance: float) -> Climb:
+def _climb(way: Way, first_step: float, tolerance: float, past: int) -> Climb:
     """Load a wall until it has fallen, close enough to the last load at rest, and follow it from there."""
     step = first_step
     while way.upper is None or way.upper - way.lower > tolerance * max(way.upper, NOISE):
@@ -142,12 +146,14 @@ def _climb(way: Way, first_step: float, tolerance: float) -> Climb:
         step = max(step * lengthened(held.solves), 2 * tolerance * way.lower)
         if way.upper is None and way.lower > MOST * first_step:
             return Climb("it bore every load tried", [])
-    past = way.follow(PAST)
+    if not past:
+        return Climb("", [])
+    states = way.follow(past)
     # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
-    closer = (1 + tolerance / 4) * _peak(way, past).multiplier
-    if closer < way.upper and way.push(closer, PAST).verdict == "rest":
-        past = way.follow(PAST)
-    return Climb("", past)
+    closer = (1 + tolerance / 4) * _peak(way, states).multiplier
+    if closer < way.upper and way.push(closer, past).verdict == "rest":
+        states = way.follow(past)
+    return Climb("", states)
 
 
 def _peak(way: Way, past: list[State]) -> State:

@@ -1,35 +1,59 @@
-"""Laws of what the models cost: fitted to the table of a comparison, printed as `compare.costs.LAWS` has them.
+"""Laws of what the models cost, fitted to tables of comparisons and printed as `compare.costs` has them.
 
-From the project's directory, after ``runningbond compare --fresh --out comparison``:
+From the project's directory, after ``runningbond compare --fresh --out fine`` and the same with ``--tolerance 0.05``
+and ``--out coarse``, which gives the powers of the tolerance:
 
-    python benchmarks/studies/cost_laws.py comparison/table.csv
+    python benchmarks/studies/cost_laws.py fine/table.csv coarse/table.csv
 """
 
 import csv
+import math
 import sys
-from collections import defaultdict
+import time
 from pathlib import Path
 
 import numpy as np
 
 from compare import MODELS, published_scene
+from compare.advice import TOLERANCE
+from compare.costs import COARSE
+from dem.dynamic import dem_dynamic
+
+BRACKETING = ("dem-static", "dem-dynamic", "fem")
+
+
+def seconds_of(table: str) -> dict[tuple[str, str], tuple[int, float]]:
+    """Blocks and seconds by scene and model."""
+    with Path(table).open(encoding="utf-8", newline="") as file:
+        return {
+            (row["scene"], row["model"]): (int(row["blocks"]), float(row["seconds"]))
+            for row in csv.DictReader(file)
+            if row["status"] in ("collapse", "undecided")
+        }
 
 
 def main() -> None:
-    """Fit log seconds to log blocks and to whether the wall has weight, a line a model."""
-    rows: dict[str, list[tuple[float, float, float]]] = defaultdict(list)
-    with Path(sys.argv[1]).open(encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            if row["status"] in ("collapse", "undecided"):
-                weightless = not any(published_scene(row["scene"]).load.gravity)
-                rows[row["model"]].append((int(row["blocks"]), float(weightless), float(row["seconds"])))
+    """Fit log seconds to log blocks and to whether the wall has weight, a line a model; then the tolerance."""
+    fine = seconds_of(sys.argv[1])
     for model in MODELS:
-        n, weightless, seconds = np.array(rows[model]).T
+        rows = [(n, not any(published_scene(s).load.gravity), t) for (s, m), (n, t) in fine.items() if m == model]
+        n, weightless, seconds = np.array(rows, dtype=float).T
         terms = np.column_stack([np.ones_like(n), np.log(n / 100), weightless])
         found = np.linalg.lstsq(terms, np.log(seconds))[0]
         spread = np.exp(np.std(np.log(seconds) - terms @ found))
         at_100, growth, factor = np.exp(found[0]), found[1], np.exp(found[2])
         print(f'    "{model}": Law({at_100:.2g}, {growth:.2f}, {factor:.2g}, {spread:.2f}),')
+    if len(sys.argv) > 2:
+        coarse = seconds_of(sys.argv[2])
+        for model in BRACKETING:
+            ratios = [math.log(fine[cell][1] / t) for cell, (_, t) in coarse.items() if cell[1] == model]
+            print(f'    "{model}": {np.mean(ratios) / math.log(TOLERANCE / COARSE):.2f},')
+    seconds = []
+    for _ in range(2):
+        start = time.process_time()
+        dem_dynamic(published_scene("wall-w1"))
+        seconds.append(time.process_time() - start)
+    print(f"LOADING = {seconds[0] - seconds[1]:.1f}")
 
 
 if __name__ == "__main__":
