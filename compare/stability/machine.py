@@ -38,7 +38,7 @@ WHOLE, REDONE, REFUSED, LOST, NOT_TRIED = "whole", "redone", "refused", "lost", 
 VERDICTS = {
     WHOLE: ("does its work all the same", "#2a9d8f"),
     REDONE: ("what it had finished is whole; called again, it does the rest", "#8ecae6"),
-    REFUSED: ("says in one line why not, and writes nothing", "#e9a23b"),
+    REFUSED: ("says in one line why not; nothing is half written", "#e9a23b"),
     LOST: ("none of these", "#1f1f1f"),
     NOT_TRIED: (
         "needs a disk of its own here, and may mount none",
