@@ -96,11 +96,14 @@ def collapse_by_steps(
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     outcome = _judge(replace(outcome, steps=found.taken), scene, run, found, tolerance, point_order, locks)
+    window = _window(scene, run, found, criteria)
+    if outcome.status == "infeasible" and window:
+        message = "moves as far under its dead load as counts as collapse"
+        outcome = replace(outcome, status="undecided", message=message)
+    elif outcome.status == "undecided" and not found.interrupted:
+        note = "; ".join(part for part in (note, f"each load was followed for at most {budget * run.dt:.2g} s") if part)
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
-    undecided = outcome.status == "undecided" and not found.interrupted
-    followed = f"each load was followed for at most {budget * run.dt:.2g} s" if undecided else ""
-    too_long = long if run.dt > run.safe_step else ""
-    parts = (outcome.message, note, followed, too_long, _window(scene, run, found, criteria))
+    parts = (outcome.message, note, long if run.dt > run.safe_step else "", window)
     return replace(outcome, message="; ".join(part for part in parts if part))
 
 

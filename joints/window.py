@@ -33,8 +33,8 @@ def stiffness_note(overlap: float, collapse: float, size: float, stiffness: floa
     """
     if overlap > SOFT * collapse:
         return (
-            f"joints are too soft: blocks overlap by {overlap / size:.1e} of their size, "
-            f"and elastic motion may pass for collapse above {SOFT * collapse / size:.0e}"
+            f"joints are too soft: blocks overlap by {100 * overlap / size:.2g} % of their size, "
+            f"and above {100 * SOFT * collapse / size:.2g} % elastic motion may pass for collapse"
         )
     rounding = EPSILON * collapse * stiffness / force_unit
     if rounding > STIFF:
