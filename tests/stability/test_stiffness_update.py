@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from compare.published import published_scene
 from compare.stability.blocks import one_block
-from compare.stability.stiffness_update import ARMS, INCREMENTS, OUTSIDE, Trial, block_edges, draw, trial, trials
+from compare.stability.stiffness_update import ARMS, INCREMENTS, LOOKS, OUTSIDE, Trial, block_edges, draw, trial, trials
 from dem import limit
 from dem.stiffness_update import load_step, resultant_wall
 
@@ -79,5 +79,8 @@ def test_chart_has_a_map_for_every_size_of_step(found: list[Trial]) -> None:
     figure = Figure(figsize=(8, 4.6), layout="constrained")
     draw(figure, found)
     assert len(figure.axes) == len(INCREMENTS)
-    for axes in figure.axes:
-        assert [label.get_text() for label in axes.get_yticklabels()] == list(dict.fromkeys(e.wall for e in found))
+    walls = list(dict.fromkeys(each.wall for each in found))
+    assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == walls
+    for axes, increments in zip(figure.axes, INCREMENTS, strict=True):
+        fates = [fate for each in found if each.increments == increments for fate in each.fates]
+        assert [text.get_text() for text in axes.texts] == [LOOKS[fate][1] for fate in fates]
