@@ -1,0 +1,61 @@
+"""Akantu: triangles and cohesive joint elements with friction, by explicit central differences.
+
+What a step costs, and how alike the two programs are, is the business of ``akantu_step.py``. Here the question is what
+a load would cost. With stiff blocks (1000 GPa, as in the paper) a stable step is a microsecond, there is no mass
+scaling, no damping but what a script does to velocities, and no way to set the slip of joints, so that each load starts
+from nothing. So a bracket is not looked for: what is measured is the time that the wall is watched between two looks,
+and the same of `fem`, in one process; a load takes eight such and more.
+"""
+
+import time
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from akantu_step import LOAD, AkantuWall, as_in_akantu, free_run, read_materials
+from load_steps import LOOK, Bracket
+from peer import Peer
+
+from dynamics import Run, State
+from dynamics.run import LOCAL, VISCOUS
+from fem_interface.runs import modal_wall
+from fem_interface.system import system_of
+from scene import Scene
+
+SHARE = 10
+"""Part of a look that is run: its cost is that of its steps."""
+
+PEER = Peer(
+    name="Akantu",
+    package="akantu",
+    kind="deformable blocks",
+    rivals=("fem",),
+    does="cracks through blocks, in two and three dimensions, on clusters; many materials",
+    does_not="scale masses or damp; friction without a little tensile strength; joints that have not slipped yet (NaN)",
+)
+
+
+def bracket(scene: Scene, tolerance: float, budget: float) -> Bracket:
+    """No bracket, but what it would take."""
+    import akantu
+
+    read_materials(akantu, scene)
+    free = free_run(as_in_akantu(scene))
+    wall = modal_wall(scene)
+    theirs = AkantuWall(akantu, wall, free.dt)
+    run = Run(system_of(wall), local=LOCAL, viscous=VISCOUS)
+    state = State.at_rest(run.system)
+    run.hold(state, LOAD, 1)  # compiled before it is timed
+    spent = SHARE * seconds(partial(theirs.advance, round(LOOK / SHARE / free.dt)))
+    ours = seconds(partial(run.hold, state, LOAD, round(LOOK / run.dt)))
+    if not np.isfinite(theirs.displacement).all():
+        raise RuntimeError("Akantu's motion is not finite")
+    message = f"{LOOK} s of motion take it {spent:.1f} s of processor time, `fem` {ours:.2f} s"
+    return Bracket(None, None, "cost only", 0, message, ratio=spent / ours)
+
+
+def seconds(call: Callable[[], None]) -> float:
+    """Processor time of a call."""
+    start = time.process_time()
+    call()
+    return time.process_time() - start
