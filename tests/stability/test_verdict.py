@@ -1,0 +1,90 @@
+"""Criteria of the verdict, too tight and too loose, against walls whose load is known."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from compare.published import published_scene
+from compare.stability.known import KnownWall, rounded_wall, sliding_block, toppling_block
+from compare.stability.verdict import (
+    INTERVAL,
+    REST,
+    WEIGHTLESS,
+    WIDTH,
+    believed,
+    experiment,
+    far_sweep,
+    interval_sweep,
+    rest_sweep,
+    trial,
+    weightless_sweep,
+)
+from dem import limit_nonassociated
+from dynamics.verdict import COLLAPSE, COLLAPSE_WEIGHTLESS
+
+WALLS = [sliding_block(), toppling_block(), rounded_wall("wall-w1")]
+
+
+@pytest.mark.parametrize("wall", WALLS, ids=lambda wall: str(wall.name))
+def test_the_suites_criteria_stand_on_a_plateau(wall: KnownWall) -> None:
+    """Half and twice each of them find the same λ, which is the one known."""
+    for sweep in (
+        rest_sweep(wall, (REST / 2, REST, 2 * REST)),
+        far_sweep(wall, (COLLAPSE / 2, COLLAPSE, 2 * COLLAPSE)),
+        interval_sweep(wall, (INTERVAL // 2, INTERVAL, 2 * INTERVAL)),
+    ):
+        assert sweep.plateau == (sweep.default / 2, 2 * sweep.default), sweep.criterion
+        assert sweep.trials[sweep.default].middle == pytest.approx(wall.multiplier, rel=WIDTH)
+
+
+@pytest.mark.parametrize("wall", WALLS, ids=lambda wall: str(wall.name))
+def test_a_threshold_of_rest_too_loose_takes_walls_for_standing_up_to_the_load_that_theory_has(
+    wall: KnownWall,
+) -> None:
+    """λ_c + r / w: false stability, 5 to 10 % above the load with r = 0.03."""
+    loose = (0.01, 0.03)
+    sweep = rest_sweep(wall, (REST, *loose))
+    middles = [sweep.trials[rest].middle for rest in loose]
+    assert middles == pytest.approx(list(believed(wall, np.array(loose))), rel=WIDTH)
+    assert (middles[1] or 0.0) > 1.04 * wall.multiplier
+    assert sweep.plateau == (REST, REST)
+
+
+def test_a_threshold_of_rest_below_rounding_is_never_met() -> None:
+    assert trial(sliding_block().scene, COLLAPSE, rest=1e-16).answer == "undecided"
+
+
+def test_a_displacement_too_small_takes_settlement_for_a_fall() -> None:
+    assert trial(rounded_wall("wall-w1").scene, 1e-7).answer == "infeasible"
+
+
+def test_a_displacement_too_small_takes_a_slip_for_a_fall() -> None:
+    """W2 at a hundred-thousandth of a block: false collapse some 5 % below the load, where a thousandth is right."""
+    wall = rounded_wall("wall-w2")
+    slip, right = (trial(wall.scene, far).middle for far in (1e-5, 1e-3))
+    assert (slip or 0.0) < 0.97 * wall.multiplier
+    assert right == pytest.approx(wall.multiplier, rel=WIDTH)
+
+
+def test_without_weight_a_wall_slips_far_before_it_is_caught() -> None:
+    """A fifth of a block is taken for a fall below every load at which limit analysis certifies one."""
+    scene = published_scene(WEIGHTLESS)
+    slip, certified = trial(scene, 0.2), limit_nonassociated(scene)
+    assert slip.answer == "collapse"
+    assert (slip.upper or np.inf) < (certified.lower or 0.0)
+
+
+@pytest.mark.long
+def test_without_weight_the_suite_follows_it_far_enough() -> None:
+    """Twice as far finds the same λ, inside the interval that is certified."""
+    sweep = weightless_sweep((COLLAPSE_WEIGHTLESS, 2 * COLLAPSE_WEIGHTLESS))
+    certified = limit_nonassociated(published_scene(WEIGHTLESS))
+    assert sweep.plateau == (COLLAPSE_WEIGHTLESS, 2 * COLLAPSE_WEIGHTLESS)
+    assert (certified.lower or np.inf) <= sweep.unit <= (certified.upper or 0.0)
+
+
+@pytest.mark.long
+def test_every_edge_lies_where_theory_has_it_and_defaults_inside() -> None:
+    found = experiment()
+    assert not [edge for edge in found.edges if edge.agrees is False]
+    found.draw(Figure(layout="constrained"))
