@@ -21,7 +21,7 @@ from compare.figures import COLOURS, bare
 from compare.published import published_scene
 from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
-from dynamics import Criteria, Run, load_steps
+from dynamics import Criteria, Run, load_steps, ramp, settle
 from dynamics.controls import RAMP, RAMP_WEIGHTLESS
 from dynamics.verdict import COLLAPSE, COLLAPSE_WEIGHTLESS, FIRST_STEP
 from results import Outcome
@@ -159,8 +159,19 @@ def trial(scene: Scene, collapse: float, *, rest: float = REST, interval: int = 
     criteria = Criteria(collapse * scene.block_size, rest, BUDGET, interval)
     length = RAMP if run.system.dead.any() else RAMP_WEIGHTLESS
     found = load_steps(run, first, WIDTH, criteria, ramp_length=length)
-    narrow = found.lower is not None and found.upper is not None and found.upper - found.lower <= WIDTH * found.upper
-    return Trial(found.lower, found.upper, narrow or (found.lower is None and found.verdict == "collapse"))
+    lower, upper, borne = found.lower, found.upper, found.borne
+    if lower is None or upper is None or borne is None or found.verdict == "undecided":
+        return Trial(lower, upper, lower is None and found.verdict == "collapse")
+    # The suite leaves its bracket as wide as a loose threshold of rest makes it uncertain; here its edge is looked for.
+    settling = length * found.rests[0][1].steps
+    while upper - lower > WIDTH * upper:
+        middle, state = (lower + upper) / 2, borne.copy()
+        ramp(run, state, lower, middle, settling)
+        verdict = settle(run, state, middle, criteria)
+        if verdict == "undecided":
+            return Trial(lower, upper, False)
+        lower, upper, borne = (middle, upper, state) if verdict == "stable" else (lower, middle, borne)
+    return Trial(lower, upper, True)
 
 
 def rest_sweep(wall: KnownWall, rests: Sequence[float] = RESTS) -> Sweep:
