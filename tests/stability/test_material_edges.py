@@ -1,0 +1,40 @@
+"""What models say at the edges of materials, shapes and sizes."""
+
+import pytest
+
+from compare.stability.material_edges import SIZES, answer, extremes, similar
+from dem import limit
+from dem.dynamic import dem_dynamic
+from dem.static import dem_static
+
+WALLS = {extreme.what: extreme for extreme in extremes()}
+LEANING = "large on small, 100:1"
+"""Models in motion take its elastic lean for a fall."""
+
+
+@pytest.mark.parametrize("model", ["homog", "limit", "limit-nonassociated", "dem-static"])
+@pytest.mark.parametrize("what", WALLS)
+def test_models_at_rest_are_right_or_say_that_they_are_not(what: str, model: str) -> None:
+    found, _ = answer(WALLS[what], model)
+    assert found.worth != "wrong", found
+    assert found.message
+
+
+@pytest.mark.parametrize("what", [what for what in WALLS if what not in (LEANING, "tan φ = 1e-6")])
+def test_rigid_blocks_in_motion_are_right(what: str) -> None:
+    found, _ = answer(WALLS[what], "dem-dynamic")
+    assert found.worth == "right", found
+
+
+@pytest.mark.parametrize("what", ["block 1:50", "falls: overhang", "gap, 0.99 tolerances", "locks: one block pinned"])
+def test_deformable_blocks_in_motion_are_right(what: str) -> None:
+    found, _ = answer(WALLS[what], "fem")
+    assert found.worth == "right", found
+
+
+@pytest.mark.parametrize("model", [limit, dem_static, dem_dynamic])
+def test_a_dry_wall_has_one_multiplier_in_every_size(model) -> None:  # type: ignore[no-untyped-def]
+    """From 1 µm to 1 km with stiffness along, to rounding."""
+    small, usual, large = (model(similar(size / 0.48)).lower for size in SIZES)
+    assert small == pytest.approx(usual, rel=1e-9)
+    assert large == pytest.approx(usual, rel=1e-9)
