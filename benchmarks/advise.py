@@ -1,9 +1,10 @@
-"""`advise` beside all six models at the same tolerance: brackets, rungs, and processor time in one run.
+"""`advise` beside all six models: brackets, rungs, and processor time in one run.
 
-From the project's directory, for all published walls or some of them:
+From the project's directory, for all published walls or some of them, the models at the same tolerance or at that of
+``runningbond compare``:
 
     python benchmarks/advise.py
-    python benchmarks/advise.py panel-02 panel-04 wall-w3
+    python benchmarks/advise.py --against 0.01 panel-02 panel-04 wall-w3
 """
 
 import argparse
@@ -32,7 +33,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("walls", nargs="*", help="published walls, all by default")
     parser.add_argument("--tolerance", type=float, default=TOLERANCE)
+    parser.add_argument("--against", type=float, help="tolerance of the six models, the same by default")
     arguments = parser.parse_args()
+    against = arguments.against or arguments.tolerance
     walls = arguments.walls or [case.name for case in PUBLISHED]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -46,7 +49,7 @@ def main() -> None:
         start = time.process_time()
         advice = advise(scene, arguments.tolerance)
         spent = time.process_time() - start
-        runs = {model: timed_model(model, scene, arguments.tolerance) for model in MODELS}
+        runs = {model: timed_model(model, scene, against) for model in MODELS}
         every = sum(seconds for _, seconds in runs.values())
         found = "; ".join(bracket(outcome) for outcome, _ in runs.values() if outcome is not None)
         answer, climbed = advice.outcome(), len(advice.rungs)
