@@ -242,7 +242,7 @@ def verdict(records: Sequence[Record], walls: Sequence[str], programs: Sequence[
     cheaper = [said for ratio, said in sorted(all_ratios) if ratio < 1]
     if cheaper:
         return "Peers that cost less than a model of their kind: " + "; ".join(cheaper) + "."
-    return f"No peer costs less than a model of its kind; the nearest is {min(all_ratios)[1]}."
+    return f"Of those that were run no peer costs less than a model of its kind; the nearest is {min(all_ratios)[1]}."
 
 
 def machine() -> str:
