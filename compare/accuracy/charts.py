@@ -18,8 +18,8 @@ from .knobs import VARIED
 from .measure import REFERENCE
 from .rows import Row
 
-FLOOR = 1e-4
-"""Error below which all are drawn alike: zero, or below the digits of the answers that are published."""
+FLOOR, MOST = 1e-4, 3.0
+"""Error below which all are drawn alike, zero or below the digits that are published, and the end of the axis."""
 
 RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1
 """Models with three freedoms a block, and the ratio by which they stand apart."""
@@ -127,13 +127,13 @@ def _draw_freedoms(axes: Axes, rows: Sequence[Row]) -> None:
 def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequence[float]) -> None:
     """Draw errors at `x`, next to their `cost`, and the front of those that nothing beats."""
     y = [max(row.error or 0.0, FLOOR) for row in rows]
-    axes.set(xscale="log", yscale="log", ylim=(FLOOR / 1.8, 1.3))
+    axes.set(xscale="log", yscale="log", ylim=(FLOOR / 1.8, MOST))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
     front = pareto_front(cost, y)
     right = 3 * max(x)
     axes.step(
         [x[front[0]], *(x[i] for i in front), right],
-        [1.3, *(y[i] for i in front), y[front[-1]]],
+        [MOST, *(y[i] for i in front), y[front[-1]]],
         where="post",
         color="0.55",
         lw=1.4,

@@ -26,7 +26,7 @@ EXACT = 1e-4
 
 WORSE = "Knobs that cost accuracy (largest error, and the cost in that of the model as it is)"
 BETTER = "Knobs that buy accuracy"
-ALIKE = "Knobs that hardly change the largest error, but make a run dearer by a factor of"
+ALIKE = "Knobs that hardly change the largest error, but the cost by a factor of"
 
 DEARER = 1.25
 """Ratio of costs from which on a knob is said to change them."""
@@ -122,7 +122,7 @@ def _deformable(rows: Sequence[Row]) -> Iterator[str]:
         for setting in {setting for found in of_cells.values() for setting in found if setting[0] == "fem"}
     }
     exact = [label(setting) for setting, error in sorted(best.items()) if error < 1e-9]
-    named = f"; {' and '.join(f'`{name}`' for name in exact)} are exact there" if exact else ""
+    named = f"; exact there: {', '.join(f'`{name}`' for name in exact)}" if exact else ""
     yield (
         f"**When blocks need a stiffness.** Rigid blocks are too stiff under compression by {steps}, "
         f"which is k_n a / E{named}."

@@ -103,7 +103,7 @@ def records(rows: Iterable[Row], walls: Sequence[str] | None = None) -> dict[Set
                 [row.wall for row in answered],
                 [row.error or 0.0 for row in answered],
                 [row.ratio or 0.0 for row in answered],
-                [row.wall for row in own if row not in answered and row not in certified],
+                [row.wall for row in own if row.value is None],
                 [row.wall for row in certified],
             )
     return found

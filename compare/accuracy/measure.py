@@ -24,7 +24,7 @@ from .answer import Answer
 from .cases import Case, wall_of
 from .knobs import settings_of
 
-RUNS, CHEAP = 3, 3.0
+RUNS, CHEAP = 3, 2.0
 """Timed runs of a case, where one takes no more than so many processor seconds; one of a dearer case."""
 
 LONGEST = 60

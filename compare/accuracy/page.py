@@ -11,6 +11,7 @@ from results import write_atomically
 
 from ..report import figure_html, page_html, table_html
 from ..table import Sheet
+from .cases import all_cases
 from .charts import draw_charts
 from .conclusions import conclusions
 from .findings import sheets
@@ -67,7 +68,7 @@ def markdown(rows: Sequence[Row], charts: Sequence[Path]) -> str:
         "",
     ]
     parts += [f"- {sentence}" for sentence in conclusions(rows)]
-    parts += ["", f"Measured on {_machines(rows)}{_failures(rows)}", ""]
+    parts += ["", f"Measured on {_where(rows)}{_failures(rows)}", ""]
     parts += ["## Charts", ""]
     for chart in charts:
         parts += [f"![{CAPTIONS[chart.stem]}]({chart.name})", ""]
@@ -81,7 +82,7 @@ def report(rows: Sequence[Row], charts: Sequence[Path]) -> str:
     parts = ["<h1>Speed against accuracy</h1>", *(f"<p>{_inline(text)}</p>" for text in HOW)]
     parts += ["<h2>What it says</h2>", "<ul>"]
     parts += [f"<li>{_inline(sentence)}</li>" for sentence in conclusions(rows)]
-    parts += ["</ul>", f"<p>Measured on {_inline(_machines(rows) + _failures(rows))}</p>"]
+    parts += ["</ul>", f"<p>Measured on {_inline(_where(rows) + _failures(rows))}</p>"]
     parts += ["<h2>Charts</h2>", *map(figure_html, charts), "<h2>Tables</h2>", *map(table_html, sheets(rows))]
     return page_html("speed against accuracy", [*parts, "<h2>Every run</h2>", table_html(_everything(rows))])
 
@@ -90,8 +91,9 @@ def _paragraphs(texts: Sequence[str]) -> list[str]:
     return [line for text in texts for line in (text, "")]
 
 
-def _machines(rows: Sequence[Row]) -> str:
-    return "; ".join(sorted({row.machine for row in rows})) + "."
+def _where(rows: Sequence[Row]) -> str:
+    measured = f"{len(rows)} of {len(all_cases())} cases"
+    return f"{'; '.join(sorted({row.machine for row in rows}))}: {measured}."
 
 
 def _failures(rows: Sequence[Row]) -> str:
