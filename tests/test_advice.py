@@ -9,10 +9,10 @@ import pytest
 
 from compare import PUBLISHED, published_scene
 from compare.advice import TOLERANCE, Advice, advise
+from compare.advice.costs import LAWS, estimate, pace
+from compare.advice.needs import needs_of, pliancy, sliding_dilates
+from compare.advice.next_rung import WORTH
 from compare.command import command
-from compare.costs import LAWS, estimate, pace
-from compare.needs import needs_of, pliancy, sliding_dilates
-from compare.next_rung import WORTH
 from dem import limit
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static

@@ -1,4 +1,4 @@
-"""Laws of what the models cost, fitted to tables of comparisons and printed as `compare.costs` has them.
+"""Laws of what the models cost, fitted to tables of comparisons and printed as `compare.advice.costs` has them.
 
 From the project's directory, after ``runningbond compare --fresh --out fine`` and the same with ``--tolerance 0.05``
 and ``--out coarse``, which gives the powers of the tolerance:
@@ -16,7 +16,7 @@ import numpy as np
 
 from compare import MODELS, published_scene
 from compare.advice import TOLERANCE
-from compare.costs import COARSE
+from compare.advice.costs import COARSE
 from dem.dynamic import dem_dynamic
 
 BRACKETING = ("dem-static", "dem-dynamic", "fem")

@@ -3,8 +3,9 @@
 import json
 from typing import Any
 
-from .advice import Advice, Rung
-from .table import bracket
+from compare.table import bracket
+
+from .climb import Advice, Rung
 
 
 def rung_line(rung: Rung) -> str:

@@ -10,10 +10,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from compare.models import IN_MOTION
 from results import Outcome
 from scene import Scene
-
-from .models import IN_MOTION
 
 COARSE = 0.01
 """Tolerance of the comparison that the laws were found in."""

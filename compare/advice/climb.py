@@ -12,13 +12,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from compare.models import check_tolerance, run_model
 from results import Outcome
 from scene import Scene, SceneError
 
 from .costs import LAWS, Estimate
 from .finite import FINITE, finite_peak
 from .knowledge import Knowledge
-from .models import check_tolerance, run_model
 from .next_rung import after_refusal, next_rung
 
 TOLERANCE = 0.05

@@ -1,0 +1,1 @@
+"""The commands of ``runningbond``, one a module; `compare.command` is where they meet."""
