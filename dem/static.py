@@ -123,7 +123,7 @@ def _window(system: StaticSystem, found: Outcome, collapse: float) -> str:
     equations, law = system.equilibrium, system.law
     spring = equations.force_unit / system.length_unit
     overlap = float((-found.force[:, 0] / (law.normal_stiffness * spring)).max()) if len(found.force) else 0.0
-    stiffest = spring * float(max(law.normal_stiffness.max(), law.shear_stiffness.max()))
+    stiffest = spring * float(max(law.normal_stiffness.max(initial=0.0), law.shear_stiffness.max(initial=0.0)))
     size = equations.scene.lowest_block
     return stiffness_note(overlap, collapse * size, size, stiffest, equations.force_unit)
 
