@@ -120,7 +120,7 @@ class Run:
         system = self.system
         load = dead * system.dead + multiplier * system.live
         before = float(load @ state.motion)
-        watch = (state.steps, given + state.external - before, system.area)
+        watch = (state.steps, given + state.external - before, state.supplied)
         coefficients = (steps, self.dt, self.local, self._viscosity)
         taken, sound = self._hold(*coefficients, load, *self._arrays, _histories(state), self._work, watch)
         state.external += float(load @ state.motion) - before
@@ -133,7 +133,7 @@ class Run:
         """
         system = self.system
         before = float(system.dead @ state.motion)
-        watch = (state.steps, given + state.external - before, system.area)
+        watch = (state.steps, given + state.external - before, state.supplied)
         coefficients = (steps, self.dt, self.local, self._viscosity)
         loads = (system.dead, system.live, speed)
         taken, sound, mean, worked = self._drive(

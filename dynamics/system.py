@@ -5,7 +5,7 @@ forces to motions; the integrator sees vectors only and the law jumps only.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -139,6 +139,8 @@ class State:
         Force of the last step.
     steps : int
         Steps taken.
+    supplied : (1,) float
+        Largest energy that was found supplied at any look at it [J].
     """
 
     motion: Array
@@ -148,6 +150,7 @@ class State:
     unbalanced: Array
     external: float = 0.0
     steps: int = 0
+    supplied: Array = field(default_factory=lambda: np.zeros(1))
 
     @classmethod
     def at_rest(cls, system: BlockSystem) -> "State":
@@ -166,4 +169,5 @@ class State:
             self.unbalanced.copy(),
             self.external,
             self.steps,
+            self.supplied.copy(),
         )

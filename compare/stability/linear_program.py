@@ -87,7 +87,7 @@ def scaled(quantity: str, factor: float) -> tuple[Scene, float]:
     if quantity == "load":
         force = (live.force[0] * factor, live.force[1] * factor)
         return replace(wall, load=replace(wall.load, live=PointLoad(live.at, force))), 1 / factor
-    outlines = [factor * wall.blocks.polygon(k) for k in np.flatnonzero(wall.wall)]
+    outlines = [factor * wall.blocks.polygon(int(k)) for k in np.flatnonzero(wall.wall)]
     joint = replace(wall.joint, cohesion=1e4 * factor, tensile_strength=1e4 * factor)
     load = replace(wall.load, live=PointLoad((live.at[0] * factor, live.at[1] * factor), live.force))
     grown = build_scene(

@@ -30,7 +30,8 @@ from matplotlib.patches import Patch
 from results import StoreError, load_outcome
 from results.rendering import why_not_drawn
 
-from ..command import BAD_INPUT, DONE, STOPPED, command
+from ..command import command
+from ..commands.exits import BAD_INPUT, DONE, STOPPED
 from ..published import find_scene
 from .finding import Edge, Finding
 
