@@ -218,16 +218,16 @@ class Criteria:
     ----------
     rest
         Unbalanced force, in the system's units, below which the wall is at rest.
-    collapse
-        Displacement [m] of any block since the load was raised at which a wall that does not slow down is in
-        collapse.
+    collapse : float or (nb,) float
+        Displacement [m] of any block, or of each, since the load was raised at which a wall that does not slow down
+        is in collapse.
     budget
         Steps after which the question is left undecided.
     interval
         Steps between two looks.
     """
 
-    collapse: float
+    collapse: float | Array
     rest: float = 1e-5
     budget: int = 2_000_000
     interval: int = 200
@@ -251,7 +251,7 @@ def settle(
         If it spends more energy than the load and the state at the start can have supplied.
     """
     start, given = state.motion.copy(), run.given(state)
-    fall = Fall(criteria.collapse)
+    fall = Fall()
     calm = 0
     for _ in range(criteria.budget // criteria.interval):
         run.hold(state, multiplier, criteria.interval, given=given)
@@ -259,7 +259,7 @@ def settle(
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
         if calm == CALM:
             return "stable"
-        if fall.goes_on(moved_by(run.system, state, start), state.steps):
+        if fall.goes_on(moved_by(run.system, state, start, criteria.collapse), state.steps):
             return "collapse"
     return "undecided"
 
@@ -267,10 +267,7 @@ def settle(
 class Fall:
     """Whether a motion is a collapse: it has come far, and no slower over the last half of its way than before.
 
-    Parameters
-    ----------
-    far
-        Displacement [m] at which it is looked at for the first time; then whenever it has doubled.
+    Ways are measured in that at which it is looked at for the first time; then it is whenever they have doubled.
     """
 
     FARTHEST = 4
@@ -279,12 +276,12 @@ class Fall:
     SLACK = 1.1
     """How much slower than before is not yet slower: sliding contacts chatter, and their speed with them."""
 
-    def __init__(self, far: float) -> None:
-        self._marks = [far * 2.0**k for k in range(-2, self.FARTHEST + 1)]
+    def __init__(self) -> None:
+        self._marks = [2.0**k for k in range(-2, self.FARTHEST + 1)]
         self._passed: list[int] = []
 
     def goes_on(self, moved: float, steps: int) -> bool:
-        """Whether a wall that has moved so far [m] after so many steps is in collapse."""
+        """Whether a wall that has moved so far after so many steps is in collapse."""
         while len(self._passed) < len(self._marks) and moved > self._marks[len(self._passed)]:
             self._passed.append(steps)
             if len(self._passed) == len(self._marks):
@@ -297,6 +294,6 @@ class Fall:
         return False
 
 
-def moved_by(system: BlockSystem, state: State, start: Array) -> float:
-    """Largest translation of any block since a motion ``(nd,)`` [m]."""
-    return float(np.abs((state.motion - start)[system.rigid[:, :2]]).max())
+def moved_by(system: BlockSystem, state: State, start: Array, unit: float | Array = 1.0) -> float:
+    """Largest translation of any block since a motion ``(nd,)``, in a unit [m] or in each block's own ``(nb,)``."""
+    return float((np.abs((state.motion - start)[system.rigid[:, :2]]).max(axis=1) / unit).max())

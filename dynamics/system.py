@@ -92,7 +92,7 @@ class BlockSystem:
 
     def measure(self, force: Array) -> float:
         """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
-        return float((np.abs(force) / self.force_unit)[np.isfinite(self.mass)].max())
+        return float((np.abs(force) / self.force_unit)[np.isfinite(self.mass)].max(initial=0.0))
 
 
 def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength: PointStrength) -> Array:

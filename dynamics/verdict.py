@@ -15,7 +15,7 @@ from .run import Criteria, Observer, Run, Unstable, nobody
 from .system import State
 
 COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 1.6
-"""Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_size`).
+"""Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_sizes`).
 
 A wall without weight may slip far and be caught by the pressure that the slip itself brings about; at small
 displacements nothing but the end of its motion tells that from a collapse.
@@ -86,7 +86,7 @@ def collapse_by_steps(
     system = run.system
     if collapse is None:
         collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
-    criteria = Criteria(collapse=collapse * scene.block_size, budget=budget)
+    criteria = Criteria(collapse=collapse * scene.block_sizes, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
@@ -117,7 +117,8 @@ def _window(scene: Scene, run: Run, found: LoadSteps, criteria: Criteria) -> str
     overlap = float((-normal / springs).max(initial=0.0))
     stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * run.system.area).max(initial=0.0)))
     smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
-    return stiffness_note(overlap, criteria.collapse, scene.block_size, stiffest, smallest)
+    far = float(np.min(criteria.collapse))
+    return stiffness_note(overlap, far, scene.block_size, stiffest, smallest)
 
 
 def _judge(

@@ -130,6 +130,17 @@ class Scene:
         return min(self.lowest_block, self.bond.width) if self.bond else self.lowest_block
 
     @property
+    def block_sizes(self) -> Array:
+        """Size of each block [m], ``(nb,)``: its smaller side, and not less than that of the wall's blocks.
+
+        A large block on small ones leans, and settles, by more than a small one's share before it falls.
+        """
+        x, y = self.blocks.vertices.T
+        first = self.blocks.first[:-1]
+        sides = [np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) for z in (x, y)]
+        return np.asarray(np.maximum(np.minimum(*sides), self.block_size))
+
+    @property
     def lowest_block(self) -> float:
         """Smallest height of a movable block [m]."""
         y, first = self.blocks.vertices[:, 1], self.blocks.first[:-1]

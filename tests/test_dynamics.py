@@ -402,7 +402,7 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible() -> None:
 @pytest.mark.parametrize(("exponent", "falls"), [(2.0, True), (1.0, True), (0.5, False)])
 def test_a_fall_is_a_motion_that_does_not_slow_down(exponent: float, falls: bool) -> None:
     """x = t^p past the mark of 1: falling for p ≥ 1, and for p < 1 not before it has come 2^4 times as far."""
-    fall = Fall(1.0)
+    fall = Fall()
     at = next(t for t in range(1, 10_000_000) if fall.goes_on((t / 1000) ** exponent, t))
     assert (at / 1000) ** exponent == pytest.approx(1.0 if falls else 2.0**Fall.FARTHEST, rel=0.01)
 

@@ -120,7 +120,7 @@ def by_load_steps(motion: Motion, scene: Scene, tolerance: float, budget: float)
 def settle(motion: Motion, multiplier: float, far: float) -> str:
     """Hold a load until the wall rests or falls, or patience ends."""
     start = last = motion.position()
-    fall = Fall(far)
+    fall = Fall()
     calm = 0
     for look in range(1, PATIENCE + 1):
         motion.hold(multiplier, LOOK)
@@ -128,7 +128,7 @@ def settle(motion: Motion, multiplier: float, far: float) -> str:
         calm = calm + 1 if np.abs(now - last).max() < REST * far else 0
         if calm == CALM:
             return "rest"
-        if fall.goes_on(float(np.abs(now - start).max()), look):
+        if fall.goes_on(float(np.abs(now - start).max()) / far, look):
             return "collapse"
         last = now
     return "creeps under loads that it bears"

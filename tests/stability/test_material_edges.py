@@ -8,8 +8,6 @@ from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 
 WALLS = {extreme.what: extreme for extreme in extremes()}
-LEANING = "large on small, 100:1"
-"""Models in motion take its elastic lean for a fall."""
 
 
 @pytest.mark.parametrize("model", ["homog", "limit", "limit-nonassociated", "dem-static"])
@@ -20,10 +18,11 @@ def test_models_at_rest_are_right_or_say_that_they_are_not(what: str, model: str
     assert found.message
 
 
-@pytest.mark.parametrize("what", [what for what in WALLS if what not in (LEANING, "tan φ = 1e-6")])
+@pytest.mark.parametrize("what", [what for what in WALLS if what != "tan φ = 1e-6"])
 def test_rigid_blocks_in_motion_are_right(what: str) -> None:
+    """But for a metre on a centimetre, which sinks so far into it that nothing is decided, and that is said."""
     found, _ = answer(WALLS[what], "dem-dynamic")
-    assert found.worth == "right", found
+    assert found.worth == ("says so" if what == "large on small, 100:1" else "right"), found
 
 
 @pytest.mark.parametrize("what", ["block 1:50", "falls: overhang", "gap, 0.99 tolerances", "locks: one block pinned"])
