@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics import Observer, Run, collapse_by_steps, finite_curve, nobody
-from dynamics.verdict import BUDGET, FIRST_STEP
+from dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
 from results import Outcome
 from scene import Array, Scene
 
@@ -26,7 +26,7 @@ def dem_dynamic(
     scene: Scene,
     tolerance: float = 0.01,
     *,
-    collapse: float | None = None,
+    collapse: float = COLLAPSE,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
     observe: Observer = nobody,
@@ -40,8 +40,7 @@ def dem_dynamic(
     tolerance
         Relative width of the bracket.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes;
-        by default 0.05, for a wall without weight 1.6.
+        Displacement at which a wall that does not slow down is in collapse, in block sizes.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not.
     budget

@@ -14,11 +14,11 @@ from .controls import LoadSteps, settled_load_steps
 from .run import Criteria, Observer, Run, Unstable, nobody
 from .system import State
 
-COLLAPSE, COLLAPSE_WEIGHTLESS = 0.05, 1.6
+COLLAPSE = 0.05
 """Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_sizes`).
 
-A wall without weight may slip far and be caught by the pressure that the slip itself brings about; at small
-displacements nothing but the end of its motion tells that from a collapse.
+A wall without weight may slip as far and be caught by the pressure that the slip itself brings about; loaded slowly
+enough (`settled_load_steps`) it does not.
 """
 
 FIRST_STEP = 0.05
@@ -43,7 +43,7 @@ def collapse_by_steps(
     point_order: Indices,
     locks: Callable[[], bool],
     note: str = "",
-    collapse: float | None = None,
+    collapse: float = COLLAPSE,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
     observe: Observer = nobody,
@@ -67,8 +67,7 @@ def collapse_by_steps(
     note
         What the message is to say about the run besides.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes;
-        `COLLAPSE` or `COLLAPSE_WEIGHTLESS` where none is given.
+        Displacement at which a wall that does not slow down is in collapse, in block sizes.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not.
     budget
@@ -84,8 +83,6 @@ def collapse_by_steps(
         as one with too long a time step does.
     """
     system = run.system
-    if collapse is None:
-        collapse = COLLAPSE if system.dead.any() else COLLAPSE_WEIGHTLESS
     criteria = Criteria(collapse=collapse * scene.block_sizes, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.

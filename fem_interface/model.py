@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from dynamics import Observer, Run, collapse_by_steps, nobody
-from dynamics.verdict import BUDGET, FIRST_STEP
+from dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
 from joints import Rule
 from results import Outcome
 from scene import Scene
@@ -38,7 +38,7 @@ def fem(
     loads: Loads = "consistent",
     mass_scaling: bool = True,
     energies: Energies = "given",
-    collapse: float | None = None,
+    collapse: float = COLLAPSE,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
     observe: Observer = nobody,
@@ -69,8 +69,7 @@ def fem(
     energies
         Where the joints' fracture energies come from; without any, joints are perfectly plastic.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes;
-        by default 0.05, for a wall without weight 1.6.
+        Displacement at which a wall that does not slow down is in collapse, in block sizes.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not.
     budget

@@ -10,7 +10,7 @@ from dem.dynamic import dem_dynamic
 from dem.rigid_system import rigid_system
 from dynamics import Criteria, Run, load_steps
 from dynamics.controls import RAMP
-from dynamics.verdict import COLLAPSE, COLLAPSE_WEIGHTLESS, FIRST_STEP
+from dynamics.verdict import COLLAPSE, FIRST_STEP
 from scene import Scene
 from tests.walls import panel
 
@@ -65,7 +65,7 @@ def test_walls_without_weight_are_loaded_slower_until_the_bracket_stays(name: st
     assert outcome.upper is not None
     assert outcome.lower is not None
     assert outcome.lower <= bound * 1.001
-    slipped = dem_dynamic(scene, collapse=2 * COLLAPSE_WEIGHTLESS)
+    slipped = dem_dynamic(scene, collapse=2 * COLLAPSE)
     assert slipped.lower is not None
     assert slipped.lower == pytest.approx(outcome.lower, rel=0.01)
 
