@@ -7,13 +7,16 @@ ready := .venv/.ready
 bin := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: compare study test test-long bench clean help
+.PHONY: compare study stability test test-long bench clean help
 
 compare: $(ready) ## run every model on every published wall and tabulate, in comparison/
 	$(bin)/runningbond compare --out comparison $(ARGS)
 
 study: $(ready) ## measure every model's error against its cost, in study/
 	$(bin)/runningbond study --out study $(ARGS)
+
+stability: $(ready) ## drive every method over its edge, and tell where each may be trusted, in stability/
+	$(bin)/runningbond stability --out stability $(ARGS)
 
 test: $(ready) ## style, types, and the tests that take seconds
 	$(bin)/ruff check
