@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from joints.point_kernel import DAMPED_WORK, FRICTION_WORK
-from scene import Array
+from scene import Array, Scene
 
 from .stepping import stepper, work_arrays
 from .system import BlockSystem, State
@@ -169,6 +169,10 @@ class Run:
         # At rest: the viscosity, of no account then, would need the rate of a step that is not taken.
         system.law.kernel(opening, slip, system.law.parameters, state.history.copy(), 0.0, normal, tangential)
         return opening, slip, normal, tangential
+
+    def sizes(self, scene: Scene) -> Array:
+        """Size of each of its blocks ``(nb,)`` [m], by which motions are measured."""
+        return scene.block_sizes
 
     def motion_of_blocks(self, state: State) -> Array:
         """Translation and rotation of each block, ``(nb, 3)`` [m, m, rad]."""

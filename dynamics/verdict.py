@@ -83,7 +83,7 @@ def collapse_by_steps(
         as one with too long a time step does.
     """
     system = run.system
-    criteria = Criteria(collapse=collapse * scene.block_sizes, budget=budget)
+    criteria = Criteria(collapse=collapse * run.sizes(scene), budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
@@ -105,8 +105,8 @@ def collapse_by_steps(
 
 
 def _window(scene: Scene, run: Run, found: LoadSteps, criteria: Criteria) -> str:
-    """What there is to say of the stiffness of joints; at rest, or in a fall under the dead load."""
-    state, law = found.borne or found.fallen, run.system.law
+    """What there is to say of the stiffness of joints: at rest, or in a fall, under the dead load."""
+    state, law = found.rests[0][1] if found.rests else found.fallen, run.system.law
     if state is None:
         return ""
     normal, _ = run.forces(state)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from dynamics import BlockSystem, Run, State
-from scene import Array
+from scene import Array, Scene
 
 from .modal_wall import ModalWall
 
@@ -20,6 +20,11 @@ class PieceRun(Run):
     def __init__(self, system: BlockSystem, wall: ModalWall, **options: Any) -> None:
         super().__init__(system, **options)
         self._of_blocks = _momentum(wall)
+        self._owner = wall.pieces.owner
+
+    def sizes(self, scene: Scene) -> Array:
+        """Size of the block of each piece, ``(np,)`` [m]."""
+        return scene.block_sizes[self._owner]
 
     def motion_of_blocks(self, state: State) -> Array:
         """Translation and rotation of each block, ``(nb, 3)`` [m, m, rad]."""
