@@ -80,8 +80,8 @@ def row(name: str, case: str, outcome: Outcome, reference: float | None) -> str:
     """A row of the table."""
     if outcome.multiplier is None or reference is None:
         return f"| {name} | {case} | {outcome.status} | |"
-    change = outcome.multiplier / reference - 1
-    return f"| {name} | {case} | {outcome.lower:.4f}–{outcome.upper:.4f} | {100 * change:+.1f} % |"
+    change = round(100 * (outcome.multiplier / reference - 1), 1) or 0.0  # no −0.0
+    return f"| {name} | {case} | {outcome.lower:.4f}–{outcome.upper:.4f} | {change:+.1f} % |"
 
 
 def main() -> None:
