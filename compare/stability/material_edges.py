@@ -238,8 +238,8 @@ def experiment() -> Finding:
         rows=rows,
         edges=edges,
         trust=f"{count['right']} of {len(answers)} answers are right, {count['wrong']} wrong{missed}. Models in motion "
-        f"see no multiplier below {UNSEEN:g}, and brackets there are as wide; they take the lean of a large block on "
-        "joints a hundredth of its width for a fall.",
+        f"see no multiplier below {UNSEEN:g}, and brackets there are as wide; of a large block on joints a hundredth "
+        "of its width, into which it sinks, they say nothing.",
         beyond="; ".join(told) or "nothing: every model answers",
         draw=lambda figure: _draw(
             figure, [wall.what for wall in walls], [_exact(wall.exact) for wall in walls], answers
