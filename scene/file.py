@@ -18,6 +18,9 @@ from .wall import Scene, build_scene
 LEAST_FRICTION = 1e-6
 """Least tan φ that is not 0: what is smaller drowns in a linear program's tolerance, cohesion / tan φ with it."""
 
+LEAST_COMPONENT = 1e-6
+"""Least component of a force that is not 0, in the other one: what is smaller drowns there as well."""
+
 
 def read_scene(path: str | Path) -> Scene:
     """Read a scene file.
@@ -213,6 +216,10 @@ def _load(load: Table) -> Load:
         action = PointLoad(live.vector("at"), live.vector("force"))
         if not any(action.force):
             raise SceneError("load.live.force", "must not be zero", list(action.force))
+        smaller, larger = sorted(map(abs, action.force))
+        if 0 < smaller < LEAST_COMPONENT * larger:
+            what = f"must have components that are 0 or at least {LEAST_COMPONENT:g} of each other"
+            raise SceneError("load.live.force", what, list(action.force))
     live.finish()
     load.finish()
     return Load((0.0, -gravity), action)

@@ -34,6 +34,10 @@ FREE = {"wall__length": None, "wall__height": None}
         ),
         ({"joint__fracture_energy_2": 5.0}, "joint.fracture_energy_1: is missing"),
         ({"joint": {"friction_angle": 1e-9}}, "joint.friction_angle = 1e-09: must be 0"),
+        (
+            {"load__live": {"kind": "point", "at": [0.72, 0.72], "force": [1e-9, -1.0]}},
+            "load.live.force = [1e-09, -1.0]: must have components that are 0 or at least 1e-06 of each other",
+        ),
         ({"joint__friction": float("nan")}, "joint.friction = nan: must be a number"),
         ({"block__density": float("inf")}, "block.density = inf: must be a number"),
         ({"block__density": 10**400}, "block.density"),
