@@ -17,7 +17,8 @@ ModeCount: TypeAlias = int | Literal["all"]
 """How many modes a block has: 3 are rigid; 6 strain uniformly too; up to 20 bend, in the softest of the displacements
 up to third degree; "all" are those of its constant-strain triangles.
 
-With 6 a block moves as in discontinuous deformation analysis, with 20 as in that of third order.
+With 6 a block moves as in discontinuous deformation analysis (`shi1988`), with 20 as in that of third order
+(`koo1996`).
 """
 
 MOST, BENDING = 20, 10
