@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares
+from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, free_motions, joint_shares
 from joints import JointPoints, wall_points, wall_strength
 from joints.laws import kernel_law
 from joints.point_kernel import KernelLaw
@@ -104,17 +104,8 @@ def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
     bases = np.zeros((len(blocks), 3, 3))
     for k, block in enumerate(blocks):
         held = rows[scene.pins.block == block, 3 * block : 3 * block + 3]
-        inertia = mass[3 * block : 3 * block + 3]
-        # Null space of the pins in the metric of the mass, whose vectors are then mass-orthogonal; of the block's own
-        # mass, a coordinate is its root mean square displacement [m].
-        root = np.sqrt(inertia)
-        _, size, vectors = np.linalg.svd(held / root)
-        rank = int((size > 1e-9 * size.max()).sum())
-        free = (vectors[rank:] / root).T * root[0]
-        bases[k, :, : 3 - rank] = free
-        modal = np.full(3, np.inf)
-        modal[: 3 - rank] = (free**2 * inertia[:, None]).sum(axis=0)
-        mass[3 * block : 3 * block + 3] = modal
+        of_block = slice(3 * block, 3 * block + 3)
+        bases[k], mass[of_block] = free_motions(held, mass[of_block])
     return Restraint(3 * blocks[:, None] + np.arange(3), bases), mass
 
 

@@ -89,8 +89,7 @@ def dem_static(
     # Bands are too narrow for a second thread to gain anything.
     with threadpool_limits(limits=1, user_api="blas"):
         found = _found(scene, system, tolerance, first_step, collapse, budget, past, observe)
-    message = "; ".join(part for part in (found.message, _window(system, found, collapse)) if part)
-    return replace(found, message=message, seconds=time.perf_counter() - start)
+    return replace(found, seconds=time.perf_counter() - start)
 
 
 def _found(
@@ -115,17 +114,17 @@ def _found(
     for state in climb.past:
         observe(system, state)
     found = _judged(found, way, climb, tolerance)
-    return replace(found, steps=budget - way.budget)
+    message = "; ".join(part for part in (found.message, _window(way)) if part)
+    return replace(found, message=message, steps=budget - way.budget)
 
 
-def _window(system: StaticSystem, found: Outcome, collapse: float) -> str:
-    """What there is to say of the stiffness of joints."""
-    equations, law = system.equilibrium, system.law
-    spring = equations.force_unit / system.length_unit
-    overlap = float((-found.force[:, 0] / (law.normal_stiffness * spring)).max()) if len(found.force) else 0.0
-    stiffest = spring * float(max(law.normal_stiffness.max(initial=0.0), law.shear_stiffness.max(initial=0.0)))
-    size = equations.scene.lowest_block
-    return stiffness_note(overlap, collapse * size, size, stiffest, equations.force_unit)
+def _window(way: Way) -> str:
+    """What there is to say of the stiffness of joints: at rest under the dead load."""
+    equations, law, unit = way.system.equilibrium, way.system.law, way.system.length_unit
+    overlap = unit * float((-way.rests[0].force[:, 0] / law.normal_stiffness).max(initial=0.0))
+    stiffest = float(max(law.normal_stiffness.max(initial=0.0), law.shear_stiffness.max(initial=0.0)))
+    spring, size = equations.force_unit / unit, equations.scene.lowest_block
+    return stiffness_note(overlap, way.far * unit, size, spring * stiffest, equations.force_unit)
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive, settled_load_steps
 from .finite_run import FiniteRun, FiniteState, finite_curve
 from .run import Criteria, Ledger, Observer, Run, Unstable, Verdict, moved_by, nobody, settle
-from .system import BlockSystem, Restraint, State, force_unit
+from .system import BlockSystem, Restraint, State, force_unit, free_motions
 from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
 from .verdict import collapse_by_steps
 
@@ -26,6 +26,7 @@ __all__ = [
     "drive",
     "finite_curve",
     "force_unit",
+    "free_motions",
     "joint_shares",
     "load_steps",
     "mass_factor",

@@ -82,23 +82,27 @@ def _update(
 
 
 @kernel
-def _sound(supplied: float, modes: Any, state: Any) -> bool:
+def _sound(given: float, load: Array, modes: Any, state: Any, most: Array) -> bool:
     """Whether no more energy [J] is in motion, in springs and spent on damping than was supplied; not where it is NaN.
 
-    The joints' work is left out: at high frequencies that of their viscosity is told too large, and in a wall that
-    rings without damping so is that of their friction.
+    Supplied are what was given and the work of a load that was constant; `most` keeps the most of it. The joints' work
+    is left out: at high frequencies that of their viscosity is told too large, and in a wall that rings without
+    damping so is that of their friction.
     """
     stiffness, _, mobility = modes
     motion, velocity, _, damped, _ = state
+    supplied = given
     kept = 0.0
     spent = 0.0
     for i in range(motion.size):
+        supplied += load[i] * motion[i]
         if mobility[i] > 0.0:
             kept += 0.5 * velocity[i] * velocity[i] / mobility[i]
         kept += 0.5 * stiffness[i] * motion[i] * motion[i]
         spent += damped[i]
+    most[0] = max(most[0], supplied)
     # Local damping that makes a mode unstable gives energy instead of taking it.
-    return max(spent, 0.0) + CERTAIN * kept <= TOO_MUCH * supplied
+    return bool(max(spent, 0.0) + CERTAIN * kept <= TOO_MUCH * most[0])
 
 
 @cache
@@ -165,13 +169,8 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         for step in range(steps):
             respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
             _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
-            if (before + step + 1) % LOOK == 0 and given < np.inf:
-                supplied = given
-                for i in range(motion.size):
-                    supplied += load[i] * motion[i]
-                most[0] = max(most[0], supplied)
-                if not _sound(most[0], modes, state):
-                    return step + 1, False
+            if (before + step + 1) % LOOK == 0 and given < np.inf and not _sound(given, load, modes, state, most):
+                return step + 1, False
         return steps, True
 
     @kernel
@@ -222,13 +221,9 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
             multiplier += returned
             total += multiplier
             worked += 0.5 * multiplier * dt * (before + speed)
-            if (already + step + 1) % LOOK == 0 and given < np.inf:
-                supplied = given + worked
-                for i in range(motion.size):
-                    supplied += load[i] * motion[i]
-                most[0] = max(most[0], supplied)
-                if not _sound(most[0], modes, state):
-                    return step + 1, False, total / (step + 1), worked
+            due = (already + step + 1) % LOOK == 0 and given < np.inf
+            if due and not _sound(given + worked, load, modes, state, most):
+                return step + 1, False, total / (step + 1), worked
         return steps, True, total / steps, worked
 
     return hold, drive

@@ -357,10 +357,10 @@ def test_a_block_slides_from_one_block_onto_the_next_of_the_course(inset: float)
 
 @pytest.mark.parametrize("inset", [0.0, 0.01])
 def test_a_block_pushed_over_the_edge_falls_to_the_ground_and_its_work_is_accounted_for(inset: float) -> None:
-    """It comes to rest flat on one of its sides on the ground, which bears it; what its weight lost is found to 3 %.
+    """It comes to rest flat on one of its sides on the ground, which bears it; what its weight lost is found to 1 %.
 
-    A corner that leaves a side by its end is pushed along the side's normal still, so that a block which turns over an
-    edge gains or loses up to 3 % of its work, with steps of any length from 0.25 to 1 of the stable one.
+    In half the stable steps: a corner that leaves a side by its end is pushed along the side's normal still, and in
+    whole ones a block that turns over an edge gains or loses up to 3 % of its work.
     """
     scene = dry([rectangle(0, 0, 1, 0.8), rectangle(0.75, 0.8, 0.3, 0.15)], 0.4, 1e9, inset)
     run = FiniteRun(scene, local=0.1)
@@ -380,7 +380,7 @@ def test_a_block_pushed_over_the_edge_falls_to_the_ground_and_its_work_is_accoun
     assert pressure(run, state, 1, 2) == pytest.approx(weight(scene, 1), rel=1e-3)
     assert pressure(run, state, 0, 1) == 0.0
     ledger = run.ledger(state)
-    assert abs(ledger.residual + kick) < 0.03 * (ledger.external + kick)
+    assert abs(ledger.residual + kick) < 0.01 * (ledger.external + kick)
     assert ledger.friction > 0
 
 
