@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, free_motions, joint_shares
+from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares
 from joints import JointPoints, wall_points, wall_strength
 from joints.laws import kernel_law
 from joints.point_kernel import KernelLaw
-from scene import Array, Scene
+from scene import Array, Scene, free_motions
 
 from .kinematics import (
     control_row,

@@ -1,9 +1,10 @@
 """Blocks in motion: the system, its integration, its load controls and its verdict."""
 
-from .controls import Drive, LoadSteps, drive, load_steps, ramp, settled_drive, settled_load_steps
+from .controls import Drive, drive, ramp, settled_drive
 from .finite_run import FiniteRun, FiniteState, finite_curve
+from .loading import LoadSteps, load_steps
 from .run import Criteria, Ledger, Observer, Run, Unstable, Verdict, moved_by, nobody, settle
-from .system import BlockSystem, Restraint, State, force_unit, free_motions
+from .system import BlockSystem, Restraint, State, force_unit
 from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
 from .verdict import collapse_by_steps
 
@@ -26,7 +27,6 @@ __all__ = [
     "drive",
     "finite_curve",
     "force_unit",
-    "free_motions",
     "joint_shares",
     "load_steps",
     "mass_factor",
@@ -35,6 +35,5 @@ __all__ = [
     "ramp",
     "settle",
     "settled_drive",
-    "settled_load_steps",
     "stable_step",
 ]

@@ -95,35 +95,6 @@ class BlockSystem:
         return float((np.abs(force) / self.force_unit)[np.isfinite(self.mass)].max(initial=0.0))
 
 
-def free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
-    """Motions of a rigid block that leave its pins alone, mass-orthogonal.
-
-    Parameters
-    ----------
-    held : (np, 3) float
-        Displacements that its pins keep at zero, per translation along x and y and rotation about the centroid.
-    inertia : (3,) float
-        Its mass, twice, and its moment of inertia.
-
-    Returns
-    -------
-    (3, 3) float
-        A motion a column, and columns of zeros where there are fewer. With pins they are of the block's own mass, and
-        their coordinates its root mean square displacement [m]; without, they are the identity.
-    (3,) float
-        Their masses, inf where there is none.
-    """
-    if len(held) == 0:
-        return np.eye(3), inertia.copy()
-    root = np.sqrt(inertia)
-    _, size, vectors = np.linalg.svd(held / root)
-    rank = int((size > 1e-9 * size.max()).sum())
-    motions, mass = np.zeros((3, 3)), np.full(3, np.inf)
-    motions[:, : 3 - rank] = (vectors[rank:] / root).T * root[0]
-    mass[: 3 - rank] = inertia[0]
-    return motions, mass
-
-
 def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength: PointStrength) -> Array:
     """Force by which unbalanced ones are measured, ``(nd,)``: its own block's weight, in each mode.
 

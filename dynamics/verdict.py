@@ -10,7 +10,7 @@ from joints import stiffness_note
 from results import Outcome, fastest_corner_by_one
 from scene import Array, Indices, Scene
 
-from .controls import LoadSteps, settled_load_steps
+from .loading import LoadSteps, load_steps
 from .run import Criteria, Observer, Run, Unstable, nobody
 from .system import State
 
@@ -18,7 +18,7 @@ COLLAPSE = 0.05
 """Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_sizes`).
 
 A wall without weight may slip as far and be caught by the pressure that the slip itself brings about; loaded slowly
-enough (`settled_load_steps`) it does not.
+enough it does not.
 """
 
 FIRST_STEP = 0.05
@@ -27,8 +27,11 @@ FIRST_STEP = 0.05
 UNACCOUNTED = 0.01
 """Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
 
-MOST = 1e6
-"""Multiplier, in first steps, beyond which no collapse is looked for."""
+MOST, FARTHEST = 1e6, 10.0
+"""Multiplier, in first steps, and displacement, in block sizes, beyond which no collapse is looked for.
+
+So far small displacements are none, and what is elastic between two loads is more than counts as collapse.
+"""
 
 BUDGET = 2_000_000
 """Time steps after which a load is left undecided."""
@@ -89,7 +92,8 @@ def collapse_by_steps(
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
     try:
         with threadpool_limits(limits=1, user_api="blas"):
-            found = settled_load_steps(run, first, tolerance, criteria, most=first * MOST, observe=observe)
+            most, farthest = MOST * first, FARTHEST * run.sizes(scene)
+            found = load_steps(run, first, tolerance, criteria, most=most, farthest=farthest, observe=observe)
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     outcome = _judge(replace(outcome, steps=found.taken), scene, run, found, tolerance, point_order, locks)
@@ -97,7 +101,7 @@ def collapse_by_steps(
     if outcome.status == "infeasible" and window:
         message = "moves as far under its dead load as counts as collapse"
         outcome = replace(outcome, status="undecided", message=message)
-    elif outcome.status == "undecided" and not found.interrupted:
+    elif outcome.status == found.verdict == "undecided" and not found.interrupted:
         note = "; ".join(part for part in (note, f"each load was followed for at most {budget * run.dt:.2g} s") if part)
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
     parts = (outcome.message, note, long if run.dt > run.safe_step else "", window)
@@ -139,8 +143,10 @@ def _judge(
         )
         return replace(outcome, lower=found.lower, upper=found.upper, message="interrupted: the bracket found so far")
     if found.upper is None or found.lower is None or found.fallen is None:
-        if found.verdict != "undecided" or not locks():
+        if not locks():
             message = "the budget ran out: the wall neither rested nor fell"
+            if found.verdict == "stable":
+                message = f"it bore every load tried, the largest of them {found.lower:.3g}"
             return replace(outcome, lower=found.lower, message=message)
         return replace(
             outcome,
@@ -159,23 +165,17 @@ def _judge(
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     if found.verdict == "undecided":
-        return replace(outcome, message=_undecided(found, tolerance))
-    slowed = "" if found.rate_error is None else f"; loading at half the speed moved it by {found.rate_error:.0e}"
+        return replace(outcome, message="the budget ran out inside this bracket: the wall neither rested nor fell")
+    wide = ""
     if found.upper - found.lower > tolerance * found.upper:
-        slowed += "; wider than the tolerance because loads as small as their difference would not be seen at rest"
+        wide = "; wider than the tolerance because loads as small as their difference would not be seen at rest"
     return replace(
         outcome,
         status="collapse",
         multiplier=(found.lower + found.upper) / 2,
         message="largest load at rest and smallest in collapse, small displacements; "
-        f"work accounted for to {max(lost, 1e-6):.0e} of it{slowed}",
+        f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
     )
-
-
-def _undecided(found: LoadSteps, tolerance: float) -> str:
-    if found.rate_error is None or found.rate_error <= tolerance * (found.lower or 0.0):
-        return "the budget ran out inside this bracket: the wall neither rested nor fell"
-    return f"the slower the loading, the more it bears: the last slowing moved it by {found.rate_error:.2g}"
 
 
 def _unaccounted(run: Run, state: State) -> float:

@@ -11,8 +11,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from dynamics import free_motions
-from scene import Array
+from scene import Array, free_motions
 
 ModeCount: TypeAlias = int | Literal["all"]
 """How many modes a block has: 3 are rigid; 6 strain uniformly too; up to 20 bend, in the softest of the displacements

@@ -8,7 +8,7 @@ from .loads import Lateral, Load, PointLoad
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
 from .refusal import SceneError
 from .segments import Joints, find_joints
-from .supports import NO_PINS, Pins
+from .supports import NO_PINS, Pins, free_motions
 from .wall import Scene, build_scene
 
 __all__ = [
@@ -32,6 +32,7 @@ __all__ = [
     "build_scene",
     "course_pattern",
     "find_joints",
+    "free_motions",
     "frozen",
     "read_scene",
     "running_bond",

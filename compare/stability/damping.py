@@ -27,11 +27,10 @@ from scipy.optimize import brentq
 
 from compare.figures import COLOURS, bare
 from dynamics import BlockSystem, Criteria, Run, State, Verdict, ramp, settle
-from dynamics.controls import RAMP
 from dynamics.run import LOCAL, VISCOUS
 
 from .finding import Edge, Entry, Finding
-from .known import KnownWall, rounded_wall, sliding_block, toppling_block
+from .known import RAMP, KnownWall, rounded_wall, sliding_block, toppling_block
 
 Answer: TypeAlias = Literal["right", "wrong", "undecided"]
 

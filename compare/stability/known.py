@@ -24,6 +24,9 @@ from scene import Array, Scene
 
 from .blocks import one_block, rounded
 
+RAMP = 4
+"""Length of a ramp to a load, in times that the wall took to rest under its weight."""
+
 SLIDES, TOPPLES = 0.4, 0.5
 """tan φ of the block that slides, and b/h of the one that topples."""
 

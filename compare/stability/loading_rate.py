@@ -18,10 +18,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from compare.figures import COLOURS, bare
-from dynamics import Criteria, Run, State, drive, load_steps, moved_by, settled_drive
-from dynamics.controls import RAMP
+from compare.published import published_scene
+from dem.rigid_system import rigid_system
+from dynamics import BlockSystem, Criteria, Run, State, drive, load_steps, moved_by, settle, settled_drive
+from dynamics.loading import LOADING
 from dynamics.run import LOCAL
-from dynamics.verdict import FIRST_STEP
+from dynamics.verdict import COLLAPSE, FIRST_STEP
 from scene import Array
 
 from .finding import Edge, Entry, Finding
@@ -33,8 +35,11 @@ RATES = 10.0 ** -(np.arange(7) / 3)
 PUSHES = tuple(1_000 * 2**k for k in range(12))
 """Steps in which a wall is pushed as far as a load step may move it: the more, the slower."""
 
-RAMPS = (0, 1, 2, RAMP, 8, 16)
-"""Lengths of the ramp to each load step, in times that the wall took to rest under the first one."""
+LOADINGS = (0, 1, 4, LOADING, 4 * LOADING, 16 * LOADING)
+"""Times in which the load grows by its first step, in times to rest."""
+
+DRY = ("panel-12", "point-load-4")
+"""Published walls whose λ depends on their history."""
 
 ORDER = 2 / 3
 """Of a ramp's error in its rate, by (2)."""
@@ -127,21 +132,59 @@ def pushed(wall: KnownWall, pushes: Sequence[int] = PUSHES) -> Pushed:
     return Pushed(wall, wall.far / (np.array(pushes) * run.dt), np.array(peaks))
 
 
-def bracket(wall: KnownWall, ramp_length: int) -> tuple[float, float]:
-    """Bracket of λ by load steps, with a ramp to each of them."""
-    run = Run(wall.system)
-    first = FIRST_STEP / wall.system.measure(wall.system.live)
-    found = load_steps(run, first, BRACKET, Criteria(collapse=wall.far), ramp_length=ramp_length)
+def bracket(system: BlockSystem, far: float | Array, loading: float = LOADING) -> tuple[float, float]:
+    """Bracket of λ by load steps at a speed, a collapse taken for one after some displacements [m]."""
+    first = FIRST_STEP / system.measure(system.live)
+    found = load_steps(Run(system), first, BRACKET, Criteria(collapse=far), loading=loading)
     assert found.lower is not None
     assert found.upper is not None
     return found.lower, found.upper
 
 
+@dataclass(frozen=True, eq=False)
+class Stepped:
+    """What load steps say of a wall.
+
+    Parameters
+    ----------
+    name
+        What to call it.
+    brackets
+        Largest λ at rest and smallest in a fall, by the time in which the load grew by its first step.
+    unit
+        λ that is known, or that of the slowest loading.
+    """
+
+    name: str
+    brackets: dict[float, tuple[float, float]]
+    unit: float
+
+    def off(self, loading: float) -> tuple[float, float]:
+        """How far a bracket is off its unit [%]."""
+        lower, upper = self.brackets[loading]
+        return 100 * (lower / self.unit - 1), 100 * (upper / self.unit - 1)
+
+
+def stepped(wall: KnownWall, loadings: Sequence[float] = LOADINGS) -> Stepped:
+    """Load steps of a wall whose λ is known."""
+    brackets = {loading: bracket(wall.system, wall.far, loading) for loading in loadings}
+    return Stepped(wall.name, brackets, wall.multiplier)
+
+
+def stepped_dry(name: str, loadings: Sequence[float] = LOADINGS) -> Stepped:
+    """Load steps of a published wall whose λ depends on its history."""
+    scene = published_scene(name)
+    system, far = rigid_system(scene), COLLAPSE * scene.block_sizes
+    brackets = {loading: bracket(system, far, loading) for loading in loadings}
+    return Stepped(name, brackets, sum(brackets[max(loadings)]) / 2)
+
+
 def rate_between_steps(wall: KnownWall) -> float:
-    """Rate [1/s] of the suite's ramp to its first load step."""
+    """Rate [1/s] of the suite's ramps between its first load steps."""
     run, rest = wall.rest()
-    first = FIRST_STEP / wall.system.measure(wall.system.live)
-    return first / (RAMP * rest.steps * run.dt)
+    first, put_on = FIRST_STEP / wall.system.measure(wall.system.live), rest.copy()
+    settle(run, put_on, first, Criteria(collapse=wall.far))
+    return first / (LOADING * (put_on.steps - rest.steps) * run.dt)
 
 
 def experiment() -> Finding:
@@ -150,14 +193,14 @@ def experiment() -> Finding:
     ramps = [ramped(wall) for wall in walls]
     pushes = [pushed(wall) for wall in walls]
     masonry = walls[-1]
-    brackets = {length: bracket(masonry, length) for length in RAMPS}
+    steps = [stepped(masonry), *map(stepped_dry, DRY)]
     run, rest = masonry.rest()
     settled = settled_drive(run, rest, masonry.far, 0.01)
     rows: list[tuple[Entry, ...]] = []
-    for found in ramps:
+    for ramp in ramps:
         rows += [
-            ("ramp", found.wall.name, f"{rate:.3g} 1/s", multiplier, _off(found.wall, multiplier))
-            for rate, multiplier in zip(found.rate, found.multiplier, strict=True)
+            ("ramp", ramp.wall.name, f"{rate:.3g} 1/s", multiplier, _off(ramp.wall, multiplier))
+            for rate, multiplier in zip(ramp.rate, ramp.multiplier, strict=True)
         ]
     for push in pushes:
         rows += [
@@ -173,22 +216,27 @@ def experiment() -> Finding:
             _off(masonry, settled.peak),
         )
     )
-    for length, (lower, upper) in brackets.items():
-        middle = (lower + upper) / 2
-        rows.append(("load steps", masonry.name, f"{length} times to rest", middle, _off(masonry, middle)))
+    for found in steps:
+        for loading, (lower, upper) in found.brackets.items():
+            off = f"{sum(found.off(loading)) / 2:+.2g}"
+            rows.append(("load steps", found.name, f"{loading:g} times to rest", (lower + upper) / 2, off))
     return Finding(
         title="Loading rate: ramp, displacement control and load steps",
         heads=("control", "wall", "speed", "λ", "off by [%]"),
         rows=rows,
-        edges=_edges(ramps, pushes, brackets),
-        trust="Load steps at any ramp, for each load is held until the wall rests or falls. A ramp only extrapolated "
-        "to no speed: its error falls with the rate to the power 2/3. A peak under displacement control below "
-        f"{1e3 * min(push.fit for push in pushes):.1g} mm/s, to some tenths of a per cent: sliding contacts chatter.",
-        beyond="A λ that is too high. No model of the suite takes its λ from a ramp or a displacement. A peak settled "
-        f"by halving the speed may settle too early, here {_off(masonry, settled.peak)} % off where `rate_error` is "
-        f"{100 * settled.rate_error / settled.peak:.1g} %. A search by load steps that slower loading still moves ends "
-        "`undecided` and says by how much.",
-        draw=partial(_draw, ramps, pushes, brackets, rate_between_steps(masonry)),
+        edges=_edges(ramps, pushes, steps),
+        trust="Load steps: at any speed where λ is unique, for each load is held until the wall rests or falls; where "
+        f"λ depends on the history, as in dry walls, at {LOADING} times to rest and slower, within "
+        f"{max(abs(end) for dry in steps[1:] for slow in (LOADING, 4 * LOADING) for end in dry.off(slow)):.1g} % here. "
+        "A ramp only extrapolated to no speed: its error falls with the rate to the power 2/3. A peak under "
+        f"displacement control below {1e3 * min(push.fit for push in pushes):.1g} mm/s, to some tenths of a per cent: "
+        "sliding contacts chatter.",
+        beyond="A λ that is too high in a ramp or under displacement control, and no model of the suite takes its λ "
+        f"from them. A peak settled by halving the speed may settle too early, here {_off(masonry, settled.peak)} % "
+        f"off where `rate_error` is {100 * settled.rate_error / settled.peak:.1g} %. By load steps in haste the λ of "
+        f"another history, here {_span(steps[1:])} % off: of an equilibrium that the wall does bear, but would not "
+        "have come to by itself.",
+        draw=partial(_draw, ramps, pushes, steps, rate_between_steps(masonry)),
     )
 
 
@@ -205,7 +253,13 @@ def _off(wall: KnownWall, multiplier: float) -> str:
     return f"{100 * (multiplier / wall.multiplier - 1):+.2g}"
 
 
-def _edges(ramps: Sequence[Ramped], pushes: Sequence[Pushed], brackets: dict[int, tuple[float, float]]) -> list[Edge]:
+def _span(dry: Sequence[Stepped]) -> str:
+    """How far walls in haste are off at most, either way [%]."""
+    off = [sum(found.off(loading)) / 2 for found in dry for loading in LOADINGS if loading < LOADING]
+    return f"{min(off):+.0f} to {max(off):+.0f}"
+
+
+def _edges(ramps: Sequence[Ramped], pushes: Sequence[Pushed], steps: Sequence[Stepped]) -> list[Edge]:
     edges = []
     for found in ramps:
         wall, whole = found.wall, len(found.wall.scene.blocks) > 2
@@ -224,16 +278,20 @@ def _edges(ramps: Sequence[Ramped], pushes: Sequence[Pushed], brackets: dict[int
         what = f"peak λ at {1e3 * push.speed[-1]:.2g} mm/s, {push.wall.name}"
         edges.append(Edge(what, float(push.multiplier[-1]), push.wall.multiplier, 0.01 if whole else 1e-6))
         edges.append(Edge(f"fastest speed within 1 % [mm/s], {push.wall.name}", 1e3 * push.fit))
-    lower, upper = brackets[RAMP]
-    wall = ramps[-1].wall
-    edges.append(Edge(f"λ by the suite's load steps, {wall.name}", (lower + upper) / 2, wall.multiplier, BRACKET))
+    unique, *dry = steps
+    edges.append(
+        Edge(f"λ by the suite's load steps, {unique.name}", sum(unique.brackets[LOADING]) / 2, unique.unit, BRACKET)
+    )
+    for slow in dry:
+        what = f"λ by the suite's load steps, of that {LOADINGS[-1] / LOADING:g} times as slow, {slow.name}"
+        edges.append(Edge(what, sum(slow.brackets[LOADING]) / 2 / slow.unit))
     return edges
 
 
 def _draw(
     ramps: Sequence[Ramped],
     pushes: Sequence[Pushed],
-    brackets: dict[int, tuple[float, float]],
+    steps: Sequence[Stepped],
     between_steps: float,
     figure: Figure,
 ) -> None:
@@ -255,21 +313,24 @@ def _draw(
     middle.annotate("1 %", (1.0, 1), xycoords=("axes fraction", "data"), ha="right", va="bottom", color="0.4")
     middle.set(xlabel="speed of the blocks [mm/s]", ylabel="peak of λ off by [%]", title="displacement control")
     middle.annotate(f"{NOUGHT:.4f} and less", (0.03, 0.1), xycoords="axes fraction", color="0.4", fontsize=8)
-    _draw_brackets(right, ramps[-1].wall, brackets)
+    _draw_brackets(right, steps)
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9)
     for axes in (left, middle, right):
         axes.title.set_fontsize(10)
         bare(axes)
 
 
-def _draw_brackets(axes: Axes, wall: KnownWall, brackets: dict[int, tuple[float, float]]) -> None:
-    places = range(len(brackets))
-    for place, (lower, upper) in zip(places, brackets.values(), strict=True):
-        ends = (100 * (lower / wall.multiplier - 1), 100 * (upper / wall.multiplier - 1))
-        axes.plot([place, place], ends, color=COLOURS[2], lw=5, solid_capstyle="butt")
+def _draw_brackets(axes: Axes, steps: Sequence[Stepped]) -> None:
+    places = np.arange(len(LOADINGS))
+    for found, colour, aside in zip(steps, COLOURS[2:], (-0.2, 0, 0.2), strict=False):
+        for place, loading in zip(places + aside, found.brackets, strict=True):
+            axes.plot([place, place], found.off(loading), color=colour, lw=5, solid_capstyle="butt")
+        axes.plot([], [], color=colour, lw=5, label=found.name)
     axes.axhline(0, color="0.3", lw=0.8)
-    axes.axvline(list(brackets).index(RAMP), color="0.6", lw=0.9, ls="--", zorder=0)
-    axes.annotate("default", (list(brackets).index(RAMP) - 0.1, -0.95), ha="right", color="0.4", fontsize=8)
-    axes.set_xticks(places, [str(length) for length in brackets])
-    axes.set(xlabel="ramp to each load\n[times to rest]", ylabel="bracket of λ off by [%]", ylim=(-1, 1))
-    axes.set_title(f"load steps, {wall.name}")
+    default = LOADINGS.index(LOADING)
+    axes.axvspan(default - 0.4, default + 0.4, color="0.92", zorder=0)
+    axes.annotate("default", (default, 1.0), xycoords=("data", "axes fraction"), ha="center", va="bottom", color="0.4")
+    axes.set_xticks(places, [f"{loading:g}" for loading in LOADINGS])
+    axes.set(xlabel="a first load step in\n[times to rest]", ylabel="bracket of λ off by [%]")
+    axes.set_title("load steps", pad=14)
+    axes.legend(frameon=False, fontsize=8)

@@ -21,14 +21,13 @@ from compare.figures import COLOURS, bare
 from compare.published import published_scene
 from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
-from dynamics import Criteria, Run, ramp, settle, settled_load_steps
-from dynamics.controls import RAMP
+from dynamics import Criteria, Run, load_steps, ramp, settle
 from dynamics.verdict import COLLAPSE, FIRST_STEP
 from results import Outcome
 from scene import Array, Scene
 
 from .finding import Edge, Entry, Finding
-from .known import KnownWall, rounded_wall, sliding_block, toppling_block
+from .known import RAMP, KnownWall, rounded_wall, sliding_block, toppling_block
 
 REST = Criteria(collapse=COLLAPSE).rest
 """The suite's threshold of rest."""
@@ -157,7 +156,7 @@ def trial(scene: Scene, collapse: float, *, rest: float = REST, interval: int = 
     run = Run(rigid_system(scene))
     first = FIRST_STEP / run.system.measure(run.system.live)
     criteria = Criteria(collapse * scene.block_size, rest, BUDGET, interval)
-    found = settled_load_steps(run, first, WIDTH, criteria)
+    found = load_steps(run, first, WIDTH, criteria)
     lower, upper, borne = found.lower, found.upper, found.borne
     if lower is None or upper is None or borne is None or found.verdict == "undecided":
         return Trial(lower, upper, lower is None and found.verdict == "collapse")

@@ -6,11 +6,12 @@ from matplotlib.figure import Figure
 
 from compare.published import published_scene
 from compare.stability.known import KnownWall, rounded_wall, sliding_block, toppling_block
-from compare.stability.loading_rate import bracket, excess, experiment, pushed, ramped
+from compare.stability.loading_rate import BRACKET, bracket, excess, experiment, pushed, ramped
 from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
-from dynamics import Criteria, Run, State, drive, settle
-from dynamics.controls import RAMP
+from dynamics import Criteria, Run, State, drive, load_steps, settle
+from dynamics.loading import LOADING
+from dynamics.verdict import COLLAPSE, FIRST_STEP
 
 
 def test_inertia_of_blocks_in_their_motion() -> None:
@@ -64,12 +65,31 @@ def test_pushed_slowly_walls_peak_at_what_is_certified() -> None:
     assert certified.lower <= drive(run, rest, 0.009, 1_280_000).peak <= certified.upper
 
 
-@pytest.mark.parametrize("ramp_length", [0, RAMP, 4 * RAMP])
-def test_load_steps_do_not_mind_how_fast_each_load_comes(ramp_length: int) -> None:
+@pytest.mark.parametrize("loading", [0, 1, LOADING])
+def test_load_steps_do_not_mind_how_fast_the_load_comes_where_it_is_unique(loading: float) -> None:
     """Not even where it comes at once: the load that is known lies in the bracket."""
     wall = rounded_wall("wall-w1")
-    lower, upper = bracket(wall, ramp_length)
+    lower, upper = bracket(wall.system, wall.far, loading)
     assert lower <= wall.multiplier <= upper
+
+
+def test_a_slender_dry_wall_bears_another_load_in_haste() -> None:
+    """Panel-12, loaded four times as fast: more than 5 % more."""
+    scene = published_scene("panel-12")
+    system, far = rigid_system(scene), COLLAPSE * scene.block_sizes
+    hasty, slow = bracket(system, far, LOADING / 4), bracket(system, far)
+    assert hasty[0] > 1.05 * slow[1]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first_step", [0.8 * FIRST_STEP, FIRST_STEP, 1.4 * FIRST_STEP])
+def test_a_slender_dry_wall_loaded_slower_still_bears_one_load(first_step: float) -> None:
+    """Panel-12 at a quarter of the suite's speed, in any load steps: 0.077 to 2 %."""
+    scene = published_scene("panel-12")
+    run = Run(rigid_system(scene))
+    first, criteria = first_step / run.system.measure(run.system.live), Criteria(COLLAPSE * scene.block_sizes)
+    found = load_steps(run, first, BRACKET, criteria, loading=4 * LOADING)
+    assert found.lower == pytest.approx(0.077, rel=0.02)
 
 
 @pytest.mark.long
