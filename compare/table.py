@@ -195,4 +195,4 @@ def _cost(campaign: Campaign, name: str, model: str) -> str:
         return "n/a" if (name, model) in campaign.inapplicable else "not run"
     dofs = "–" if outcome.dofs is None else str(outcome.dofs)
     steps = "–" if outcome.steps is None else str(outcome.steps)
-    return f"{dofs} / {steps} / {outcome.seconds:.2g}"
+    return f"{dofs} / {steps} / {float(f'{outcome.seconds:.2g}'):g}"
