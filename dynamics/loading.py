@@ -33,6 +33,9 @@ RESOLVED = 10
 GROWTH = 1 / 8
 """Largest step, once the first ones are borne, as a fraction of the load."""
 
+BEYOND = 200
+"""Load, in first steps, beyond which it is doubled in each: at ten weights a wall that still stands is like to lock."""
+
 
 @dataclass(eq=False)
 class LoadSteps:
@@ -148,7 +151,8 @@ def _search(
         if trial > most:
             return
         state = found.borne.copy()
-        share = (trial - found.lower) / max(first, GROWTH * trial)
+        growth = 1.0 if trial > BEYOND * first and run.system.dead.any() else GROWTH
+        share = (trial - found.lower) / max(first, growth * trial)
         trial = _raise(run, state, found.lower, trial, unhurried * share, PAUSES * share, criteria)
         found.verdict = settle(run, state, trial, criteria, observe)
         found.taken += state.steps - found.borne.steps
@@ -157,7 +161,10 @@ def _search(
             found.rests.append((trial, state))
             if found.upper is None and moved_by(run.system, state, found.rests[0][1].motion, farthest) > 1:
                 return
-            step = max(step, min(2 * step, GROWTH * trial)) if len(found.rests) % 3 == 0 else step
+            if growth > GROWTH:
+                step = growth * trial
+            elif len(found.rests) % 3 == 0:
+                step = max(step, min(2 * step, GROWTH * trial))
         elif found.verdict == "collapse":
             found.upper, found.fallen = trial, state
         elif neutral is None:

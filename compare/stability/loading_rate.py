@@ -222,7 +222,7 @@ def experiment() -> Finding:
     )
     for found in steps:
         for loading, (lower, upper) in found.brackets.items():
-            off = f"{sum(found.off(loading)) / 2:+.2g}"
+            off = f"{round(sum(found.off(loading)) / 2, 2) + 0.0:+.2g}"
             rows.append(("load steps", found.name, f"{loading:g} times to rest", (lower + upper) / 2, off))
     return Finding(
         title="Loading rate: ramp, displacement control and load steps",
@@ -237,8 +237,8 @@ def experiment() -> Finding:
         beyond="A λ that is too high in a ramp or under displacement control, and no model of the suite takes its λ "
         f"from them. A peak settled by halving the speed may settle too early, here {_off(masonry, settled.peak)} % "
         f"off where `rate_error` is {100 * settled.rate_error / settled.peak:.1g} %. By load steps in haste the λ of "
-        f"another history, here {_span(steps[1:])} % off: of an equilibrium that the wall does bear, but would not "
-        "have come to by itself.",
+        f"another history, here up to {_span(steps[1:])} % off: of an equilibrium that the wall does bear, but would "
+        "not have come to by itself.",
         draw=partial(_draw, ramps, pushes, steps, rate_between_steps(masonry)),
     )
 
@@ -257,15 +257,16 @@ def _off(wall: KnownWall, multiplier: float) -> str:
 
 
 def _settled(dry: Sequence[Stepped]) -> str:
-    """How far walls are off at the suite's loading and slower ones."""
+    """How far apart the λ of walls are at the suite's loading and slower ones."""
     slow = [(found.name, [sum(found.off(at)) / 2 for at in LOADINGS if at >= found.default]) for found in dry]
-    return ", ".join(f"{name} {min(off):+.1f} to {max(off):+.1f} % from the suite's loading on" for name, off in slow)
+    spans = [f"{name} within {max(off) - min(off):.1f} %" for name, off in slow]
+    return f"from the suite's loading on {' and '.join(spans)}"
 
 
 def _span(dry: Sequence[Stepped]) -> str:
-    """How far walls in haste are off at most, either way [%]."""
+    """How far a wall in haste is off at most [%]."""
     off = [sum(found.off(loading)) / 2 for found in dry for loading in LOADINGS if loading < found.default]
-    return f"{min(off):+.0f} to {max(off):+.0f}"
+    return f"{max(off, key=abs):+.0f}"
 
 
 def _edges(ramps: Sequence[Ramped], pushes: Sequence[Pushed], steps: Sequence[Stepped]) -> list[Edge]:
@@ -331,7 +332,7 @@ def _draw(
 
 def _draw_brackets(axes: Axes, steps: Sequence[Stepped]) -> None:
     places = np.arange(len(LOADINGS))
-    for found, colour, aside in zip(steps, COLOURS[2:], (-0.2, 0, 0.2), strict=False):
+    for found, colour, aside in zip(steps, (*COLOURS[2:4], COLOURS[0]), (-0.2, 0, 0.2), strict=True):
         for place, loading in zip(places + aside, found.brackets, strict=True):
             axes.plot([place, place], found.off(loading), color=colour, lw=5, solid_capstyle="butt")
         axes.plot([], [], color=colour, lw=5, label=found.name)

@@ -221,7 +221,7 @@ def experiment() -> Finding:
         rows=rows,
         edges=_edges(walls, rests, fars),
         trust=f"λ is the same to {100 * WIDTH:g} % with thresholds of rest from {_both(rests)} force units and, of "
-        f"walls with a weight, u_crit from {_both(fars[:2])} block sizes; without weight, loaded ever slower, from "
+        f"walls with a weight, u_crit from {_both(fars[:2])} block sizes; without weight, loaded in pauses, from "
         f"{_both(fars[2:])}; and with looks every {looks.plateau[0]:g} to {looks.plateau[1]:g} steps. "
         f"The suite takes {REST:g}, {COLLAPSE:g} block sizes, and {INTERVAL} steps.",
         beyond="A threshold of rest too loose gives a λ too high by (4), one below rounding `undecided`. A u_crit too "
