@@ -17,7 +17,7 @@ from scene import Scene
 COARSE = 0.01
 """Tolerance of the comparison that the laws were found in."""
 
-FINER = {"dem-static": 0.10, "dem-dynamic": 0.32, "fem": 0.27}
+FINER = {"dem-static": 0.10, "dem-dynamic": 0.07, "fem": 0.10}
 """Power of the tolerance in the cost of models that bisect; the others have none."""
 
 LOADING = 3.0
@@ -54,8 +54,8 @@ LAWS: dict[str, Law] = {
     "limit": Law(0.035, 1.56, 0.72, 1.29),
     "limit-nonassociated": Law(0.22, 1.87, 1, 1.48),
     "dem-static": Law(0.29, 1.82, 0.72, 1.55),
-    "dem-dynamic": Law(0.6, 1.41, 4.9, 1.71),
-    "fem": Law(2.2, 1.30, 5.9, 1.50),
+    "dem-dynamic": Law(1.5, 1.20, 0.96, 1.50),
+    "fem": Law(6.4, 1.16, 0.92, 1.42),
 }
 
 
