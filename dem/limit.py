@@ -55,10 +55,11 @@ class LimitState:
 
     @property
     def violation(self) -> float:
-        """Largest excess of a point force over its strength, relative to the largest force."""
+        """Largest distance of a point's forces from its cone of strength, relative to the largest force."""
         normal = self.system.strength.tension - self.forces.pressure
-        excess = self.system.strength.violation(normal, self.forces.tangential)
-        return float(excess.max(initial=0.0) / self._largest_force)
+        strength = self.system.strength
+        outside = strength.violation(normal, self.forces.tangential) / np.hypot(1.0, strength.friction)
+        return float(outside.max(initial=0.0) / self._largest_force)
 
     @property
     def jumps(self) -> tuple[Array, Array]:

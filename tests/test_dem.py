@@ -384,6 +384,21 @@ def test_a_wall_that_only_the_live_load_holds_up_is_infeasible(model: Callable[[
     assert model(scene).status == "infeasible"  # type: ignore[attr-defined]
 
 
+def test_friction_without_bound_is_proved_too() -> None:
+    """Two blocks that cannot slide on each other topple as one: (2 b − 2 s) / h, contacts a distance s from the ends."""
+    scene = panel(
+        wall__block_width=0.01,
+        wall__block_height=0.5,
+        wall__length=0.02,
+        wall__height=0.5,
+        joint__friction=1e6,
+        joint__inset=0.002,
+    )
+    outcome = limit(scene)
+    assert outcome.status == "collapse"
+    assert outcome.lower == pytest.approx(0.016 / 0.5, rel=1e-6)
+
+
 @pytest.mark.parametrize("model", [limit, limit_nonassociated])
 def test_a_block_pressed_straight_down_locks(model: Callable[[Scene], object]) -> None:
     live = PointLoad((0.5, 1.0), (0.0, -1.0))
