@@ -385,7 +385,7 @@ def test_a_wall_that_only_the_live_load_holds_up_is_infeasible(model: Callable[[
 
 
 def test_friction_without_bound_is_proved_too() -> None:
-    """Two blocks that cannot slide on each other topple as one: (2 b − 2 s) / h, contacts a distance s from the ends."""
+    """Two blocks that cannot slide on each other topple as one: (2 b − 2 s) / h, contacts s from the ends."""
     scene = panel(
         wall__block_width=0.01,
         wall__block_height=0.5,

@@ -343,4 +343,4 @@ def _draw_brackets(axes: Axes, steps: Sequence[Stepped]) -> None:
     axes.set(xlabel="first load step in\n[times to rest]; ▾ the suite's", ylabel="bracket of λ off by [%]")
     axes.set_title("load steps")
     axes.margins(y=0.15)
-    axes.legend(frameon=False, fontsize=8)
+    axes.legend(frameon=False, fontsize=8, loc="center right")
