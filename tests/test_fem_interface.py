@@ -830,31 +830,19 @@ def test_stiff_blocks_fall_at_the_load_of_rigid_ones(changes: dict[str, Any]) ->
     assert ours.dofs > 3 * theirs.dofs
 
 
-@pytest.mark.parametrize("number", [4, *(pytest.param(k, marks=pytest.mark.long) for k in (1, 2, 3, 5, 6, 8, 9))])
+@pytest.mark.parametrize(
+    "number", [4, *(pytest.param(k, marks=pytest.mark.long) for k in (1, 2, 3, *range(5, 11), 12))]
+)
 def test_panels_of_stiff_blocks_fall_at_the_load_of_rigid_ones(number: int) -> None:
-    """The paper's panels, E = 1000 GPa: λ within 1 % of `dem-dynamic` where both have the same joint points."""
+    """The paper's panels, E = 1000 GPa: λ within 1 % of `dem-dynamic` where both have the same joint points.
+
+    But for panel-11, the largest, whose dry λ stays with the history that each model comes to.
+    """
     scene = published_scene(f"panel-{number:02d}")
     assert scene.block.young == 1e12
     ours, theirs = fem(scene, 0.005, points="joints"), dem_dynamic(scene, 0.005)
     assert ours.status == theirs.status == "collapse"
     assert ours.multiplier == pytest.approx(theirs.multiplier, rel=0.01)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("number", [10, 12])
-def test_where_rigid_blocks_fall_at_many_loads_stiff_ones_fall_at_one_of_them(number: int) -> None:
-    """Friction without dilatancy leaves λ to the way of loading: other load steps move that of `dem-dynamic`.
-
-    On these two panels by about 1 % and more; stiff blocks stay in its range.
-    """
-    scene = published_scene(f"panel-{number:02d}")
-    ours = fem(scene, points="joints")
-    rigid = [dem_dynamic(scene, first_step=step).multiplier for step in (0.03, 0.04, 0.05, 0.06)]
-    found = [multiplier for multiplier in rigid if multiplier is not None]
-    assert len(found) == len(rigid)
-    assert max(found) > 1.005 * min(found)
-    assert ours.multiplier is not None
-    assert 0.99 * min(found) < ours.multiplier < 1.01 * max(found)
 
 
 @pytest.mark.parametrize("cells", [1, 2, 4])
