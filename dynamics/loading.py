@@ -112,7 +112,7 @@ def load_steps(
     """
     found = LoadSteps()
     if loading is None:
-        loading = LOADING if run.system.dead.any() else LOADING_WEIGHTLESS
+        loading = LOADING_WEIGHTLESS if run.system.weightless else LOADING
     try:
         _search(found, run, first, tolerance, criteria, (most, farthest), loading, observe)
     except KeyboardInterrupt:
@@ -151,7 +151,7 @@ def _search(
         if trial > most:
             return
         state = found.borne.copy()
-        growth = 1.0 if trial > BEYOND * first and run.system.dead.any() else GROWTH
+        growth = 1.0 if trial > BEYOND * first and not run.system.weightless else GROWTH
         share = (trial - found.lower) / max(first, growth * trial)
         trial = _raise(run, state, found.lower, trial, unhurried * share, PAUSES * share, criteria)
         found.verdict = settle(run, state, trial, criteria, observe)
@@ -190,7 +190,7 @@ def _raise(run: Run, state: State, start: float, stop: float, steps: float, paus
     float
         The multiplier that was reached.
     """
-    if run.system.dead.any():
+    if not run.system.weightless:
         ramp(run, state, start, stop, round(steps))
         return stop
     motion, parts = state.motion.copy(), max(1, round(pauses))

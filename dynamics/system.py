@@ -90,6 +90,11 @@ class BlockSystem:
         """Number of modes that move."""
         return int(np.isfinite(self.mass).sum())
 
+    @property
+    def weightless(self) -> bool:
+        """Whether nothing loads it but the live load."""
+        return not self.dead.any()
+
     def measure(self, force: Array) -> float:
         """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
         return float((np.abs(force) / self.force_unit)[np.isfinite(self.mass)].max(initial=0.0))

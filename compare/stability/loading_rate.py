@@ -179,7 +179,7 @@ def stepped_dry(name: str, loadings: Sequence[float] = LOADINGS) -> Stepped:
     scene = published_scene(name)
     system, far = rigid_system(scene), COLLAPSE * scene.block_sizes
     brackets = {loading: bracket(system, far, loading) for loading in loadings}
-    default = LOADING if system.dead.any() else LOADING_WEIGHTLESS
+    default = LOADING_WEIGHTLESS if system.weightless else LOADING
     return Stepped(name, brackets, sum(brackets[max(loadings)]) / 2, default)
 
 
