@@ -296,8 +296,10 @@ def test_bending_error_of_constant_strain_falls_with_the_mesh(capsys: pytest.Cap
     assert math.log2(errors[2] / errors[3]) > 1.7
 
 
-@pytest.mark.parametrize("height", [BRICK[1], 2 * BRICK[1]])
-def test_bending_error_of_a_brick_on_the_default_mesh(height: float, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(("height", "most"), [(BRICK[1], 0.06), (2 * BRICK[1], 0.15)])
+def test_bending_error_of_a_brick_on_the_default_mesh(
+    height: float, most: float, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Held and loaded at the ends of its head joints, in the modes that `fem` takes."""
     size = {"wall__block_height": height, "wall__length": BRICK[0], "wall__height": height}
     scene = panel(**size, joint__mortar=MORTAR, block__young=YOUNG)
@@ -315,7 +317,7 @@ def test_bending_error_of_a_brick_on_the_default_mesh(height: float, capsys: pyt
     printed = " ".join(f"{error:.1%}" for error in errors.values())
     with capsys.disabled():
         print(f"\nbending error of a brick of 240 × {1000 * height:.0f} mm, 6, 10, 20 modes: {printed}")
-    assert 0 < errors[20] < 0.01 < errors[None] < 0.2
+    assert 0 < errors[20] < 0.01 < errors[None] < most
 
 
 def _held_response(stiffness: Array, held: Array, force: Array) -> Array:
