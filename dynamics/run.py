@@ -255,7 +255,7 @@ def settle(
         If it spends more energy than the load and the state at the start can have supplied.
     """
     start, given = state.motion.copy(), run.given(state)
-    fall = Fall()
+    fall = Fall(springy=run.system.weightless)
     calm = 0
     for _ in range(criteria.budget // criteria.interval):
         run.hold(state, multiplier, criteria.interval, given=given)
@@ -269,9 +269,15 @@ def settle(
 
 
 class Fall:
-    """Whether a motion is a collapse: it has come far, and no slower over the last half of its way than before.
+    """Whether a motion is a collapse: it has come a unit, and no slower over the last half of its way than before.
 
-    Ways are measured in that at which it is looked at for the first time; then it is whenever they have doubled.
+    Half a unit is enough where the quarter before was no slower than the eighth before that either.
+
+    Parameters
+    ----------
+    springy
+        Whether springs may take up half a unit, as in a wall without weight, whose joints hold by what they are
+        pressed together alone; it has to come the whole.
     """
 
     FARTHEST = 4
@@ -280,21 +286,22 @@ class Fall:
     SLACK = 1.1
     """How much slower than before is not yet slower: sliding contacts chatter, and their speed with them."""
 
-    def __init__(self) -> None:
-        self._marks = [2.0**k for k in range(-2, self.FARTHEST + 1)]
+    def __init__(self, *, springy: bool = False) -> None:
+        self._marks = [2.0**k for k in range(-2 if springy else -4, self.FARTHEST + 1)]
         self._passed: list[int] = []
+        self._steady = 0
 
     def goes_on(self, moved: float, steps: int) -> bool:
         """Whether a wall that has moved so far after so many steps is in collapse."""
-        while len(self._passed) < len(self._marks) and moved > self._marks[len(self._passed)]:
+        while len(self._passed) < len(self._marks) and moved > (mark := self._marks[len(self._passed)]):
             self._passed.append(steps)
-            if len(self._passed) == len(self._marks):
-                return True
             if len(self._passed) >= 3:
                 first, second, third = self._passed[-3:]
                 # The way from the second mark to the third is twice as long as that from the first to the second.
-                if third - second <= 2 * self.SLACK * (second - first):
-                    return True
+                goes_on = third - second <= 2 * self.SLACK * (second - first)
+                self._steady = self._steady + 1 if goes_on else 0
+            if self._steady >= (1 if mark >= 1 else 2) or len(self._passed) == len(self._marks):
+                return True
         return False
 
 

@@ -399,12 +399,20 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible() -> None:
     assert dem_dynamic(stiff).status == "infeasible"
 
 
+@pytest.mark.parametrize(("springy", "far"), [(True, 1.0), (False, 0.5)])
 @pytest.mark.parametrize(("exponent", "falls"), [(2.0, True), (1.0, True), (0.5, False)])
-def test_a_fall_is_a_motion_that_does_not_slow_down(exponent: float, falls: bool) -> None:
-    """x = t^p past the mark of 1: falling for p ≥ 1, and for p < 1 not before it has come 2^4 times as far."""
-    fall = Fall()
+def test_a_fall_is_a_motion_that_does_not_slow_down(exponent: float, falls: bool, springy: bool, far: float) -> None:
+    """x = t^p past the mark: falling for p ≥ 1, and for p < 1 not before it has come 2^4 units."""
+    fall = Fall(springy=springy)
     at = next(t for t in range(1, 10_000_000) if fall.goes_on((t / 1000) ** exponent, t))
-    assert (at / 1000) ** exponent == pytest.approx(1.0 if falls else 2.0**Fall.FARTHEST, rel=0.01)
+    assert (at / 1000) ** exponent == pytest.approx(far if falls else 2.0**Fall.FARTHEST, rel=0.01)
+
+
+def test_a_motion_that_has_only_just_come_to_its_speed_falls_at_a_whole_unit() -> None:
+    """Slow between an eighth and a quarter, at the speed before that again afterwards."""
+    fall = Fall()
+    time = np.cumsum([0, *[100] * 8, *[400] * 8, *[100] * 100])  # at each 64th of a unit
+    assert next(k for k, t in enumerate(time, 1) if fall.goes_on(k / 64, int(t))) == pytest.approx(64, abs=1)
 
 
 def test_observers_see_every_look_and_ctrl_c_leaves_what_was_found() -> None:
