@@ -1,9 +1,10 @@
 """Kinematics of blocks with modes as compiled kernels: modes to joint nodes, those to jumps, and back.
 
 Motions are kept template by template, each a matrix Q of modes by blocks, so that the displacements of all nodes that
-lie on joints are one product U = Φ Q, and the forces on the modes another, F −= Φᵀ S. Joint elements come in runs
-(`runs.find_runs`), in which blocks follow one another as elements do, so that the loops run in vector registers.
-Indices are unsigned, which need no check for counting from the end.
+lie on joints are one product U = Φ Q, and the forces on the modes another, F −= Φᵀ S. Where Φ can be folded
+(`folding`) few of its entries are left. Joint elements come in runs (`runs.find_runs`), in which blocks follow one
+another as elements do, so that the loops run in vector registers. Indices are unsigned, which need no check for
+counting from the end.
 """
 
 from typing import Any
@@ -41,10 +42,66 @@ def to_modes(shapes: Any, nodal: Array, table: Array, product: Array, force: Arr
 
 
 @kernel
+def _combine(
+    entries: Any, row: Any, rows: Any, n: Any, source: Array, at: Any, into: Array, to: Any, anew: bool
+) -> None:
+    """Write to rows of `into`, or add to them, what a table's entries make of rows of `source`, all of them n long."""
+    start, column, value = entries
+    for r in range(rows):
+        begin, end = start[row + r], start[row + r + np.uint64(1)]
+        out = to + r * n
+        if anew and begin == end:
+            for e in range(n):
+                into[out + e] = 0.0
+        for term in range(begin, end):
+            a, b = value[term, 0], value[term, 1]
+            i, j = at + column[term, 0] * n, at + column[term, 1] * n
+            if anew and term == begin:
+                for e in range(n):
+                    into[out + e] = a * source[i + e] + b * source[j + e]
+            else:
+                for e in range(n):
+                    into[out + e] += a * source[i + e] + b * source[j + e]
+
+
+@kernel
+def _add_and_subtract(one: Any, other: Any, n: Any, nodal: Array) -> None:
+    for e in range(n):
+        a, b = nodal[one + e], nodal[other + e]
+        nodal[one + e] = a + b
+        nodal[other + e] = a - b
+
+
+@kernel
+def unfold(folds: Any, motion: Array, nodal: Array) -> None:
+    """Displacements of the nodes on joints of blocks whose tables are folded, from modal coordinates ``(nd,)``."""
+    shapes, pairs, forward, _ = folds
+    for k in range(shapes.shape[0]):
+        n, _, width, first, at, row, _, pair, last = shapes[k]
+        _combine(forward, row, width, n, motion, first, nodal, at, True)
+        for p in range(pair, last):
+            _add_and_subtract(at + pairs[p, 0] * n, at + pairs[p, 1] * n, n, nodal)
+
+
+@kernel
+def fold(folds: Any, nodal: Array, force: Array) -> None:
+    """Subtract from modal forces ``(nd,)`` those of the nodes on joints of such blocks; writes over the latter."""
+    shapes, pairs, _, backward = folds
+    for k in range(shapes.shape[0]):
+        n, modes, _, first, at, _, row, pair, last = shapes[k]
+        for p in range(last - pair):
+            there = last - np.uint64(1) - p
+            _add_and_subtract(at + pairs[there, 0] * n, at + pairs[there, 1] * n, n, nodal)
+        _combine(backward, row, modes, n, nodal, at, force, first, False)
+
+
+@kernel
 def gather_modes(motion: Array, geometry: Any, opening: Array, slip: Array) -> None:
     """Opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``."""
-    shapes, table, _, start, places, shares, _, still, nodal, _ = geometry
+    shapes, table, _, folds, start, places, shares, _, still, nodal, _ = geometry
     to_nodes(shapes, motion, table, nodal)
+    if folds[0].size:
+        unfold(folds, motion, nodal)
     # What does not move shares the last entries, which scatter has written to.
     nodal[still[0] :] = 0.0
     points = shares.shape[1]
@@ -70,7 +127,7 @@ def gather_modes(motion: Array, geometry: Any, opening: Array, slip: Array) -> N
 @kernel
 def scatter_modes(normal: Array, tangential: Array, geometry: Any, force: Array) -> None:
     """Subtract from modal forces ``(nd,)`` what the tractions at the points ``(np,)`` [Pa] do on the modes."""
-    shapes, _, table, start, places, _, shares, _, nodal, product = geometry
+    shapes, _, table, folds, start, places, _, shares, _, nodal, product = geometry
     points = shares.shape[1]
     ne = normal.size // points
     nodal[:] = 0.0
@@ -89,3 +146,5 @@ def scatter_modes(normal: Array, tangential: Array, geometry: Any, force: Array)
                         for e in range(low, high):
                             nodal[b + e] += share * traction[e]
     to_modes(shapes, nodal, table, product, force)
+    if folds[0].size:
+        fold(folds, nodal, force)

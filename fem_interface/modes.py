@@ -13,6 +13,8 @@ from scipy.linalg import eigh, null_space
 
 from scene import Array, free_motions
 
+from .folding import facing
+
 ModeCount: TypeAlias = int | Literal["all"]
 """How many modes a block has: 3 are rigid; 6 strain uniformly too; up to 20 bend, in the softest of the displacements
 up to third degree; "all" are those of its constant-strain triangles.
@@ -27,6 +29,9 @@ out 5.5 % too small for 240 × 60 mm and 14.5 % for 240 × 120 mm."""
 
 ALIKE = 1e-6
 """Relative difference of two ω² below which they are one: a square block bends one way as easily as the other."""
+
+EQUAL = 1e-9
+"""Relative difference of two ω² below which their modes may be mixed and stay modes to rounding."""
 
 
 def degree_of(count: ModeCount) -> int:
@@ -107,6 +112,7 @@ def block_modes(points: Array, K: Array, M: Array, held: Array, count: ModeCount
     if count != 3:
         candidates = np.eye(len(M)) if count == "all" else _softest(points, K, M, count)
         bending, own = _deformations(candidates, rigid[:, np.isfinite(mass)], held, K, M)
+        bending = _even_or_odd(points, bending, own, M)
         shape = np.hstack([rigid, np.sqrt(inertia[0]) * bending])
         mass = np.concatenate([mass, np.full(len(own), inertia[0])])
         stiffness = np.concatenate([stiffness, inertia[0] * own])
@@ -153,3 +159,16 @@ def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Arr
     space = candidates @ null_space(zero @ candidates, rcond=1e-9)
     own, mix = eigh(space.T @ K @ space, space.T @ M @ space)
     return space @ mix, own
+
+
+def _even_or_odd(points: Array, shapes: Array, own: Array, M: Array) -> Array:
+    """Shapes of which those of one ω² are even or odd about a block's upright axis: any mixture would do as well."""
+    low, high = facing(points, 0)
+    mirrored = shapes.reshape(len(points), 2, -1).copy()
+    mirrored[np.append(low, high)] = mirrored[np.append(high, low)]
+    mirrored[:, 0] *= -1
+    image, found = mirrored.reshape(shapes.shape), shapes.copy()
+    for equal in np.split(np.arange(len(own)), np.flatnonzero(np.diff(own) > EQUAL * own[1:]) + 1):
+        _, turn = np.linalg.eigh(shapes[:, equal].T @ M @ image[:, equal])
+        found[:, equal] = shapes[:, equal] @ turn
+    return found

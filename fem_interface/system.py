@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics import BlockSystem, Restraint, force_unit
 from joints import Rule
@@ -13,6 +12,7 @@ from scene import Scene
 
 from .block_kernels import gather_modes, scatter_modes
 from .cracks import Cracks
+from .folding import Folds
 from .fracture import Energies, fractured
 from .loads import Loads
 from .modal_wall import ModalWall
@@ -113,11 +113,12 @@ def _restraint(wall: ModalWall) -> Restraint:
     return Restraint(wall.rigid[pinned], np.reshape(free, (-1, 3, 3)))
 
 
-def _geometry(wall: ModalWall) -> tuple[NDArray[Any], ...]:
+def _geometry(wall: ModalWall) -> tuple[Any, ...]:
     """Arrays of the kernels: shapes and tables of the templates, runs of joint elements, and buffers.
 
     A template's row of `shapes` is its number of blocks, of modes and of displacements of joint nodes a block, and
-    where its coordinates, its joint nodes' displacements and its table start. A run's row of `places` is where the
+    where its coordinates, its joint nodes' displacements and its table start; templates whose tables are folded are in
+    `Folds` instead. A run's row of `places` is where the
     displacements of its nodes stand, side a's two ends before side b's, less the number of its first element; its
     `shares` are what each displacement has in the opening and in the slip of each point.
     """
@@ -127,7 +128,7 @@ def _geometry(wall: ModalWall) -> tuple[NDArray[Any], ...]:
     on_joint = np.unique(joint.nodes)
     of_node = wall.place[mesh.block[on_joint], 0]
     place = np.full((len(mesh.points), 2), -1)
-    shapes, forward, backward = [], [np.zeros(0)], [np.zeros(0)]
+    shapes, forward, backward, folds = [], [np.zeros(0)], [np.zeros(0)], Folds()
     at = entry = 0
     for k, template in enumerate(wall.templates):
         blocks, modes = len(template.blocks), template.modes
@@ -135,12 +136,16 @@ def _geometry(wall: ModalWall) -> tuple[NDArray[Any], ...]:
         local = np.unique(own - mesh.first_node[mesh.block[own]])
         shape = np.hstack([modes.rigid, modes.shape[:, 3:]]).reshape(-1, 2, len(modes.mass))[local]
         table = shape.reshape(2 * len(local), len(modes.mass))
-        shapes.append((blocks, len(modes.mass), len(table), wall.first[k], at, entry))
-        forward.append(table.ravel())
-        backward.append(table.T.ravel())
+        shape_of_table = (blocks, table.shape[1], len(table), wall.first[k], at)
+        nodes = mesh.points[mesh.first_node[template.blocks[0]] + local]
+        if not folds.take(shape_of_table, nodes, table):
+            shapes.append((*shape_of_table, entry))
+            forward.append(table.ravel())
+            backward.append(table.T.ravel())
+            entry += table.size
         rows = at + blocks * np.arange(len(table)).reshape(-1, 2)
         place[mesh.first_node[template.blocks][:, None] + local] = rows + np.arange(blocks)[:, None, None]
-        at, entry = at + table.shape[0] * blocks, entry + table.size
+        at += table.shape[0] * blocks
     begin = start[:-1]
     places = place[joint.nodes[begin]].reshape(-1, 8)
     places = np.where(places < 0, at, places) - begin[:, None]
@@ -151,14 +156,15 @@ def _geometry(wall: ModalWall) -> tuple[NDArray[Any], ...]:
     area = joint.points.area.reshape(n, ne)[:, begin].T[:, :, None, None]
     longest = int(np.diff(start).max(initial=0))
     return (
-        np.array(shapes, dtype=np.int64),
+        np.array(shapes, dtype=np.int64).reshape(-1, 6),
         np.concatenate(forward),
         np.concatenate(backward),
+        folds.arrays(),
         start.astype(np.uint64),
         places.astype(np.uint64),  # negative differences wrap round and come out right all the same
         shares,
         shares * area,
         np.array([at]),
         np.zeros(at + longest),
-        np.zeros(max(row[0] * row[1] for row in shapes)),
+        np.zeros(max((row[0] * row[1] for row in shapes), default=0)),
     )
