@@ -132,7 +132,7 @@ def _search(
 ) -> None:
     """Fill in what a search finds, as it finds it."""
     state = State.at_rest(run.system)
-    found.verdict = settle(run, state, 0.0, criteria, observe)
+    found.verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
     found.taken = state.steps
     if found.verdict != "stable":
         found.fallen = state
@@ -141,7 +141,7 @@ def _search(
     found.lower, found.borne = 0.0, state
     found.rests.append((0.0, state))
     probe = state.copy()
-    seen = settle(run, probe, first, criteria) != "undecided"
+    seen = settle(run, probe, first, criteria, sudden=True) != "undecided"
     unhurried = loading * (probe.steps - state.steps) if seen else criteria.budget
     found.taken = probe.steps
     step, neutral = first, None

@@ -223,8 +223,8 @@ class Criteria:
     rest
         Unbalanced force, in the system's units, below which the wall is at rest.
     collapse : float or (nb,) float
-        Displacement [m] of any block, or of each, since the load was raised at which a wall that does not slow down
-        is in collapse.
+        Displacement [m] of any block, or of each, since the load was raised: the unit in which `Fall` measures whether
+        a wall that does not slow down is in collapse.
     budget
         Steps after which the question is left undecided.
     interval
@@ -243,11 +243,14 @@ def settle(
     multiplier: float,
     criteria: Criteria,
     observe: Observer = nobody,
+    *,
+    sudden: bool = False,
 ) -> Verdict:
     """Hold a load until the wall rests or falls.
 
     It rests when the unbalanced force is below the threshold at `CALM` looks in a row. It falls when it has moved far
-    and does not slow down, so that a wall that slips and is caught is not mistaken for one in collapse.
+    and does not slow down (`Fall`), so that a wall that slips and is caught is not mistaken for one in collapse; one
+    on which a `sudden` load was put may give way elastically first.
 
     Raises
     ------
@@ -255,7 +258,7 @@ def settle(
         If it spends more energy than the load and the state at the start can have supplied.
     """
     start, given = state.motion.copy(), run.given(state)
-    fall = Fall(springy=run.system.weightless)
+    fall = Fall(springy=sudden or run.system.weightless)
     calm = 0
     for _ in range(criteria.budget // criteria.interval):
         run.hold(state, multiplier, criteria.interval, given=given)
@@ -271,13 +274,14 @@ def settle(
 class Fall:
     """Whether a motion is a collapse: it has come a unit, and no slower over the last half of its way than before.
 
-    Half a unit is enough where the quarter before was no slower than the eighth before that either.
+    `SOON` is enough where the same held when it had come half as far. A motion that does slow down is a collapse once
+    it has come `FARTHEST` doublings of the unit.
 
     Parameters
     ----------
     springy
-        Whether springs may take up half a unit, as in a wall without weight, whose joints hold by what they are
-        pressed together alone; it has to come the whole.
+        Whether springs may take up a good part of the unit, so that it has to come the whole: under a load put on at
+        once, or in a wall without weight, whose joints hold by nothing but what the load presses them together.
     """
 
     FARTHEST = 4
@@ -285,6 +289,10 @@ class Fall:
 
     SLACK = 1.1
     """How much slower than before is not yet slower: sliding contacts chatter, and their speed with them."""
+
+    SOON = 0.5
+    """Part of the unit after which a motion that never slowed is a collapse: dry walls that were caught had slowed by
+    then, and a fall at constant speed takes twice the steps for the whole."""
 
     def __init__(self, *, springy: bool = False) -> None:
         self._marks = [2.0**k for k in range(-2 if springy else -4, self.FARTHEST + 1)]
@@ -298,8 +306,9 @@ class Fall:
             if len(self._passed) >= 3:
                 first, second, third = self._passed[-3:]
                 # The way from the second mark to the third is twice as long as that from the first to the second.
-                goes_on = third - second <= 2 * self.SLACK * (second - first)
-                self._steady = self._steady + 1 if goes_on else 0
+                # Marks passed in one look say nothing of the speed.
+                steady = 0 < third - second <= 2 * self.SLACK * (second - first)
+                self._steady = self._steady + 1 if steady else 0
             if self._steady >= (1 if mark >= 1 else 2) or len(self._passed) == len(self._marks):
                 return True
         return False

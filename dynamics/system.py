@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from joints import PointStrength
 from joints.point_kernel import KernelLaw
@@ -56,7 +55,7 @@ class BlockSystem:
         Compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry,
         force)``; the latter subtracts the forces of the joints' tractions from `force`.
     geometry
-        Arrays that the two kernels share.
+        Arrays, and groups of them, that the two kernels share.
     rigid : (nb, 3) int
         Where in the motion each block's translations along x and y [m] and its rotation [rad] stand.
     restraint
@@ -78,7 +77,7 @@ class BlockSystem:
     area: Array
     gather: Kernel
     scatter: Kernel
-    geometry: tuple[NDArray[Any], ...]
+    geometry: tuple[Any, ...]
     rigid: Indices
     restraint: Restraint
     block_frequency_squared: float

@@ -43,20 +43,20 @@ def to_modes(shapes: Any, nodal: Array, table: Array, product: Array, force: Arr
 
 @kernel
 def _combine(
-    entries: Any, row: Any, rows: Any, n: Any, source: Array, at: Any, into: Array, to: Any, anew: bool
+    entries: Any, first_row: Any, rows: Any, n: Any, source: Array, source_at: Any, into: Array, into_at: Any, add: bool
 ) -> None:
-    """Write to rows of `into`, or add to them, what a table's entries make of rows of `source`, all of them n long."""
+    """Make rows of `into` what a table's entries make of rows of `source`, or add it to them; rows are n long."""
     start, column, value = entries
     for r in range(rows):
-        begin, end = start[row + r], start[row + r + np.uint64(1)]
-        out = to + r * n
-        if anew and begin == end:
+        begin, end = start[first_row + r], start[first_row + r + np.uint64(1)]
+        out = into_at + r * n
+        if begin == end and not add:
             for e in range(n):
                 into[out + e] = 0.0
         for term in range(begin, end):
             a, b = value[term, 0], value[term, 1]
-            i, j = at + column[term, 0] * n, at + column[term, 1] * n
-            if anew and term == begin:
+            i, j = source_at + column[term, 0] * n, source_at + column[term, 1] * n
+            if term == begin and not add:
                 for e in range(n):
                     into[out + e] = a * source[i + e] + b * source[j + e]
             else:
@@ -65,22 +65,26 @@ def _combine(
 
 
 @kernel
-def _add_and_subtract(one: Any, other: Any, n: Any, nodal: Array) -> None:
+def _sum_and_difference(i: Any, j: Any, n: Any, nodal: Array) -> None:
+    """Put the sum of two rows, n long, in place of the first and their difference in place of the second."""
     for e in range(n):
-        a, b = nodal[one + e], nodal[other + e]
-        nodal[one + e] = a + b
-        nodal[other + e] = a - b
+        a, b = nodal[i + e], nodal[j + e]
+        nodal[i + e] = a + b
+        nodal[j + e] = a - b
 
 
 @kernel
 def unfold(folds: Any, motion: Array, nodal: Array) -> None:
-    """Displacements of the nodes on joints of blocks whose tables are folded, from modal coordinates ``(nd,)``."""
+    """Displacements of the nodes on joints of blocks whose tables are folded, from modal coordinates ``(nd,)``.
+
+    `folds` are the arrays of `folding.Folds`.
+    """
     shapes, pairs, forward, _ = folds
     for k in range(shapes.shape[0]):
         n, _, width, first, at, row, _, pair, last = shapes[k]
-        _combine(forward, row, width, n, motion, first, nodal, at, True)
+        _combine(forward, row, width, n, motion, first, nodal, at, False)
         for p in range(pair, last):
-            _add_and_subtract(at + pairs[p, 0] * n, at + pairs[p, 1] * n, n, nodal)
+            _sum_and_difference(at + pairs[p, 0] * n, at + pairs[p, 1] * n, n, nodal)
 
 
 @kernel
@@ -91,8 +95,8 @@ def fold(folds: Any, nodal: Array, force: Array) -> None:
         n, modes, _, first, at, _, row, pair, last = shapes[k]
         for p in range(last - pair):
             there = last - np.uint64(1) - p
-            _add_and_subtract(at + pairs[there, 0] * n, at + pairs[there, 1] * n, n, nodal)
-        _combine(backward, row, modes, n, nodal, at, force, first, False)
+            _sum_and_difference(at + pairs[there, 0] * n, at + pairs[there, 1] * n, n, nodal)
+        _combine(backward, row, modes, n, nodal, at, force, first, True)
 
 
 @kernel
@@ -100,7 +104,7 @@ def gather_modes(motion: Array, geometry: Any, opening: Array, slip: Array) -> N
     """Opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``."""
     shapes, table, _, folds, start, places, shares, _, still, nodal, _ = geometry
     to_nodes(shapes, motion, table, nodal)
-    if folds[0].size:
+    if folds[0].size:  # a small wall has none, and would pay for the call
         unfold(folds, motion, nodal)
     # What does not move shares the last entries, which scatter has written to.
     nodal[still[0] :] = 0.0

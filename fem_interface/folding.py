@@ -1,7 +1,7 @@
 """Blocks that mirror themselves: their modes do too, so that few of them move the sum or the difference of two nodes.
 
 A rectangle's modes are even or odd about each of its axes. In sums and differences of the displacements of nodes that
-face each other across an axis, four fifths of the entries of a table Φ of nodal displacements by modes are nothing:
+face each other across an axis, three quarters and more of a table Φ of nodal displacements by modes are nothing:
 
     Φ = P_n … P_1 F,        P: (a, b) → (a + b, a − b),
 
@@ -21,11 +21,11 @@ FEWEST = 64
 ROUNDING = 1e-12
 """Share of the largest entry of a mode below which another one is none."""
 
-ALIKE = 1e-9
+COINCIDENT = 1e-9
 """Distance of a node from the mirror image of another, in sizes of the block, below which it is that image."""
 
 TERMS = 2
-"""Entries of a row that a kernel takes at once; short rows are filled up with entries of nothing."""
+"""Entries of a row that `block_kernels` takes at once; short rows are filled up with entries of nothing."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class Folded:
 
     @property
     def worth_it(self) -> bool:
-        """Whether it takes fewer multiplications by far."""
+        """Whether at most half of the entries are left."""
         return bool(2 * np.count_nonzero(self.table) <= self.table.size)
 
 
@@ -73,16 +73,24 @@ def folded(points: Array, table: Array) -> Folded:
 
 
 def facing(points: Array, axis: int) -> Indices:
-    """Nodes on the lower side of the axis and those that face them, ``(2, n)``; none where some node faces none."""
+    """Nodes on the lower side of an axis of symmetry and those that face them, ``(2, n)``; none if there is no axis.
+
+    Parameters
+    ----------
+    points : (nn, 2) float
+        The nodes [m].
+    axis
+        Coordinate that changes its sign from node to node: 0 across the upright axis, 1 across the level one.
+    """
     low, high = points.min(axis=0), points.max(axis=0)
     image = points.copy()
     image[:, axis] = low[axis] + high[axis] - points[:, axis]
-    distance = np.abs(image[:, None] - points).max(axis=2)
-    facing = distance.argmin(axis=1)
-    if distance.min(axis=1).max() > ALIKE * (high - low).max():
+    distance, near = np.abs(image[:, None] - points).max(axis=2), COINCIDENT * (high - low).max()
+    other = distance.argmin(axis=1)
+    if distance.min(axis=1).max() > near or (other[other] != np.arange(len(points))).any():
         return np.zeros((2, 0), dtype=np.int64)
-    lower = np.flatnonzero(points[:, axis] < points[facing, axis] - ALIKE * (high - low).max())
-    return np.array([lower, facing[lower]])
+    lower = np.flatnonzero(points[:, axis] < points[other, axis] - near)
+    return np.array([lower, other[lower]])
 
 
 class Folds:
@@ -115,7 +123,18 @@ class Folds:
         return True
 
     def arrays(self) -> tuple[Any, ...]:
-        """Shapes, with the first rows forward and backward and the pairs of each; pairs; entries forward, backward."""
+        """Arrays of the kernels.
+
+        Returns
+        -------
+        shapes : (n_templates, 9) uint64
+            What `take` was told, the first rows of each table forward and backward, its first pair and its last.
+        pairs : (n_pairs, 2) uint64
+            Rows that give way to their sum and their difference, in the order in which that unfolds.
+        forward, backward
+            Entries of the tables and of their negative transposes: the first term of each row and the number of terms
+            ``(n_rows + 1,)``, and of each term the columns and the values ``(n_terms, TERMS)``.
+        """
         shapes = np.array(self._shapes, dtype=np.uint64).reshape(-1, 9)
         return shapes, np.concatenate(self._pairs).astype(np.uint64), self._forward.arrays(), self._backward.arrays()
 
@@ -141,6 +160,5 @@ class _Rows:
         return first
 
     def arrays(self) -> tuple[Any, ...]:
-        """First term of each row and the number of terms; columns and values of each term, ``(n_terms, TERMS)``."""
         start = np.array(self._start, dtype=np.uint64)
         return start, np.concatenate(self._column).astype(np.uint64), np.concatenate(self._value)

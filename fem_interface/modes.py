@@ -31,7 +31,7 @@ ALIKE = 1e-6
 """Relative difference of two ω² below which they are one: a square block bends one way as easily as the other."""
 
 EQUAL = 1e-9
-"""Relative difference of two ω² below which their modes may be mixed and stay modes to rounding."""
+"""Relative difference of two ω² below which a mixture of their modes is one to rounding, which is less than `ALIKE`."""
 
 
 def degree_of(count: ModeCount) -> int:
@@ -162,13 +162,25 @@ def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Arr
 
 
 def _even_or_odd(points: Array, shapes: Array, own: Array, M: Array) -> Array:
-    """Shapes of which those of one ω² are even or odd about a block's upright axis: any mixture would do as well."""
+    """Shapes of which those of one ω² are even or odd about a block's upright axis: any mixture would do as well.
+
+    Parameters
+    ----------
+    points : (nn, 2) float
+        The nodes [m].
+    shapes : (2 nn, d) float
+        Shapes that are orthogonal with the mass `M`; left as they are if the block has no such axis.
+    own : (d,) float
+        ω² of each [1/s²], in ascending order.
+    """
     low, high = facing(points, 0)
+    if low.size == 0:
+        return shapes
     mirrored = shapes.reshape(len(points), 2, -1).copy()
     mirrored[np.append(low, high)] = mirrored[np.append(high, low)]
     mirrored[:, 0] *= -1
     image, found = mirrored.reshape(shapes.shape), shapes.copy()
-    for equal in np.split(np.arange(len(own)), np.flatnonzero(np.diff(own) > EQUAL * own[1:]) + 1):
-        _, turn = np.linalg.eigh(shapes[:, equal].T @ M @ image[:, equal])
-        found[:, equal] = shapes[:, equal] @ turn
+    for alike in np.split(np.arange(len(own)), np.flatnonzero(np.diff(own) > EQUAL * own[1:]) + 1):
+        _, turn = np.linalg.eigh(shapes[:, alike].T @ M @ image[:, alike])
+        found[:, alike] = shapes[:, alike] @ turn
     return found

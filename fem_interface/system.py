@@ -117,10 +117,10 @@ def _geometry(wall: ModalWall) -> tuple[Any, ...]:
     """Arrays of the kernels: shapes and tables of the templates, runs of joint elements, and buffers.
 
     A template's row of `shapes` is its number of blocks, of modes and of displacements of joint nodes a block, and
-    where its coordinates, its joint nodes' displacements and its table start; templates whose tables are folded are in
-    `Folds` instead. A run's row of `places` is where the
-    displacements of its nodes stand, side a's two ends before side b's, less the number of its first element; its
-    `shares` are what each displacement has in the opening and in the slip of each point.
+    where its coordinates, its joint nodes' displacements and its table start; where the table can be folded, the
+    template is in the arrays of `Folds` after the tables instead. A run's row of `places` is where the displacements of
+    its nodes stand, side a's two ends before side b's, less the number of its first element; its `shares` are what
+    each displacement has in the opening and in the slip of each point.
     """
     mesh, joint = wall.mesh, wall.interface
     n, ne, _ = joint.weights.shape

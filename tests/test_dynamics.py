@@ -415,6 +415,12 @@ def test_a_motion_that_has_only_just_come_to_its_speed_falls_at_a_whole_unit() -
     assert next(k for k, t in enumerate(time, 1) if fall.goes_on(k / 64, int(t))) == pytest.approx(64, abs=1)
 
 
+def test_one_look_says_nothing_of_a_speed() -> None:
+    """A wall that gives way by less than the farthest mark before it is looked at first is not in collapse."""
+    assert not Fall().goes_on(15.9, 200)
+    assert Fall().goes_on(16.1, 200)
+
+
 def test_observers_see_every_look_and_ctrl_c_leaves_what_was_found() -> None:
     """Stopped in the middle of the search: undecided, with the load borne so far and its curve."""
     scene = panel(joint__mortar=STIFF, wall__height=0.24)

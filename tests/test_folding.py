@@ -79,6 +79,13 @@ def test_an_irregular_block_is_left_as_it_is() -> None:
     assert not Folds().take((1000, 3, 8, 0, 0), points, np.ones((8, 3)))
 
 
+def test_nodes_in_one_place_are_left_as_they_are() -> None:
+    """Which of them faces which is not to be told."""
+    points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+    table = np.random.default_rng(0).normal(size=(10, 3))
+    assert unfolded(folded(points, table)) == pytest.approx(table, abs=1e-12)
+
+
 @pytest.mark.parametrize("changes", [{}, {"wall__block_height": 0.24}, {"support__kind": "pinned-corners"}])
 @pytest.mark.parametrize("count", [3, 10, "all"])
 def test_kernels_do_not_mind_whether_tables_are_folded(

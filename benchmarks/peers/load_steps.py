@@ -120,7 +120,7 @@ def by_load_steps(motion: Motion, scene: Scene, tolerance: float, budget: float)
 def settle(motion: Motion, multiplier: float, far: float) -> str:
     """Hold a load until the wall rests or falls, or patience ends."""
     start = last = motion.position()
-    fall = Fall()
+    fall = Fall(springy=True)  # looks are too far apart for less
     calm = 0
     for look in range(1, PATIENCE + 1):
         motion.hold(multiplier, LOOK)

@@ -27,7 +27,7 @@ from scipy.optimize import brentq
 
 from compare.figures import COLOURS, bare
 from dynamics import BlockSystem, Criteria, Run, State, Verdict, ramp, settle
-from dynamics.run import LOCAL, VISCOUS
+from dynamics.run import LOCAL, VISCOUS, Fall
 
 from .finding import Edge, Entry, Finding
 from .known import RAMP, KnownWall, rounded_wall, sliding_block, toppling_block
@@ -51,6 +51,9 @@ BUDGET = 300_000
 
 SHORT = 20_000
 """Steps in which a block is to come to rest under its weight, or to be seen to fall, at the edges of α."""
+
+SEEN = 0.03
+"""Relative width of the edges of mass-proportional damping: theory is of a motion that is looked at all the time."""
 
 CLOSE = 0.002
 """Relative width to which an edge is bisected."""
@@ -116,11 +119,12 @@ def judged(
     """
     run = Run(_damped(wall.system, mass_rate), local=local, viscous=viscous)
     state = State.at_rest(wall.system)
-    verdict = settle(run, state, 0.0, Criteria(collapse=wall.far, budget=budget))
+    criteria = Criteria(collapse=wall.far, budget=budget)
+    verdict = settle(run, state, 0.0, criteria, sudden=True)
     if verdict == "stable":
         ramp(run, state, 0.0, load * wall.multiplier, RAMP * state.steps)
         left = max(0, budget - state.steps)
-        verdict = settle(run, state, load * wall.multiplier, Criteria(collapse=wall.far, budget=left))
+        verdict = settle(run, state, load * wall.multiplier, replace(criteria, budget=left))
     elif verdict == "collapse":
         return Cell("wrong", state.steps)
     return Cell(_answer(verdict, load), state.steps)
@@ -167,7 +171,7 @@ def most_local(budget: int = SHORT) -> Edge:
 
     def surplus(left: float) -> float:
         run, rest = wall.rest(1 - left)
-        time = math.sqrt(2 * wall.far * wall.inertia / (left * BESIDE * wall.multiplier))
+        time = math.sqrt(2 * Fall.SOON * wall.far * wall.inertia / (left * BESIDE * wall.multiplier))
         return budget - (1 + RAMP) * rest.steps - time / run.dt
 
     return Edge(
@@ -186,7 +190,7 @@ def most_mass_rate(wall: KnownWall, tolerance: float | None) -> Edge:
     def surplus(rate: float) -> float:
         decay = (1 - LOCAL) * rate
         calm = math.log(beyond * wall.unrest / Criteria(wall.far).rest) / decay
-        return beyond / (rate * wall.inertia) * (calm - (1 - math.exp(-decay * calm)) / decay) - wall.far
+        return beyond / (rate * wall.inertia) * (calm - (1 - math.exp(-decay * calm)) / decay) - Fall.SOON * wall.far
 
     theory = float(brentq(surplus, 0.1, 1e4))
     return Edge(
@@ -210,8 +214,8 @@ def experiment() -> Finding:
             for (a, x), cell in found.cells.items()
         ]
     rows += [(name, f"{loads[1]:g}", LOCAL, VISCOUS, c, cell.answer, cell.steps) for (name, c), cell in massive.items()]
-    feigned = [most_mass_rate(block, 0.02), most_mass_rate(masonry, None)]
-    edges = [least_local(), most_local(), *feigned, most_mass_rate(toppling_block(), 0.02)]
+    feigned = [most_mass_rate(block, SEEN), most_mass_rate(masonry, None)]
+    edges = [least_local(), most_local(), *feigned, most_mass_rate(toppling_block(), SEEN)]
     wrong = sum(cell.answer == "wrong" for found in maps for cell in found.cells.values())
     return Finding(
         title="Damping: steps until the verdict, and whether it is right",

@@ -59,7 +59,7 @@ class KnownWall:
 
     @property
     def far(self) -> float:
-        """Displacement [m] at which the suite looks whether it falls."""
+        """Displacement [m] by which the suite judges whether it falls."""
         return COLLAPSE * self.scene.block_size
 
     @cached_property
