@@ -19,7 +19,7 @@ from fem_interface.system import system_of
 from joints.point_kernel import FRICTION_WORK
 from joints.softening_kernel import DAMAGE
 from scene import Array, BlockMaterial, Indices, JointMaterial, Load, Scene, SceneError, Stiffness, build_scene
-from tests.test_fem_interface import check_dissipation
+from tests.fem_interface.walls import check_dissipation
 from tests.walls import panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}

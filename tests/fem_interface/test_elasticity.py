@@ -1,0 +1,69 @@
+"""The extra give of deformable blocks, against their stiffness."""
+
+import numpy as np
+import pytest
+
+from fem_interface import nodal_jump
+from fem_interface.runs import modal_wall
+from homog import elastic_moduli
+from joints import lobatto
+from meshing import wall_mesh
+from scene import Array
+from tests.fem_interface.walls import (
+    whole,
+)
+from tests.walls import panel
+
+
+def _cell_moduli(width: float, height: float, young: float) -> Array:
+    """Moduli of one periodic cell, ``(3, 3)`` [Pa], two blocks and the joints that are theirs, per unit thickness."""
+    size = {"wall__block_width": width, "wall__block_height": height, "wall__thickness": 1.0}
+    stiff = {"friction": 0.6, "normal_stiffness": 80e9, "shear_stiffness": 30e9}
+    scene = panel(**size, wall__length=6 * width, wall__height=6 * height, block__young=young, joint=stiff)
+    mesh, centroid = wall_mesh(scene), scene.blocks.centroid
+    inside = np.flatnonzero(
+        (np.abs(centroid[:, 0] - 3.25 * width) < 0.5 * width) & (np.abs(centroid[:, 1] - 3 * height) < height)
+    )
+    assert len(inside) == 2
+    K, _ = whole(mesh, scene)
+    jump = nodal_jump(modal_wall(scene, 1, 3, lobatto(3)).interface, len(mesh.points))
+    points = modal_wall(scene, 1, 3, lobatto(3)).interface.points
+    owned = np.isin(points.block[:, 0], inside)
+
+    lattice = np.array([[width, 0.0], [0.0, 2 * height]])
+    count = [2 * (mesh.first_node[b + 1] - mesh.first_node[b]) for b in inside]
+    spread = np.zeros((2 * len(mesh.points), sum(count) + 3))
+    for block, centre in enumerate(centroid):
+        cells = (centre - centroid[inside]) @ np.linalg.inv(lattice)
+        images = np.flatnonzero(np.abs(cells - np.rint(cells)).max(axis=1) < 1e-9)
+        rows = slice(2 * mesh.first_node[block], 2 * mesh.first_node[block + 1])
+        if len(images) == 0 or mesh.shape[block] != mesh.shape[inside[images[0]]]:
+            continue
+        image = int(images[0])
+        own = slice(sum(count[:image]), sum(count[: image + 1]))
+        spread[rows, own] = np.eye(count[image])
+        x, y = centre - centroid[inside[image]]
+        spread[rows, -3:] = np.tile([[x, 0, y], [0, y, x]], (count[image] // 2, 1))
+    dofs = np.concatenate([np.arange(2 * mesh.first_node[b], 2 * mesh.first_node[b + 1]) for b in inside])
+    blocks = spread[dofs].T @ K[dofs][:, dofs] @ spread[dofs]
+    opening, slip = jump.opening[owned] @ spread, jump.slip[owned] @ spread
+    area = points.area[owned, None]
+    energy = blocks + opening.T @ (80e9 * area * opening) + slip.T @ (30e9 * area * slip)
+    inner, strain = slice(0, -3), slice(-3, None)
+    condensed = (
+        energy[strain, strain]
+        - energy[strain, inner] @ np.linalg.pinv(energy[inner, inner], 1e-13) @ (energy[inner, strain])
+    )
+    return np.asarray(condensed / (2 * width * height))
+
+
+@pytest.mark.parametrize("block", [(0.24, 0.06), (0.06, 0.06), (0.06, 0.24)])
+def test_extra_compliance_over_rigid_blocks_falls_as_one_over_their_stiffness(block: tuple[float, float]) -> None:
+    """Slope −1 ± 0.02 over three decades, in each of the three macroscopic strains."""
+    moduli = elastic_moduli(*block, bed_normal=80e9, bed_shear=30e9, head_normal=80e9, head_shear=30e9)
+    rigid = np.array([1 / moduli.a1111, 1 / moduli.a2222, 1 / (4 * moduli.a1212)])
+    stiffness = np.array([1e12, 1e13, 1e14, 1e15])
+    extra = np.array([np.diag(np.linalg.inv(_cell_moduli(*block, young))) - rigid for young in stiffness])
+    assert (extra > 0).all()
+    slopes = np.diff(np.log10(extra), axis=0)
+    assert slopes == pytest.approx(-1.0, abs=0.02)

@@ -1,0 +1,68 @@
+"""Fracture energies and what joints spend."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dynamics import Run
+from fem_interface.fracture import corrected_energies, fractured, printed_energies
+from fem_interface.model import fem
+from fem_interface.system import fem_system
+from joints.point_kernel import FRICTION_WORK
+from joints.softening_kernel import DAMAGE
+from scene import SceneError
+from tests.fem_interface.walls import (
+    check_dissipation,
+    wall,
+)
+
+
+def test_fracture_energies_as_corrected_and_as_printed() -> None:
+    """l = 0.24 m, c = 0.1 MPa, tan φ = 0.6, E = 1 GPa: 7.5 and 20.9 J/m², swapped in print."""
+    strengths = (0.24, 1e5, 1e5 / 0.6, 1e9)
+    assert printed_energies(*strengths) == pytest.approx((7.540, 20.944), abs=1e-3)
+    assert corrected_energies(*strengths) == pytest.approx(printed_energies(*strengths)[::-1])
+    assert corrected_energies(0.24, 0.0, 0.0, 1e9) == (0.0, 0.0)
+
+
+def test_each_joint_has_the_energy_of_its_length() -> None:
+    scene = wall(joint__cohesion=1e5)
+    for energies, bed in (("corrected", 0.12), ("printed", 0.24)):
+        materials, of_joint = fractured(scene, energies)  # type: ignore[arg-type]
+        run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
+        between = scene.wall[scene.joints.block].all(axis=1)
+        for joint in np.flatnonzero(between):
+            length = bed if run[joint, 0] > run[joint, 1] else 0.06
+            found = materials[of_joint[joint]]
+            formula = corrected_energies if energies == "corrected" else printed_energies
+            expected = formula(length, 1e5, 1e5 / 0.6, 1e9)
+            assert (found.fracture_energy_1, found.fracture_energy_2) == pytest.approx(expected, rel=1e-3)
+
+
+def test_energies_need_a_mortar_to_follow_from() -> None:
+    stiff = {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    with pytest.raises(SceneError, match=r"joint.mortar"):
+        fem_system(wall(joint=stiff), energies="corrected")
+
+
+@pytest.mark.parametrize("energy", [None, 0.0, 20.0])
+@pytest.mark.parametrize("cohesion", [0.0, 2e3])
+def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
+    """Point by point, through rest and collapse; c = f_t = G = 0 among them."""
+    scene = wall(1e10, joint__cohesion=cohesion)
+    joint = replace(scene.joint, fracture_energy_1=energy, fracture_energy_2=energy)
+    run = Run(fem_system(replace(scene, joint=joint)))
+    state = check_dissipation(run, 100)
+    assert state.history[FRICTION_WORK].max() > 0
+    if energy is not None:
+        assert state.history[DAMAGE].max() <= 1
+
+
+def test_no_strength_and_no_energy_comes_to_an_outcome() -> None:
+    scene = wall(1e12)
+    dry = replace(scene.joint, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=0.0, fracture_energy_2=0.0)
+    outcome = fem(replace(scene, joint=dry))
+    assert outcome.status == "collapse"
+    plastic = fem(scene)
+    assert outcome.multiplier == pytest.approx(plastic.multiplier, rel=0.01)

@@ -1,0 +1,153 @@
+"""The model `fem`: stiff blocks beside rigid ones, published walls, and refusals."""
+
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import spsolve
+
+from compare import published_scene
+from dem.dynamic import dem_dynamic
+from dynamics import Criteria, Run, State, settle
+from fem_interface import nodal_jump
+from fem_interface.model import fem
+from fem_interface.runs import modal_wall
+from fem_interface.system import fem_system, system_of
+from joints import Rule, gauss, lobatto
+from meshing import wall_mesh
+from scene import BlockMaterial, SceneError
+from tests.fem_interface.walls import (
+    GLUE,
+    MORTAR,
+    joint_stiffness_of,
+    wall,
+    whole,
+)
+from tests.walls import courses, panel
+
+
+@pytest.mark.parametrize("changes", [{"wall__block_width": 0.06, "wall__length": 0.24}, {"joint__cohesion": 500.0}])
+def test_stiff_blocks_fall_at_the_load_of_rigid_ones(changes: dict[str, Any]) -> None:
+    """E = 1000 GPa: λ within 1 % of `dem-dynamic`, with the same joint points."""
+    scene = wall(1e12, 0.0, support__kind="fixed-first-course", **changes)
+    ours, theirs = fem(scene, 0.005), dem_dynamic(scene, 0.005)
+    assert ours.status == theirs.status == "collapse"
+    assert ours.multiplier == pytest.approx(theirs.multiplier, rel=0.01)
+    assert "scaled" in ours.message
+    assert ours.motion.shape == theirs.motion.shape
+    assert ours.force.shape == theirs.force.shape
+    assert ours.dofs is not None
+    assert theirs.dofs is not None
+    assert ours.dofs > 3 * theirs.dofs
+
+
+@pytest.mark.parametrize(
+    "number", [4, *(pytest.param(k, marks=pytest.mark.long) for k in (1, 2, 3, *range(5, 11), 12))]
+)
+def test_panels_of_stiff_blocks_fall_at_the_load_of_rigid_ones(number: int) -> None:
+    """The paper's panels, E = 1000 GPa: λ within 1 % of `dem-dynamic` where both have the same joint points.
+
+    But for panel-11, the largest, whose dry λ stays with the history that each model comes to.
+    """
+    scene = published_scene(f"panel-{number:02d}")
+    assert scene.block.young == 1e12
+    ours, theirs = fem(scene, 0.005, points="joints"), dem_dynamic(scene, 0.005)
+    assert ours.status == theirs.status == "collapse"
+    assert ours.multiplier == pytest.approx(theirs.multiplier, rel=0.01)
+
+
+@pytest.mark.parametrize("cells", [1, 2, 4])
+@pytest.mark.parametrize("rule", [lobatto(), lobatto(3), gauss(2)])
+def test_a_block_topples_about_the_last_point_of_its_joint(rule: Rule, cells: int) -> None:
+    """b × h on a rough base topples at b / h with Lobatto points.
+
+    With two Gauss points the outermost lies (1 − 3^{-1/2}) / 2 of an element in, so it topples 42, 21 and 11 % early
+    on 1, 2 and 4 elements.
+    """
+    scene = courses([[0.5]], 0.24, 0.36, joint__mortar=MORTAR, joint__friction=2.0)
+    early = (1 + rule.nodes[0]) / cells
+    if rule.nodes[0] > -1:
+        assert early == pytest.approx({1: 0.42, 2: 0.21, 4: 0.11}[cells], abs=0.006)
+    outcome = fem(scene, 0.002, cells=cells, modes=3, rule=rule)
+    assert len(wall_mesh(scene, cells).joint) == cells
+    assert outcome.status == "collapse"
+    assert outcome.multiplier == pytest.approx((1 - early) * 0.12 / 0.36, rel=0.002)
+
+
+@pytest.mark.parametrize("on", ["elements", "joints"])
+def test_contact_forces_carry_the_weight(on: Literal["elements", "joints"]) -> None:
+    """Listed joint by joint: those of the base add up to the weight of what stands on it."""
+    scene = wall(1e12)
+    outcome = fem(scene, points=on)
+    mesh = wall_mesh(scene)
+    of_point = np.repeat(mesh.joint if on == "elements" else np.arange(len(scene.joints)), 2)
+    base = scene.fixed[scene.joints.block[of_point]].any(axis=1)
+    weight = scene.mass[~scene.fixed].sum() * 9.81
+    assert outcome.lower is not None
+    assert -outcome.force[base, 0].sum() == pytest.approx(weight, rel=1e-4)
+    assert np.abs(outcome.force[base, 1].sum()) == pytest.approx(outcome.lower * weight, rel=1e-3)
+
+
+def test_blocks_without_a_stiffness_are_refused_unless_rigid() -> None:
+    scene = panel(joint__mortar=MORTAR)
+    fem_system(scene, modes=3)
+    with pytest.raises(SceneError, match=r"block\.young"):
+        fem_system(scene)
+
+
+def test_an_unknown_number_of_modes_is_refused() -> None:
+    with pytest.raises(ValueError, match="modes = 4"):
+        fem_system(wall(), modes=4)
+
+
+def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> None:
+    """The displacements of the sparse solution, to 1e-6 of the largest, and no collapse at any load tried."""
+    live = {"kind": "point", "at": [0.0, 0.12], "force": [0, -1]}
+    size: dict[str, Any] = {"wall__length": 0.24, "wall__height": 0.12, "support__kind": "pinned-corners"}
+    scene = wall(1e10, **size, joint={**GLUE}, load={"gravity": 0.0, "live": live})
+    found = modal_wall(scene, modes="all")
+    system = system_of(found)
+    run = Run(system)
+    state = State.at_rest(system)
+    assert settle(run, state, 1e3, Criteria(collapse=1.0, rest=1e-12)) == "stable"
+    mesh, held = found.mesh, np.zeros_like(found.mesh.points, dtype=bool)
+    held[mesh.points[:, 1] + np.abs(np.abs(mesh.points[:, 0] - 0.12) - 0.12) < 1e-9] = True
+    free = ~held.ravel()
+    jump = nodal_jump(found.interface, len(mesh.points))
+    K = csr_array(whole(mesh, scene)[0] + joint_stiffness_of(system, jump.opening, jump.slip))
+    force = np.zeros_like(mesh.points)
+    force[np.argmin(np.hypot(*(mesh.points - [0.0, 0.12]).T)), 1] = -1e3
+    exact = spsolve(K[free][:, free].tocsc(), force.ravel()[free])
+    u = found.displacement(state.motion).ravel()
+    assert np.abs(u[free] - exact).max() < 1e-6 * np.abs(exact).max()
+    assert np.abs(u[~free]).max() < 1e-12 * np.abs(u).max()
+    outcome = fem(scene, budget=2000)
+    assert outcome.status == "undecided"
+    assert "it bore every load tried" in outcome.message
+
+
+@pytest.mark.parametrize(
+    ("name", "published"),
+    [
+        ("wall-w1", 0.5856),
+        pytest.param("wall-w2", 0.5244, marks=pytest.mark.long),
+        pytest.param("wall-w3", 0.3374, marks=pytest.mark.long),
+    ],
+)
+def test_walls_with_contacts_20_mm_in_fall_at_the_published_load(name: str, published: float) -> None:
+    """Ferris & Tin-Loi's walls with friction: numerically unique with contacts moved in, within 1.5 %."""
+    scene = published_scene(name)
+    scene = replace(scene, block=BlockMaterial(1800.0, 1e12), joint=replace(scene.joint, inset=0.02))
+    outcome = fem(scene, 0.005)
+    assert outcome.status == "collapse"
+    assert outcome.multiplier == pytest.approx(published, rel=0.015)
+
+
+def test_import_needs_no_compiler() -> None:
+    import subprocess
+    import sys
+
+    code = "import sys, fem_interface; assert not {'numba', 'gmsh'} & set(sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)

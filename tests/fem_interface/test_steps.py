@@ -1,0 +1,107 @@
+"""Time steps of deformable blocks: a nodal form of every step, rigid blocks, and bounds of the frequency."""
+
+import math
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+
+from dem.rigid_system import rigid_system
+from dynamics import Run, State
+from fem_interface.runs import modal_wall
+from fem_interface.stable import scaled_modes
+from fem_interface.system import fem_system, system_of
+from joints.point_kernel import FRICTION_WORK
+from scene import JointMaterial, Mortar
+from tests.fem_interface.nodal_steps import NodalSteps
+from tests.fem_interface.walls import (
+    MORTAR,
+    modal_stiffness,
+    patch,
+    triangle_wall,
+    wall,
+)
+from tests.walls import panel
+
+
+@pytest.mark.parametrize("changes", [{}, {"joint__cohesion": 50.0, "joint__inset": 0.01}])
+def test_modal_step_is_the_nodal_step(changes: dict[str, Any]) -> None:
+    """All modes, no mass scaling: the same displacements to 1e-12 for 500 steps, while joints slide and open."""
+    scene = wall(5e9, **changes)
+    found = modal_wall(scene, modes="all")
+    system = system_of(found, damping=0.0, mass_scaling=False)
+    run = Run(system, local=0.0, viscous=0.1)
+    state = State.at_rest(system)
+    nodal = NodalSteps(found, system)
+    dt, viscosity = run.dt, 2 * 0.1 / math.sqrt(system.block_frequency_squared) / run.dt
+    run.hold(state, 1.5, 500)
+    nodal.take(500, dt, viscosity, 1.5)
+    u = found.displacement(state.motion).ravel()[nodal.free]
+    assert np.abs(u - nodal.u).max() < 1e-12 * np.abs(u).max()
+    opening, slip = nodal.opening @ u, nodal.slip @ u
+    assert state.history[4].max() > 1e-3 * np.abs(slip).max()  # slid
+    assert opening.max() > 1e-3 * np.abs(u).max()  # opened
+
+
+@pytest.mark.parametrize(
+    ("support", "cells", "on"),
+    [("fixed-first-course", 1, "elements"), ("base", 1, "joints"), ("base", 2, "joints")],
+)
+@pytest.mark.parametrize("changes", [{}, {"joint__inset": 0.01}, {"wall__block_height": 0.24, "joint__cohesion": 10.0}])
+def test_three_modes_are_rigid_blocks(
+    changes: dict[str, Any], support: str, cells: int, on: Literal["elements", "joints"]
+) -> None:
+    """The same points, masses, loads, bound and steps as `dem-dynamic`, to 1e-12, while joints slide and open.
+
+    Without local damping, whose sign of a velocity that is zero but for rounding is anybody's guess.
+    """
+    scene = panel(joint__mortar=MORTAR, support__kind=support, **changes)
+    ours, theirs = fem_system(scene, cells, modes=3, points=on), rigid_system(scene)
+    free = ~scene.fixed
+    for name in ("mass", "dead", "live", "control", "force_unit"):
+        a, b = (getattr(system, name)[system.rigid][free] for system in (ours, theirs))
+        assert np.abs(a - b).max() < 1e-12 * np.abs(b).max()
+    assert ours.block_frequency_squared == pytest.approx(theirs.block_frequency_squared, rel=1e-12)
+    assert ours.freedoms == theirs.freedoms
+    motions = []
+    for system in (ours, theirs):
+        run = Run(system, local=0.0)
+        state = State.at_rest(system)
+        run.hold(state, 0.7, 100)
+        motions.append(run.motion_of_blocks(state))
+        assert state.history[FRICTION_WORK].max() > 0
+    assert np.abs(motions[0] - motions[1]).max() < 1e-12 * np.abs(motions[1]).max()
+
+
+@pytest.mark.parametrize("young", [1e8, 1e10, 1e12])
+@pytest.mark.parametrize("mass_scaling", [True, False])
+@pytest.mark.parametrize("changes", [{}, {"wall__block_height": 0.24}, {"joint__inset": 0.01}])
+def test_blocks_alone_bound_the_highest_frequency(changes: dict[str, Any], mass_scaling: bool, young: float) -> None:
+    """From above, and closely."""
+    found = modal_wall(wall(young, **changes))
+    scaled = scaled_modes(found, 0.0, mass_scaling=mass_scaling)
+    root = 1 / np.sqrt(scaled.mass[np.isfinite(scaled.mass)])
+    exact = np.linalg.eigvalsh(modal_stiffness(found).toarray() * root[:, None] * root)[-1]
+    assert exact <= scaled.frequency_squared
+    assert math.sqrt(exact / scaled.frequency_squared) > 0.75
+
+
+@pytest.mark.parametrize("young", [1e9, 1e12])
+@pytest.mark.parametrize("make", [wall, patch, triangle_wall])
+def test_a_wall_at_the_stable_step_stays_bounded(make: Any, young: float) -> None:
+    """With local, joint and modal damping at work, and joints that never break."""
+    scene = make()
+    block, joint = replace(scene.block, young=young), JointMaterial(0.6, 1e9, 1e9, Mortar(1e9, 0.2, 0.01))
+    scene = replace(scene, block=block, joint=joint)
+    run = Run(fem_system(scene))
+    state = State.at_rest(run.system)
+    moving = np.isfinite(run.system.mass)
+    state.velocity[moving] = np.random.default_rng(5).normal(size=moving.sum()) * 1e-3
+
+    def energy() -> float:
+        return float(0.5 * (run.system.mass[moving] * state.velocity[moving] ** 2).sum())
+
+    before = energy()
+    run.hold(state, 0.0, 3000, dead=0.0)
+    assert energy() < 1e-3 * before

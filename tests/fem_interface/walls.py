@@ -1,0 +1,109 @@
+"""Walls of deformable blocks that tests are about, and what is measured of them."""
+
+from typing import Any
+
+import numpy as np
+from scipy.linalg import block_diag
+from scipy.sparse import csr_array, diags_array
+
+from dynamics import BlockSystem, Run, State
+from fem_interface import mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface.modal_wall import ModalWall
+from fem_interface.modes import rigid_motions
+from fem_interface.system import system_of
+from fem_interface.templates import nodes_of, triangles_of
+from joints.point_kernel import FRICTION_WORK
+from meshing import WallMesh
+from scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
+from tests.walls import panel
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+GLUE = {"friction": 0.6, "cohesion": 1e12, "mortar": MORTAR}
+
+
+def wall(young: float = 1e10, poisson: float = 0.2, **changes: Any) -> Scene:
+    """A small wall with deformable blocks."""
+    size = {"wall__length": 0.48, "wall__height": 0.24}
+    return panel(**{**size, "joint__mortar": MORTAR, "block__young": young, "block__poisson": poisson, **changes})
+
+
+def patch() -> Scene:
+    """Four irregular quadrilaterals about one point, on a base: every block a shape of its own."""
+    x = np.array([[0.0, 0.6, 1.0], [0.0, 0.37, 1.0], [0.0, 0.55, 1.0]])
+    y = np.array([[0.0, 0.0, 0.0], [0.45, 0.62, 0.5], [1.0, 1.0, 1.0]])
+    corner = np.stack([x, y], axis=2)
+    quads = [corner[[i, i, i + 1, i + 1], [j, j + 1, j + 1, j]] for i in (0, 1) for j in (0, 1)]
+    return build_scene(
+        "patch",
+        quads,
+        thickness=0.1,
+        block=BlockMaterial(2000.0, 3e9, 0.3),
+        joint=JointMaterial(0.6, 1e3, 1e3, Stiffness(1e11, 4e10)),
+        load=Load(),
+    )
+
+
+def triangle_wall() -> Scene:
+    """A triangular block leaning on a square one."""
+    blocks = [np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]]), np.array([[1.0, 0], [2, 0], [1, 0.8]])]
+    return replace_blocks(patch(), blocks)
+
+
+def replace_blocks(scene: Scene, blocks: list[Array]) -> Scene:
+    return build_scene(
+        "blocks", blocks, thickness=scene.thickness, block=scene.block, joint=scene.joint, load=scene.load
+    )
+
+
+def rigid_of_nodes(mesh: WallMesh, scene: Scene) -> Array:
+    """Nodal displacements of rigid motions of all blocks, ``(2 nn, 3 nb)``."""
+    parts = []
+    for block in range(len(scene.blocks)):
+        points, triangles = mesh.points[nodes_of(mesh, block)], triangles_of(mesh, block)
+        parts.append(rigid_motions(points, mass_matrix(points, triangles, 1.0, 1.0).toarray()))
+    return np.asarray(block_diag(*parts))
+
+
+def whole(mesh: WallMesh, scene: Scene) -> tuple[csr_array, csr_array]:
+    """Stiffness and mass of all blocks together, assembled at once."""
+    material = scene.block
+    assert material.young is not None
+    K = stiffness_matrix(mesh.points, mesh.triangles, material.young, material.poisson, scene.thickness)
+    return K, mass_matrix(mesh.points, mesh.triangles, material.density, scene.thickness)
+
+
+def joint_stiffness_of(system: BlockSystem, opening: Any, slip: Any) -> csr_array:
+    k_n, k_t = system.law.normal_stiffness * system.area, system.law.shear_stiffness * system.area
+    return csr_array(opening.T @ (opening * k_n[:, None]) + slip.T @ (slip * k_t[:, None]))
+
+
+def modal_stiffness(found: ModalWall) -> csr_array:
+    """Stiffness of a wall whose joints stay elastic, in the coordinates that move."""
+    parts = []
+    for template, first in zip(found.templates, found.first, strict=False):
+        n, shape = len(template.blocks), template.modes.shape
+        rows, modes = np.nonzero(shape)
+        for k, block in enumerate(template.blocks):
+            parts.append((2 * found.mesh.first_node[block] + rows, first + modes * n + k, shape[rows, modes]))
+    node, coordinate, values = (np.concatenate(column) for column in zip(*parts, strict=True))
+    basis = csr_array((values, (node, coordinate)), shape=(2 * len(found.mesh.points), len(found.mass)))
+    jump = nodal_jump(found.interface, len(found.mesh.points))
+    joints = joint_stiffness_of(system_of(found), jump.opening @ basis, jump.slip @ basis)
+    moving = np.flatnonzero(np.isfinite(found.mass))
+    return csr_array((joints + diags_array(found.stiffness))[moving][:, moving])
+
+
+def check_dissipation(run: Run, steps: int) -> State:
+    """Push a wall harder and harder until it falls: no point ever gives back what it spent, and the ledger closes."""
+    state = State.at_rest(run.system)
+    spent, damped = state.history[FRICTION_WORK].copy(), 0.0
+    for k in range(60):
+        run.hold(state, 0.05 * k, steps)
+        assert (state.history[FRICTION_WORK] >= spent - 1e-12 * np.abs(spent).max()).all()
+        spent = state.history[FRICTION_WORK].copy()
+        ledger = run.ledger(state)
+        assert ledger.damped >= damped
+        damped = ledger.damped
+        assert np.isfinite(state.motion).all()
+    assert abs(ledger.residual) < 0.01 * abs(ledger.external)
+    return state
