@@ -131,36 +131,17 @@ def _judge(
     point_order: Indices,
     locks: Callable[[], bool],
 ) -> Outcome:
+    """Outcome of a search."""
     if found.borne is None:
-        if found.interrupted:
-            return replace(outcome, message="interrupted before the wall came to rest under its dead load")
-        if found.verdict == "collapse":
-            return replace(outcome, status="infeasible", message="falls under its dead load")
-        return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+        return _never_at_rest(outcome, found)
+    curve, force = _curve(run, found), np.column_stack(run.forces(found.borne))[point_order]
     if found.interrupted:
-        outcome = replace(
-            outcome, curve=_curve(run, found), force=np.column_stack(run.forces(found.borne))[point_order]
-        )
-        return replace(outcome, lower=found.lower, upper=found.upper, message="interrupted: the bracket found so far")
+        message = "interrupted: the bracket found so far"
+        return replace(outcome, lower=found.lower, upper=found.upper, curve=curve, force=force, message=message)
     if found.upper is None or found.lower is None or found.fallen is None:
-        if not locks():
-            message = "the budget ran out: the wall neither rested nor fell"
-            if found.verdict == "stable":
-                message = f"it bore every load tried, the largest of them {found.lower:.3g}"
-            return replace(outcome, lower=found.lower, message=message)
-        return replace(
-            outcome,
-            status="unbounded",
-            message="self-locking: borne up to every load tried, and joint forces balance any multiple of it",
-        )
-    outcome = replace(
-        outcome,
-        lower=found.lower,
-        upper=found.upper,
-        curve=_curve(run, found),
-        motion=_mechanism(scene, run, found.borne, found.fallen),
-        force=np.column_stack(run.forces(found.borne))[point_order],
-    )
+        return _never_fallen(outcome, found, locks)
+    motion = _mechanism(scene, run, found.borne, found.fallen)
+    outcome = replace(outcome, lower=found.lower, upper=found.upper, curve=curve, motion=motion, force=force)
     lost = _unaccounted(run, found.fallen)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -176,6 +157,26 @@ def _judge(
         message="largest load at rest and smallest in collapse, small displacements; "
         f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
     )
+
+
+def _never_at_rest(outcome: Outcome, found: LoadSteps) -> Outcome:
+    """Outcome of a wall that did not come to rest under its dead load."""
+    if found.interrupted:
+        return replace(outcome, message="interrupted before the wall came to rest under its dead load")
+    if found.verdict == "collapse":
+        return replace(outcome, status="infeasible", message="falls under its dead load")
+    return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+
+
+def _never_fallen(outcome: Outcome, found: LoadSteps, locks: Callable[[], bool]) -> Outcome:
+    """Outcome of a wall that no load brought down."""
+    if locks():
+        message = "self-locking: borne up to every load tried, and joint forces balance any multiple of it"
+        return replace(outcome, status="unbounded", message=message)
+    message = "the budget ran out: the wall neither rested nor fell"
+    if found.verdict == "stable":
+        message = f"it bore every load tried, the largest of them {found.lower:.3g}"
+    return replace(outcome, lower=found.lower, message=message)
 
 
 def _unaccounted(run: Run, state: State) -> float:

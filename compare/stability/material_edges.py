@@ -239,7 +239,7 @@ def experiment() -> Finding:
         edges=edges,
         trust=f"{count['right']} of {len(answers)} answers are right, {count['wrong']} wrong{missed}. Models in motion "
         f"see no multiplier below {UNSEEN:g}, and brackets there are as wide; of a large block on joints a hundredth "
-        "of its width, into which it sinks, they say nothing.",
+        "of its width, into which it sinks, `fem` says nothing.",
         beyond="; ".join(told) or "nothing: every model answers",
         draw=lambda figure: _draw(
             figure, [wall.what for wall in walls], [_exact(wall.exact) for wall in walls], answers
