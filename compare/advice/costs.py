@@ -57,8 +57,8 @@ LAWS: dict[str, Law] = {
     "limit": Law(0.035, 1.56, 0.72, 1.29),
     "limit-nonassociated": Law(0.22, 1.87, 1, 1.48),
     "dem-static": Law(0.29, 1.82, 0.72, 1.55),
-    "dem-dynamic": Law(1.5, 1.20, 0.96, 1.50),
-    "fem": Law(6.4, 1.16, 0.92, 1.42),
+    "dem-dynamic": Law(1.4, 1.23, 1, 1.51),
+    "fem": Law(5.0, 1.05, 1.1, 1.46),
 }
 
 
