@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from results import Outcome, Status
-from scene import Array, Scene
+from scene import Array, Mask, Scene
 
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
@@ -22,6 +22,12 @@ ZERO = 1e-6
 
 SOUND = 1e-6
 """Largest relative residual, violation or duality gap with which a program's answer is believed."""
+
+GLUED = 1e6
+"""Strength of a joint point, in weights of the heaviest block, above which the program is first tried with this one.
+
+Forces that such a point never comes to need not be in the program, where they would drown those that it does.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +127,28 @@ class LimitState:
 
 
 def limit_state(system: Equilibrium) -> LimitState:
-    """Solve the associated limit analysis of a scene; its status may be other than optimal."""
+    """Solve the associated limit analysis of a scene; its status may be other than optimal.
+
+    The state's system has strengths of at most `GLUED` where they prove the answer: its forces are admissible for
+    stronger joints all the more, and its mechanism does not move them.
+    """
+    strength = system.strength
+    glued = np.maximum(strength.tension, strength.shear) > GLUED
+    if glued.any():
+        enough = replace(strength, tension=strength.tension.clip(max=GLUED), shear=strength.shear.clip(max=GLUED))
+        state = _solved(replace(system, strength=enough))
+        if state.forces.status == "optimal" and state.sound and not moves(system, state.forces.motion, glued):
+            return state
+    return _solved(system)
+
+
+def moves(system: Equilibrium, motion: Array, points: Mask) -> bool:
+    """Whether a mechanism ``(nd,)`` opens or shears any of some points ``(np,)``, to rounding."""
+    jumps = np.abs([system.opening.T @ motion, system.slip.T @ motion])
+    return float(jumps[:, points].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))
+
+
+def _solved(system: Equilibrium) -> LimitState:
     forces = solve_forces(system, coulomb(system.strength))
     if forces.status in ("infeasible", "numerical"):  # simplex settles what the interior point is unsure of
         forces = solve_forces(system, coulomb(system.strength), method="highs-ds")

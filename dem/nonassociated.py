@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from results import Outcome
-from scene import Array, Scene
+from scene import Array, Mask, Scene
 
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSet, ForceSolution, coulomb, frozen_friction, solve_forces
-from .limit import judge, limit_state
+from .limit import LimitState, judge, limit_state, moves
 
 MOST_PROGRAMS = 40
 """Programs of the sequence after which an uncertified collapse is given up."""
@@ -176,20 +176,25 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
     status, message = judge(associated)
     found = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=system.freedoms, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        found = _collapse(found, system, associated.forces, tolerance)
+        whole, enough = system.strength, associated.system.strength
+        cut = (enough.tension < whole.tension) | (enough.shear < whole.shear)
+        found = _collapse(found, associated, cut, tolerance)
     else:
         found = replace(found, status=status)
     return replace(found, seconds=time.perf_counter() - start)
 
 
-def _collapse(found: Outcome, system: Equilibrium, associated: ForceSolution, tolerance: float) -> Outcome:
+def _collapse(found: Outcome, state: LimitState, cut: Mask, tolerance: float) -> Outcome:
+    """Outcome of a wall that stands; a mechanism that moves points whose strength was cut is none."""
+    system, associated = state.system, state.forces
     bounded = associated.status == "optimal"
     first = associated if bounded else solve_forces(system, coulomb(system.strength), "zero")
     # Between a certificate and the associated bound nothing is left to be found out, if they lie that close.
     high = (1 - tolerance) * associated.multiplier if bounded else np.inf
     searched = search(system, first.pressure, high)
     found = replace(found, steps=1 + searched.programs)
-    if not searched.certificates:
+    certificates = [proved for proved in searched.certificates if not moves(system, proved.motion, cut)]
+    if not certificates:
         if searched.frictionless:
             return replace(
                 found, status="unbounded", message="self-locking: normal forces carry any multiple of the live load"
@@ -199,8 +204,8 @@ def _collapse(found: Outcome, system: Equilibrium, associated: ForceSolution, to
             return replace(found, message=given_up + "with associated joints the wall locks")
         upper = system.live_unit * associated.multiplier
         return replace(found, upper=upper, message=given_up + "upper is the associated bound")
-    worst = min(searched.certificates, key=lambda certificate: certificate.least.multiplier)
-    proved = certified_loads(searched.certificates, system.live_unit)
+    worst = min(certificates, key=lambda certificate: certificate.least.multiplier)
+    proved = certified_loads(certificates, system.live_unit)
     lower, upper = proved[0][0], proved[-1][1]
     message = "collapse is certified at every load of the interval; smaller ones are not excluded"
     if len(proved) > 1:

@@ -23,6 +23,7 @@ from dem import (
     pin_operator,
 )
 from dem.force_program import ForceSolution
+from dem.limit import GLUED
 from dem.nonassociated import Certificate, certified_loads
 from joints import joint_points
 from scene import (
@@ -476,3 +477,29 @@ def test_zero_is_an_answer() -> None:
     joint = {"friction": 0.3, "cohesion": 100, "tensile_strength": 0.0}
     load = {"gravity": 0.0, "live": live}
     assert multiplier(courses([[1, 2, 0.5]], 0.2, 0.5, joint=joint, load=load)) == pytest.approx(0, abs=1e-6)
+
+
+def _upright(cohesion: float) -> Scene:
+    """Dry blocks on end, of 6e-7 N each, that may crack."""
+    size = {"block_width": 0.01, "block_height": 0.5, "thickness": 0.12, "length": 0.025, "height": 0.5}
+    inner = {"friction": 1.0, "cohesion": cohesion, "tensile_strength": cohesion / 2}
+    return panel(wall=size, block__density=1.0, joint__friction=1.0, load__gravity=0.001, inner_joint=inner)
+
+
+@pytest.mark.parametrize("cohesion", [1e2, 1e4, 1e8])
+def test_joints_that_are_as_good_as_glued_do_not_drown_the_others(cohesion: float) -> None:
+    """Blocks whose cracks would bear 1e6 to 1e12 times their weight bear what they do with cracks of 1 Pa."""
+    scene, weaker = _upright(cohesion), _upright(1.0)
+    strongest = equilibrium(weaker).strength.strongest
+    assert 100 < strongest < GLUED < 100 * strongest
+    assert limit(scene).multiplier == pytest.approx(limit(weaker).multiplier, rel=1e-8)
+    assert limit_nonassociated(scene).lower == pytest.approx(0.02, rel=1e-6)  # b / h of one block
+
+
+def test_joints_so_strong_that_only_a_load_a_million_times_the_weight_breaks_them_are_not_cut() -> None:
+    """λ of a block glued to its base follows the cohesion."""
+    scenes = [panel(wall__height=0.06, wall__length=0.24, joint__cohesion=c, load__gravity=1e-3) for c in (1e6, 2e6)]
+    one, two = (limit(scene).multiplier for scene in scenes)
+    assert one is not None
+    assert one > GLUED
+    assert two == pytest.approx(2 * one, rel=1e-6)
