@@ -80,6 +80,12 @@ class Equilibrium:
         """Normal and tangential force at each point ``(np, 2)`` [N] from scaled ones, tension positive."""
         return self.force_unit * np.column_stack([self.strength.tension - pressure, tangential])
 
+    def in_forces_of(self, unit: float) -> "Equilibrium":
+        """The same equations, forces measured in so many of what counts as 1 here."""
+        strength = PointStrength(self.strength.friction, self.strength.tension / unit, self.strength.shear / unit)
+        dead, force_unit, live_unit = self.dead / unit, self.force_unit * unit, self.live_unit * unit
+        return replace(self, strength=strength, dead=dead, force_unit=force_unit, live_unit=live_unit)
+
     def without_strength(self, load: Array) -> "Equilibrium":
         """The same blocks under another dead load, their joints dry."""
         nothing = np.zeros(len(self.points))

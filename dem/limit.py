@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from joints import PointStrength
 from results import Outcome, Status
-from scene import Array, Mask, Scene
+from scene import Array, Scene
 
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
@@ -130,22 +131,34 @@ def limit_state(system: Equilibrium) -> LimitState:
     """Solve the associated limit analysis of a scene; its status may be other than optimal.
 
     The state's system has strengths of at most `GLUED` where they prove the answer: its forces are admissible for
-    stronger joints all the more, and its mechanism does not move them.
+    stronger joints all the more, and its mechanism does not break them. Where it would, forces are so large that they
+    are measured in that strength.
     """
+    weaker = _cut(system)
+    if weaker is system:
+        return _solved(system)
+    state = _solved(weaker)
+    if state.forces.status == "optimal" and state.sound and not breaks(system, weaker, state.forces.motion):
+        return state
+    return limit_state(system.in_forces_of(GLUED))
+
+
+def _cut(system: Equilibrium) -> Equilibrium:
+    """The same equations with strengths of at most `GLUED`."""
     strength = system.strength
-    glued = np.maximum(strength.tension, strength.shear) > GLUED
-    if glued.any():
-        enough = replace(strength, tension=strength.tension.clip(max=GLUED), shear=strength.shear.clip(max=GLUED))
-        state = _solved(replace(system, strength=enough))
-        if state.forces.status == "optimal" and state.sound and not moves(system, state.forces.motion, glued):
-            return state
-    return _solved(system)
+    if strength.strongest <= GLUED:
+        return system
+    tension, shear = strength.tension.clip(max=GLUED), strength.shear.clip(max=GLUED)
+    return replace(system, strength=PointStrength(strength.friction, tension, shear))
 
 
-def moves(system: Equilibrium, motion: Array, points: Mask) -> bool:
-    """Whether a mechanism ``(nd,)`` opens or shears any of some points ``(np,)``, to rounding."""
-    jumps = np.abs([system.opening.T @ motion, system.slip.T @ motion])
-    return float(jumps[:, points].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))
+def breaks(whole: Equilibrium, weaker: Equilibrium, motion: Array) -> bool:
+    """Whether a mechanism ``(nd,)`` spends, beyond rounding, of a strength that a weaker system has less of."""
+    unit = weaker.force_unit / whole.force_unit * (1 + SOUND)
+    jumps = np.abs([whole.opening.T @ motion, whole.slip.T @ motion])
+    strengths = (whole.strength.tension, weaker.strength.tension), (whole.strength.shear, weaker.strength.shear)
+    cut = np.array([unit * less < strength for strength, less in strengths])
+    return float(jumps[cut].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))
 
 
 def _solved(system: Equilibrium) -> LimitState:

@@ -16,11 +16,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from results import Outcome
-from scene import Array, Mask, Scene
+from scene import Array, Scene
 
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSet, ForceSolution, coulomb, frozen_friction, solve_forces
-from .limit import LimitState, judge, limit_state, moves
+from .limit import LimitState, breaks, judge, limit_state
 
 MOST_PROGRAMS = 40
 """Programs of the sequence after which an uncertified collapse is given up."""
@@ -176,16 +176,14 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
     status, message = judge(associated)
     found = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=system.freedoms, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        whole, enough = system.strength, associated.system.strength
-        cut = (enough.tension < whole.tension) | (enough.shear < whole.shear)
-        found = _collapse(found, associated, cut, tolerance)
+        found = _collapse(found, system, associated, tolerance)
     else:
         found = replace(found, status=status)
     return replace(found, seconds=time.perf_counter() - start)
 
 
-def _collapse(found: Outcome, state: LimitState, cut: Mask, tolerance: float) -> Outcome:
-    """Outcome of a wall that stands; a mechanism that moves points whose strength was cut is none."""
+def _collapse(found: Outcome, whole: Equilibrium, state: LimitState, tolerance: float) -> Outcome:
+    """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
     system, associated = state.system, state.forces
     bounded = associated.status == "optimal"
     first = associated if bounded else solve_forces(system, coulomb(system.strength), "zero")
@@ -193,7 +191,7 @@ def _collapse(found: Outcome, state: LimitState, cut: Mask, tolerance: float) ->
     high = (1 - tolerance) * associated.multiplier if bounded else np.inf
     searched = search(system, first.pressure, high)
     found = replace(found, steps=1 + searched.programs)
-    certificates = [proved for proved in searched.certificates if not moves(system, proved.motion, cut)]
+    certificates = [proved for proved in searched.certificates if not breaks(whole, system, proved.motion)]
     if not certificates:
         if searched.frictionless:
             return replace(

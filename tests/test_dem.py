@@ -503,3 +503,12 @@ def test_joints_so_strong_that_only_a_load_a_million_times_the_weight_breaks_the
     assert one is not None
     assert one > GLUED
     assert two == pytest.approx(2 * one, rel=1e-6)
+
+
+@pytest.mark.parametrize("cohesion", [1e3, 1e6, 1e12])
+def test_a_block_that_cannot_slide_topples_however_strong_its_joint(cohesion: float) -> None:
+    """Without tension at b / h, though its shear strength is up to 1e14 times its weight."""
+    joint = {"friction": 0.25, "cohesion": cohesion, "tensile_strength": 0.0}
+    scene = panel(wall__length=0.24, wall__height=0.06, wall__first_course="full", joint=joint, load__gravity=0.01)
+    for model in (limit, limit_nonassociated):
+        assert model(scene).lower == pytest.approx(4.0, rel=1e-9)
