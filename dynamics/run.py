@@ -291,11 +291,15 @@ class Fall:
     """How much slower than before is not yet slower: sliding contacts chatter, and their speed with them."""
 
     SOON = 0.5
-    """Part of the unit after which a motion that never slowed is a collapse: dry walls that were caught had slowed by
-    then, and a fall at constant speed takes twice the steps for the whole."""
+    """Part of the unit, a power of two, after which a motion that never slowed is a collapse.
+
+    Dry walls that were caught had slowed by then, and a fall at constant speed takes twice the steps for the whole.
+    """
 
     def __init__(self, *, springy: bool = False) -> None:
-        self._marks = [2.0**k for k in range(-2 if springy else -4, self.FARTHEST + 1)]
+        # Steady at SOON for the second time, or at the unit for the first, is at the fourth mark, or the third.
+        first = -2 if springy else int(math.log2(self.SOON)) - 3
+        self._marks = [2.0**k for k in range(first, self.FARTHEST + 1)]
         self._passed: list[int] = []
         self._steady = 0
 

@@ -27,7 +27,7 @@ from scipy.optimize import brentq
 
 from compare.figures import COLOURS, bare
 from dynamics import BlockSystem, Criteria, Run, State, Verdict, ramp, settle
-from dynamics.run import LOCAL, VISCOUS, Fall
+from dynamics.run import CALM, LOCAL, VISCOUS, Fall
 
 from .finding import Edge, Entry, Finding
 from .known import RAMP, KnownWall, rounded_wall, sliding_block, toppling_block
@@ -51,9 +51,6 @@ BUDGET = 300_000
 
 SHORT = 20_000
 """Steps in which a block is to come to rest under its weight, or to be seen to fall, at the edges of α."""
-
-SEEN = 0.03
-"""Relative width of the edges of mass-proportional damping: theory is of a motion that is looked at all the time."""
 
 CLOSE = 0.002
 """Relative width to which an edge is bisected."""
@@ -187,9 +184,13 @@ def most_mass_rate(wall: KnownWall, tolerance: float | None) -> Edge:
     load = 1 + BESIDE
     beyond = BESIDE * wall.multiplier
 
+    criteria = Criteria(wall.far)
+    # Calm is seen half an interval later, in the mean, and believed at the last of its looks; a fall at the one before.
+    looks = (CALM - 1.5) * criteria.interval * Run(wall.system).dt
+
     def surplus(rate: float) -> float:
         decay = (1 - LOCAL) * rate
-        calm = math.log(beyond * wall.unrest / Criteria(wall.far).rest) / decay
+        calm = math.log(beyond * wall.unrest / criteria.rest) / decay + looks
         return beyond / (rate * wall.inertia) * (calm - (1 - math.exp(-decay * calm)) / decay) - Fall.SOON * wall.far
 
     theory = float(brentq(surplus, 0.1, 1e4))
@@ -214,8 +215,8 @@ def experiment() -> Finding:
             for (a, x), cell in found.cells.items()
         ]
     rows += [(name, f"{loads[1]:g}", LOCAL, VISCOUS, c, cell.answer, cell.steps) for (name, c), cell in massive.items()]
-    feigned = [most_mass_rate(block, SEEN), most_mass_rate(masonry, None)]
-    edges = [least_local(), most_local(), *feigned, most_mass_rate(toppling_block(), SEEN)]
+    feigned = [most_mass_rate(block, 0.02), most_mass_rate(masonry, None)]
+    edges = [least_local(), most_local(), *feigned, most_mass_rate(toppling_block(), 0.02)]
     wrong = sum(cell.answer == "wrong" for found in maps for cell in found.cells.values())
     return Finding(
         title="Damping: steps until the verdict, and whether it is right",
