@@ -117,6 +117,12 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
         life, and stop where it is not so. The latter also returns the mean multiplier of its steps and the work of
         the live load.
     """
+    respond = _responder(gather, law, scatter)
+    return _holder(respond), _driver(respond)
+
+
+def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
+    """Compile what one step begins with: from motions to the forces on the modes."""
 
     @kernel
     def respond(
@@ -148,6 +154,12 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
             force[:] = load
             scatter(normal, tangential, geometry, force)
 
+    return respond
+
+
+def _holder(respond: Any) -> Any:
+    """Compile the loop at a constant load."""
+
     @kernel
     def hold(
         steps: int,
@@ -172,6 +184,12 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
             if (before + step + 1) % LOOK == 0 and given < np.inf and not _sound(given, load, modes, state, most):
                 return step + 1, False
         return steps, True
+
+    return hold
+
+
+def _driver(respond: Any) -> Any:
+    """Compile the loop at a prescribed work-conjugate speed."""
 
     @kernel
     def drive(
@@ -226,7 +244,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
                 return step + 1, False, total / (step + 1), worked
         return steps, True, total / steps, worked
 
-    return hold, drive
+    return drive
 
 
 def work_arrays(n_modes: int, n_points: int) -> tuple[Array, ...]:

@@ -17,8 +17,12 @@ from matplotlib.figure import Figure
 
 from compare.command import command, main
 from compare.recording import StaticRecorder
-from compare.stability import find_out, machine
-from compare.stability.machine import COMPARE, LOST, MESH, NOT_TRIED, REDONE, REFUSED, RENDER, Scratch, Trial
+from compare.stability import find_out
+from compare.stability.machine.campaign import MISHAPS, draw, what_commands_need
+from compare.stability.machine.disk import disk_trials_apart
+from compare.stability.machine.mishaps import interrupt
+from compare.stability.machine.trial import LOST, NOT_TRIED, REDONE, REFUSED, Scratch, Trial
+from compare.stability.machine.works import COMPARE, MESH, RENDER
 from dem import limit
 from results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
 from results.frame import mechanism_frame
@@ -31,7 +35,7 @@ from tests.walls import courses
 def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folders in which mesh, compare and render have been called undisturbed."""
     home = tmp_path_factory.mktemp("machine")
-    needed = machine.what_commands_need(home)
+    needed = what_commands_need(home)
     for work in (MESH, COMPARE, *([] if why_not_drawn() else [RENDER])):
         Scratch(work, home).prepare(needed.get(work.name))
     return home
@@ -39,7 +43,7 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_a_mesh_broken_off_is_written_whole_when_asked_for_again(how: signal.Signals, home: Path) -> None:
-    trial = machine.interrupt(Scratch(MESH, home), home / f"mesh-{how}", how, how.name)
+    trial = interrupt(Scratch(MESH, home), home / f"mesh-{how}", how, how.name)
     assert (trial.verdict, trial.kept) == (REDONE, 0)
     assert trial.message == ("runningbond: interrupted; every file is whole, or as it was before" if how == 2 else "")
 
@@ -47,14 +51,14 @@ def test_a_mesh_broken_off_is_written_whole_when_asked_for_again(how: signal.Sig
 def test_pictures_broken_off_are_drawn_when_asked_for_again(home: Path) -> None:
     if why_not_drawn():
         pytest.skip("nothing can be drawn here")
-    trial = machine.interrupt(Scratch(RENDER, home), home / "pictures", signal.SIGINT, "Ctrl-C")
+    trial = interrupt(Scratch(RENDER, home), home / "pictures", signal.SIGINT, "Ctrl-C")
     assert (trial.verdict, trial.code) == (REDONE, 130)
     assert (trial.kept, trial.pieces) == (1, 2)
 
 
 def test_disks_that_take_no_more_are_told_of_and_nothing_is_lost(home: Path) -> None:
     """On a small disk that is full after the first case, and on one that has become read-only."""
-    found = {(trial.command, trial.mishap): trial for trial in machine.disk_trials_apart(home, ["mesh", "compare"])}
+    found = {(trial.command, trial.mishap): trial for trial in disk_trials_apart(home, ["mesh", "compare"])}
     assert [trial.verdict for trial in found.values() if trial.mishap == "full disk"] == [REDONE, REDONE]
     read_only = [trial for trial in found.values() if trial.mishap == "read-only folder"]
     assert {trial.verdict for trial in read_only} <= {REFUSED, NOT_TRIED}
@@ -224,17 +228,17 @@ def test_ctrl_c_while_the_suite_is_loading_is_no_traceback() -> None:
 def test_nothing_is_lost_whatever_happens_to_whichever_command() -> None:
     finding = find_out("machine")
     assert [edge.agrees for edge in finding.edges] == [True]
-    assert {row[1] for row in finding.rows} == set(machine.MISHAPS)
+    assert {row[1] for row in finding.rows} == set(MISHAPS)
     figure = Figure()
     finding.draw(figure)
     assert len(figure.axes[0].texts) == len(finding.rows)
 
 
 def test_the_chart_has_every_verdict(tmp_path: Path) -> None:
-    trials = [Trial("run", mishap, 0, 1, "", 0, REDONE) for mishap in machine.MISHAPS]
+    trials = [Trial("run", mishap, 0, 1, "", 0, REDONE) for mishap in MISHAPS]
     trials.append(replace(trials[0], command="mesh", verdict=LOST))
     figure = Figure()
-    machine.draw(trials, figure)
+    draw(trials, figure)
     shown = [text.get_text() for text in figure.axes[0].texts]
     assert shown == [REDONE] * 6 + [LOST]
     assert [text.get_text().split(":")[0] for text in figure.legends[0].get_texts()] == [REDONE, LOST]
