@@ -33,6 +33,10 @@ RESOLVED = 10
 GROWTH = 1 / 8
 """Largest step, once the first ones are borne, as a fraction of the load."""
 
+UNANSWERED = 4
+"""Loads in a row that neither hold nor fall after which a search that knows of a fall is given up, and half as many
+after which any is: each has cost the whole budget."""
+
 BEYOND = 200
 """Load, in first steps, beyond which it is doubled in each: at ten weights a wall that still stands is like to lock."""
 
@@ -69,6 +73,35 @@ class LoadSteps:
     interrupted: bool = False
 
 
+@dataclass(frozen=True)
+class Gap:
+    """Loads that neither held nor fell, inside the bracket.
+
+    Parameters
+    ----------
+    loads
+        The loads.
+    """
+
+    loads: tuple[float, ...] = ()
+
+    def sides(self, found: LoadSteps) -> tuple[float, float]:
+        """Width of the bracket below the lowest of the loads, and above the highest."""
+        return min(self.loads) - (found.lower or 0.0), (found.upper or np.inf) - max(self.loads)
+
+    def closed(self, found: LoadSteps, tolerance: float) -> bool:
+        """Whether nothing more is to be learnt of the loads around these at a relative tolerance."""
+        if not self.loads:
+            return False
+        if found.upper is None:
+            return len(self.loads) >= UNANSWERED // 2
+        return len(self.loads) >= UNANSWERED or max(self.sides(found)) <= tolerance / 4 * found.upper
+
+    def inside(self, found: LoadSteps) -> "Gap":
+        """These loads, or none where the wall has held above them or fallen below them since."""
+        return self if self.loads and min(self.sides(found)) > 0 else Gap()
+
+
 def load_steps(
     run: Run,
     first: float,
@@ -83,7 +116,8 @@ def load_steps(
     """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
 
     Every trial starts from the last state at rest, so that a fall leaves no trace in the states that count.
-    Steps grow while they are borne, so that the first one need not know the answer's size.
+    Steps grow while they are borne, so that the first one need not know the answer's size. Loads that neither hold nor
+    fall are passed by: first just beside, then the bracket closes in on them from both sides.
 
     Parameters
     ----------
@@ -144,10 +178,13 @@ def _search(
     seen = settle(run, probe, first, criteria, sudden=True) != "undecided"
     unhurried = loading * (probe.steps - state.steps) if seen else criteria.budget
     found.taken = probe.steps
-    step, neutral = first, None
+    step, gap = first, Gap()
     narrowest = RESOLVED * criteria.rest / (run.system.measure(run.system.live) or 1.0)
     while found.upper is None or found.upper - found.lower > max(tolerance * found.upper, narrowest):
-        trial = _next_trial(found, step, neutral, tolerance)
+        if gap.closed(found, tolerance):
+            found.verdict = "undecided"
+            return
+        trial = _next_trial(found, step, gap, tolerance)
         if trial > most:
             return
         state = found.borne.copy()
@@ -157,7 +194,7 @@ def _search(
         found.verdict = settle(run, state, trial, criteria, observe)
         found.taken += state.steps - found.borne.steps
         if found.verdict == "stable":
-            found.lower, found.borne, neutral = trial, state, None
+            found.lower, found.borne = trial, state
             found.rests.append((trial, state))
             if found.upper is None and moved_by(run.system, state, found.rests[0][1].motion, farthest) > 1:
                 return
@@ -167,19 +204,22 @@ def _search(
                 step = max(step, min(2 * step, GROWTH * trial))
         elif found.verdict == "collapse":
             found.upper, found.fallen = trial, state
-        elif neutral is None:
-            neutral = trial
         else:
-            return
+            gap = Gap((*gap.loads, trial))
+        gap = gap.inside(found)
 
 
-def _next_trial(found: LoadSteps, step: float, neutral: float | None, tolerance: float) -> float:
-    """Next load to try: a step up, the middle of the bracket, or just beside a load that neither held nor fell."""
-    lower = found.lower or 0.0
-    if neutral is None:
-        return lower + step if found.upper is None else (lower + found.upper) / 2
-    above = neutral * (1 + tolerance / 4)
-    return above if found.upper is None or found.upper > above else neutral * (1 - tolerance / 4)
+def _next_trial(found: LoadSteps, step: float, gap: Gap, tolerance: float) -> float:
+    """Next load to try: a step up, or the middle of the bracket; beside a load without an answer, or well off two."""
+    lower, upper = found.lower or 0.0, found.upper
+    if not gap.loads:
+        return lower + step if upper is None else (lower + upper) / 2
+    low, high = min(gap.loads), max(gap.loads)
+    if upper is None or len(gap.loads) == 1:
+        above = high * (1 + tolerance / 4)
+        return above if upper is None or upper > above else low * (1 - tolerance / 4)
+    below, above = gap.sides(found)
+    return (lower + low) / 2 if below > above else (high + upper) / 2
 
 
 def _raise(run: Run, state: State, start: float, stop: float, steps: float, pauses: float, criteria: Criteria) -> float:

@@ -231,6 +231,8 @@ def experiment() -> Finding:
     count = {value: sum(short.worth == value for short in answers.values()) for value in COLOURS}
     wrong = [f"{what} ({model})" for (what, model), short in answers.items() if short.worth == "wrong"]
     missed = f": {', '.join(wrong)}" if wrong else ""
+    silent = [f"{what} ({model})" for (what, model), short in answers.items() if short.worth == "says so"]
+    unanswered = f"; no answer, and why, to {', '.join(silent)}" if silent else ""
     told = sorted({short.message for short in answers.values() if short.worth == "says so"})
     return Finding(
         title="Materials, shapes and sizes at the edge",
@@ -238,8 +240,7 @@ def experiment() -> Finding:
         rows=rows,
         edges=edges,
         trust=f"{count['right']} of {len(answers)} answers are right, {count['wrong']} wrong{missed}. Models in motion "
-        f"see no multiplier below {UNSEEN:g}, and brackets there are as wide; of a large block on joints a hundredth "
-        "of its width, into which it sinks, `fem` says nothing.",
+        f"see no multiplier below {UNSEEN:g}, and brackets there are as wide{unanswered}.",
         beyond="; ".join(told) or "nothing: every model answers",
         draw=lambda figure: _draw(
             figure, [wall.what for wall in walls], [_exact(wall.exact) for wall in walls], answers
