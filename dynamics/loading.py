@@ -34,8 +34,8 @@ GROWTH = 1 / 8
 """Largest step, once the first ones are borne, as a fraction of the load."""
 
 UNANSWERED = 4
-"""Loads in a row that neither hold nor fall after which a search that knows of a fall is given up, and half as many
-after which any is: each has cost the whole budget."""
+"""Loads without an answer, side by side, after which a search that knows of a fall is given up; half as many end one
+that knows of none. Each has cost the whole budget."""
 
 BEYOND = 200
 """Load, in first steps, beyond which it is doubled in each: at ten weights a wall that still stands is like to lock."""
@@ -50,7 +50,8 @@ class LoadSteps:
     lower, upper
         Largest multiplier that the wall bore at rest, smallest that brought it down; None where none did.
     verdict
-        Of the last load tried; ``stable`` without `upper` where the search was given up.
+        Of the last load tried, or ``undecided`` where loads without an answer ended the search; ``stable`` without
+        `upper` where it was given up.
     borne
         State at rest under `lower`; None if not even the dead load was borne.
     fallen
@@ -72,6 +73,14 @@ class LoadSteps:
     taken: int = 0
     interrupted: bool = False
 
+    def add(self, trial: float, state: State) -> None:
+        """Take note of a load that held or brought the wall down, and of the wall under it."""
+        if self.verdict == "stable":
+            self.lower, self.borne = trial, state
+            self.rests.append((trial, state))
+        elif self.verdict == "collapse":
+            self.upper, self.fallen = trial, state
+
 
 @dataclass(frozen=True)
 class Gap:
@@ -89,17 +98,15 @@ class Gap:
         """Width of the bracket below the lowest of the loads, and above the highest."""
         return min(self.loads) - (found.lower or 0.0), (found.upper or np.inf) - max(self.loads)
 
-    def closed(self, found: LoadSteps, tolerance: float) -> bool:
-        """Whether nothing more is to be learnt of the loads around these at a relative tolerance."""
-        if not self.loads:
-            return False
-        if found.upper is None:
-            return len(self.loads) >= UNANSWERED // 2
-        return len(self.loads) >= UNANSWERED or max(self.sides(found)) <= tolerance / 4 * found.upper
+    def closed(self, found: LoadSteps, width: float) -> bool:
+        """Whether nothing more is to be learnt of the loads around these for a bracket of some width."""
+        most = UNANSWERED // 2 if found.upper is None else UNANSWERED
+        return bool(self.loads) and (len(self.loads) >= most or max(self.sides(found)) <= width / 4)
 
-    def inside(self, found: LoadSteps) -> "Gap":
-        """These loads, or none where the wall has held above them or fallen below them since."""
-        return self if self.loads and min(self.sides(found)) > 0 else Gap()
+    def after(self, found: LoadSteps, trial: float) -> "Gap":
+        """These loads and one more without an answer; none where the wall held above them or fell below them."""
+        loads = (*self.loads, trial) if found.verdict == "undecided" else self.loads
+        return Gap(loads) if loads and min(Gap(loads).sides(found)) > 0 else Gap()
 
 
 def load_steps(
@@ -181,7 +188,7 @@ def _search(
     step, gap = first, Gap()
     narrowest = RESOLVED * criteria.rest / (run.system.measure(run.system.live) or 1.0)
     while found.upper is None or found.upper - found.lower > max(tolerance * found.upper, narrowest):
-        if gap.closed(found, tolerance):
+        if gap.closed(found, max(tolerance * (found.upper or 0.0), narrowest)):
             found.verdict = "undecided"
             return
         trial = _next_trial(found, step, gap, tolerance)
@@ -193,20 +200,15 @@ def _search(
         trial = _raise(run, state, found.lower, trial, unhurried * share, PAUSES * share, criteria)
         found.verdict = settle(run, state, trial, criteria, observe)
         found.taken += state.steps - found.borne.steps
+        found.add(trial, state)
+        gap = gap.after(found, trial)
         if found.verdict == "stable":
-            found.lower, found.borne = trial, state
-            found.rests.append((trial, state))
             if found.upper is None and moved_by(run.system, state, found.rests[0][1].motion, farthest) > 1:
                 return
             if growth > GROWTH:
                 step = growth * trial
             elif len(found.rests) % 3 == 0:
                 step = max(step, min(2 * step, GROWTH * trial))
-        elif found.verdict == "collapse":
-            found.upper, found.fallen = trial, state
-        else:
-            gap = Gap((*gap.loads, trial))
-        gap = gap.inside(found)
 
 
 def _next_trial(found: LoadSteps, step: float, gap: Gap, tolerance: float) -> float:
@@ -236,7 +238,7 @@ def _raise(run: Run, state: State, start: float, stop: float, steps: float, paus
     motion, parts = state.motion.copy(), max(1, round(pauses))
     reached = start
     for part in range(1, parts + 1):
-        before, reached = reached, start + (stop - start) * part / parts
+        before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
         ramp(run, state, before, reached, round(steps / parts))
         if not _pauses(run, state, reached, motion, criteria):
             return reached

@@ -157,7 +157,7 @@ def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
     return respond
 
 
-def _holder(respond: Any) -> Any:
+def _holder(respond: Kernel) -> Any:
     """Compile the loop at a constant load."""
 
     @kernel
@@ -188,7 +188,7 @@ def _holder(respond: Any) -> Any:
     return hold
 
 
-def _driver(respond: Any) -> Any:
+def _driver(respond: Kernel) -> Any:
     """Compile the loop at a prescribed work-conjugate speed."""
 
     @kernel

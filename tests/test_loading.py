@@ -7,13 +7,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dem.rigid_system import rigid_system
-from dynamics import Criteria, LoadSteps, Run, load_steps
+from dynamics import Criteria, LoadSteps, Run, State, load_steps
+from dynamics.loading import RESOLVED, _raise
 from dynamics.run import Verdict
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
 
 FIRST = 0.05
-BLOCK = Run(rigid_system(panel(wall__length=0.24, wall__height=0.06, joint__mortar=MORTAR)))
+SIZE = {"wall__length": 0.24, "wall__height": 0.06, "joint__mortar": MORTAR}
+BLOCK = Run(rigid_system(panel(**SIZE)))
+PRESSED = {"gravity": 0.0, "live": {"kind": "point", "at": [0.12, 0.06], "force": [0, -1]}}
+WEIGHTLESS = Run(rigid_system(panel(**SIZE, load=PRESSED)))
 
 
 def searched(answer: Callable[[float], Verdict], tolerance: float = 0.005) -> tuple[LoadSteps, list[float]]:
@@ -39,7 +43,8 @@ def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
             return "undecided"
         return "stable" if multiplier < 0.24 else "collapse"
 
-    found, _ = searched(answer)
+    found, tried = searched(answer)
+    assert 0.25 in [round(multiplier, 6) for multiplier in tried]
     assert found.lower is not None
     assert found.upper is not None
     assert found.lower < 0.24 <= found.upper
@@ -59,6 +64,35 @@ def test_the_bracket_closes_in_on_loads_without_an_answer() -> None:
     assert 0.42 < found.lower < 0.422
     assert 0.427 < found.upper < 0.43
     assert sum(answer(multiplier) == "undecided" for multiplier in tried) <= 4
+
+
+def test_a_narrow_band_without_an_answer_is_none_though_the_last_load_gave_one() -> None:
+    """Closed in on from both sides, to a quarter of the tolerance."""
+    band = 0.317, 0.317 * 1.004
+
+    def answer(multiplier: float) -> Verdict:
+        return "stable" if multiplier < band[0] else "collapse" if multiplier > band[1] else "undecided"
+
+    found, tried = searched(answer)
+    assert answer(tried[-1]) != "undecided"
+    assert found.verdict == "undecided"
+    assert found.upper is not None
+    assert found.lower is not None
+    unanswered = [multiplier for multiplier in tried if answer(multiplier) == "undecided"]
+    assert len(unanswered) < 4
+    assert max(min(unanswered) - found.lower, found.upper - max(unanswered)) <= 0.005 / 4 * found.upper
+
+
+@given(pauses=st.lists(st.booleans(), min_size=1, max_size=30), stop=st.floats(0.06, 3.0))
+@settings(max_examples=200, deadline=None)
+def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: list[bool], stop: float) -> None:
+    """Paused or not: it comes to the load itself, or to less where it falls on the way."""
+    answers = iter(pauses)
+    state = State.at_rest(WEIGHTLESS.system)
+    with patch("dynamics.loading.ramp"), patch("dynamics.loading._pauses", lambda *_: next(answers, True)):
+        reached = _raise(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
+    assert reached <= stop
+    assert (reached == stop) == all(pauses[:-1])
 
 
 def test_a_wall_that_never_answers_costs_two_budgets() -> None:
@@ -85,3 +119,6 @@ def test_a_search_ends_whatever_the_answers(data: st.DataObject, tolerance: floa
     found, _ = searched(answer, tolerance)
     assert found.lower == lower
     assert found.upper == (upper if upper < float("inf") else None)
+    if found.verdict != "undecided" and found.upper is not None:
+        narrowest = RESOLVED * 1e-5 / BLOCK.system.measure(BLOCK.system.live)
+        assert upper - lower <= max(tolerance * upper, narrowest)

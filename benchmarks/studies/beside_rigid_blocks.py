@@ -1,4 +1,4 @@
-"""Deformable blocks beside rigid ones on the twelve panels, where both have the same joint points or on finer meshes.
+"""Deformable blocks beside rigid ones on the sixteen panels, where both have the same joint points or on finer meshes.
 
 Prints a Markdown table, one row a panel as it ends. From the project's directory, for all panels or some of them:
 
@@ -30,7 +30,7 @@ from fem_interface.model import fem
 from results import Outcome
 from scene import Array, Scene
 
-PANELS = [f"panel-{row:02d}" for row in range(1, 13)]
+PANELS = [f"panel-{row:02d}" for row in range(1, 13)] + [f"point-load-{ratio}" for ratio in (4, 2, 1, "quarter")]
 
 TOLERANCE = 0.005
 
@@ -83,6 +83,12 @@ def sample(outcomes: Sequence[Outcome]) -> Sample | None:
     return Sample(np.array(each)) if len(each) == len(outcomes) else None
 
 
+def answer(outcome: Outcome) -> str:
+    """Bracket of an outcome, after its status if that is none that has a multiplier."""
+    status = "" if outcome.multiplier is not None else outcome.status
+    return f"{status} {bracket(outcome)}".strip()
+
+
 def apart(deformable: Sample, rigid: Sample) -> str:
     """How far one mean is from the other, with its standard error where there are draws."""
     ratio = deformable.mean / rigid.mean
@@ -111,7 +117,7 @@ def main() -> None:
             of_deformable, of_rigid = sample(deformable), sample(rigid)
             off = apart(of_deformable, of_rigid) if of_deformable and of_rigid else ""
             told = [
-                bracket(each[0]) if asked.draws == 1 else str(of_each or "")
+                answer(each[0]) if asked.draws == 1 else str(of_each or "")
                 for each, of_each in ((rigid, of_rigid), (deformable, of_deformable))
             ]
             print(f"| {name} | {' | '.join(told)} | {off} |", flush=True)

@@ -18,7 +18,7 @@ from fem_interface.modes import ModeCount
 from fem_interface.runs import modal_wall
 from fem_interface.stable import scaled_modes
 from fem_interface.system import fem_system, system_of
-from joints.softening_kernel import PLASTIC_SLIP
+from joints.point_kernel import FRICTION_WORK
 from scene import Array, Scene, SceneError
 from tests.fem_interface.nodal_steps import NodalSteps
 from tests.fem_interface.walls import (
@@ -154,7 +154,7 @@ def test_statics_do_not_feel_the_mass(young: float) -> None:
         (wall(1e11, wall__height=0.36), 0.5),
         (of_stiffness("wall-w1", 1e10), 0.54),
         (of_stiffness("wall-w1", 1e11), 0.54),
-        (of_stiffness("panel-04", 1e11), 0.075),
+        pytest.param(of_stiffness("panel-04", 1e11), 0.075, marks=pytest.mark.long),
     ],
     ids=["2 x 6 bricks", "wall-w1, 10 GPa", "wall-w1, 100 GPa", "panel-04, 100 GPa"],
 )
@@ -177,7 +177,7 @@ def test_mass_scaling_leaves_a_pushed_wall_where_it_is(scene: Scene, highest: fl
         rows.append(row)
         opening, _, _, _ = run.tractions(state)
         assert (opening > 0).any()
-        assert np.abs(state.history[PLASTIC_SLIP]).max() > 0
+        assert state.history[FRICTION_WORK].max() > 0
     assert rows[0] == pytest.approx(rows[1], rel=2e-3)
 
 
