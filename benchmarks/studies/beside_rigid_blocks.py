@@ -5,9 +5,11 @@ Prints a Markdown table, one row a panel as it ends. From the project's director
     python benchmarks/studies/beside_rigid_blocks.py
     python benchmarks/studies/beside_rigid_blocks.py panel-10 panel-12
 
-Points are on the joint elements of a mesh, two cells in half a block along the course and in its height, by
+On a mesh of two cells in half a block along the course and in its height, with the same points or with points on
+every joint element:
 
     python benchmarks/studies/beside_rigid_blocks.py --cells 2
+    python benchmarks/studies/beside_rigid_blocks.py --cells 2 --points elements
 
 A dry wall's λ depends on its history, and where slips set off slips a history on the last bit of a number. Draws of
 one wall differ in its density, by parts in a thousand million that change nothing else; then rows are means of their
@@ -20,6 +22,7 @@ import argparse
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import get_args
 
 import numpy as np
 from joblib import Parallel, delayed
@@ -27,7 +30,9 @@ from joblib import Parallel, delayed
 from compare import published_scene, run_model
 from compare.table import bracket
 from fem_interface.model import fem
+from fem_interface.operators import PointsOn
 from results import Outcome
+from results.outcome import number
 from scene import Array, Scene
 
 PANELS = [f"panel-{row:02d}" for row in range(1, 13)] + [f"point-load-{ratio}" for ratio in (4, 2, 1, "quarter")]
@@ -43,11 +48,11 @@ def redrawn(scene: Scene, k: int) -> Scene:
     return replace(scene, block=replace(scene.block, density=scene.block.density * (1 + k * DRAW)))
 
 
-def outcome_of(scene: Scene, model: str, cells: int | None = None) -> Outcome:
-    """Outcome of one model, at the joint points of rigid blocks, or those of a mesh of so many cells."""
-    if model != "fem":
-        return run_model(model, scene, TOLERANCE)
-    return fem(scene, TOLERANCE, cells=cells) if cells else fem(scene, TOLERANCE, points="joints")
+def outcome_of(scene: Scene, model: str, cells: int = 1, points: PointsOn = "joints") -> Outcome:
+    """Outcome of one model, `fem` on a mesh of so many cells and with points on its elements or on whole joints."""
+    if model == "fem":
+        return fem(scene, TOLERANCE, cells=cells, points=points)
+    return run_model(model, scene, TOLERANCE)
 
 
 @dataclass(frozen=True)
@@ -73,27 +78,31 @@ class Sample:
         return float(self.each.std(ddof=1) / np.sqrt(len(self.each))) if len(self.each) > 1 else 0.0
 
     def __str__(self) -> str:
-        """Mean, standard error and range."""
-        return f"{self.mean:.4f} ± {self.error:.4f} ({self.each.min():.4f} … {self.each.max():.4f})"
+        """Mean, standard error from their scatter, and range."""
+        mean, least, most = (number(x) for x in (self.mean, self.each.min(), self.each.max()))
+        return f"{mean} ± {100 * self.error / self.mean:.2f} % ({least} … {most})"
 
 
 def sample(outcomes: Sequence[Outcome]) -> Sample | None:
-    """Multipliers, if every outcome has one."""
+    """Multipliers of the outcomes that have one, if any has."""
     each = [outcome.multiplier for outcome in outcomes if outcome.multiplier is not None]
-    return Sample(np.array(each)) if len(each) == len(outcomes) else None
+    return Sample(np.array(each)) if each else None
 
 
-def answer(outcome: Outcome) -> str:
-    """Bracket of an outcome, after its status if that is none that has a multiplier."""
-    status = "" if outcome.multiplier is not None else outcome.status
-    return f"{status} {bracket(outcome)}".strip()
+def told(outcomes: Sequence[Outcome]) -> str:
+    """Bracket of one outcome, after its status if that is none with a multiplier; of several what they come to."""
+    found = sample(outcomes)
+    if len(outcomes) == 1:
+        return f"{'' if found else outcomes[0].status} {bracket(outcomes[0])}".strip()
+    answered = len(found.each) if found else 0
+    return f"{found or ''}{'' if answered == len(outcomes) else f' {answered} of {len(outcomes)}'}".strip()
 
 
 def apart(deformable: Sample, rigid: Sample) -> str:
     """How far one mean is from the other, with its standard error where there are draws."""
     ratio = deformable.mean / rigid.mean
     off = f"{round(100 * (ratio - 1), 2) or 0.0:+.2f}"  # no −0.0
-    if len(rigid.each) == 1:
+    if len(rigid.each) == len(deformable.each) == 1:
         return f"{off} %"
     error = ratio * math.hypot(deformable.error / deformable.mean, rigid.error / rigid.mean)
     return f"{off} ± {100 * error:.2f} %"
@@ -104,23 +113,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Deformable blocks beside rigid ones.")
     parser.add_argument("panels", nargs="*", default=PANELS)
     parser.add_argument("--draws", type=int, choices=range(1, 100), metavar="N", default=1, help="runs of each model")
-    parser.add_argument("--cells", type=int, choices=range(1, 9), metavar="N", help="cells of the mesh points are on")
+    parser.add_argument("--cells", type=int, choices=range(1, 9), metavar="N", default=1, help="cells of the mesh")
+    parser.add_argument("--points", choices=get_args(PointsOn), default="joints", help="what joint points are laid on")
     asked = parser.parse_args()
-    print("| panel | `dem-dynamic` | `fem` | its middle beside the other's |\n|---|---|---|---|")
+    print("| panel | `dem-dynamic` | `fem` | beside the other's |\n|---|---|---|---|")
     with Parallel(n_jobs=-1) as workers:
         for name in asked.panels:
             walls = [redrawn(published_scene(name), k) for k in range(asked.draws)]  # of 1000 GPa, as the paper's are
             # What takes longest first.
             cases = [(wall, model) for model in ("fem", "dem-dynamic") for wall in walls]
-            outcomes = workers(delayed(outcome_of)(*case, asked.cells) for case in cases)
+            outcomes = workers(delayed(outcome_of)(*case, asked.cells, asked.points) for case in cases)
             deformable, rigid = outcomes[: asked.draws], outcomes[asked.draws :]
             of_deformable, of_rigid = sample(deformable), sample(rigid)
             off = apart(of_deformable, of_rigid) if of_deformable and of_rigid else ""
-            told = [
-                answer(each[0]) if asked.draws == 1 else str(of_each or "")
-                for each, of_each in ((rigid, of_rigid), (deformable, of_deformable))
-            ]
-            print(f"| {name} | {' | '.join(told)} | {off} |", flush=True)
+            print(f"| {name} | {told(rigid)} | {told(deformable)} | {off} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -70,9 +70,19 @@ def test_panels_of_stiff_blocks_fall_at_the_load_of_rigid_ones(name: str) -> Non
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number", [1, 2, 3, 4, 5])
-def test_panels_on_a_finer_mesh_fall_at_the_load_of_rigid_blocks(number: int) -> None:
-    """Two cells in half a block along the course and in its height, points on their elements: within 3 %."""
+@pytest.mark.parametrize("number", [1, 2, 3, 4, 5, 6, 8, 9, 12])
+def test_a_finer_mesh_leaves_the_load_where_it_is(number: int) -> None:
+    """Two cells in half a block along the course and in its height, joint points of rigid blocks: within 1 %."""
+    scene = published_scene(f"panel-{number:02d}")
+    ours, theirs = fem(scene, 0.005, cells=2, points="joints"), dem_dynamic(scene, 0.005)
+    assert ours.status == theirs.status == "collapse"
+    assert ours.multiplier == pytest.approx(theirs.multiplier, rel=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("number", [1, 2, 3, 4, 5, 6, 8, 9])
+def test_more_joint_points_on_a_finer_mesh_move_the_load_by_little(number: int) -> None:
+    """Points on the elements of that mesh: within 3 %, but for panels 7 and 12, whose friction has other ways then."""
     scene = published_scene(f"panel-{number:02d}")
     ours, theirs = fem(scene, 0.005, cells=2), dem_dynamic(scene, 0.005)
     assert ours.status == theirs.status == "collapse"
