@@ -173,6 +173,11 @@ def _cell(campaign: Campaign, name: str, model: str) -> str:
     outcome = campaign.outcomes.get((name, model))
     if outcome is None:
         return "not run"
+    return answer(outcome)
+
+
+def answer(outcome: Outcome) -> str:
+    """Answer of an outcome as tables print it: the bracket of a collapse, any other status before what is known."""
     found = bracket(outcome)
     return found if outcome.status == "collapse" else f"{outcome.status} {found}".strip()
 

@@ -106,7 +106,8 @@ class Gap:
     def after(self, found: LoadSteps, trial: float) -> "Gap":
         """These loads and one more without an answer; none where the wall held above them or fell below them."""
         loads = (*self.loads, trial) if found.verdict == "undecided" else self.loads
-        return Gap(loads) if loads and min(Gap(loads).sides(found)) > 0 else Gap()
+        gap = Gap(loads)
+        return gap if loads and min(gap.sides(found)) > 0 else Gap()
 
 
 def load_steps(
@@ -123,8 +124,9 @@ def load_steps(
     """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
 
     Every trial starts from the last state at rest, so that a fall leaves no trace in the states that count.
-    Steps grow while they are borne, so that the first one need not know the answer's size. Loads that neither hold nor
-    fall are passed by: first just beside, then the bracket closes in on them from both sides.
+    Steps grow while they are borne, so that the first one need not know the answer's size. A load that neither
+    holds nor falls is passed by, just beside it; once a fall is known the bracket closes in on such loads from both
+    sides.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ import numpy as np
 from joblib import Parallel, delayed
 
 from compare import published_scene, run_model
-from compare.table import bracket
+from compare.table import answer
 from fem_interface.model import fem
 from fem_interface.operators import PointsOn
 from results import Outcome
@@ -90,10 +90,10 @@ def sample(outcomes: Sequence[Outcome]) -> Sample | None:
 
 
 def told(outcomes: Sequence[Outcome]) -> str:
-    """Bracket of one outcome, after its status if that is none with a multiplier; of several what they come to."""
-    found = sample(outcomes)
+    """Answer of one outcome; of several what they come to, and how many have a multiplier if not all have."""
     if len(outcomes) == 1:
-        return f"{'' if found else outcomes[0].status} {bracket(outcomes[0])}".strip()
+        return answer(outcomes[0])
+    found = sample(outcomes)
     answered = len(found.each) if found else 0
     return f"{found or ''}{'' if answered == len(outcomes) else f' {answered} of {len(outcomes)}'}".strip()
 

@@ -6,7 +6,7 @@ import shutil
 import signal
 from collections.abc import Sequence
 from contextlib import redirect_stderr, redirect_stdout
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -149,4 +149,4 @@ def message_of(said: str, printed: str = "") -> str:
 
 def judged(trial: Trial, right: bool) -> Trial:
     """The trial, as lost if what was asked for is not right."""
-    return trial if right else Trial(**{**asdict(trial), "verdict": LOST})
+    return trial if right else replace(trial, verdict=LOST)
