@@ -6,7 +6,8 @@ differences are stable at a step Δt(ω) if for every block
     K_b + (2/Δt) C + K_j ≤ ω² M*,    M* = M + β K_b / ω²,
 
 with β a little above one: a mode that is stiff enough to limit the step is made just so heavy that it does not. The
-smallest such ω is sought; it comes close to that of rigid blocks, however stiff the blocks are.
+smallest such ω is sought; it comes close to that of rigid blocks, however stiff the blocks are. In walls of few blocks
+the lowest vibrations are not far below it and would become slower: masses are scaled for a larger ω there.
 """
 
 from dataclasses import dataclass
@@ -20,12 +21,26 @@ from scene import Array
 
 from .modal_wall import ModalWall
 from .runs import RESOLUTION
+from .slowing import Slowing
 
 ROOM = 1.1
 """Step that masses are scaled for, in critical ones: leaves room for the viscosity of the scaled modes."""
 
 CLOSE = 1e-3
 """Relative accuracy of ω²."""
+
+LOWEST = 20
+"""Number of the lowest frequencies that scaling leaves as they are, in walls of ten blocks or more.
+
+In smaller ones it is the lowest two thirds of those that the wall has of rigid blocks: in the highest of them one
+block swings against the others, and to keep these as they are is almost to scale nothing.
+"""
+
+LOST = 2e-3
+"""Part of them that it may take."""
+
+LARGE = 1000
+"""Number of blocks beyond which they are not looked at: they lose 2e-4 in walls of 600."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,17 +83,41 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
     """
     kinds = min(_all_kinds(wall), key=_rigid_bound)
 
-    def bound(square: float) -> float:
-        return max(_bound(kind, square, damping, mass_scaling) for kind in kinds)
+    def smallest(fit: float | None) -> float:
+        """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself."""
 
-    low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
-    while bound(high) > high:
-        low, high = high, 2 * high
-    while high > low * (1 + CLOSE):
-        middle = np.sqrt(low * high)
-        low, high = (low, middle) if bound(middle) <= middle else (middle, high)
-    mass = _scaled(wall.mass, wall.stiffness, high) if mass_scaling else wall.mass
-    return ScaledModes(float(high), mass, _viscosity(wall.stiffness, mass, damping))
+        def bound(square: float) -> float:
+            return max(_bound(kind, square, damping, fit or square) for kind in kinds)
+
+        low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
+        while bound(high) > high:
+            low, high = high, 2 * high
+        while high > low * (1 + CLOSE):
+            middle = float(np.sqrt(low * high))
+            low, high = (low, middle) if bound(middle) <= middle else (middle, high)
+        return high
+
+    if mass_scaling:
+        fit = square = smallest(None)
+        needed = _unslowed(wall, fit)
+        if needed > fit:
+            fit, square = needed, smallest(needed)
+    else:
+        fit, square = np.inf, smallest(np.inf)
+    mass = _scaled(wall.mass, wall.stiffness, fit)
+    return ScaledModes(square, mass, _viscosity(wall.stiffness, mass, damping))
+
+
+def _unslowed(wall: ModalWall, square: float) -> float:
+    """Smallest ω² from `square` up that masses may be scaled for, so that the lowest vibrations stay as they are."""
+    rigid = int(((wall.stiffness == 0) & np.isfinite(wall.mass)).sum())
+    lowest = min(LOWEST, 2 * rigid // 3)
+    if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE:
+        return square
+    slowing = Slowing(wall, lowest, square)
+    while (lost := slowing.of(_scaled(wall.mass, wall.stiffness, square)) / LOST) > 1:
+        square *= max(lost, 1 + CLOSE)  # as a rule what is lost falls as 1 / ω²
+    return square
 
 
 def largest_scaling(wall: ModalWall, mass: Array) -> float:
@@ -107,8 +146,8 @@ def _rigid_bound(kinds: list[_Kind]) -> float:
     return found
 
 
-def _bound(kind: _Kind, square: float, damping: float, mass_scaling: bool) -> float:
-    mass = _scaled(kind.mass, kind.stiffness, square) if mass_scaling else kind.mass
+def _bound(kind: _Kind, square: float, damping: float, fit: float) -> float:
+    mass = _scaled(kind.mass, kind.stiffness, fit)
     viscosity = _viscosity(kind.stiffness, mass, damping)
     own = kind.stiffness + 2 / stable_step(square, VISCOUS, LOCAL) * viscosity
     return float(block_frequency_squared(kind.joints + np.diag(own), _each(mass, kind.joints)).max())

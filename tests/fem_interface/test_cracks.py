@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import spsolve
 
 from dynamics import Criteria, Run, State, settle
@@ -15,6 +14,7 @@ from fem_interface.modal_wall import ModalWall
 from fem_interface.model import fem
 from fem_interface.piece_run import PieceRun
 from fem_interface.runs import modal_wall
+from fem_interface.slowing import elastic_stiffness
 from fem_interface.system import system_of
 from joints.point_kernel import FRICTION_WORK
 from joints.softening_kernel import DAMAGE
@@ -67,25 +67,11 @@ def corners() -> Scene:
     return wall(STRONG, joint__cohesion=1e5, support__kind="corners", load={"gravity": 0.0, "live": POINT})
 
 
-def elastic_stiffness(found: ModalWall) -> csr_array:
-    """Stiffness in modal coordinates of a wall whose joints stay elastic."""
-    system = system_of(found)
-    jumps = []
-    for k in range(len(system.mass)):
-        motion, opening, slip = np.zeros(len(system.mass)), *np.zeros((2, system.law.points))
-        motion[k] = 1.0
-        system.gather(motion, system.geometry, opening, slip)
-        jumps.append(np.concatenate([opening, slip]))
-    B = csr_array(np.array(jumps).T)
-    weight = np.concatenate([system.law.normal_stiffness * system.area, system.law.shear_stiffness * system.area])
-    return csr_array(B.T @ (B * weight[:, None]) + diags_array(system.stiffness))
-
-
 def elastic_displacement(found: ModalWall) -> float:
     """Displacement of the control point under dead and live load, all joints elastic [m]."""
     system = system_of(found)
     moving = np.flatnonzero(np.isfinite(system.mass))
-    K = elastic_stiffness(found)[moving][:, moving]
+    K = elastic_stiffness(found)
     return float(system.control[moving] @ spsolve(K.tocsc(), (system.dead + system.live)[moving]))
 
 

@@ -11,11 +11,14 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
 from compare import published_scene
+from compare.stability.elastic import elastic_stiffness as of_modes
 from dynamics import Criteria, Run, State, settle
 from dynamics.controls import ramp
+from fem_interface.cracks import Cracks
 from fem_interface.loads import inner_mass
 from fem_interface.modes import ModeCount
 from fem_interface.runs import modal_wall
+from fem_interface.slowing import elastic_stiffness
 from fem_interface.stable import scaled_modes
 from fem_interface.system import fem_system, system_of
 from joints.point_kernel import FRICTION_WORK
@@ -25,7 +28,6 @@ from tests.fem_interface.walls import (
     GLUE,
     MORTAR,
     joint_stiffness_of,
-    modal_stiffness,
     patch,
     pushed,
     triangle_wall,
@@ -34,7 +36,10 @@ from tests.fem_interface.walls import (
 from tests.walls import panel
 
 SLOWLY = 0.2
-"""Time in which a load grows by a fifth of the largest [s]."""
+"""Time in which a load grows by a fifth of the largest, and a wall's weight from nothing [s]."""
+
+HELD = 2e-3 * (1 + 1e-6)
+"""Part of a frequency that mass scaling may take."""
 
 
 def of_stiffness(name: str, young: float) -> Scene:
@@ -84,35 +89,45 @@ def test_a_block_without_inner_nodes_bears_no_lumped_load() -> None:
 @pytest.mark.parametrize("young", [5e9, 1e10, 2e10, 5e10, 2e11, 1e12])
 @pytest.mark.parametrize(("height", "modes"), [(1.44, "all"), (1.44, None), (0.72, None)])
 def test_mass_scaling_keeps_the_first_twenty_frequencies(height: float, modes: ModeCount | None, young: float) -> None:
-    """Of the square panel and of one half as high, within 2e-3."""
+    """Of the square panel and of one half as high."""
     scene = panel(wall__height=height, joint__mortar=MORTAR, block__young=young)
-    assert _largest_slowing(scene, modes) < 2e-3
+    assert _largest_slowing(scene, modes) < HELD
 
 
-@pytest.mark.parametrize("young", [5e9, 1e10, 2e10, 1e11, 1e12])
-@pytest.mark.parametrize(
-    ("name", "bound"),
-    [
-        ("panel-01", 2e-3),
-        ("panel-04", 2e-3),
-        ("panel-12", 2e-3),
-        ("wall-w2", 2e-3),
-        ("wall-w3", 2e-3),
-        ("wall-w1", 4e-3),
-    ],
-)
-def test_mass_scaling_keeps_the_first_twenty_frequencies_of_published_walls(
-    name: str, bound: float, young: float
+@pytest.mark.parametrize("young", [5e9, 1e10, 2e10, 5e10, 1e11, 1e12])
+@pytest.mark.parametrize("name", ["panel-01", "panel-04", "panel-12", "wall-w1", "wall-w2", "wall-w3"])
+def test_mass_scaling_keeps_the_first_twenty_frequencies_of_published_walls(name: str, young: float) -> None:
+    assert _largest_slowing(of_stiffness(name, young)) < HELD
+
+
+@pytest.mark.parametrize("young", [5e9, 2e10, 1e11, 1e12])
+@pytest.mark.parametrize(("length", "height"), [(0.48, 0.24), (0.48, 0.36), (0.72, 0.36), (0.24, 1.44), (2.4, 0.12)])
+def test_mass_scaling_keeps_the_first_twenty_frequencies_of_walls_of_ten_blocks_or_more(
+    length: float, height: float, young: float
 ) -> None:
-    """Within 2e-3; on W1, of 33 blocks, the twentieth frequency is high in the spectrum, and bears twice that."""
-    assert _largest_slowing(of_stiffness(name, young)) < bound
+    """The twentieth of their thirty or more is high in the spectrum: masses are scaled less for it."""
+    scene = panel(wall__length=length, wall__height=height, joint__mortar=MORTAR, block__young=young)
+    assert (~scene.fixed).sum() >= 10
+    assert _largest_slowing(scene) < HELD
+
+
+@pytest.mark.parametrize("cracks", ["joints", "blocks"])
+@pytest.mark.parametrize("make", [wall, patch, triangle_wall])
+def test_the_stiffness_that_frequencies_are_of_is_that_of_a_step(make: Any, cracks: Cracks) -> None:
+    """Assembled from the jumps of the nodes, and found from those that each mode makes in a step."""
+    scene = make()
+    if cracks == "blocks":
+        scene = replace(scene, inner_joint=scene.joint)
+    found = modal_wall(scene, cracks=cracks)
+    of_steps, _ = of_modes(system_of(found))
+    assert np.abs(elastic_stiffness(found).toarray() - of_steps).max() < 1e-12 * np.abs(of_steps).max()
 
 
 def _largest_slowing(scene: Scene, modes: ModeCount | None = None) -> float:
     """Largest part by which mass scaling lowers one of the first twenty frequencies; it raises none."""
     found = modal_wall(scene, modes=modes)
     scaled = scaled_modes(found, 0.05)
-    K = modal_stiffness(found)
+    K = elastic_stiffness(found)
     exact, slowed = (_lowest_frequencies(K, mass[np.isfinite(mass)]) for mass in (found.mass, scaled.mass))
     assert (slowed <= exact * (1 + 1e-9)).all()
     return float((1 - slowed / exact).max())
@@ -161,15 +176,18 @@ def test_statics_do_not_feel_the_mass(young: float) -> None:
 def test_mass_scaling_leaves_a_pushed_wall_where_it_is(scene: Scene, highest: float) -> None:
     """Displacement under loads that grow slowly to 85 % of collapse, joints open and slid: as without it, to 0.2 %.
 
-    Loads put on at once make joints slip in another order at each time step.
+    Loads put on at once, the weight too, make joints slip in another order at each time step.
     """
     rows = []
     loads = np.linspace(0.0, highest, 6)
     for on in (True, False):
         run = Run(fem_system(scene, mass_scaling=on))
         state, criteria = State.at_rest(run.system), Criteria(collapse=1.0, rest=1e-6, budget=20_000_000)
+        pieces = round(SLOWLY / run.dt / 20)
+        for piece in range(pieces):
+            run.hold(state, 0.0, 20, dead=(piece + 0.5) / pieces)
         assert settle(run, state, 0.0, criteria) == "stable"
-        row = []
+        row = [run.system.control @ state.motion]
         for before, multiplier in pairwise(loads):
             ramp(run, state, before, multiplier, round(SLOWLY / run.dt))
             assert settle(run, state, multiplier, criteria) == "stable"

@@ -4,13 +4,11 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag
-from scipy.sparse import csr_array, diags_array
+from scipy.sparse import csr_array
 
 from dynamics import BlockSystem, Run, State
-from fem_interface import mass_matrix, nodal_jump, stiffness_matrix
-from fem_interface.modal_wall import ModalWall
+from fem_interface import mass_matrix, stiffness_matrix
 from fem_interface.modes import rigid_motions
-from fem_interface.system import system_of
 from fem_interface.templates import nodes_of, triangles_of
 from joints.point_kernel import FRICTION_WORK
 from meshing import WallMesh
@@ -75,22 +73,6 @@ def whole(mesh: WallMesh, scene: Scene) -> tuple[csr_array, csr_array]:
 def joint_stiffness_of(system: BlockSystem, opening: Any, slip: Any) -> csr_array:
     k_n, k_t = system.law.normal_stiffness * system.area, system.law.shear_stiffness * system.area
     return csr_array(opening.T @ (opening * k_n[:, None]) + slip.T @ (slip * k_t[:, None]))
-
-
-def modal_stiffness(found: ModalWall) -> csr_array:
-    """Stiffness of a wall whose joints stay elastic, in the coordinates that move."""
-    parts = []
-    for template, first in zip(found.templates, found.first, strict=False):
-        n, shape = len(template.blocks), template.modes.shape
-        rows, modes = np.nonzero(shape)
-        for k, block in enumerate(template.blocks):
-            parts.append((2 * found.mesh.first_node[block] + rows, first + modes * n + k, shape[rows, modes]))
-    node, coordinate, values = (np.concatenate(column) for column in zip(*parts, strict=True))
-    basis = csr_array((values, (node, coordinate)), shape=(2 * len(found.mesh.points), len(found.mass)))
-    jump = nodal_jump(found.interface, len(found.mesh.points))
-    joints = joint_stiffness_of(system_of(found), jump.opening @ basis, jump.slip @ basis)
-    moving = np.flatnonzero(np.isfinite(found.mass))
-    return csr_array((joints + diags_array(found.stiffness))[moving][:, moving])
 
 
 def check_dissipation(run: Run, steps: int) -> State:
