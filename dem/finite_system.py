@@ -68,16 +68,24 @@ class FiniteRun(dynamics.FiniteRun):
     system
         Its `finite_system`, with other masses or loads if need be.
     local, viscous
-        Damping, as in `Run`. The time step follows the contacts.
+        Damping, as in `Run`.
+    part
+        Part of the stable time step, which follows the contacts, that is taken.
     """
 
     def __init__(
-        self, scene: Scene, system: BlockSystem | None = None, *, local: float = LOCAL, viscous: float = VISCOUS
+        self,
+        scene: Scene,
+        system: BlockSystem | None = None,
+        *,
+        local: float = LOCAL,
+        viscous: float = VISCOUS,
+        part: float = 1.0,
     ) -> None:
         system = system or finite_system(scene)
         outline = Outline.of(scene)
         undeformed = find_contacts(outline, np.zeros_like(system.mass), outline.margin)
-        super().__init__(system, outline, undeformed, local=local, viscous=viscous)
+        super().__init__(system, outline, undeformed, local=local, viscous=viscous, part=part)
         self.scene = scene
 
     def _geometry(self, contacts: Contacts) -> tuple[Any, ...]:

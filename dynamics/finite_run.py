@@ -16,6 +16,7 @@ from scene import Array, Indices, Scene
 from .controls import push
 from .run import Criteria, Ledger, Run, settle
 from .system import BlockSystem, State
+from .time_step import stable_step
 from .verdict import COLLAPSE
 
 PLASTIC_SLIP = 4
@@ -78,14 +79,16 @@ class FiniteRun(Run, ABC):
     contacts
         Those contacts.
     local, viscous
-        Damping, as in `Run`. The time step follows the contacts.
+        Damping, as in `Run`.
+    part
+        Part of the stable time step, which follows the contacts, that is taken.
     """
 
     def __init__(
-        self, system: BlockSystem, outline: Outline, contacts: Contacts, *, local: float, viscous: float
+        self, system: BlockSystem, outline: Outline, contacts: Contacts, *, local: float, viscous: float, part: float
     ) -> None:
-        super().__init__(system, local=local, viscous=viscous)
-        self.outline, self.viscous = outline, viscous
+        self.outline, self.viscous, self.part = outline, viscous, part
+        self._start(system, local)
         self._undeformed = self._contacts = contacts
         self._undeformed_bound = system.block_frequency_squared
         self._loading = self._farthest((np.abs(system.dead) + np.abs(system.live)) / system.mass)
@@ -177,13 +180,16 @@ class FiniteRun(Run, ABC):
         """Find the contacts of a state anew, in place, and hand their history on."""
         before, history = state.contacts, state.history
         rested = self._resting(before, state.motion)
-        shear = self._jumps(before, state.motion)[1] - history[PLASTIC_SLIP]
+        opening, slip = self._jumps(before, state.motion)
+        shear = slip - history[PLASTIC_SLIP]
         state.friction += float(before.area @ history[FRICTION_WORK])
         state.absorbed += float(before.area @ history[DAMPED_WORK])
 
-        # What flies moves by many a step's way before the next look, and may be as deep in a block by then.
+        # What flies moves by many a step's way before the next look, and may be as deep in a block by then; what has
+        # struck one may be deeper, and is not to be lost sight of before it is thrown back.
         fast = STEPS_AHEAD * self._farthest(state.velocity) * self.dt
-        found = self._find(state.motion, max(self.outline.margin, fast))
+        deep = -2 * opening.min(initial=0.0)
+        found = self._find(state.motion, max(self.outline.margin, fast, deep))
         # The same end of the same two sides; or, for a corner that has turned on, the same corner on the same side,
         # which goes on with the area that it had: another stiffness would jolt it.
         turned = _where(rested, self._resting(found, state.motion))
@@ -230,7 +236,11 @@ class FiniteRun(Run, ABC):
         system = self._system_on(contacts)
         # Blocks that have flown apart have no frequency, and may meet again.
         bound = max(system.block_frequency_squared, self._undeformed_bound)
-        super().__init__(replace(system, block_frequency_squared=bound), local=self.local, viscous=self.viscous)
+        self._start(replace(system, block_frequency_squared=bound), self.local)
+
+    def _start(self, system: BlockSystem, local: float) -> None:
+        dt = self.part * stable_step(system.block_frequency_squared, self.viscous, local)
+        super().__init__(system, local=local, viscous=self.viscous, dt=dt)
 
 
 def finite_curve(

@@ -15,6 +15,7 @@ import math
 from typing import Any, TypeAlias
 
 from joints import compiled
+from joints.side_kernels import sharp_opening
 from scene import Array, Indices
 
 from .block_kernels import to_modes, to_nodes
@@ -139,7 +140,7 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
             stretch = length[j] * facets[j, 4]
             inside = min(moved - inset[side], whole[side] - inset[successor[side]] - moved)
             beyond = 0.5 * min(length[node], length[node - 1]) - inside
-            away = away if away > beyond else beyond
+            away = sharp_opening(away, beyond)
             b, share_b, a, share_a = node, 0.0, j, share
             nx, ny = ty, -tx
             if of_a:
@@ -174,8 +175,7 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
                 beyond = on_f - straight[f]
                 far = ends[k, 3]
                 if r_v + radius[far] == 0.0:
-                    # A sharp corner near the far end is no deeper in than it is far from coming out there.
-                    away = away if away > beyond else beyond
+                    away = sharp_opening(away, beyond)
                 elif beyond > 0.0:
                     a, share_a, stretch = outer[f, 1 - of_f], shares[f, 1 - of_f], 1.0
                     dx, dy = vx - arcs[f, 2 * (1 - of_f)], vy - arcs[f, 2 * (1 - of_f) + 1]
@@ -195,7 +195,7 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
                 beyond = on_e - straight[e]
                 far = ends[k, 2]
                 if r_w + radius[far] == 0.0:
-                    away = away if away > beyond else beyond
+                    away = sharp_opening(away, beyond)
                 elif beyond > 0.0:
                     b, share_b, stretch = outer[e, 1 - of_e], shares[e, 1 - of_e], 1.0
                     dx, dy = arcs[e, 2 * (1 - of_e)] - wx, arcs[e, 2 * (1 - of_e) + 1] - wy

@@ -66,14 +66,22 @@ class FiniteRun(dynamics.FiniteRun):
     system
         Their `finite_system`, with other masses or loads if need be.
     local, viscous
-        Damping, as in `Run`. The time step follows the contacts.
+        Damping, as in `Run`.
+    part
+        Part of the stable time step, which follows the contacts, that is taken.
     """
 
     def __init__(
-        self, blocks: FiniteWall, system: BlockSystem | None = None, *, local: float = LOCAL, viscous: float = VISCOUS
+        self,
+        blocks: FiniteWall,
+        system: BlockSystem | None = None,
+        *,
+        local: float = LOCAL,
+        viscous: float = VISCOUS,
+        part: float = 1.0,
     ) -> None:
         system = system or finite_system(blocks)
-        super().__init__(system, blocks.outline, blocks.undeformed, local=local, viscous=viscous)
+        super().__init__(system, blocks.outline, blocks.undeformed, local=local, viscous=viscous, part=part)
         self.blocks = blocks
 
     def _geometry(self, contacts: Contacts) -> tuple[Any, ...]:

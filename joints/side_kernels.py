@@ -59,6 +59,17 @@ def _arc_on_arc(dx: float, dy: float, radii: float) -> tuple[float, float, float
 
 
 @kernel
+def sharp_opening(away: float, beyond: float) -> float:
+    """Opening of a sharp corner that is `away` from a side and `beyond` its far end, both negative inside.
+
+    One that is deeper in than it is far from coming out there is let go of, over as much again as that: it belongs to
+    the side round that end. Otherwise a block would be stuck in the flank of the next one of its course, on to whose
+    top it slides, by no more than the joint under it gives way.
+    """
+    return away if away > beyond else 2.0 * beyond - away
+
+
+@kernel
 def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
     """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``.
 
@@ -88,8 +99,7 @@ def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array
             beyond = on_f - straight[f]
             far = ends[k, 3]
             if r_v + radius[far] == 0.0:
-                # A sharp corner near the far end is no deeper in than it is far from coming out there.
-                away = away if away > beyond else beyond
+                away = sharp_opening(away, beyond)
             elif beyond > 0.0:
                 dx, dy = arcs[v, 0] - arcs[far, 0], arcs[v, 1] - arcs[far, 1]
                 away, moved, nx, ny = _far_arcs(dx, dy, r_v, radius[far], arcs, e, f)
@@ -106,7 +116,7 @@ def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array
                 beyond = on_e - straight[e]
                 far = ends[k, 2]
                 if r_w + radius[far] == 0.0:
-                    away = away if away > beyond else beyond
+                    away = sharp_opening(away, beyond)
                 elif beyond > 0.0:
                     dx, dy = arcs[far, 0] - arcs[w, 0], arcs[far, 1] - arcs[w, 1]
                     away, moved, nx, ny = _far_arcs(dx, dy, radius[far], r_w, arcs, e, f)
