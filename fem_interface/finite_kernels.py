@@ -140,7 +140,7 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
             stretch = length[j] * facets[j, 4]
             inside = min(moved - inset[side], whole[side] - inset[successor[side]] - moved)
             beyond = 0.5 * min(length[node], length[node - 1]) - inside
-            away = sharp_opening(away, beyond)
+            away = away if away > beyond else beyond
             b, share_b, a, share_a = node, 0.0, j, share
             nx, ny = ty, -tx
             if of_a:

@@ -1,7 +1,11 @@
 """By how much heavier masses slow a wall's lowest vibrations."""
 
+from collections.abc import Callable
+
 import numpy as np
+from scipy.linalg import eigh
 from scipy.sparse import csc_array, csr_array, diags_array
+from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from joints.wall import wall_stiffness
@@ -12,6 +16,9 @@ from .operators import nodal_jump
 
 GROUND = 1e-9
 """Springs to the ground, in masses times the square of the wall's highest frequency: what floats vibrates too."""
+
+DENSE = 400
+"""Coordinates of a body up to which its matrices are taken as full ones."""
 
 
 def elastic_stiffness(wall: ModalWall) -> csr_array:
@@ -51,11 +58,10 @@ class Slowing:
         self._moving = np.isfinite(wall.mass)
         self._count = count
         ground = diags_array(GROUND * highest * wall.mass[self._moving])
-        self._stiffness = csc_array(elastic_stiffness(wall) + ground)
-        # A symmetric ordering fills the factors a fifth as much as the one that is usual for any matrix.
-        self._solve = splu(
-            self._stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        ).solve
+        stiffness = csc_array(elastic_stiffness(wall) + ground)
+        bodies, body = connected_components(stiffness, directed=False)
+        rows = [np.flatnonzero(body == k) for k in range(bodies)]
+        self._bodies = [(own, _lowest_of(csc_array(stiffness[own][:, own]), count)) for own in rows]
         self._exact = self._lowest(wall.mass)
 
     def of(self, mass: Array) -> float:
@@ -63,16 +69,27 @@ class Slowing:
         return float((1 - np.sqrt(self._lowest(mass) / self._exact)).max())
 
     def _lowest(self, mass: Array) -> Array:
-        """The smallest ω² [1/s²], ascending."""
-        M = diags_array(mass[self._moving]).tocsc()
-        inverse = LinearOperator(M.shape, self._solve, dtype=np.float64)
-        found = eigsh(
-            self._stiffness,
-            self._count,
-            M,
-            sigma=0.0,
-            OPinv=inverse,
-            v0=np.ones(M.shape[0]),
-            return_eigenvectors=False,
-        )
-        return np.asarray(np.sort(found))
+        """The smallest ω² [1/s²] of all bodies, ascending."""
+        moving = mass[self._moving]
+        return np.sort(np.concatenate([lowest(moving[own]) for own, lowest in self._bodies]))[: self._count]
+
+
+def _lowest_of(stiffness: csc_array, count: int) -> Callable[[Array], Array]:
+    """A function that gives a body's smallest ω² [1/s²] of its masses ``(n,)``.
+
+    The blocks of a body hold together: Lanczos' method finds one of several equal frequencies, which equal bodies have.
+    """
+    n = stiffness.shape[0]
+    if n <= DENSE:
+        K, few = stiffness.toarray(), (0, min(count, n) - 1)
+        return lambda mass: np.asarray(eigh(K, np.diag(mass), eigvals_only=True, subset_by_index=few))
+    # A symmetric ordering fills the factors a fifth as much as the one that is usual for any matrix.
+    factors = splu(stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    inverse = LinearOperator((n, n), factors.solve, dtype=np.float64)
+    start = np.random.default_rng(0).standard_normal(n)
+
+    def lowest(mass: Array) -> Array:
+        M = diags_array(mass).tocsc()
+        return np.asarray(eigsh(stiffness, count, M, sigma=0.0, OPinv=inverse, v0=start, return_eigenvectors=False))
+
+    return lowest

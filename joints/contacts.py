@@ -1,5 +1,6 @@
 """Which sides of which blocks face each other, near enough to touch before anyone looks again."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -17,6 +18,9 @@ MARGIN = 0.02
 
 It costs time, not accuracy: the wider, the more pairs are looked at every step, and the fewer times they are sought.
 """
+
+SWIFT = math.sqrt(5)
+"""Most by which an opening changes, in ways of the corner (`sharp_opening`)."""
 
 FLAT = 0.1
 """Turn [rad] of the outline below which a corner is hardly one: it is not rounded, and rests with both its sides."""
@@ -181,7 +185,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
 
     None of those left out touches before some block has moved by half the margin.
     """
-    e, f = facing_sides(outline, motion, margin)
+    e, f = facing_sides(outline, motion, SWIFT * margin)
     blocks, after = outline.blocks, outline.blocks.successor
     owner = blocks.owner
     spin = motion[2::3]
@@ -202,7 +206,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
         np.tile(area, 2),
         np.zeros(2 * n, dtype=bool),
     )
-    near = np.abs(jumps(outline, both, motion)[0]) < margin
+    near = np.abs(jumps(outline, both, motion)[0]) < SWIFT * margin
     # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
     # rests with both, each of which stands for its own area.
     corner, _ = resting(outline, both, motion)

@@ -62,9 +62,9 @@ def _arc_on_arc(dx: float, dy: float, radii: float) -> tuple[float, float, float
 def sharp_opening(away: float, beyond: float) -> float:
     """Opening of a sharp corner that is `away` from a side and `beyond` its far end, both negative inside.
 
-    One that is deeper in than it is far from coming out there is let go of, over as much again as that: it belongs to
-    the side round that end. Otherwise a block would be stuck in the flank of the next one of its course, on to whose
-    top it slides, by no more than the joint under it gives way.
+    A corner deeper in than it is far from that end is let go of, until twice as deep: it is coming out there, and
+    belongs to the side round the end. Else a block that slides onto the next one of its course would be stuck in the
+    flank of that one, by no more than the joint under it gives way. It changes by √5 times the way of the corner.
     """
     return away if away > beyond else 2.0 * beyond - away
 
