@@ -13,6 +13,7 @@ from .pictures import mechanism_picture, moment_picture, png, show_mechanism, sh
 from .series import moments, read_grid
 from .shown import Shown
 from .store import StoreError, load_outcome, load_scene, write_atomically
+from .vtk_imports import import_pyvista
 from .vtk_messages import VtkError
 
 if TYPE_CHECKING:
@@ -105,6 +106,7 @@ def _shown(scene: Scene, blocks: Path, joints: Path, colouring: Colouring) -> Sh
 
 def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
     """Show a folder's mechanism, its last moment or its undeformed wall in a window, until that is closed."""
+    import_pyvista()
     import pyvista as pv
 
     outcome, scene = load_outcome(folder)[0], load_scene(folder)

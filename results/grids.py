@@ -14,6 +14,7 @@ from scene import Array, Blocks, Indices
 
 from .frame import Frame, Stage, State
 from .mechanism import carried
+from .vtk_imports import whole_imports
 
 Grid: TypeAlias = Any
 """A ``vtkUnstructuredGrid``; VTK is only imported where one is made."""
@@ -148,9 +149,10 @@ def _in_space(vectors: Array) -> Array:
 
 def _grid(points: Array, cells: list[tuple[int, Indices, Indices]]) -> Grid:
     """Grid of points ``(n, 2)`` and cells: their kind, their points in a row, and the number of points of each."""
-    from vtkmodules.util import numpy_support
-    from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
+    with whole_imports():
+        from vtkmodules.util import numpy_support
+        from vtkmodules.vtkCommonCore import vtkPoints
+        from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
 
     numbers: Any = numpy_support.numpy_to_vtkIdTypeArray
     grid, places, array = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()

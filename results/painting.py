@@ -10,6 +10,7 @@ from scene import Array, Indices, Scene
 
 from .frame import State
 from .grids import QUAD, Grid
+from .vtk_imports import import_pyvista, whole_imports
 from .vtk_messages import vtk_errors_raised
 
 Colouring: TypeAlias = Literal["displacement", "course"]
@@ -153,6 +154,7 @@ class Painter:
     """
 
     def __init__(self, pixels: int = REFERENCE) -> None:
+        import_pyvista()
         self.pixels = pixels
         self._window: Any = None
 
@@ -207,7 +209,8 @@ class Painter:
         import pyvista as pv
 
         if self._window is None:
-            self._window = pv.Plotter(off_screen=True, window_size=[self.pixels, self.pixels])
+            with whole_imports():
+                self._window = pv.Plotter(off_screen=True, window_size=[self.pixels, self.pixels])
             self._window.enable_anti_aliasing("msaa", multi_samples=8)
             self._window.set_background("white")
         self._window.clear()

@@ -7,6 +7,7 @@ from typing import Any
 from .frame import Frame, Stage
 from .grids import Grid, Grids
 from .store import StoreError, write_atomically
+from .vtk_imports import whole_imports
 from .vtk_messages import vtk_errors_raised
 
 KINDS = ("blocks", "joints")
@@ -85,7 +86,8 @@ def moments(folder: Path, kind: str) -> list[Path]:
 
 def read_grid(path: Path) -> Grid:
     """Read a VTU file."""
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    with whole_imports():
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
     reader: Any = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
@@ -96,7 +98,8 @@ def read_grid(path: Path) -> Grid:
 
 def vtu(grid: Grid) -> bytes:
     """A grid as the content of a VTU file."""
-    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+    with whole_imports():
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     writer: Any = vtkXMLUnstructuredGridWriter()
     writer.SetInputData(grid)

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from .vtk_imports import whole_imports
+
 
 class VtkError(Exception):
     """VTK reported an error; the message is its own."""
@@ -12,7 +14,8 @@ class VtkError(Exception):
 @contextmanager
 def vtk_errors_raised() -> Iterator[None]:
     """Raise the first error that VTK reports inside, once it has been left; warnings pass unheard."""
-    from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+    with whole_imports():
+        from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
     before, window = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()

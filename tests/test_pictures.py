@@ -4,6 +4,7 @@ import io
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -33,6 +34,7 @@ from results.pictures import (
 )
 from results.rendering import PROBE, why_not_drawn
 from results.shown import Shown
+from results.vtk_imports import whole_imports
 from results.vtk_messages import vtk_errors_raised
 from scene import Scene
 from tests.walls import content, courses, panel, write_toml
@@ -368,3 +370,17 @@ def test_drawing_works_with_a_display() -> None:
     finally:
         server.terminate()
         server.wait()
+
+
+def test_ctrl_c_waits_until_an_import_is_whole() -> None:
+    """Broken off, those of VTK end the process."""
+    done = False
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt), whole_imports():
+            signal.raise_signal(signal.SIGINT)
+            done = True
+        assert done
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
