@@ -20,7 +20,7 @@ from dynamics import BlockSystem, Run
 from fem_interface.modal_wall import ModalWall
 from fem_interface.model import fem
 from fem_interface.runs import modal_wall
-from fem_interface.stable import largest_scaling
+from fem_interface.stable import LOWEST, largest_scaling
 from fem_interface.system import system_of
 from results import Outcome
 from scene import Scene
@@ -34,9 +34,6 @@ INSET = 0.02
 YOUNG = (1e9, 1e10, 1e11, 1e12, 1e13)
 DEAR = 1e11
 """Young's modulus [Pa] beyond which the wall is not brought down without mass scaling: it would take minutes."""
-
-LOWEST = 20
-"""Frequencies that scaling is to leave alone."""
 
 UNIFORM = "all modes by one factor"
 
