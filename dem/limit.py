@@ -148,7 +148,9 @@ def _cut(system: Equilibrium) -> Equilibrium:
     strength = system.strength
     if strength.strongest <= GLUED:
         return system
-    tension, shear = strength.tension.clip(max=GLUED), strength.shear.clip(max=GLUED)
+    # The cone is cut off farther down, where it is wider: whoever only slips has as much to overcome as before.
+    tension = strength.tension.clip(max=GLUED)
+    shear = (strength.cohesion - strength.friction * tension).clip(max=GLUED)
     return replace(system, strength=PointStrength(strength.friction, tension, shear))
 
 
@@ -156,8 +158,8 @@ def breaks(whole: Equilibrium, weaker: Equilibrium, motion: Array) -> bool:
     """Whether a mechanism ``(nd,)`` spends, beyond rounding, of a strength that a weaker system has less of."""
     unit = weaker.force_unit / whole.force_unit * (1 + SOUND)
     jumps = np.abs([whole.opening.T @ motion, whole.slip.T @ motion])
-    strengths = (whole.strength.tension, weaker.strength.tension), (whole.strength.shear, weaker.strength.shear)
-    cut = np.array([unit * less < strength for strength, less in strengths])
+    pairs = [(each.strength.tension, each.strength.cohesion) for each in (weaker, whole)]
+    cut = np.array([unit * less < strength for less, strength in zip(*pairs, strict=True)])
     return float(jumps[cut].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))
 
 

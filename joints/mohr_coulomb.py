@@ -38,6 +38,11 @@ class PointStrength:
     shear: Array
 
     @property
+    def cohesion(self) -> Array:
+        """Shear force that each point carries without pressure, ``(np,)`` [N]."""
+        return self.shear + self.friction * self.tension
+
+    @property
     def strongest(self) -> float:
         """Largest force that a point carries without pressure [N]; zero for dry joints."""
         return float(max(self.tension.max(initial=0.0), self.shear.max(initial=0.0)))

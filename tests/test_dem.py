@@ -505,6 +505,19 @@ def test_joints_so_strong_that_only_a_load_a_million_times_the_weight_breaks_the
     assert two == pytest.approx(2 * one, rel=1e-6)
 
 
+@pytest.mark.parametrize("cohesion", [10.0, 1e3])
+@pytest.mark.parametrize("friction", [1e-6, 1e-4, 0.0])
+def test_a_glued_block_of_little_friction_slides_however_much_tension_its_joint_bears(
+    friction: float, cohesion: float
+) -> None:
+    """At λ = tan φ + c A / W: its cone is so slender that its apex lies at 1e3 to 1e9 times the weight."""
+    joint = {"friction": friction, "cohesion": cohesion, "tensile_strength": cohesion / max(friction, 1e-6)}
+    scene = panel(wall__length=0.24, wall__height=0.06, wall__first_course="full", joint=joint, block__density=1.0)
+    weight, area = 0.24 * 0.06 * 0.12 * 9.81, 0.24 * 0.12
+    for model in (limit, limit_nonassociated):
+        assert model(scene).lower == pytest.approx(friction + cohesion * area / weight, rel=1e-6)
+
+
 @pytest.mark.parametrize("cohesion", [1e3, 1e6, 1e12])
 def test_a_block_that_cannot_slide_topples_however_strong_its_joint(cohesion: float) -> None:
     """Without tension at b / h, though its shear strength is up to 1e14 times its weight."""
