@@ -165,7 +165,8 @@ def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: Po
     wall = _mesh(mesh.points, mesh.triangles)
     weights, position = _tabulated(wall, a0, a1, local)
     weights_b, position_b = _tabulated(wall, b0, b1, local)
-    if np.abs(position - position_b).max(initial=0.0) > scene.blocks.tolerance:
+    apart = np.einsum("epx,exd->epd", position - position_b, np.stack([normal, tangent], axis=2))
+    if np.abs(apart).max(initial=0.0) > scene.blocks.tolerance * (1 + 1e-9):
         raise ValueError("the two sides of a joint element do not face each other")
     if np.abs(weights - weights_b).max(initial=0.0) > 1e-9:
         raise ValueError("the two sides of a joint element are divided differently")

@@ -15,7 +15,7 @@ from skfem import Basis, ElementTriP1, MeshTri
 
 from dem import jump_operator, mass_matrix_diagonal
 from dem.rigid_system import contact_points
-from fem_interface import lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface import interface, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
 from fem_interface.modes import rigid_motions
 from fem_interface.runs import modal_wall
 from fem_interface.templates import nodes_of, triangles_of
@@ -25,6 +25,7 @@ from scene import Array, SceneError
 from tests.fem_interface.walls import (
     MORTAR,
     patch,
+    replace_blocks,
     rigid_of_nodes,
     triangle_wall,
     wall,
@@ -257,3 +258,17 @@ def _held_response(stiffness: Array, held: Array, force: Array) -> Array:
     """Coordinates ``(m,)`` under a modal force, with some displacements ``(n, m)`` held at zero."""
     free = null_space(held)
     return np.asarray(free @ np.linalg.solve(free.T @ (stiffness[:, None] * free), free.T @ force))
+
+
+@pytest.mark.parametrize("share", [-0.45, 0.5, 0.99])
+def test_sides_of_a_slanted_joint_may_be_apart_by_the_contact_tolerance(share: float) -> None:
+    """Across the joint; what stands straight above one another is farther apart then. Weights are those of no gap."""
+    lower = np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.4], [0.0, 0.2]])
+    upper = np.array([[0.0, 0.2], [0.2, 0.4], [0.2, 0.6], [0.0, 0.6]])
+    shut = replace_blocks(patch(), [lower, upper])
+    apart = share * shut.blocks.tolerance * math.sqrt(2)
+    scene = replace_blocks(patch(), [lower, upper + [0.0, apart]])
+    found, exact = (interface(wall_mesh(each), each) for each in (scene, shut))
+    assert len(found.points) == len(exact.points)
+    assert found.weights == pytest.approx(exact.weights, abs=1e-3)
+    assert found.points.area.sum() == pytest.approx(exact.points.area.sum(), rel=1e-3)
