@@ -138,7 +138,11 @@ def limit_state(system: Equilibrium) -> LimitState:
     if weaker is system:
         return _solved(system)
     state = _solved(weaker)
-    if state.forces.status == "optimal" and state.sound and not breaks(system, weaker, state.forces.motion):
+    if (
+        state.forces.status == "optimal"
+        and state.sound
+        and not breaks(system, weaker, state.forces.motion, dilatancy=system.strength.friction)
+    ):
         return state
     return limit_state(system.in_forces_of(GLUED))
 
@@ -154,10 +158,14 @@ def _cut(system: Equilibrium) -> Equilibrium:
     return replace(system, strength=PointStrength(strength.friction, tension, shear))
 
 
-def breaks(whole: Equilibrium, weaker: Equilibrium, motion: Array) -> bool:
-    """Whether a mechanism ``(nd,)`` spends, beyond rounding, of a strength that a weaker system has less of."""
+def breaks(whole: Equilibrium, weaker: Equilibrium, motion: Array, *, dilatancy: Array | float) -> bool:
+    """Whether a mechanism ``(nd,)`` spends, beyond rounding, of a strength that a weaker system has less of.
+
+    What opens by `dilatancy` times its slip, as the mechanism's flow rule has it, spends of its cohesion only.
+    """
     unit = weaker.force_unit / whole.force_unit * (1 + SOUND)
-    jumps = np.abs([whole.opening.T @ motion, whole.slip.T @ motion])
+    slip = np.abs(whole.slip.T @ motion)
+    jumps = np.array([np.abs(whole.opening.T @ motion - dilatancy * slip), slip])
     pairs = [(each.strength.tension, each.strength.cohesion) for each in (weaker, whole)]
     cut = np.array([unit * less < strength for less, strength in zip(*pairs, strict=True)])
     return float(jumps[cut].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))

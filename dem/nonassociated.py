@@ -191,7 +191,9 @@ def _collapse(found: Outcome, whole: Equilibrium, state: LimitState, tolerance: 
     high = (1 - tolerance) * associated.multiplier if bounded else np.inf
     searched = search(system, first.pressure, high)
     found = replace(found, steps=1 + searched.programs)
-    certificates = [proved for proved in searched.certificates if not breaks(whole, system, proved.motion)]
+    certificates = [
+        proved for proved in searched.certificates if not breaks(whole, system, proved.motion, dilatancy=0.0)
+    ]
     if not certificates:
         if searched.frictionless:
             return replace(

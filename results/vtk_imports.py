@@ -1,4 +1,4 @@
-"""VTK's modules import one another, and crash the process where Ctrl-C breaks that off."""
+"""VTK's modules import one another, and crash the process where an exception breaks that off."""
 
 import signal
 import threading
@@ -8,18 +8,22 @@ from contextlib import contextmanager
 
 @contextmanager
 def whole_imports() -> Iterator[None]:
-    """Hold Ctrl-C back until what is imported inside is there."""
-    if threading.current_thread() is not threading.main_thread():  # where Ctrl-C is not heard
+    """Hold back Ctrl-C, and what else raises an exception at a signal, until what is imported inside is there."""
+    if threading.current_thread() is not threading.main_thread():  # where no signal is heard
         yield
         return
     heard: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    held = {number: handler for number, handler in before.items() if callable(handler)}
+    for number in held:
+        signal.signal(number, lambda number, _: heard.append(number))
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in held.items():
+            signal.signal(number, handler)
         if heard:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(heard[0])
 
 
 def import_pyvista() -> None:

@@ -372,20 +372,21 @@ def test_drawing_works_with_a_display() -> None:
         server.wait()
 
 
-def test_ctrl_c_waits_until_an_import_is_whole() -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_waits_until_an_import_is_whole(number: signal.Signals) -> None:
     """Broken off, those of VTK end the process."""
     done: list[int] = []
 
     def imports() -> None:
         with whole_imports():
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(number)
             done.append(1)
 
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    before = signal.signal(number, signal.default_int_handler)
     try:
         with pytest.raises(KeyboardInterrupt):
             imports()
         assert done
-        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        assert signal.getsignal(number) is signal.default_int_handler
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(number, before)
