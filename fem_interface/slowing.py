@@ -81,10 +81,10 @@ def _lowest_of(stiffness: csc_array, count: int) -> Callable[[Array], Array]:
     """
     n = stiffness.shape[0]
     if n <= DENSE:
-        # Of M against K: that of K against M finds the lowest to rounding of the highest, which may be 1e16 times it.
+        # Of M against K: that of K against M finds the lowest to the rounding of the highest, far above them.
         K, slowest = stiffness.toarray(), (max(n - count, 0), n - 1)
         return lambda mass: 1 / eigh(np.diag(mass), K, eigvals_only=True, subset_by_index=slowest)
-    # A symmetric ordering fills the factors a fifth as much as the one that is usual for any matrix.
+    # A symmetric ordering fills the factors less than the one that is usual for any matrix.
     factors = splu(stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     inverse = LinearOperator((n, n), factors.solve, dtype=np.float64)
     start = np.random.default_rng(0).standard_normal(n)

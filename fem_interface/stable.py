@@ -42,8 +42,8 @@ LOST = 2e-3
 LARGE = 1000
 """Number of blocks, or of triangles that may part, beyond which they are not looked at, to save the memory.
 
-Walls of several courses lose 2e-4 of them from 600 blocks on; a single course of a thousand, which has the slowest
-waves of all, up to 5e-3.
+The twentieth frequency of so large a wall is far below what limits the step; in a single course, whose waves travel
+one way only, it may lose more than `LOST` all the same.
 """
 
 
@@ -86,30 +86,30 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
         Whether masses are scaled at all.
     """
     kinds = min(_all_kinds(wall), key=_rigid_bound)
-
-    def smallest(fit: float | None) -> float:
-        """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself."""
-
-        def bound(square: float) -> float:
-            return max(_bound(kind, square, damping, fit or square) for kind in kinds)
-
-        low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
-        while bound(high) > high:
-            low, high = high, 2 * high
-        while high > low * (1 + CLOSE):
-            middle = float(np.sqrt(low * high))
-            low, high = (low, middle) if bound(middle) <= middle else (middle, high)
-        return high
-
     if mass_scaling:
-        fit = square = smallest(None)
-        needed = _unslowed(wall, fit)
-        if needed > fit:
-            fit, square = needed, smallest(needed)
+        square = _smallest(kinds, damping)
+        fit = _unslowed(wall, square)
+        if fit > square:
+            square = _smallest(kinds, damping, fit)
     else:
-        fit, square = np.inf, smallest(np.inf)
+        fit, square = np.inf, _smallest(kinds, damping, np.inf)
     mass = _scaled(wall.mass, wall.stiffness, fit)
     return ScaledModes(square, mass, _viscosity(wall.stiffness, mass, damping))
+
+
+def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> float:
+    """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself where there is none."""
+
+    def bound(square: float) -> float:
+        return max(_bound(kind, square, damping, fit or square) for kind in kinds)
+
+    low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
+    while bound(high) > high:
+        low, high = high, 2 * high
+    while high > low * (1 + CLOSE):
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if bound(middle) <= middle else (middle, high)
+    return high
 
 
 def _unslowed(wall: ModalWall, square: float) -> float:
