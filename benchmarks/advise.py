@@ -11,11 +11,11 @@ import argparse
 import time
 import warnings
 
-from compare import MODELS, PUBLISHED, published_scene, run_model
-from compare.advice import TOLERANCE, advise
-from compare.table import bracket
-from results import Outcome
-from scene import Scene, SceneError
+from runningbond.compare import MODELS, PUBLISHED, published_scene, run_model
+from runningbond.compare.advice import TOLERANCE, advise
+from runningbond.compare.table import bracket
+from runningbond.results import Outcome
+from runningbond.scene import Scene, SceneError
 
 
 def timed_model(model: str, scene: Scene, tolerance: float) -> tuple[Outcome | None, float]:

@@ -11,11 +11,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
-from compare import published_scene
 from dem import jump_operator
 from dem.rigid_system import contact_points, rigid_system
-from dynamics import Run, State
-from scene import Array, Scene, scene_from_dict
+from runningbond.compare import published_scene
+from runningbond.dynamics import Run, State
+from runningbond.scene import Array, Scene, scene_from_dict
 
 RUNS = 7
 WALL = {

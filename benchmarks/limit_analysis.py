@@ -10,9 +10,9 @@ from typing import TypeVar
 
 from scipy.optimize import linprog
 
-from compare import PUBLISHED, published_scene
-from dem import equilibrium, limit
-from dem.force_program import LinearProgram, coulomb, force_program
+from runningbond.compare import PUBLISHED, published_scene
+from runningbond.limit import equilibrium, limit
+from runningbond.limit.force_program import LinearProgram, coulomb, force_program
 
 RUNS = 5
 Argument = TypeVar("Argument")

@@ -10,7 +10,7 @@ from pathlib import Path
 from meshing import wall_mesh, write_mesh
 from meshing.outline import outlines
 from meshing.shapes import shape_of_blocks, triangulate
-from scene import BlockMaterial, Bond, JointMaterial, Load, build_scene, running_bond
+from runningbond.scene import BlockMaterial, Bond, JointMaterial, Load, build_scene, running_bond
 
 BOND = Bond(0.24, 0.06)
 

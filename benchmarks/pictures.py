@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from results import Outcome, fastest_corner_by_one, write_atomically
-from results.frame import Frame, Stage, mechanism_frame
-from results.painting import Painter
-from results.pictures import mechanism_picture, png, show_mechanism
-from results.rendering import why_not_drawn
-from results.series import Series
-from scene import Scene, scene_from_dict
+from runningbond.pictures.frame import Frame, Stage, mechanism_frame
+from runningbond.pictures.mechanisms import mechanism_picture, png, show_mechanism
+from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.pictures.painting import Painter
+from runningbond.pictures.series import Series
+from runningbond.results import Outcome, fastest_corner_by_one, write_atomically
+from runningbond.scene import Scene, scene_from_dict
 
 WALL = {
     "wall": {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 48.0, "height": 6.0},

@@ -5,7 +5,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from scene import Scene, read_scene
+from runningbond.scene import Scene, read_scene
 
 WALL = """
 [wall]

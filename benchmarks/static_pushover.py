@@ -13,11 +13,11 @@ import numpy as np
 from scipy.sparse import csc_array, diags_array
 from scipy.sparse.linalg import splu
 
-from compare import PUBLISHED, published_scene
 from dem.static import FIRST_STEP, dem_static
 from dem.static_system import Control, StaticSystem, static_system
-from results import Outcome
-from scene import Scene
+from runningbond.compare import PUBLISHED, published_scene
+from runningbond.results import Outcome
+from runningbond.scene import Scene
 
 SYSTEMS = 20
 

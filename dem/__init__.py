@@ -1,7 +1,8 @@
 """Rigid blocks: kinematics and limit analysis; `dem.dynamic` for blocks in motion, which needs compiled kernels."""
 
-from .equilibrium import Equilibrium, equilibrium
-from .kinematics import (
+from runningbond.limit.associated import LimitState, limit, limit_state
+from runningbond.limit.equilibrium import Equilibrium, equilibrium
+from runningbond.limit.kinematics import (
     Jump,
     dead_load,
     jump_operator,
@@ -11,8 +12,7 @@ from .kinematics import (
     pin_operator,
     point_operator,
 )
-from .limit import LimitState, limit, limit_state
-from .nonassociated import limit_nonassociated
+from runningbond.limit.nonassociated import limit_nonassociated
 
 __all__ = [
     "Equilibrium",

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lapack
 
-from scene import Array, Indices
+from runningbond.scene import Array, Indices
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,14 +11,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics import Observer, Run, collapse_by_steps, finite_curve, nobody
-from dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
-from results import Outcome
-from scene import Array, Scene
+from runningbond.dynamics import Observer, Run, collapse_by_steps, finite_curve, nobody
+from runningbond.dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
+from runningbond.limit.associated import locks
+from runningbond.limit.equilibrium import equilibrium
+from runningbond.results import Outcome
+from runningbond.scene import Array, Scene
 
-from .equilibrium import equilibrium
 from .finite_system import FiniteRun
-from .limit import locks
 from .rigid_system import contact_points, rigid_system
 
 

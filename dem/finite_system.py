@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-import dynamics
-from dynamics import BlockSystem, block_frequency_squared, force_unit, joint_shares
-from dynamics.run import LOCAL, VISCOUS
-from joints import wall_points, wall_strength
-from joints.contacts import Contacts, Outline, find_contacts, resting
-from joints.laws import kernel_law
-from joints.point_kernel import KernelLaw
-from joints.side_kernels import gather_finite, scatter_finite
-from scene import Array, Indices, Scene, SceneError
+from runningbond import dynamics
+from runningbond.contacts.contacts import Contacts, Outline, find_contacts, resting
+from runningbond.contacts.side_kernels import gather_finite, scatter_finite
+from runningbond.dynamics import BlockSystem, block_frequency_squared, force_unit, joint_shares
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.joints import wall_points, wall_strength
+from runningbond.joints.laws import kernel_law
+from runningbond.joints.point_kernel import KernelLaw
+from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .rigid_system import loads_and_masses
 

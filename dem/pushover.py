@@ -10,7 +10,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from scene import Array
+from runningbond.scene import Array
 
 from .relaxation import LONGEST, Rest, relax
 from .static_system import Control, StaticSystem

@@ -23,8 +23,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from joints import PointResponse
-from scene import Array
+from runningbond.joints import PointResponse
+from runningbond.scene import Array
 
 from .static_system import Control, StaticSystem
 

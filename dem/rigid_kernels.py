@@ -8,8 +8,8 @@ are unsigned, which need no check for counting from the end.
 import numpy as np
 from numpy.typing import NDArray
 
-from joints import compiled
-from scene import Array
+from runningbond.joints import compiled
+from runningbond.scene import Array
 
 kernel = compiled.kernel
 Geometry = tuple[NDArray[np.uint64], NDArray[np.uint64], NDArray[np.uint64], Array]

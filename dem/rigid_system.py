@@ -5,13 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares
-from joints import JointPoints, wall_points, wall_strength
-from joints.laws import kernel_law
-from joints.point_kernel import KernelLaw
-from scene import Array, Scene, free_motions
-
-from .kinematics import (
+from runningbond.dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares
+from runningbond.joints import JointPoints, wall_points, wall_strength
+from runningbond.joints.laws import kernel_law
+from runningbond.joints.point_kernel import KernelLaw
+from runningbond.limit.kinematics import (
     control_row,
     dead_load,
     jump_operator,
@@ -19,8 +17,10 @@ from .kinematics import (
     mass_matrix_diagonal,
     pin_operator,
 )
+from runningbond.scene import Array, Scene, free_motions
+
+from .joint_order import Runs, find_runs
 from .rigid_kernels import gather_rigid, scatter_rigid
-from .runs import Runs, find_runs
 
 
 def contact_points(scene: Scene) -> JointPoints:

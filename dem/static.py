@@ -19,12 +19,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from joints import stiffness_note
-from results import Outcome
-from scene import Scene
+from runningbond.joints import stiffness_note
+from runningbond.limit.associated import FALLS, locks, stands_under_dead_load
+from runningbond.limit.kinematics import control_row, movable_freedoms
+from runningbond.results import Outcome
+from runningbond.scene import Scene
 
-from .kinematics import control_row, movable_freedoms
-from .limit import FALLS, locks, stands_under_dead_load
 from .pushover import State, StaticObserver, Way, lengthened, nobody, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system

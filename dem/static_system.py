@@ -15,11 +15,11 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.sparse import csc_array, csr_array
 
-from joints import PointLaw, PointResponse, wall_stiffness
-from scene import Array, Indices, Scene
+from runningbond.joints import PointLaw, PointResponse, wall_stiffness
+from runningbond.limit.equilibrium import Equilibrium, equilibrium
+from runningbond.scene import Array, Indices, Scene
 
 from .band import Band, band
-from .equilibrium import Equilibrium, equilibrium
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,17 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import splu
 
-from joints import ResultantLaw, gauss, joint_points, resultant_law, wall_stiffness, wall_strength
-from joints.resultant_law import DETACHED
-from scene import Array, Mask, Scene
-
-from .kinematics import control_row, dead_load, jump_operator, live_load, movable_freedoms, pin_operator
+from runningbond.joints import ResultantLaw, gauss, joint_points, resultant_law, wall_stiffness, wall_strength
+from runningbond.joints.resultant_law import DETACHED
+from runningbond.limit.kinematics import (
+    control_row,
+    dead_load,
+    jump_operator,
+    live_load,
+    movable_freedoms,
+    pin_operator,
+)
+from runningbond.scene import Array, Mask, Scene
 
 UpdateStatus: TypeAlias = Literal["converged", "cycle", "singular", "wandering"]
 

@@ -1,7 +1,7 @@
 """Mesh a wall and write it for other programs."""
 
-from compare import published_scene
 from meshing import wall_mesh, write_mesh
+from runningbond.compare import published_scene
 
 wall = published_scene("panel-01")  # or, with `from scene import read_scene`, read_scene("wall.toml")
 mesh = wall_mesh(wall, cells=2)

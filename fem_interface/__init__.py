@@ -4,15 +4,7 @@
 """
 
 from .modes import ModeCount, Modes, block_modes
-from .operators import (
-    Interface,
-    NodalJump,
-    interface,
-    lumped_mass,
-    mass_matrix,
-    nodal_jump,
-    stiffness_matrix,
-)
+from .operators import Interface, NodalJump, interface, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
 from .templates import Template, templates
 
 __all__ = [

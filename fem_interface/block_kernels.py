@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from joints import compiled
-from scene import Array
+from runningbond.joints import compiled
+from runningbond.scene import Array
 
 kernel = compiled.kernel
 

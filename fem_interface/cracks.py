@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from meshing import WallMesh
-from scene import Array, Blocks, Indices, Joints, Mask, Pins, Scene, SceneError
+from runningbond.scene import Array, Blocks, Indices, Joints, Mask, Pins, Scene, SceneError
 
 Cracks: TypeAlias = Literal["joints", "blocks"]
 """Where a wall may crack: at its joints, or between all triangles of its blocks too."""

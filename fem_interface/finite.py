@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from dynamics import finite_curve
-from scene import Array, Scene
+from runningbond.dynamics import finite_curve
+from runningbond.scene import Array, Scene
 
 from .finite_system import FiniteRun
 from .finite_wall import finite_wall

@@ -2,7 +2,7 @@
 
 A node is at c + u + R(θ) (X + Σ φ_k q_k): centroid, translation and rotation of its block, and small deformations in
 the block's frame. A side of a block is the polygon of its nodes, and lies on a side of another block at the two ends
-of their overlap, as the sides of rigid blocks do (`joints.side_kernels`): there the corner of one block, rounded or
+of their overlap, as the sides of rigid blocks do (`contacts.side_kernels`): there the corner of one block, rounded or
 sharp, rests on a facet of the other. Nodes inside a side rest on the other one's facets too, once they are farther
 from its corners than half a facet, where the ends of the overlap bear for them.
 
@@ -14,9 +14,9 @@ the jumps have in them, turned back into the block's frame and projected on its 
 import math
 from typing import Any, TypeAlias
 
-from joints import compiled
-from joints.side_kernels import sharp_opening
-from scene import Array, Indices
+from runningbond.contacts.side_kernels import sharp_opening
+from runningbond.joints import compiled
+from runningbond.scene import Array, Indices
 
 from .block_kernels import to_modes, to_nodes
 
@@ -231,7 +231,7 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
 def _far_arcs(
     dx: float, dy: float, r_v: float, r_w: float, ex: float, ey: float, fx: float, fy: float
 ) -> tuple[float, float, float, float]:
-    """Opening, slip and normal of two arcs by which blocks come off each other's sides; see `joints.side_kernels`."""
+    """Opening, slip and normal of two arcs by which blocks come off each other's sides; see `contacts.side_kernels`."""
     distance = math.hypot(dx, dy)
     away, nx, ny = distance - r_v - r_w, dx / distance, dy / distance
     turn_e = _angle(nx, ny, -ey, ex)

@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
-import dynamics
-from dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares, stable_step
-from dynamics.run import LOCAL, VISCOUS
-from joints.contacts import Contacts
-from joints.laws import kernel_law
-from joints.point_kernel import KernelLaw
-from joints.wall import wall_strength
-from scene import Array, Indices, JointMaterial
+from runningbond import dynamics
+from runningbond.contacts.contacts import Contacts
+from runningbond.dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares, stable_step
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.joints.laws import kernel_law
+from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.wall_points import wall_strength
+from runningbond.scene import Array, Indices, JointMaterial
 
 from .finite_kernels import gather_deformable, scatter_deformable
 from .finite_wall import FiniteWall
-from .stable import CLOSE, scaled_modes
+from .mass_scaling import CLOSE, scaled_modes
 from .system import DAMPING
 
 

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from joints.contacts import Contacts, Outline, facing_sides, find_contacts, overlaps, resting
-from scene import Array, Indices, PointLoad, Scene, SceneError
+from runningbond.contacts.contacts import Contacts, Outline, facing_sides, find_contacts, overlaps, resting
+from runningbond.scene import Array, Indices, PointLoad, Scene, SceneError
 
+from .element_order import modal_wall
 from .modal_wall import ModalWall
 from .modes import ModeCount
-from .runs import modal_wall
 from .templates import nodes_of
 
 

@@ -10,8 +10,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from joints.mohr_coulomb import truncated_cone
-from scene import Array, Indices, JointMaterial, Mortar, Scene, SceneError
+from runningbond.joints.mohr_coulomb import truncated_cone
+from runningbond.scene import Array, Indices, JointMaterial, Mortar, Scene, SceneError
 
 Energies: TypeAlias = Literal["given", "corrected", "printed"]
 """Fracture energies of the scene; of Eqs. 4–5 with the strengths in their places; of Eqs. 4–5 as printed."""

@@ -4,7 +4,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from scene import Array, Mask, SceneError
+from runningbond.scene import Array, Mask, SceneError
 
 from .cracks import Pieces
 

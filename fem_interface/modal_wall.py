@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from meshing import WallMesh
-from scene import Array, Indices, PointLoad, Scene
+from runningbond.scene import Array, Indices, PointLoad, Scene
 
 from .cracks import Pieces
 from .loads import Loads, inner_mass
@@ -153,7 +153,7 @@ class ModalWall:
         return self.body_force((gravity * live.direction[0], gravity * live.direction[1]), loads)
 
     def control_row(self) -> Array:
-        """Displacement of the control point along the live load, ``(nd,)``; see `results.Outcome`."""
+        """Displacement of the control point along the live load, ``(nd,)``; see `runningbond.results.Outcome`."""
         blocks, at, direction = self.scene.control_point
         if isinstance(self.scene.load.live, PointLoad):
             return self._at_load(at, direction)

@@ -9,20 +9,20 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from dynamics import Observer, Run, collapse_by_steps, nobody
-from dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
-from joints import Rule
-from results import Outcome
-from scene import Scene
+from runningbond.dynamics import Observer, Run, collapse_by_steps, nobody
+from runningbond.dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
+from runningbond.joints import Rule
+from runningbond.results import Outcome
+from runningbond.scene import Scene
 
 from .cracks import Cracks
+from .element_order import modal_wall
 from .fracture import Energies
 from .loads import Loads
+from .mass_scaling import largest_scaling
 from .modes import ModeCount
 from .operators import PointsOn
 from .piece_run import PieceRun
-from .runs import modal_wall
-from .stable import largest_scaling
 from .system import system_of
 
 

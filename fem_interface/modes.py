@@ -11,9 +11,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from scene import Array, free_motions
+from runningbond.scene import Array, free_motions
 
-from .folding import facing
+from .mirror_symmetry import facing
 
 ModeCount: TypeAlias = int | Literal["all"]
 """How many modes a block has: 3 are rigid; 6 strain uniformly too; up to 20 bend, in the softest of the displacements

@@ -24,9 +24,9 @@ from skfem import (
 from skfem.helpers import dot, grad
 from skfem.models.elasticity import linear_elasticity, plane_stress
 
-from joints import JointPoints, Rule, lobatto, wall_inset
 from meshing import WallMesh
-from scene import Array, Indices, Scene, SceneError
+from runningbond.joints import JointPoints, Rule, lobatto, wall_inset
+from runningbond.scene import Array, Indices, Scene, SceneError
 
 PointsOn: TypeAlias = Literal["elements", "joints"]
 """What a quadrature rule is laid on: every joint element, or every joint whole, however many elements it has."""

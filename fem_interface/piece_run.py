@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from dynamics import BlockSystem, Run, State
-from scene import Array, Scene
+from runningbond.dynamics import BlockSystem, Run, State
+from runningbond.scene import Array, Scene
 
 from .modal_wall import ModalWall
 

@@ -4,22 +4,22 @@ from typing import Any
 
 import numpy as np
 
-from dynamics import BlockSystem, Restraint, force_unit
-from joints import Rule
-from joints.laws import kernel_law
-from joints.wall import wall_strength
-from scene import Scene
+from runningbond.dynamics import BlockSystem, Restraint, force_unit
+from runningbond.joints import Rule
+from runningbond.joints.laws import kernel_law
+from runningbond.joints.wall_points import wall_strength
+from runningbond.scene import Scene
 
 from .block_kernels import gather_modes, scatter_modes
 from .cracks import Cracks
-from .folding import Folds
+from .element_order import find_runs, modal_wall
 from .fracture import Energies, fractured
 from .loads import Loads
+from .mass_scaling import scaled_modes
+from .mirror_symmetry import Folds
 from .modal_wall import ModalWall
 from .modes import ModeCount
 from .operators import PointsOn
-from .runs import find_runs, modal_wall
-from .stable import scaled_modes
 
 DAMPING = 0.05
 """Viscous damping ratio of the deformable modes."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshing import WallMesh
-from scene import Array, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .modes import ModeCount, Modes, block_modes, degree_of
 from .operators import mass_matrix, nodes_of_degree, stiffness_matrix, strain_matrix

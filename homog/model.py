@@ -4,8 +4,8 @@ import time
 
 import numpy as np
 
-from results import Outcome
-from scene import Bond, Lateral, Scene, SceneError
+from runningbond.results import Outcome
+from runningbond.scene import Bond, Lateral, Scene, SceneError
 
 from .collapse import crack_slope, lateral_multiplier
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog
 
-from joints import point_strength
-from scene import Array, Bond, JointMaterial
+from runningbond.joints import point_strength
+from runningbond.scene import Array, Bond, JointMaterial
 
 
 @dataclass(frozen=True)

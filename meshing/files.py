@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from scene import Indices, Scene, SceneError
+from runningbond.scene import Indices, Scene, SceneError
 
 from .mesh import GROUPS, WallMesh, joint_group
 from .session import gmsh_session

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene import Array, Indices, Scene, SceneError, frozen
+from runningbond.scene import Array, Indices, Scene, SceneError, frozen
 
 from .outline import Outlines, outlines
 from .shapes import shape_of_blocks, triangulate

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene import Array, Blocks, Indices, Joints, Mask, Scene
+from runningbond.scene import Array, Blocks, Indices, Joints, Mask, Scene
 
 
 @dataclass(frozen=True, eq=False)

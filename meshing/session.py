@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from scene import SceneError
+from runningbond.scene import SceneError
 
 
 @contextmanager

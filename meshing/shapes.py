@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from scene import Array, Indices, Mask
+from runningbond.scene import Array, Indices, Mask
 
 from .outline import Outlines
 from .session import gmsh_session

@@ -7,7 +7,7 @@ from typing import Any
 import ezdxf
 from hypothesis import strategies as st
 
-from tests.walls import content
+from .walls import content
 
 widths = st.sampled_from([0.5, 1, 1.5, -0.5, -1])
 patterns = st.lists(st.lists(widths, min_size=1, max_size=5), min_size=1, max_size=5)

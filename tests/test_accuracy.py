@@ -19,21 +19,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.image import imread
 
-from compare.accuracy import Case, Row, all_cases, read_csv, run_study, study
-from compare.accuracy.answer import Answer
-from compare.accuracy.cases import wall_of
-from compare.accuracy.charts import CHARTS, draw_charts
-from compare.accuracy.conclusions import conclusions
-from compare.accuracy.findings import cheapest, exponent, growth, label, records, sheets
-from compare.accuracy.fits import pareto_front, slope
-from compare.accuracy.knobs import KNOBS, VARIED, settings_of
-from compare.accuracy.measure import Killed, Measurement, TooLong, machine, measure_apart
-from compare.accuracy.page import CAPTIONS, write_page
-from compare.accuracy.questions import MODELS, ask
-from compare.accuracy.rows import FAILED, TOO_LONG, csv_text, distance, with_errors
-from compare.accuracy.walls import accuracy_walls, growth_walls, stiffness_walls
-from compare.command import command
-from joints import joint_stiffness
+from runningbond.commands.command_line import command
+from runningbond.joints import joint_stiffness
+from runningbond.studies.accuracy import Case, Row, all_cases, read_csv, run_study, study
+from runningbond.studies.accuracy.answer import Answer
+from runningbond.studies.accuracy.cases import wall_of
+from runningbond.studies.accuracy.charts import CHARTS, draw_charts
+from runningbond.studies.accuracy.conclusions import conclusions
+from runningbond.studies.accuracy.findings import cheapest, exponent, growth, label, records, sheets
+from runningbond.studies.accuracy.fits import pareto_front, slope
+from runningbond.studies.accuracy.measure import Killed, Measurement, TooLong, machine, measure_apart
+from runningbond.studies.accuracy.page import CAPTIONS, write_page
+from runningbond.studies.accuracy.parameters import KNOBS, VARIED, settings_of
+from runningbond.studies.accuracy.questions import MODELS, ask
+from runningbond.studies.accuracy.rows import FAILED, TOO_LONG, csv_text, distance, with_errors
+from runningbond.studies.accuracy.walls import accuracy_walls, growth_walls, stiffness_walls
 
 ROOT = Path(__file__).parent.parent
 CASES = [Case("accuracy", wall, model) for wall in ("stack-of-5", "panel-02") for model in ("limit", "dem-static")]
@@ -195,7 +195,9 @@ def test_a_run_that_takes_too_long_is_left_out_and_not_tried_again(tmp_path: Pat
 
 
 def test_the_system_ends_a_run_that_works_too_long() -> None:
-    script = "from compare.accuracy import measure\nmeasure.LONGEST = 1\nmeasure._limit_time()\nwhile True: pass"
+    script = (
+        "from runningbond.studies.accuracy import measure\nmeasure.LONGEST = 1\nmeasure._limit_time()\nwhile True: pass"
+    )
     ended = subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=False)
     assert ended.returncode == -signal.SIGXCPU
 
@@ -219,7 +221,7 @@ def test_a_measurement_has_its_answer_its_seconds_and_its_memory() -> None:
 
 def test_memory_is_what_a_run_takes_beyond_what_was_held() -> None:
     script = (
-        "from compare.accuracy import measure\nimport numpy as np\nlarge = np.ones(20_000_000); del large\n"
+        "from runningbond.studies.accuracy import measure\nimport numpy as np\nlarge = np.ones(20_000_000); del large\n"
         "held = measure._start_of_memory(); found = np.ones(5_000_000); print(measure._most_memory() - held)"
     )
     taken = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True)

@@ -7,19 +7,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from compare import PUBLISHED, published_scene
-from compare.advice import TOLERANCE, Advice, advise
-from compare.advice.costs import LAWS, estimate, pace
-from compare.advice.needs import needs_of, pliancy, sliding_dilates
-from compare.advice.next_rung import WORTH
-from compare.command import command
-from dem import limit
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.model import fem
-from results import Outcome
-from scene import BlockMaterial, Scene
-from tests.walls import courses, panel
+from runningbond.commands.command_line import command
+from runningbond.compare import PUBLISHED, published_scene
+from runningbond.compare.advice import TOLERANCE, Advice, advise
+from runningbond.compare.advice.costs import LAWS, estimate, pace
+from runningbond.compare.advice.needs import needs_of, pliancy, sliding_dilates
+from runningbond.compare.advice.next_rung import WORTH
+from runningbond.limit import limit
+from runningbond.results import Outcome
+from runningbond.scene import BlockMaterial, Scene
+
+from .walls import courses, panel
 
 KNOWN = {
     "panel-01": (0.6, 0.6),

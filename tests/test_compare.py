@@ -13,14 +13,15 @@ import numpy as np
 import psutil
 import pytest
 
-from compare import MODELS, PUBLISHED, published_scene, run_campaign, run_model
-from compare.command import command
-from compare.figures import SLENDERNESS, TEXTURES, figure_6_data
-from compare.fingerprint import fingerprint
-from compare.table import corrected_homo
-from results import load_outcome
-from scene import SceneError
-from tests.walls import panel
+from runningbond.commands.command_line import command
+from runningbond.compare import MODELS, PUBLISHED, published_scene, run_campaign, run_model
+from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
+from runningbond.compare.fingerprint import fingerprint
+from runningbond.compare.table import corrected_homo
+from runningbond.results import load_outcome
+from runningbond.scene import SceneError
+
+from .walls import panel
 
 FAST = ["panel-04", "panel-08", "wall-w3", "point-load-quarter"]
 CONTRACT = ["scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message"]
@@ -41,7 +42,7 @@ def test_json_is_one_object_with_the_keys_of_the_contract(model: str, capsys: py
 
 
 def test_an_undecided_run_leaves_with_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("dem.nonassociated.MOST_PROGRAMS", 1)
+    monkeypatch.setattr("runningbond.limit.nonassociated.MOST_PROGRAMS", 1)
     assert command(["run", "panel-04", "--model", "limit-nonassociated"]) == 3
 
 
@@ -60,8 +61,8 @@ def test_help_names_both_commands(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_the_five_lines_of_the_readme() -> None:
-    from dem import limit
-    from scene import read_scene
+    from runningbond.limit import limit
+    from runningbond.scene import read_scene
 
     wall = read_scene(PUBLISHED[0].path)
     outcome = limit(wall)

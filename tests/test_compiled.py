@@ -13,7 +13,7 @@ import numba
 import pytest
 from numba.core.caching import IndexDataCacheFile
 
-from joints.compiled import SharedCache, kernel
+from runningbond.joints.compiled import SharedCache, kernel
 
 ROOT = Path(__file__).parent.parent
 

@@ -12,9 +12,7 @@ from scipy.optimize import approx_fprime
 
 from dem import (
     dead_load,
-    equilibrium,
     jump_operator,
-    limit,
     limit_nonassociated,
     limit_state,
     live_load,
@@ -22,11 +20,12 @@ from dem import (
     movable_freedoms,
     pin_operator,
 )
-from dem.force_program import ForceSolution
-from dem.limit import GLUED
-from dem.nonassociated import Certificate, certified_loads
-from joints import joint_points
-from scene import (
+from runningbond.joints import joint_points
+from runningbond.limit import equilibrium, limit
+from runningbond.limit.associated import GLUED
+from runningbond.limit.force_program import ForceSolution
+from runningbond.limit.nonassociated import Certificate, certified_loads
+from runningbond.scene import (
     Array,
     BlockMaterial,
     JointMaterial,
@@ -37,7 +36,8 @@ from scene import (
     build_scene,
     scene_from_dict,
 )
-from tests.walls import content, courses, panel
+
+from .walls import content, courses, panel
 
 EXACT = 1e-9
 WINDOW: list[list[float]] = [

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem import jump_operator, limit, mass_matrix_diagonal, pin_operator
+from dem import jump_operator, mass_matrix_diagonal, pin_operator
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
-from dynamics import (
+from runningbond.dynamics import (
     BlockSystem,
     Criteria,
     Restraint,
@@ -25,14 +25,16 @@ from dynamics import (
     settled_drive,
     stable_step,
 )
-from dynamics.run import Fall
-from joints import Rule, joint_points, joint_stiffness
-from joints.compiled import kernel
-from joints.laws import kernel_law
-from joints.point_kernel import FRICTION_WORK, KernelLaw
-from scene import Array, JointMaterial, Mortar, Scene, Stiffness
-from tests.test_dem import pile, rectangle
-from tests.walls import panel
+from runningbond.dynamics.run import Fall
+from runningbond.joints import Rule, joint_points, joint_stiffness
+from runningbond.joints.compiled import kernel
+from runningbond.joints.laws import kernel_law
+from runningbond.joints.point_kernel import FRICTION_WORK, KernelLaw
+from runningbond.limit import limit
+from runningbond.scene import Array, JointMaterial, Mortar, Scene, Stiffness
+
+from .test_dem import pile, rectangle
+from .walls import panel
 
 STIFF = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 GRAVITY = 9.81

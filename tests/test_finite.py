@@ -10,20 +10,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-import dynamics
-from compare import published_scene
 from dem import jump_operator, mass_matrix_diagonal
 from dem.dynamic import finite_pushover
 from dem.finite_system import FiniteRun, finite_system
 from dem.rigid_system import contact_points
-from dynamics import BlockSystem, Criteria, FiniteState, State, settle
-from joints import joint_stiffness
-from joints.contacts import Outline, find_contacts, jumps
-from joints.side_kernels import sharp_opening
-from scene import Array, Mortar, Scene, SceneError, Stiffness
-from tests.test_dem import pile, rectangle
-from tests.test_dynamics import GRAVITY, STIFF, block_on_base
-from tests.walls import panel
+from runningbond import dynamics
+from runningbond.compare import published_scene
+from runningbond.contacts.contacts import Outline, find_contacts, jumps
+from runningbond.contacts.side_kernels import sharp_opening
+from runningbond.dynamics import BlockSystem, Criteria, FiniteState, State, settle
+from runningbond.joints import joint_stiffness
+from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
+
+from .test_dem import pile, rectangle
+from .test_dynamics import GRAVITY, STIFF, block_on_base
+from .walls import panel
 
 
 def dry(blocks: list[Array], friction: float = 0.6, stiffness: float = 1e9, inset: float = 0.0) -> Scene:

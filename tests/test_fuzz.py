@@ -12,17 +12,19 @@ import pytest
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
-from compare.command import command
-from compare.models import MODELS
-from dem import equilibrium, limit, limit_nonassociated
+from dem import limit_nonassociated
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.model import fem
 from homog import homog
-from results import Outcome
-from scene import Scene, SceneError, read_scene
-from tests.scenes import drawn, outlines, small_walls, write_drawing
-from tests.walls import write_toml
+from runningbond.commands.command_line import command
+from runningbond.compare.models import MODELS
+from runningbond.limit import equilibrium, limit
+from runningbond.results import Outcome
+from runningbond.scene import Scene, SceneError, read_scene
+
+from .scenes import drawn, outlines, small_walls, write_drawing
+from .walls import write_toml
 
 ANY: dict[str, Any] = {"deadline": None, "suppress_health_check": list(HealthCheck)}
 

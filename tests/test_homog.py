@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from homog import StrengthDomain, crack_slope, elastic_moduli, homog, lateral_multiplier
-from scene import Bond, JointMaterial, SceneError
-from tests.walls import courses, panel
+from runningbond.scene import Bond, JointMaterial, SceneError
+
+from .walls import courses, panel
 
 TEXTURES = {(0.24, 0.06): 4, (0.12, 0.06): 2, (0.06, 0.06): 1, (0.06, 0.24): 0.25}
 

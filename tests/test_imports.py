@@ -5,48 +5,71 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from setuptools import find_packages
 
-from compare.fingerprint import COMPUTING_ROOMS
+from runningbond.compare.fingerprint import COMPUTING_ROOMS
 
 ROOT = Path(__file__).parent.parent
-MAY_IMPORT = {
-    "scene": set(),
-    "joints": {"scene"},
-    "results": {"scene", "joints"},
-    "dynamics": {"scene", "joints", "results"},
-    "meshing": {"scene", "joints"},
-    "fem_interface": {"scene", "joints", "results", "dynamics", "meshing"},
-    "dem": {"scene", "joints", "results", "dynamics"},
-    "homog": {"scene", "joints", "results"},
-    "compare": {"scene", "joints", "results", "dynamics", "meshing", "fem_interface", "dem", "homog"},
+MAY_IMPORT: dict[str, set[str]] = {
+    "runningbond.scene": set(),
+    "runningbond.joints": {"runningbond.scene"},
+    "runningbond.contacts": {"runningbond.scene", "runningbond.joints"},
+    "runningbond.results": {"runningbond.scene", "runningbond.joints"},
 }
+BASE = {*MAY_IMPORT}
+MAY_IMPORT["runningbond.limit"] = BASE
+MAY_IMPORT["runningbond.dynamics"] = BASE
+MAY_IMPORT["meshing"] = BASE
+METHODS = BASE | {"runningbond.limit", "runningbond.dynamics", "meshing"}
+MAY_IMPORT |= {"dem": METHODS - {"meshing"}, "fem_interface": METHODS, "homog": BASE}
+BELOW_PICTURES = METHODS | {"dem", "fem_interface", "homog"}
+MAY_IMPORT["runningbond.pictures"] = BELOW_PICTURES
+MAY_IMPORT["runningbond.compare"] = BELOW_PICTURES | {"runningbond.pictures"}
+MAY_IMPORT["runningbond.studies"] = MAY_IMPORT["runningbond.compare"] | {"runningbond.compare"}
+MAY_IMPORT["runningbond.commands"] = MAY_IMPORT["runningbond.studies"] | {"runningbond.studies"}
+"""Each room, and those that it may import: the ones that stand before it."""
+
 HEAVY = {"gmsh", "pyvista", "vtk"}
 """Slow to import and in need of system libraries; imported inside the functions that use them."""
 
-SOURCES = [path for room in MAY_IMPORT for path in sorted((ROOT / room).rglob("*.py"))]
+SOURCES = [path for room in MAY_IMPORT for path in sorted((ROOT / room.replace(".", "/")).rglob("*.py"))]
 
 
-def _imported(tree: ast.AST) -> set[str]:
+def _room(module: str) -> str:
+    """The room that a module stands in: two names deep within the package, one elsewhere."""
+    parts = module.split(".")
+    return ".".join(parts[:2]) if parts[0] == "runningbond" else parts[0]
+
+
+def _imported(tree: ast.AST, module: str = "") -> set[str]:
+    """Modules that a tree imports, those named relative to `module` in full."""
     names: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            names |= {alias.name.split(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            names.add(node.module.split(".")[0])
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = module.split(".")[: -node.level] if node.level else []
+            target = ".".join([*base, *([node.module] if node.module else [])])
+            names |= {f"{target}.{alias.name}" for alias in node.names} if target == "runningbond" else {target}
     return names
+
+
+def _module(source: Path) -> str:
+    return ".".join(source.relative_to(ROOT).with_suffix("").parts)
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_rooms_import_only_what_the_design_allows(source: Path) -> None:
-    room = source.relative_to(ROOT).parts[0]
-    foreign = _imported(ast.parse(source.read_text())) & set(MAY_IMPORT) - {room}
-    assert foreign <= MAY_IMPORT[room]
+    module = _module(source)
+    foreign = {_room(name) for name in _imported(ast.parse(source.read_text()), module)}
+    ours = {name for name in foreign if name.split(".")[0] in {room.split(".")[0] for room in MAY_IMPORT}}
+    assert ours - {_room(module)} <= MAY_IMPORT[_room(module)]
 
 
 @pytest.mark.parametrize("source", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_heavy_libraries_are_imported_where_they_are_used(source: Path) -> None:
     outside_functions = {
-        name
+        name.split(".")[0]
         for node in ast.parse(source.read_text()).body
         if isinstance(node, (ast.Import, ast.ImportFrom))
         for name in _imported(ast.Module([node], []))
@@ -62,18 +85,36 @@ def test_there_is_no_cycle_between_rooms() -> None:
         order += ready
 
 
-def test_no_room_stands_outside_the_design() -> None:
-    """Every package of the tree and of the distribution is one of the design's rooms."""
-    rooms = {path.parent.name for path in ROOT.glob("*/__init__.py")} - {"tests"}
+def test_there_is_no_cycle_between_modules() -> None:
+    """Imports at the top of modules, each module after all that it needs; imports inside functions come later."""
+    modules = {_module(source).removesuffix(".__init__"): source for source in SOURCES}
+    needs: dict[str, set[str]] = {}
+    for name, source in modules.items():
+        tree = ast.parse(source.read_text())
+        top = ast.Module([node for node in tree.body if isinstance(node, (ast.Import, ast.ImportFrom))], [])
+        package = name + ".__init__" if source.name == "__init__.py" else name
+        needs[name] = {found for found in _imported(top, package) if found in modules and found != name}
+    done: set[str] = set()
+    while len(done) < len(needs):
+        ready = {name for name, wanted in needs.items() if name not in done and wanted <= done}
+        assert ready, f"these modules import each other: {sorted(set(needs) - done)}"
+        done |= ready
+
+
+def test_the_tree_has_the_rooms_of_the_design_and_no_others() -> None:
+    top = {path.parent.name for path in ROOT.glob("*/__init__.py")} - {"tests"}
+    assert top == {"runningbond", *(room for room in MAY_IMPORT if "." not in room)}
+    inside = {f"runningbond.{path.parent.name}" for path in (ROOT / "runningbond").glob("*/__init__.py")}
+    assert inside == {room for room in MAY_IMPORT if "." in room}
+
+
+def test_the_distribution_is_made_of_exactly_these_packages() -> None:
     with (ROOT / "pyproject.toml").open("rb") as file:
-        packages = set(tomllib.load(file)["tool"]["setuptools"]["packages"])
-    assert {package.split(".")[0] for package in packages} == rooms
-    assert packages == {
-        ".".join(path.parent.relative_to(ROOT).parts) for room in rooms for path in (ROOT / room).rglob("__init__.py")
-    }
-    assert rooms <= set(MAY_IMPORT)
+        packages = find_packages(str(ROOT), **tomllib.load(file)["tool"]["setuptools"]["packages"]["find"])
+    folders = {path.parent for room in MAY_IMPORT for path in (ROOT / room.replace(".", "/")).rglob("__init__.py")}
+    assert set(packages) == {"runningbond", *(".".join(folder.relative_to(ROOT).parts) for folder in folders)}
 
 
 def test_what_can_change_a_number_is_in_the_fingerprint() -> None:
-    rooms = {path.parent.name for path in ROOT.glob("*/__init__.py")} - {"tests", "compare"}
-    assert set(COMPUTING_ROOMS) == rooms
+    showing = {f"runningbond.{room}" for room in ("pictures", "compare", "studies", "commands")}
+    assert set(COMPUTING_ROOMS) == set(MAY_IMPORT) - showing

@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dem import limit
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from homog import homog
-from scene import Scene, SceneError, scene_from_dict
-from scene.crack import halved
-from tests.walls import content, panel
+from runningbond.limit import limit
+from runningbond.scene import Scene, SceneError, scene_from_dict
+from runningbond.scene.cracks import halved
+
+from .walls import content, panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 WEAK: dict[str, Any] = {"friction": 0.6, "mortar": MORTAR}

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from joints import gauss, joint_points, joint_stiffness, lobatto, point_strength
-from scene import JointMaterial, Joints, Mortar, SceneError, Stiffness
-from tests.walls import panel
+from runningbond.joints import gauss, joint_points, joint_stiffness, lobatto, point_strength
+from runningbond.scene import JointMaterial, Joints, Mortar, SceneError, Stiffness
+
+from .walls import panel
 
 
 @pytest.mark.parametrize("n", [2, 3, 4, 5, 8])

@@ -7,11 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dem.rigid_system import rigid_system
-from dynamics import Criteria, LoadSteps, Run, State, load_steps
-from dynamics.loading import RESOLVED, _raise
-from dynamics.run import Verdict
-from tests.fem_interface.walls import MORTAR
-from tests.walls import panel
+from runningbond.dynamics import Criteria, LoadSteps, Run, State, load_steps
+from runningbond.dynamics.loading import RESOLVED, _raise
+from runningbond.dynamics.run import Verdict
+
+from .fem_interface.walls import MORTAR
+from .walls import panel
 
 FIRST = 0.05
 SIZE = {"wall__length": 0.24, "wall__height": 0.06, "joint__mortar": MORTAR}
@@ -31,7 +32,7 @@ def searched(answer: Callable[[float], Verdict], tolerance: float = 0.005) -> tu
         assert len(tried) < 500, "no end"
         return answer(multiplier)
 
-    with patch("dynamics.loading.settle", settle), patch("dynamics.loading.ramp"):
+    with patch("runningbond.dynamics.loading.settle", settle), patch("runningbond.dynamics.loading.ramp"):
         return load_steps(BLOCK, FIRST, tolerance, Criteria(collapse=1.0), most=10.0), tried
 
 
@@ -89,7 +90,10 @@ def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: lis
     """Paused or not: it comes to the load itself, or to less where it falls on the way."""
     answers = iter(pauses)
     state = State.at_rest(WEIGHTLESS.system)
-    with patch("dynamics.loading.ramp"), patch("dynamics.loading._pauses", lambda *_: next(answers, True)):
+    with (
+        patch("runningbond.dynamics.loading.ramp"),
+        patch("runningbond.dynamics.loading._pauses", lambda *_: next(answers, True)),
+    ):
         reached = _raise(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
     assert reached <= stop
     assert (reached == stop) == all(pauses[:-1])

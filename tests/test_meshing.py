@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from skfem import MeshTri
 from skfem.io.meshio import from_meshio
 
-from compare.command import command
 from meshing import GROUPS, WallMesh, joint_group, wall_mesh, write_mesh
 from meshing.session import gmsh_session
-from scene import (
+from runningbond.commands.command_line import command
+from runningbond.scene import (
     Array,
     BlockMaterial,
     Indices,
@@ -28,8 +28,9 @@ from scene import (
     build_scene,
     read_scene,
 )
-from tests.test_scene import GROUND, drawing
-from tests.walls import content, courses, panel, write_toml
+
+from .test_scene import GROUND, drawing
+from .walls import content, courses, panel, write_toml
 
 ROOT = Path(__file__).parent.parent
 

@@ -12,9 +12,10 @@ from scipy.optimize import linprog
 
 from dem import jump_operator
 from homog import StrengthDomain, elastic_moduli
-from joints import JointPoints, joint_points, lobatto, point_strength
-from scene import Array, Bond, JointMaterial, Joints
-from tests.walls import panel
+from runningbond.joints import JointPoints, joint_points, lobatto, point_strength
+from runningbond.scene import Array, Bond, JointMaterial, Joints
+
+from .walls import panel
 
 
 @dataclass(frozen=True)

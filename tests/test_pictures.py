@@ -15,16 +15,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from compare.command import command
-from dem import limit
-from joints import wall_points
-from results import Outcome, load_outcome, save_outcome
-from results.album import draw_folder
-from results.frame import State, mechanism_frame
-from results.mechanism import carried
-from results.outcome import number
-from results.painting import FAST, HELD, STATE_COLOURS, STILL, Painter, View, outline
-from results.pictures import (
+from runningbond.commands.command_line import command
+from runningbond.joints import wall_points
+from runningbond.limit import limit
+from runningbond.pictures.frame import State, mechanism_frame
+from runningbond.pictures.mechanisms import (
     mechanism_picture,
     multiplier_text,
     newtons,
@@ -32,12 +27,18 @@ from results.pictures import (
     show_mechanism,
     show_undeformed,
 )
-from results.rendering import PROBE, why_not_drawn
-from results.shown import Shown
-from results.vtk_imports import whole_imports
-from results.vtk_messages import vtk_errors_raised
-from scene import Scene
-from tests.walls import content, courses, panel, write_toml
+from runningbond.pictures.moment import Shown
+from runningbond.pictures.offscreen import PROBE, why_not_drawn
+from runningbond.pictures.painting import FAST, HELD, STATE_COLOURS, STILL, Painter, View, outline
+from runningbond.pictures.render import draw_folder
+from runningbond.pictures.vtk_imports import whole_imports
+from runningbond.pictures.vtk_messages import vtk_errors_raised
+from runningbond.results import Outcome, load_outcome, save_outcome
+from runningbond.results.mechanism import carried
+from runningbond.results.outcome import number
+from runningbond.scene import Scene
+
+from .walls import content, courses, panel, write_toml
 
 
 @pytest.fixture(autouse=True)

@@ -13,12 +13,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from compare.command import command
-from dem import dead_load, jump_operator, limit, limit_nonassociated, live_load, movable_freedoms, pin_operator
-from joints import joint_points, point_strength
-from scene import Scene, SceneError, scene_from_dict
-from tests.scenes import spoilt, walls
-from tests.walls import write_toml
+from dem import dead_load, jump_operator, limit_nonassociated, live_load, movable_freedoms, pin_operator
+from runningbond.commands.command_line import command
+from runningbond.joints import joint_points, point_strength
+from runningbond.limit import limit
+from runningbond.scene import Scene, SceneError, scene_from_dict
+
+from .scenes import spoilt, walls
+from .walls import write_toml
 
 LIMITS = ("limit", "limit-nonassociated")
 FEW: dict[str, Any] = {"deadline": None, "derandomize": True, "suppress_health_check": list(HealthCheck)}

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from compare import MODELS
-from compare.command import command
-from results.rendering import why_not_drawn
+from runningbond.commands.command_line import command
+from runningbond.compare import MODELS
+from runningbond.pictures.offscreen import why_not_drawn
 
 README = (Path(__file__).parent.parent / "README.md").read_text()
 

@@ -7,9 +7,10 @@ from typing import Any
 
 import pytest
 
-from compare.command import command
-from tests.test_scene import drawing
-from tests.walls import content, write_toml
+from runningbond.commands.command_line import command
+
+from .test_scene import drawing
+from .walls import content, write_toml
 
 POINT = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1]}
 FREE = {"wall__length": None, "wall__height": None}

@@ -13,17 +13,18 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from compare import PUBLISHED, Campaign, published_scene
-from compare.command import command
-from compare.figures import draw_figures
-from compare.plates import draw_plates, plates
-from compare.report import report_html
-from compare.table import Comparison
-from results import Outcome, fastest_corner_by_one
-from results.rendering import why_not_drawn
-from results.vtk_messages import vtk_errors_raised
-from scene import Scene
-from tests.walls import content, write_toml
+from runningbond.commands.command_line import command
+from runningbond.compare import PUBLISHED, Campaign, published_scene
+from runningbond.compare.figures import draw_figures
+from runningbond.compare.plates import draw_plates, plates
+from runningbond.compare.report import report_html
+from runningbond.compare.table import Comparison
+from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.pictures.vtk_messages import vtk_errors_raised
+from runningbond.results import Outcome, fastest_corner_by_one
+from runningbond.scene import Scene
+
+from .walls import content, write_toml
 
 
 @pytest.fixture(autouse=True)

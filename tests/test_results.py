@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from results import Outcome, StoreError, load_outcome, save_outcome, write_atomically
+from runningbond.results import Outcome, StoreError, load_outcome, save_outcome, write_atomically
 
 numbers = st.floats(0, 1e6)
 

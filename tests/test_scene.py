@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scene import (
+from runningbond.scene import (
     Array,
     Blocks,
     Bond,
@@ -21,7 +21,8 @@ from scene import (
     running_bond,
     scene_from_dict,
 )
-from tests.walls import content, courses, panel, write_toml
+
+from .walls import content, courses, panel, write_toml
 
 
 def rotated(points: Array, angle: float) -> Array:

@@ -9,11 +9,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dem.dynamic import dem_dynamic
-from joints.laws import kernel_law
-from joints.point_kernel import FRICTION_WORK, KernelLaw
-from joints.softening_kernel import DAMAGE
-from scene import Array, JointMaterial, Stiffness
-from tests.walls import panel
+from runningbond.joints.laws import kernel_law
+from runningbond.joints.point_kernel import FRICTION_WORK, KernelLaw
+from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.scene import Array, JointMaterial, Stiffness
+
+from .walls import panel
 
 JOINT = JointMaterial(0.6, 1e5, 1e5)
 

@@ -5,15 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compare import published_scene
-from dem import equilibrium, limit
 from dem.relaxation import Verdict, relax
 from dem.static import dem_static
 from dem.static_system import Control, static_system
 from dem.stiffness_update import stiffness_update
-from joints import PointLaw, PointStrength, ResultantLaw, point_strength
-from results import Outcome
-from scene import (
+from runningbond.compare import published_scene
+from runningbond.joints import PointLaw, PointStrength, ResultantLaw, point_strength
+from runningbond.limit import equilibrium, limit
+from runningbond.results import Outcome
+from runningbond.scene import (
     Array,
     BlockMaterial,
     JointMaterial,
@@ -25,8 +25,9 @@ from scene import (
     Stiffness,
     build_scene,
 )
-from tests.test_dem import rectangle
-from tests.walls import courses
+
+from .test_dem import rectangle
+from .walls import courses
 
 FERRIS: dict[str, list[list[float]]] = {
     "W1": [[0.5, 1, 1, 1, 1, 0.5], [1, 1, 1, 1, 1]] * 3,

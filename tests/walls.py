@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from scene import Scene, scene_from_dict
+from runningbond.scene import Scene, scene_from_dict
 
 PANEL: dict[str, Any] = {
     "title": "panel",

@@ -44,15 +44,15 @@ from typing import Any
 
 import numpy as np
 
-from dynamics import Run, State
-from dynamics.run import LOCAL, VISCOUS
 from fem_interface import Template, block_modes, lumped_mass, stiffness_matrix
+from fem_interface.element_order import modal_wall
 from fem_interface.modal_wall import ModalWall
-from fem_interface.runs import modal_wall
 from fem_interface.system import system_of
 from fem_interface.templates import nodes_of, triangles_of
-from joints import gauss, joint_stiffness
-from scene import Array, Indices, Scene, scene_from_dict
+from runningbond.dynamics import Run, State
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.joints import gauss, joint_stiffness
+from runningbond.scene import Array, Indices, Scene, scene_from_dict
 
 RUNS = 7
 BLOCKS = (300, 1230, 5000)

@@ -16,11 +16,11 @@ from akantu_step import LOAD, AkantuWall, as_in_akantu, free_run, read_materials
 from load_steps import LOOK, Bracket
 from peer import Peer
 
-from dynamics import Run, State
-from dynamics.run import LOCAL, VISCOUS
-from fem_interface.runs import modal_wall
+from fem_interface.element_order import modal_wall
 from fem_interface.system import system_of
-from scene import Scene
+from runningbond.dynamics import Run, State
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.scene import Scene
 
 SHARE = 10
 """Part of a look that is run: its cost is that of its steps."""

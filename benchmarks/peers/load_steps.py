@@ -14,9 +14,9 @@ from typing import Literal, Protocol, Self, TypeAlias
 
 import numpy as np
 
-from dynamics.run import CALM, Fall
-from dynamics.verdict import COLLAPSE, FIRST_STEP
-from scene import Array, Scene
+from runningbond.dynamics.run import CALM, Fall
+from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.scene import Array, Scene
 
 LOOK = 0.05
 """Time between two looks [s]: a block that falls freely moves by 12 mm in it."""

@@ -14,7 +14,7 @@ import numpy as np
 from load_steps import Bracket, by_load_steps
 from peer import Peer
 
-from scene import Array, Scene
+from runningbond.scene import Array, Scene
 
 STEP = 2e-3
 """Time step [s]: its default."""

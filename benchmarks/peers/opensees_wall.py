@@ -16,9 +16,9 @@ import numpy as np
 from load_steps import Bracket, by_load_steps
 from peer import Peer
 
-from joints import joint_stiffness
 from meshing import wall_mesh
-from scene import Array, Scene
+from runningbond.joints import joint_stiffness
+from runningbond.scene import Array, Scene
 
 STEP = 5e-3
 """Time step [s]."""

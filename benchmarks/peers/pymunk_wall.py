@@ -14,7 +14,7 @@ import numpy as np
 from load_steps import Bracket, by_load_steps
 from peer import Peer
 
-from scene import Array, Scene
+from runningbond.scene import Array, Scene
 
 STEP = 5e-4
 """Time step [s]."""

@@ -20,7 +20,7 @@ import numpy as np
 from load_steps import Bracket, bisect
 from peer import Peer
 
-from scene import Scene
+from runningbond.scene import Scene
 
 IN_SPACE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 """From the plane of the wall into space, z upwards."""

@@ -33,9 +33,9 @@ from load_steps import Bracket
 from peer import Peer
 from walls import TRIAL, WALLS, wall_of
 
-from compare.fingerprint import code_digest
-from compare.models import run_model
-from scene import Scene
+from runningbond.compare.fingerprint import code_digest
+from runningbond.compare.models import run_model
+from runningbond.scene import Scene
 
 MODELS = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem")
 MODULES = ("rbe_wall", "pymunk_wall", "mujoco_wall", "opensees_wall", "akantu_wall")

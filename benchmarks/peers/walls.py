@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from scene import Scene, scene_from_dict
+from runningbond.scene import Scene, scene_from_dict
 
 
 class Size(NamedTuple):

@@ -27,13 +27,13 @@ from typing import get_args
 import numpy as np
 from joblib import Parallel, delayed
 
-from compare import published_scene, run_model
-from compare.table import answer
 from fem_interface.model import fem
 from fem_interface.operators import PointsOn
-from results import Outcome
-from results.outcome import number
-from scene import Array, Scene
+from runningbond.compare import published_scene, run_model
+from runningbond.compare.table import answer
+from runningbond.results import Outcome
+from runningbond.results.outcome import number
+from runningbond.scene import Array, Scene
 
 PANELS = [f"panel-{row:02d}" for row in range(1, 13)] + [f"point-load-{ratio}" for ratio in (4, 2, 1, "quarter")]
 

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from compare import MODELS, published_scene
-from compare.advice import TOLERANCE
-from compare.advice.costs import COARSE
 from dem.dynamic import dem_dynamic
+from runningbond.compare import MODELS, published_scene
+from runningbond.compare.advice import TOLERANCE
+from runningbond.compare.advice.costs import COARSE
 
 BRACKETING = ("dem-static", "dem-dynamic", "fem")
 

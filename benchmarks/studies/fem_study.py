@@ -11,14 +11,14 @@ import sys
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from compare import published_scene
 from dem.dynamic import dem_dynamic
-from dynamics.verdict import FIRST_STEP
 from fem_interface.model import fem
 from fem_interface.modes import BENDING, ModeCount
-from joints import Rule, gauss, lobatto
-from results import Outcome
-from scene import BlockMaterial, Scene
+from runningbond.compare import published_scene
+from runningbond.dynamics.verdict import FIRST_STEP
+from runningbond.joints import Rule, gauss, lobatto
+from runningbond.results import Outcome
+from runningbond.scene import BlockMaterial, Scene
 
 WALLS = {"panel-02": 2, "panel-04": 4, "panel-06": 2, "wall-w1": 4}
 """Walls, and the finest mesh that each is taken to, in cells."""

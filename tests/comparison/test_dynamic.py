@@ -4,14 +4,14 @@ from dataclasses import replace
 
 import pytest
 
-from compare import published_scene
-from dem import limit
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import rigid_system
-from dynamics import Criteria, Run, load_steps
-from dynamics.loading import LOADING
-from dynamics.verdict import COLLAPSE, FIRST_STEP
-from scene import Scene
+from runningbond.compare import published_scene
+from runningbond.dynamics import Criteria, Run, load_steps
+from runningbond.dynamics.loading import LOADING
+from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.limit import limit
+from runningbond.scene import Scene
 from tests.walls import panel
 
 ROUNDED = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}

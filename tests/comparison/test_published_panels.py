@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from compare import published_scene
-from dem import LimitState, equilibrium, limit, limit_nonassociated, limit_state
-from dem.nonassociated import search
-from scene import Scene, scene_from_dict
+from dem import LimitState, limit_nonassociated, limit_state
+from runningbond.compare import published_scene
+from runningbond.limit import equilibrium, limit
+from runningbond.limit.nonassociated import search
+from runningbond.scene import Scene, scene_from_dict
 from tests.walls import content
 
 PANELS = [(h, b, a) for h in (0.72, 1.44, 2.88) for b, a in ((0.24, 0.06), (0.12, 0.06), (0.06, 0.06), (0.06, 0.24))]

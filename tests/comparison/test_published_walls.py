@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from compare import published_scene
-from dem import equilibrium, limit_nonassociated, limit_state
+from dem import limit_nonassociated, limit_state
+from runningbond.compare import published_scene
+from runningbond.limit import equilibrium
 
 WALLS = ("wall-w1", "wall-w2", "wall-w3")
 

@@ -3,12 +3,11 @@
 import numpy as np
 from scipy.sparse.linalg import splu
 
-from dynamics import BlockSystem
 from fem_interface import nodal_jump
 from fem_interface.modal_wall import ModalWall
-from tests.fem_interface.walls import (
-    whole,
-)
+from runningbond.dynamics import BlockSystem
+
+from .walls import whole
 
 
 class NodalSteps:

@@ -7,20 +7,31 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from dynamics import Criteria, Run, State, settle
 from fem_interface import nodal_jump
+from fem_interface.element_order import modal_wall
 from fem_interface.fracture import fractured
+from fem_interface.frequency_shift import elastic_stiffness
 from fem_interface.modal_wall import ModalWall
 from fem_interface.model import fem
 from fem_interface.piece_run import PieceRun
-from fem_interface.runs import modal_wall
-from fem_interface.slowing import elastic_stiffness
 from fem_interface.system import system_of
-from joints.point_kernel import FRICTION_WORK
-from joints.softening_kernel import DAMAGE
-from scene import Array, BlockMaterial, Indices, JointMaterial, Load, Scene, SceneError, Stiffness, build_scene
-from tests.fem_interface.walls import check_dissipation
+from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.scene import (
+    Array,
+    BlockMaterial,
+    Indices,
+    JointMaterial,
+    Load,
+    Scene,
+    SceneError,
+    Stiffness,
+    build_scene,
+)
 from tests.walls import panel
+
+from .walls import check_dissipation
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 

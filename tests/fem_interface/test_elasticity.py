@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 
 from fem_interface import nodal_jump
-from fem_interface.runs import modal_wall
+from fem_interface.element_order import modal_wall
 from homog import elastic_moduli
-from joints import lobatto
 from meshing import wall_mesh
-from scene import Array
-from tests.fem_interface.walls import (
-    whole,
-)
+from runningbond.joints import lobatto
+from runningbond.scene import Array
 from tests.walls import panel
+
+from .walls import whole
 
 
 def _cell_moduli(width: float, height: float, young: float) -> Array:

@@ -10,19 +10,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import dem.finite_system
-from compare import published_scene
 from dem.dynamic import finite_pushover
-from dynamics import BlockSystem, Criteria, FiniteState, Run, State, settle
-from dynamics.run import LOCAL, VISCOUS
 from fem_interface.finite import fem_pushover
 from fem_interface.finite_system import FiniteRun, finite_system
 from fem_interface.finite_wall import FiniteWall, finite_wall
 from fem_interface.modes import ModeCount
 from fem_interface.system import fem_system
 from fem_interface.templates import nodes_of, triangles_of
-from joints.point_kernel import OPENING_BEFORE
-from joints.softening_kernel import DAMAGE
-from scene import Array, Mortar, Scene, SceneError, Stiffness
+from runningbond.compare import published_scene
+from runningbond.dynamics import BlockSystem, Criteria, FiniteState, Run, State, settle
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.joints.point_kernel import OPENING_BEFORE
+from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
 from tests.test_dem import pile, rectangle
 from tests.test_dynamics import GRAVITY
 from tests.test_finite import check_energy_of_a_fall, check_sliding

@@ -5,17 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics import Run
 from fem_interface.fracture import corrected_energies, fractured, printed_energies
 from fem_interface.model import fem
 from fem_interface.system import fem_system
-from joints.point_kernel import FRICTION_WORK
-from joints.softening_kernel import DAMAGE
-from scene import SceneError
-from tests.fem_interface.walls import (
-    check_dissipation,
-    wall,
-)
+from runningbond.dynamics import Run
+from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.scene import SceneError
+
+from .walls import check_dissipation, wall
 
 
 def test_fracture_energies_as_corrected_and_as_printed() -> None:

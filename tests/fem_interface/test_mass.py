@@ -10,33 +10,25 @@ import pytest
 from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
-from compare import published_scene
-from compare.stability.elastic import elastic_stiffness as of_modes
-from compare.stability.elastic import vibrations
-from dynamics import Criteria, Run, State, settle
-from dynamics.controls import ramp
 from fem_interface.cracks import Cracks
+from fem_interface.element_order import modal_wall
+from fem_interface.frequency_shift import Slowing, elastic_stiffness
 from fem_interface.loads import inner_mass
+from fem_interface.mass_scaling import scaled_modes
 from fem_interface.modes import ModeCount
-from fem_interface.runs import modal_wall
-from fem_interface.slowing import Slowing, elastic_stiffness
-from fem_interface.stable import scaled_modes
 from fem_interface.system import fem_system, system_of
-from joints.point_kernel import FRICTION_WORK
-from scene import Array, Scene, SceneError
-from tests.fem_interface.nodal_steps import NodalSteps
-from tests.fem_interface.walls import (
-    GLUE,
-    MORTAR,
-    joint_stiffness_of,
-    patch,
-    pushed,
-    replace_blocks,
-    triangle_wall,
-    wall,
-)
+from runningbond.compare import published_scene
+from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.dynamics.controls import ramp
+from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.scene import Array, Scene, SceneError
+from runningbond.studies.stability.elastic import elastic_stiffness as of_modes
+from runningbond.studies.stability.elastic import vibrations
 from tests.test_dem import rectangle
 from tests.walls import panel
+
+from .nodal_steps import NodalSteps
+from .walls import GLUE, MORTAR, joint_stiffness_of, patch, pushed, replace_blocks, triangle_wall, wall
 
 SLOWLY = 0.2
 """Time in which a load grows by a fifth of the largest, and a wall's weight from nothing [s]."""
@@ -117,7 +109,7 @@ def test_mass_scaling_keeps_the_first_twenty_frequencies_of_walls_of_ten_blocks_
 @pytest.mark.parametrize("young", [1e10, 1e11, 1e12])
 def test_large_walls_lose_little_though_nobody_looks(monkeypatch: pytest.MonkeyPatch, young: float) -> None:
     """Panel-07, of 588 blocks: a quarter of what scaling may take at most."""
-    monkeypatch.setattr("fem_interface.stable.LARGE", 0)
+    monkeypatch.setattr("fem_interface.mass_scaling.LARGE", 0)
     assert _largest_slowing(of_stiffness("panel-07", young)) < HELD / 4
 
 

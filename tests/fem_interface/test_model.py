@@ -8,26 +8,21 @@ import pytest
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
 
-from compare import published_scene
-from dem import limit
 from dem.dynamic import dem_dynamic
-from dynamics import Criteria, Run, State, settle
 from fem_interface import nodal_jump
+from fem_interface.element_order import modal_wall
 from fem_interface.model import fem
-from fem_interface.runs import modal_wall
 from fem_interface.system import fem_system, system_of
-from joints import Rule, gauss, lobatto
 from meshing import wall_mesh
-from results import Outcome
-from scene import BlockMaterial, Scene, SceneError
-from tests.fem_interface.walls import (
-    GLUE,
-    MORTAR,
-    joint_stiffness_of,
-    wall,
-    whole,
-)
+from runningbond.compare import published_scene
+from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.joints import Rule, gauss, lobatto
+from runningbond.limit import limit
+from runningbond.results import Outcome
+from runningbond.scene import BlockMaterial, Scene, SceneError
 from tests.walls import courses, panel
+
+from .walls import GLUE, MORTAR, joint_stiffness_of, wall, whole
 
 
 def beside_rigid_blocks(scene: Scene, within: float, **settings: Any) -> tuple[Outcome, Outcome]:

@@ -5,22 +5,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics import Run, State
 from fem_interface import block_modes, mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface.element_order import find_runs, modal_wall
 from fem_interface.modes import ModeCount, degree_of, polynomials
 from fem_interface.operators import nodes_of_degree
-from fem_interface.runs import find_runs, modal_wall
 from fem_interface.system import system_of
 from fem_interface.templates import nodes_of, triangles_of
-from joints import lobatto
 from meshing import wall_mesh
-from tests.fem_interface.walls import (
-    MORTAR,
-    patch,
-    triangle_wall,
-    wall,
-)
+from runningbond.dynamics import Run, State
+from runningbond.joints import lobatto
 from tests.walls import panel
+
+from .walls import MORTAR, patch, triangle_wall, wall
 
 
 @pytest.mark.parametrize("count", [3, 6, 9, 20, "all"])

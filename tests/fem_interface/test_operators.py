@@ -16,22 +16,15 @@ from skfem import Basis, ElementTriP1, MeshTri
 from dem import jump_operator, mass_matrix_diagonal
 from dem.rigid_system import contact_points
 from fem_interface import interface, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface.element_order import modal_wall
 from fem_interface.modes import rigid_motions
-from fem_interface.runs import modal_wall
 from fem_interface.templates import nodes_of, triangles_of
-from joints import JointPoints, Rule, gauss, lobatto, wall_points
 from meshing import wall_mesh
-from scene import Array, SceneError
-from tests.fem_interface.walls import (
-    MORTAR,
-    patch,
-    replace_blocks,
-    rigid_of_nodes,
-    triangle_wall,
-    wall,
-    whole,
-)
+from runningbond.joints import JointPoints, Rule, gauss, lobatto, wall_points
+from runningbond.scene import Array, SceneError
 from tests.walls import courses, panel
+
+from .walls import MORTAR, patch, replace_blocks, rigid_of_nodes, triangle_wall, wall, whole
 
 
 @st.composite

@@ -8,22 +8,17 @@ import numpy as np
 import pytest
 
 from dem.rigid_system import rigid_system
-from dynamics import Run, State
-from fem_interface.runs import modal_wall
-from fem_interface.slowing import elastic_stiffness
-from fem_interface.stable import scaled_modes
+from fem_interface.element_order import modal_wall
+from fem_interface.frequency_shift import elastic_stiffness
+from fem_interface.mass_scaling import scaled_modes
 from fem_interface.system import fem_system, system_of
-from joints.point_kernel import FRICTION_WORK
-from scene import JointMaterial, Mortar
-from tests.fem_interface.nodal_steps import NodalSteps
-from tests.fem_interface.walls import (
-    MORTAR,
-    patch,
-    pushed,
-    triangle_wall,
-    wall,
-)
+from runningbond.dynamics import Run, State
+from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.scene import JointMaterial, Mortar
 from tests.walls import panel
+
+from .nodal_steps import NodalSteps
+from .walls import MORTAR, patch, pushed, triangle_wall, wall
 
 
 @pytest.mark.parametrize("changes", [{}, {"joint__cohesion": 50.0, "joint__inset": 0.01}])

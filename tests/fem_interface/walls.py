@@ -6,13 +6,13 @@ import numpy as np
 from scipy.linalg import block_diag
 from scipy.sparse import csr_array
 
-from dynamics import BlockSystem, Run, State
 from fem_interface import mass_matrix, stiffness_matrix
 from fem_interface.modes import rigid_motions
 from fem_interface.templates import nodes_of, triangles_of
-from joints.point_kernel import FRICTION_WORK
 from meshing import WallMesh
-from scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
+from runningbond.dynamics import BlockSystem, Run, State
+from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
 from tests.walls import panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}

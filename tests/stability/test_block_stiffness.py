@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compare.stability.block_stiffness import INSET, Stiffness, beyond, uniformly_scaled, wall
-from compare.stability.elastic import vibrations
+from fem_interface.element_order import modal_wall
+from fem_interface.mass_scaling import LOST, LOWEST
 from fem_interface.model import fem
-from fem_interface.runs import modal_wall
-from fem_interface.stable import LOST, LOWEST
 from fem_interface.system import system_of
-from results import Outcome
+from runningbond.results import Outcome
+from runningbond.studies.stability.block_stiffness import INSET, Stiffness, beyond, uniformly_scaled, wall
+from runningbond.studies.stability.elastic import vibrations
 
 
 @pytest.mark.parametrize("young", [1e10, 1e12])

@@ -3,9 +3,9 @@
 import pytest
 from matplotlib.figure import Figure
 
-from compare.stability.damping import experiment, judged, least_local, mapped, most_local, most_mass_rate
-from compare.stability.known import KnownWall, rounded_wall, sliding_block, toppling_block
-from dynamics.run import LOCAL, VISCOUS
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.studies.stability.damping import experiment, judged, least_local, mapped, most_local, most_mass_rate
+from runningbond.studies.stability.literature import KnownWall, rounded_wall, sliding_block, toppling_block
 
 
 def test_a_ringing_block_comes_to_rest_at_the_rate_of_its_local_damping() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from compare.stability.displacements import LOSSES, SPEEDS, Loss, block, block_edges, draw, loss, wall
+from runningbond.studies.stability.displacements import LOSSES, SPEEDS, Loss, block, block_edges, draw, loss, wall
 
 
 @pytest.fixture(scope="module")

@@ -4,15 +4,15 @@ from typing import Any
 
 import pytest
 
-from compare import published_scene, run_model
-from compare.stability.joint_stiffness import condition, overlap, said, sunk, wall
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import rigid_system
 from dem.static import dem_static
-from dynamics import Run
 from fem_interface.model import fem
-from joints import stiffness_note
-from joints.window import EPSILON, SOFT, STIFF
+from runningbond.compare import published_scene, run_model
+from runningbond.dynamics import Run
+from runningbond.joints import stiffness_note
+from runningbond.joints.stiffness_range import EPSILON, SOFT, STIFF
+from runningbond.studies.stability.joint_stiffness import condition, overlap, said, sunk, wall
 
 EXACT = 0.58558
 """λ of W1 with joints inset by 20 mm, certified by linear programs."""

@@ -2,7 +2,14 @@
 
 import pytest
 
-from compare.stability.linear_program import DEGENERATE, QUANTITIES, SCALED, Degenerate, scale_errors, solved
+from runningbond.studies.stability.linear_program import (
+    DEGENERATE,
+    QUANTITIES,
+    SCALED,
+    Degenerate,
+    scale_errors,
+    solved,
+)
 
 
 @pytest.mark.parametrize("model", SCALED)

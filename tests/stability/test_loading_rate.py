@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from compare.published import published_scene
-from compare.stability.known import KnownWall, rounded_wall, sliding_block, toppling_block
-from compare.stability.loading_rate import BRACKET, bracket, excess, experiment, pushed, ramped
 from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
-from dynamics import Criteria, Run, State, drive, load_steps, settle
-from dynamics.loading import LOADING
-from dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.compare.published import published_scene
+from runningbond.dynamics import Criteria, Run, State, drive, load_steps, settle
+from runningbond.dynamics.loading import LOADING
+from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.studies.stability.literature import KnownWall, rounded_wall, sliding_block, toppling_block
+from runningbond.studies.stability.loading_rate import BRACKET, bracket, excess, experiment, pushed, ramped
 
 
 def test_inertia_of_blocks_in_their_motion() -> None:

@@ -15,19 +15,19 @@ import psutil
 import pytest
 from matplotlib.figure import Figure
 
-from compare.command import command, main
-from compare.recording import StaticRecorder
-from compare.stability import find_out
-from compare.stability.machine.campaign import MISHAPS, draw, what_commands_need
-from compare.stability.machine.disk import disk_trials_apart
-from compare.stability.machine.mishaps import interrupt
-from compare.stability.machine.trial import LOST, NOT_TRIED, REDONE, REFUSED, Scratch, Trial
-from compare.stability.machine.works import COMPARE, MESH, RENDER
-from dem import limit
-from results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
-from results.frame import mechanism_frame
-from results.rendering import why_not_drawn
-from results.series import moments
+from runningbond.commands.command_line import command, main
+from runningbond.compare.recording import StaticRecorder
+from runningbond.limit import limit
+from runningbond.pictures.frame import mechanism_frame
+from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.pictures.series import moments
+from runningbond.results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
+from runningbond.studies.stability import find_out
+from runningbond.studies.stability.machine.campaign import MISHAPS, draw, what_commands_need
+from runningbond.studies.stability.machine.disk import disk_trials_apart
+from runningbond.studies.stability.machine.faults import interrupt
+from runningbond.studies.stability.machine.trial import LOST, NOT_TRIED, REDONE, REFUSED, Scratch, Trial
+from runningbond.studies.stability.machine.works import COMPARE, MESH, RENDER
 from tests.walls import courses
 
 
@@ -97,7 +97,7 @@ def test_two_writers_into_one_folder_leave_one_whole_result(tmp_path: Path, monk
             writers[0].join(timeout=0.5)
         write_atomically(path, content)
 
-    monkeypatch.setattr("results.store.write_atomically", interrupted)
+    monkeypatch.setattr("runningbond.results.store.write_atomically", interrupted)
     save_outcome(outcome(0.5), tmp_path, "first")
     writers[0].join()
     found, key = load_outcome(tmp_path)
@@ -167,7 +167,7 @@ def test_a_damaged_list_of_moments_is_named(content: bytes, tmp_path: Path) -> N
 def shown(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     if why_not_drawn():
         pytest.skip("nothing can be drawn here")
-    monkeypatch.setattr("results.album._draw_mechanism", lambda *_: [])
+    monkeypatch.setattr("runningbond.pictures.render._draw_mechanism", lambda *_: [])
     return Scratch(RENDER, home).fresh(tmp_path / "shown")
 
 
@@ -203,7 +203,7 @@ def test_ctrl_c_is_no_traceback_where_a_library_makes_another_error_of_it(
             raise ImportError("No module named vtkmodules.vtkIOXMLParser") from None
         return 0
 
-    monkeypatch.setattr("compare.command.command", importing)
+    monkeypatch.setattr("runningbond.commands.command_line.command", importing)
     before = signal.getsignal(signal.SIGINT)
     try:
         with pytest.raises(SystemExit) as left:

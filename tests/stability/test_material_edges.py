@@ -2,10 +2,10 @@
 
 import pytest
 
-from compare.stability.material_edges import SIZES, answer, extremes, similar
-from dem import limit
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
+from runningbond.limit import limit
+from runningbond.studies.stability.material_edges import SIZES, answer, extremes, similar
 
 WALLS = {extreme.what: extreme for extreme in extremes()}
 

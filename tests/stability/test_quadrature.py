@@ -6,8 +6,8 @@ from itertools import pairwise
 import pytest
 from matplotlib.figure import Figure
 
-from compare.stability.blocks import INSET, rounded
-from compare.stability.quadrature import (
+from runningbond.studies.stability.blocks import INSET, rounded
+from runningbond.studies.stability.quadrature import (
     CELLS,
     RULES,
     Case,

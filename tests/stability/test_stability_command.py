@@ -15,9 +15,9 @@ import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
-from compare.command import command
-from compare.stability import EXPERIMENTS, Edge, Finding
-from compare.stability.keeping import drawn, find, keep
+from runningbond.commands.command_line import command
+from runningbond.studies.stability import EXPERIMENTS, Edge, Finding
+from runningbond.studies.stability.store import drawn, find, keep
 
 THREE = EXPERIMENTS[:3]
 
@@ -41,9 +41,9 @@ def done(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         names.append(name)
         return finding(f"Experiment {name}")
 
-    monkeypatch.setattr("compare.stability.EXPERIMENTS", THREE)
-    monkeypatch.setattr("compare.stability.report.EXPERIMENTS", THREE)
-    monkeypatch.setattr("compare.stability.report.find_out", find_out)
+    monkeypatch.setattr("runningbond.studies.stability.EXPERIMENTS", THREE)
+    monkeypatch.setattr("runningbond.studies.stability.report.EXPERIMENTS", THREE)
+    monkeypatch.setattr("runningbond.studies.stability.report.find_out", find_out)
     return names
 
 
@@ -80,7 +80,7 @@ def test_a_damaged_finding_is_none(tmp_path: Path, suffix: str) -> None:
 def test_a_finding_of_other_code_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     one = finding()
     keep("time-step", one, drawn(one), tmp_path)
-    monkeypatch.setattr("compare.stability.keeping.stability_digest", lambda: "other")
+    monkeypatch.setattr("runningbond.studies.stability.store.stability_digest", lambda: "other")
     assert find("time-step", tmp_path) is None
 
 
@@ -115,7 +115,7 @@ def test_what_is_kept_is_not_done_again(tmp_path: Path, done: list[str]) -> None
 def test_an_edge_that_is_not_where_theory_has_it_leaves_with_3(
     tmp_path: Path, done: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("compare.stability.report.find_out", lambda name: finding(measured=1.002))
+    monkeypatch.setattr("runningbond.studies.stability.report.find_out", lambda name: finding(measured=1.002))
     for _ in range(2):  # done, then found
         assert command(["stability", THREE[0], "--out", str(tmp_path)]) == 3
         assert f"{THREE[0]}: largest load [N]: measured 1.002, by theory 1" in capsys.readouterr().err
@@ -130,7 +130,7 @@ def test_an_experiment_that_breaks_does_not_lose_the_others(
             raise ZeroDivisionError("division by zero")
         return finding()
 
-    monkeypatch.setattr("compare.stability.report.find_out", find_out)
+    monkeypatch.setattr("runningbond.studies.stability.report.find_out", find_out)
     assert command(["stability", "--out", str(tmp_path)]) == 3
     assert f"{THREE[1]} ended in an error: ZeroDivisionError: division by zero" in capsys.readouterr().err
     assert {path.stem for path in tmp_path.glob("*.json")} == {THREE[0], THREE[2]}
@@ -146,7 +146,7 @@ def test_an_unknown_experiment_is_refused(tmp_path: Path, capsys: pytest.Capture
 
 STOPPED_IN_THE_SECOND = """
 import sys, time
-import compare.stability.report as report
+import runningbond.studies.stability.report as report
 from compare.command import main
 from tests.stability.test_stability_command import finding
 

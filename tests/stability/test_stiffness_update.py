@@ -4,11 +4,21 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from compare.published import published_scene
-from compare.stability.blocks import one_block
-from compare.stability.stiffness_update import ARMS, INCREMENTS, LOOKS, OUTSIDE, Trial, block_edges, draw, trial, trials
-from dem import limit
 from dem.stiffness_update import load_step, resultant_wall
+from runningbond.compare.published import published_scene
+from runningbond.limit import limit
+from runningbond.studies.stability.blocks import one_block
+from runningbond.studies.stability.stiffness_update import (
+    ARMS,
+    INCREMENTS,
+    LOOKS,
+    OUTSIDE,
+    Trial,
+    block_edges,
+    draw,
+    trial,
+    trials,
+)
 
 
 def test_one_block_is_borne_to_its_exact_collapse() -> None:

@@ -6,17 +6,17 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from compare import published_scene
-from compare.stability import time_step
-from compare.stability.elastic import bonded, elastic_stiffness, vibrations
-from compare.stability.time_step import mass_edge, mass_growth, measured, one_mass, too_long
 from dem import jump_operator
 from dem.rigid_system import contact_points, rigid_system
-from dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
-from dynamics.stepping import LOOK
 from fem_interface.modes import ModeCount
 from fem_interface.system import fem_system
-from scene import Scene
+from runningbond.compare import published_scene
+from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
+from runningbond.dynamics.stepping import LOOK
+from runningbond.scene import Scene
+from runningbond.studies.stability import time_step
+from runningbond.studies.stability.elastic import bonded, elastic_stiffness, vibrations
+from runningbond.studies.stability.time_step import mass_edge, mass_growth, measured, one_mass, too_long
 from tests.walls import courses, panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}

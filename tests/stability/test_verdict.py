@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from compare.published import published_scene
-from compare.stability.known import KnownWall, rounded_wall, sliding_block, toppling_block
-from compare.stability.verdict import (
+from dem import limit_nonassociated
+from dem.rigid_system import rigid_system
+from runningbond.compare.published import published_scene
+from runningbond.dynamics import Criteria, Run, load_steps
+from runningbond.dynamics.loading import LOADING_WEIGHTLESS
+from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.studies.stability.literature import KnownWall, rounded_wall, sliding_block, toppling_block
+from runningbond.studies.stability.verdict import (
     INTERVAL,
     REST,
     WEIGHTLESS,
@@ -19,11 +24,6 @@ from compare.stability.verdict import (
     trial,
     weightless_sweep,
 )
-from dem import limit_nonassociated
-from dem.rigid_system import rigid_system
-from dynamics import Criteria, Run, load_steps
-from dynamics.loading import LOADING_WEIGHTLESS
-from dynamics.verdict import COLLAPSE, FIRST_STEP
 
 WALLS = [sliding_block(), toppling_block(), rounded_wall("wall-w1")]
 

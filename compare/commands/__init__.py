@@ -1,1 +1,0 @@
-"""The commands of ``runningbond``, one a module; `compare.command` is where they meet."""

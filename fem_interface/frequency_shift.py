@@ -1,0 +1,96 @@
+"""By how much heavier masses slow a wall's lowest vibrations."""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.sparse import csc_array, csr_array, diags_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import LinearOperator, eigsh, splu
+
+from runningbond.joints.wall_points import wall_stiffness
+from runningbond.scene import Array
+
+from .modal_wall import ModalWall
+from .operators import nodal_jump
+
+GROUND = 1e-9
+"""Springs to the ground, in masses times the square of the wall's highest frequency: what floats vibrates too."""
+
+DENSE = 400
+"""Coordinates of a body up to which its matrices are taken as full ones."""
+
+
+def elastic_stiffness(wall: ModalWall) -> csr_array:
+    """Stiffness of a wall whose joints are all closed, in the coordinates that move, ``(n, n)`` [N/m]."""
+    of_node, of_coordinate, values = [], [], []
+    for template, first in zip(wall.templates, wall.first, strict=False):
+        n, shape = len(template.blocks), template.modes.shape
+        row, mode = np.nonzero(shape)
+        of_node.append(2 * wall.mesh.first_node[template.blocks][:, None] + row)
+        of_coordinate.append(first + mode * n + np.arange(n)[:, None])
+        values.append(np.tile(shape[row, mode], (n, 1)))
+    entries = [np.concatenate([part.ravel() for part in parts]) for parts in (values, of_node, of_coordinate)]
+    basis = csr_array((entries[0], (entries[1], entries[2])), shape=(2 * len(wall.mesh.points), len(wall.mass)))
+    jump, points = nodal_jump(wall.interface, len(wall.mesh.points)), wall.interface.points
+    moving = np.flatnonzero(np.isfinite(wall.mass))
+    found = diags_array(wall.stiffness).tocsr()
+    for operator, stiffness in zip((jump.opening, jump.slip), wall_stiffness(wall.scene, points.joint), strict=True):
+        B = operator @ basis
+        found = found + B.T @ (B * (stiffness * points.area)[:, None])
+    return csr_array(found[moving][:, moving])
+
+
+class Slowing:
+    """The lowest frequencies of a wall, and how much of them is lost with other masses.
+
+    Parameters
+    ----------
+    wall
+        The wall.
+    count
+        Number of frequencies.
+    highest
+        Its largest ω² [1/s²], roughly.
+    """
+
+    def __init__(self, wall: ModalWall, count: int, highest: float) -> None:
+        self._moving = np.isfinite(wall.mass)
+        self._count = count
+        ground = diags_array(GROUND * highest * wall.mass[self._moving])
+        stiffness = csc_array(elastic_stiffness(wall) + ground)
+        bodies, body = connected_components(stiffness, directed=False)
+        rows = [np.flatnonzero(body == k) for k in range(bodies)]
+        self._bodies = [(own, _lowest_of(csc_array(stiffness[own][:, own]), count)) for own in rows]
+        self._exact = self._lowest(wall.mass)
+
+    def of(self, mass: Array) -> float:
+        """Largest part that one of the frequencies loses with modal masses ``(nd,)`` [kg]."""
+        return float((1 - np.sqrt(self._lowest(mass) / self._exact)).max())
+
+    def _lowest(self, mass: Array) -> Array:
+        """The smallest ω² [1/s²] of all bodies, ascending."""
+        moving = mass[self._moving]
+        return np.sort(np.concatenate([lowest(moving[own]) for own, lowest in self._bodies]))[: self._count]
+
+
+def _lowest_of(stiffness: csc_array, count: int) -> Callable[[Array], Array]:
+    """A function that gives a body's smallest ω² [1/s²] of its masses ``(n,)``.
+
+    The blocks of a body hold together: Lanczos' method finds one of several equal frequencies, which equal bodies have.
+    """
+    n = stiffness.shape[0]
+    if n <= DENSE:
+        # Of M against K: that of K against M finds the lowest to the rounding of the highest, far above them.
+        K, slowest = stiffness.toarray(), (max(n - count, 0), n - 1)
+        return lambda mass: 1 / eigh(np.diag(mass), K, eigvals_only=True, subset_by_index=slowest)
+    # A symmetric ordering fills the factors less than the one that is usual for any matrix.
+    factors = splu(stiffness, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    inverse = LinearOperator((n, n), factors.solve, dtype=np.float64)
+    start = np.random.default_rng(0).standard_normal(n)
+
+    def lowest(mass: Array) -> Array:
+        M = diags_array(mass).tocsc()
+        return np.asarray(eigsh(stiffness, count, M, sigma=0.0, OPinv=inverse, v0=start, return_eigenvectors=False))
+
+    return lowest

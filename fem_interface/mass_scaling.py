@@ -1,0 +1,206 @@
+"""Mass scaling of deformable modes, and the frequency that bounds the scaled wall, from each block alone.
+
+With K_b a block's own stiffness, K_j its share of the joints' and C the viscosity of its deformable modes, central
+differences are stable at a step Δt(ω) if for every block
+
+    K_b + (2/Δt) C + K_j ≤ ω² M*,    M* = M + β K_b / ω²,
+
+with β a little above one: a mode that is stiff enough to limit the step is made just so heavy that it does not. The
+smallest such ω is sought; it comes close to that of rigid blocks, however stiff the blocks are. In walls of few blocks
+the lowest vibrations are not far below it and would become slower: masses are scaled for a larger ω there.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from runningbond.dynamics import block_frequency_squared, joint_shares, mass_factor, stable_step
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.joints.wall_points import wall_stiffness
+from runningbond.scene import Array
+
+from .element_order import RESOLUTION
+from .frequency_shift import Slowing
+from .modal_wall import ModalWall
+
+ROOM = 1.1
+"""Step that masses are scaled for, in critical ones: leaves room for the viscosity of the scaled modes."""
+
+CLOSE = 1e-3
+"""Relative accuracy of ω²."""
+
+LOWEST = 20
+"""Number of the lowest frequencies that scaling leaves as they are, in walls of ten blocks or more.
+
+In smaller ones it is the lowest two thirds of those that the wall has of rigid blocks: in the highest of them one
+block swings against the others, and to keep these as they are is almost to scale nothing.
+"""
+
+LOST = 2e-3
+"""Part of them that it may take."""
+
+LARGE = 1000
+"""Number of blocks, or of triangles that may part, beyond which they are not looked at, to save the memory.
+
+The twentieth frequency of so large a wall is far below what limits the step; in a single course, whose waves travel
+one way only, it may lose more than `LOST` all the same.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class ScaledModes:
+    """Modes made fit for a time step.
+
+    Parameters
+    ----------
+    frequency_squared : float
+        ω² that bounds the wall [1/s²].
+    mass, viscosity : (nd,) float
+        Modal masses after scaling, and viscosity of the deformable modes [N s/m].
+    """
+
+    frequency_squared: float
+    mass: Array
+    viscosity: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """Blocks of one template, each with other joints: their modes and their share of the joints, ``(n, m, m)``."""
+
+    mass: Array
+    stiffness: Array
+    joints: Array
+
+
+def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) -> ScaledModes:
+    """Scale the masses of a wall's modes as far as the joints' step asks for.
+
+    Parameters
+    ----------
+    wall
+        The wall.
+    damping
+        Viscous damping ratio of the deformable modes.
+    mass_scaling
+        Whether masses are scaled at all.
+    """
+    kinds = min(_all_kinds(wall), key=_rigid_bound)
+    if mass_scaling:
+        square = _smallest(kinds, damping)
+        fit = _unslowed(wall, square)
+        if fit > square:
+            square = _smallest(kinds, damping, fit)
+    else:
+        fit, square = np.inf, _smallest(kinds, damping, np.inf)
+    mass = _scaled(wall.mass, wall.stiffness, fit)
+    return ScaledModes(square, mass, _viscosity(wall.stiffness, mass, damping))
+
+
+def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> float:
+    """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself where there is none."""
+
+    def bound(square: float) -> float:
+        return max(_bound(kind, square, damping, fit or square) for kind in kinds)
+
+    low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
+    while bound(high) > high:
+        low, high = high, 2 * high
+    while high > low * (1 + CLOSE):
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if bound(middle) <= middle else (middle, high)
+    return high
+
+
+def _unslowed(wall: ModalWall, square: float) -> float:
+    """An ω² from `square` up that masses may be scaled for, so that the lowest vibrations stay as they are.
+
+    It is the smallest, but where what is lost falls faster than 1 / ω², in walls of a few blocks.
+    """
+    rigid = int(((wall.stiffness == 0) & np.isfinite(wall.mass)).sum())
+    lowest = min(LOWEST, 2 * rigid // 3)
+    if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE:
+        return square
+    slowing = Slowing(wall, lowest, square)
+    while (lost := slowing.of(_scaled(wall.mass, wall.stiffness, square)) / LOST) > 1:
+        square *= lost * (1 + CLOSE)
+    return square
+
+
+def largest_scaling(wall: ModalWall, mass: Array) -> float:
+    """Largest factor by which modal masses ``(nd,)`` [kg] exceed those of a wall's blocks."""
+    moving = np.isfinite(mass)
+    return float((mass[moving] / wall.mass[moving]).max())
+
+
+def _scaled(mass: Array, stiffness: Array, square: float) -> Array:
+    return np.asarray(mass * mass_factor(stiffness, mass, ROOM * 2 / np.sqrt(square)))
+
+
+def _viscosity(stiffness: Array, mass: Array, damping: float) -> Array:
+    """2 ξ (k m)^{1/2}, nothing for a mode without stiffness whatever its mass."""
+    return np.where(stiffness > 0, 2 * damping * np.sqrt(stiffness * np.where(stiffness > 0, mass, 1.0)), 0.0)
+
+
+def _rigid_bound(kinds: list[_Kind]) -> float:
+    """Largest ω² of blocks that do not deform."""
+    found = 0.0
+    for kind in kinds:
+        rigid = np.flatnonzero(kind.stiffness == 0)
+        if len(rigid):
+            joints = kind.joints[:, rigid[:, None], rigid]
+            found = max(found, float(block_frequency_squared(joints, _each(kind.mass[rigid], joints)).max()))
+    return found
+
+
+def _bound(kind: _Kind, square: float, damping: float, fit: float) -> float:
+    mass = _scaled(kind.mass, kind.stiffness, fit)
+    viscosity = _viscosity(kind.stiffness, mass, damping)
+    own = kind.stiffness + 2 / stable_step(square, VISCOUS, LOCAL) * viscosity
+    return float(block_frequency_squared(kind.joints + np.diag(own), _each(mass, kind.joints)).max())
+
+
+def _each(mass: Array, joints: Array) -> Array:
+    return np.tile(mass, (len(joints), 1))
+
+
+def _all_kinds(wall: ModalWall) -> list[list[_Kind]]:
+    """The blocks of a wall, for each of three ways of sharing a joint between its two sides."""
+    return [_kinds(wall, share) for share in (0.0, 0.5, 1.0)]
+
+
+def _kinds(wall: ModalWall, share: float) -> list[_Kind]:
+    """Blocks that differ in their mesh, their pins or their joints."""
+    joint = wall.interface
+    n, ne, _ = joint.weights.shape
+    block = joint.points.block[:ne]
+    part = joint_shares(np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block], share)
+    normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne])
+    springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)
+
+    # Both sides of all elements, side by side: their local nodes, and all that their stiffness depends on.
+    block, part = block.T.ravel(), part.T.ravel()
+    nodes = np.concatenate([joint.nodes[:, :2], joint.nodes[:, 2:]]) - wall.mesh.first_node[block][:, None]
+    shares = joint.weights.transpose(1, 0, 2).reshape(ne, 2 * n)
+    alike = np.hstack([joint.normal, *springs.transpose(0, 2, 1) / springs.max(initial=1e-300), shares])
+    features = np.column_stack([nodes, part, np.tile(alike, (2, 1))])
+    _, likeness = np.unique(np.rint(features / RESOLUTION), axis=0, return_inverse=True)
+
+    order = np.lexsort([likeness, block])
+    of_block = np.split(order, np.searchsorted(block[order], np.arange(1, len(wall.scene.blocks))))
+    found = []
+    for template in wall.templates:
+        modes = template.modes
+        moving = np.isfinite(modes.mass)
+        shape = modes.shape[:, moving].reshape(-1, 2, moving.sum())
+        seen = {likeness[of_block[b]].tobytes(): of_block[b] for b in template.blocks}
+        joints = np.zeros((len(seen), shape.shape[2], shape.shape[2]))
+        for matrix, sides in zip(joints, seen.values(), strict=True):
+            for side in sides:
+                e = side % ne
+                at_points = np.einsum("pe,exm->pxm", joint.weights[:, e], shape[nodes[side]])
+                frame = np.array([joint.normal[e], [-joint.normal[e, 1], joint.normal[e, 0]]])
+                jumps = np.einsum("dx,pxm->dpm", frame, at_points)
+                matrix += part[side] * np.einsum("dp,dpm,dpk->mk", springs[:, :, e], jumps, jumps)
+        found.append(_Kind(modes.mass[moving], modes.stiffness[moving], joints))
+    return found

@@ -1,0 +1,1 @@
+"""Masonry walls from their description to their collapse."""

@@ -1,0 +1,83 @@
+"""The command line: where the commands of ``runningbond`` meet, and what becomes of their errors."""
+
+import io
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from importlib.metadata import version
+
+from cyclopts import App, CycloptsError
+
+from runningbond.pictures.vtk_messages import VtkError
+from runningbond.results import StoreError
+from runningbond.scene import SceneError
+
+from .advise import advise
+from .compare import compare
+from .exits import BAD_INPUT, DONE, NO_ANSWER, STOPPED
+from .mesh import mesh
+from .render import render
+from .run import run
+from .stability import stability
+from .study import study
+
+app = App(
+    name="runningbond",
+    help="From the description of a masonry wall to its collapse.",
+    version=lambda: version("runningbond"),
+    result_action="return_value",
+    suppress_keyboard_interrupt=False,
+)
+for each in (run, advise, compare, stability, study, mesh, render):
+    app.command(each)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and leave with its exit code."""
+    heard: list[int] = []
+
+    def stop(number: int, frame: object) -> None:
+        heard.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, stop)
+    try:
+        code = command(arguments)
+    except Exception:
+        if not heard:
+            raise
+        code = _stopped()  # within an import or a callback, libraries make another error of it
+    sys.exit(code)
+
+
+def command(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; bad input is one line on standard error and exit code 2."""
+    tokens = list(sys.argv[1:] if arguments is None else arguments)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
+    try:
+        result = app(tokens, exit_on_error=False, print_error=False)
+    except (SceneError, StoreError, CycloptsError) as error:
+        return _refuse(str(error))
+    except VtkError as error:
+        print(f"runningbond: {error}", file=sys.stderr)
+        return NO_ANSWER
+    except BrokenPipeError:  # whoever read us has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return DONE
+    except OSError as error:
+        return _refuse(f"{error.filename or 'output'}: {error.strerror or error}")
+    except KeyboardInterrupt:
+        return _stopped()
+    return result if isinstance(result, int) else DONE
+
+
+def _stopped() -> int:
+    print("runningbond: interrupted; every file is whole, or as it was before", file=sys.stderr)
+    return STOPPED
+
+
+def _refuse(message: str) -> int:
+    print("runningbond: " + " ".join(message.split()), file=sys.stderr)
+    return BAD_INPUT

@@ -1,0 +1,159 @@
+"""``runningbond compare``."""
+
+import signal
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+from rich.console import Console
+
+from runningbond.compare.campaign import Campaign, Cell, Interrupted, run_campaign
+from runningbond.compare.models import MODELS, TOLERANCE, check_model, check_tolerance
+from runningbond.compare.published import PUBLISHED, PublishedCase, find_scene, published_case
+from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
+from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.results import make_folder, write_atomically
+from runningbond.scene import Scene, SceneError, read_scene
+
+from .exits import BAD_INPUT, DONE, NO_ANSWER, STOPPED
+from .progress import progress_bar
+
+
+def compare(
+    *scenes: str,
+    models: str = ",".join(MODELS),
+    tolerance: float = TOLERANCE,
+    out: Path = Path("comparison"),
+    jobs: int = -1,
+    cluster: str | None = None,
+    fresh: Annotated[bool, Parameter(negative="")] = False,
+) -> int:
+    """Run models on scenes and tabulate them beside the published values.
+
+    Results are kept as they come: an interrupted comparison goes on where it was.
+
+    Parameters
+    ----------
+    scenes
+        Scene files or names; all published walls where none is given.
+    models
+        Names of models, separated by commas.
+    tolerance
+        Relative width of the bracket asked for.
+    out
+        Folder for results, tables and charts.
+    jobs
+        Number of processes; -1 is one a core.
+    cluster
+        Run on the workers of a Dask cluster: the address of its scheduler, such as tcp://host:8786, or its file.
+    fresh
+        Compute again what is already there.
+    """
+    chosen = list(dict.fromkeys(model.strip() for model in models.split(",")))
+    for model in chosen:
+        check_model(model, "--models")
+    check_tolerance(tolerance)
+    if jobs == 0 or jobs < -1:
+        raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+    _check_cluster(cluster, jobs)
+    walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
+    make_folder(out)
+    console = Console(stderr=True)
+    try:
+        campaign = _run_with_progress(walls, chosen, out, tolerance, jobs, cluster, fresh, console)
+    except Interrupted as stopped:
+        total, again = len(walls) * len(chosen), "the same command without --fresh" if fresh else "the same command"
+        kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
+        why = f"runningbond: {stopped.reason}" if stopped.reason else "Interrupted"
+        console.print(f"{why}: {kept}", soft_wrap=True, markup=False, highlight=False)
+        if isinstance(stopped.__cause__, OSError):
+            return BAD_INPUT
+        return NO_ANSWER if stopped.reason else STOPPED
+    _report(Comparison(walls, chosen, campaign, published), out, tolerance)
+    failed = [cell for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
+    for name, model in failed:
+        console.print(f"{name}, {model}: {campaign.outcomes[name, model].message}", markup=False)
+    return NO_ANSWER if failed else DONE
+
+
+def _check_cluster(cluster: str | None, jobs: int) -> None:
+    """Refuse a cluster that cannot be used."""
+    if cluster is None:
+        return
+    if jobs != -1:
+        raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
+    if find_spec("distributed") is None:
+        raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
+
+
+def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, PublishedCase]]:
+    """Scenes by name, and the published cases among them."""
+    walls: dict[str, Scene] = {}
+    published: dict[str, PublishedCase] = {}
+    for scene in scenes:
+        path = find_scene(scene)
+        if path.stem in walls:
+            raise SceneError(scene, f'is the second scene called "{path.stem}"; results are kept by file name')
+        walls[path.stem] = read_scene(path)
+        case = published_case(path)
+        if case is not None:
+            published[path.stem] = case
+    return walls, published
+
+
+def _run_with_progress(
+    walls: Mapping[str, Scene],
+    models: Sequence[str],
+    out: Path,
+    tolerance: float,
+    jobs: int,
+    cluster: str | None,
+    fresh: bool,
+    console: Console,
+) -> Campaign:
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
+    with progress_bar(console) as bar:
+        task = bar.add_task("comparing", total=len(walls) * len(models))
+
+        def advance(cell: Cell) -> None:
+            bar.update(task, advance=1, description=f"{cell[0]}, {cell[1]}")
+
+        return run_campaign(
+            walls,
+            models,
+            folder=out,
+            tolerance=tolerance,
+            jobs=jobs,
+            cluster=cluster,
+            fresh=fresh,
+            progress=advance,
+        )
+
+
+def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
+    from runningbond.compare.curves import draw_curves
+    from runningbond.compare.figures import draw_figures
+    from runningbond.compare.plates import draw_plates
+    from runningbond.compare.report import report_html
+
+    campaign = comparison.campaign
+    sheets = [*multiplier_sheets(comparison), *cost_sheets(comparison)]
+    write_atomically(out / "table.csv", csv_text(comparison).encode())
+    write_atomically(out / "table.md", "\n".join(sheet.markdown() for sheet in sheets).encode())
+    console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
+    for sheet in sheets:
+        console.print(sheet.terminal())
+    console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them found in {out}", soft_wrap=True)
+    published = campaign.only(comparison.published)
+    why_not = why_not_drawn()
+    charts = [*draw_figures(published, out), *draw_curves(published, out)]
+    charts += [] if why_not else draw_plates(comparison, out)
+    pictures = [path for path in charts if path.suffix == ".png"]
+    write_atomically(out / "report.html", report_html(comparison, pictures, tolerance, why_not).encode())
+    tables = [out / name for name in ("table.csv", "table.md", "report.html")]
+    console.print(f"written: {', '.join(map(str, [*tables, *charts]))}", soft_wrap=True)
+    if why_not:
+        print(f"runningbond: {why_not}", file=sys.stderr)

@@ -1,0 +1,41 @@
+"""``runningbond mesh``."""
+
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from meshing import check_suffix, wall_mesh, write_mesh
+from runningbond.compare.published import find_scene
+from runningbond.scene import read_scene
+
+from .exits import DONE
+from .integers import whole
+
+
+def mesh(
+    scene: str,
+    /,
+    *,
+    out: Annotated[Path, Parameter(name=("--out", "-o"))],
+    cells: Annotated[int, Parameter(converter=whole)] = 1,
+) -> int:
+    """Write a finite-element mesh of a wall, its joints as elements without thickness.
+
+    Parameters
+    ----------
+    scene
+        Scene file, or the name of a published scene such as panel-01.
+    out
+        File to write, .msh or .vtu.
+    cells
+        Cells in half a block along the course, and in a block's height.
+    """
+    check_suffix(out)
+    wall = read_scene(find_scene(scene))
+    meshed = wall_mesh(wall, cells)
+    write_mesh(meshed, wall, out)
+    print(
+        f"{out}: {len(meshed.points)} nodes, {len(meshed.triangles)} triangles, {len(meshed.interfaces)} joint elements"
+    )
+    return DONE

@@ -1,0 +1,111 @@
+"""``runningbond run``."""
+
+import json as to_json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from runningbond.compare.fingerprint import fingerprint
+from runningbond.compare.models import OBSERVED, TOLERANCE, check_model, check_tolerance, run_model
+from runningbond.compare.published import find_scene
+from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.results import Outcome, make_folder, save_outcome
+from runningbond.scene import Scene, read_scene
+
+from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
+from .interruptions import interruptions
+
+if TYPE_CHECKING:
+    from runningbond.compare.recording import Recorder
+
+
+def run(
+    scene: str,
+    /,
+    *,
+    model: str,
+    tolerance: float = TOLERANCE,
+    json: Annotated[bool, Parameter(negative="")] = False,
+    out: Path | None = None,
+) -> int:
+    """Run one model on one scene.
+
+    Parameters
+    ----------
+    scene
+        Scene file, or the name of a published scene such as panel-01.
+    model
+        homog, limit, limit-nonassociated, dem-static, dem-dynamic or fem.
+    tolerance
+        Relative width of the bracket asked for.
+    json
+        Print one JSON object and nothing else.
+    out
+        Folder in which to keep the result, its time series for ParaView and a picture of its mechanism.
+    """
+    check_model(model)
+    check_tolerance(tolerance)
+    wall = read_scene(find_scene(scene))
+    if out is not None:
+        make_folder(out)
+    stopped = interruptions(model)
+    recorder = None
+    if out is not None and model in OBSERVED:
+        from runningbond.compare.recording import recorder as observer
+
+        recorder = observer(wall, model, out)
+    outcome = run_model(model, wall, tolerance, recorder)
+    print(_as_json(outcome) if json else _as_text(outcome), flush=True)
+    if out is not None:
+        # What was broken off is kept under no fingerprint: no comparison takes it for the answer.
+        save_outcome(outcome, out, "" if stopped else fingerprint(wall, model, tolerance), wall)
+        _record(wall, outcome, out, recorder)
+        _draw(out)
+    if stopped:
+        return STOPPED
+    return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+def _record(scene: Scene, outcome: Outcome, out: Path, recorder: "Recorder | None") -> None:
+    """Finish the time series of a run, or write that of a mechanism."""
+    if recorder is not None:
+        recorder.finish(outcome)
+        return
+    from runningbond.compare.recording import record_mechanism
+
+    record_mechanism(scene, outcome, out)
+
+
+def _draw(out: Path) -> None:
+    """Draw the mechanism, or say in a line why there is no picture: the numbers are kept all the same."""
+    from runningbond.pictures.render import draw_mechanism, forget_pictures
+
+    forget_pictures(out)
+    why_not = why_not_drawn()
+    if not why_not:
+        draw_mechanism(out)
+    else:
+        print(f"runningbond: {why_not}", file=sys.stderr)
+
+
+def _as_json(outcome: Outcome) -> str:
+    return to_json.dumps(outcome.summary(), allow_nan=False)
+
+
+def _as_text(outcome: Outcome) -> str:
+    bracket = ", ".join(
+        f"{name} {value:.6g}"
+        for name, value in (("λ", outcome.multiplier), ("lower", outcome.lower), ("upper", outcome.upper))
+        if value is not None
+    )
+    size = "" if outcome.dofs is None else f"{outcome.dofs} degrees of freedom, {outcome.steps} steps, "
+    return "\n".join(
+        [
+            f"{outcome.scene}: {outcome.model}",
+            f"  {outcome.status}{': ' + bracket if bracket else ''}",
+            f"  {outcome.message}",
+            f"  {size}{outcome.seconds:.3g} s",
+        ]
+    )

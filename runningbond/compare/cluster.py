@@ -1,0 +1,95 @@
+"""The cases of a campaign on a Dask cluster, through joblib's backend for it."""
+
+import json
+import logging
+from collections.abc import Callable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from distributed import Client, KilledWorker
+from joblib import parallel_config
+from joblib._dask import DaskDistributedBackend
+
+from runningbond.scene import SceneError
+
+from .campaign import ClusterError
+
+PATIENCE = 30
+"""Seconds in which a scheduler must answer and have a worker."""
+
+
+class CaseBackend(DaskDistributedBackend):  # type: ignore[misc]
+    """joblib's backend, which would wait for ever for what a cluster gives up, and not send to one that has one core.
+
+    Parameters
+    ----------
+    client
+        The connection.
+    given_up
+        What to return for arguments over which one worker after the other was killed.
+    """
+
+    def __init__(self, client: Client, given_up: Callable[..., Any]) -> None:
+        super().__init__(client=client)
+        self._given_up = given_up
+
+    def effective_n_jobs(self, n_jobs: int) -> int:
+        """Say how many tasks run at once; where that is one, joblib computes in the process that asks."""
+        return max(2, int(super().effective_n_jobs(n_jobs)))
+
+    def submit(self, func: Any, callback: Callable[[Any], None]) -> Any:
+        """Send tasks to the cluster."""
+
+        def give_up(done: Any) -> None:
+            error = done.exception()
+            if isinstance(error, KilledWorker):
+                callback([self._given_up(*arguments, **named) for _, arguments, named in func.items])
+            elif error is not None:
+                callback(error)
+
+        sent = super().submit(func, callback)
+        sent.add_done_callback(give_up)
+        return sent
+
+    def retrieve_result_callback(self, out: Any) -> Any:
+        """Take in what came back: results, or why there are none."""
+        if isinstance(out, CancelledError):
+            raise ClusterError("the connection to its scheduler is lost")
+        if isinstance(out, BaseException):
+            raise ClusterError(" ".join(f"{type(out).__name__}: {out}".split()))
+        return super().retrieve_result_callback(out)
+
+
+@contextmanager
+def on_cluster(where: str, given_up: Callable[..., Any]) -> Iterator[None]:
+    """Send what joblib is given inside to a cluster.
+
+    Parameters
+    ----------
+    where
+        Address of the scheduler, or its file.
+    given_up
+        See `CaseBackend`.
+
+    Raises
+    ------
+    SceneError
+        Where no scheduler with a worker answers.
+    """
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what it tells is told here, in a line
+    try:
+        address = json.loads(Path(where).read_bytes())["address"] if Path(where).is_file() else where
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        raise SceneError("--cluster", "is neither the address of a Dask scheduler nor its file", where) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=PATIENCE)
+        except TimeoutError as error:
+            raise SceneError(
+                "--cluster", f"has no worker after {PATIENCE} s; start some, one thread each", where
+            ) from error
+        with parallel_config(backend=CaseBackend(client, given_up)):
+            yield

@@ -1,0 +1,176 @@
+"""Kinematics of rigid blocks at finite displacements: two sides that face each other, and the two ends they share.
+
+A side is straight between two corners, and a corner is an arc of radius r about a centre c, as far in from the corner
+as the joints' inset (r = 0: a sharp corner). Where side e of block b lies on side f of block a, each end of their
+overlap is the corner v of e or the corner w of f, whichever is farther in. With the normal n from a to b, the tangent
+t, and the tilt φ of b against a,
+
+    v rests on f:   opening n_f · (c_v − c_w) − r_v − r_w,   slip t_f · (c_v − c_w) − r_v φ
+    w bears e:      opening n_e · (c_v − c_w) − r_v − r_w,   slip t_e · (c_v − c_w) + r_w φ
+    arc on arc:     opening |c_v − c_w| − r_v − r_w,         slip r_v ∠(n_e, n) + r_w ∠(n_f, n),  n along the centres
+
+Each goes over into the next without a jump, and so does their friction when a corner comes off one block's side and
+its side slides on over another's. The rates of opening and slip are those of the two blocks at the point where
+they touch: forces there do the work that the jumps say, and keep linear and angular momentum.
+"""
+
+import math
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from runningbond.joints.compiled import kernel
+from runningbond.scene import Array
+
+Geometry: TypeAlias = tuple[Any, ...]
+ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
+
+
+@kernel
+def place_outline(motion: Array, outline: tuple[Array, ...], placed: tuple[Array, Array]) -> None:
+    """Write cosine, sine and centroid of the blocks ``(nb, 4)`` and the corners' arcs in space ``(nv, 4)``.
+
+    `outline` is centroids; first freedom of each corner's block; centre of its arc and normal of the side that starts
+    there, from the centroid and in the frame of the undeformed wall. An arc's row is its centre and that normal.
+    """
+    centroid, freedom, centre, normal = outline
+    turned, arcs = placed
+    for i in range(turned.shape[0]):
+        spin = motion[3 * i + 2]
+        turned[i, 0] = math.cos(spin)
+        turned[i, 1] = math.sin(spin)
+        turned[i, 2] = centroid[i, 0] + motion[3 * i]
+        turned[i, 3] = centroid[i, 1] + motion[3 * i + 1]
+    for v in range(freedom.size):
+        b = freedom[v] // THREE
+        c, s = turned[b, 0], turned[b, 1]
+        arcs[v, 0] = turned[b, 2] + c * centre[v, 0] - s * centre[v, 1]
+        arcs[v, 1] = turned[b, 3] + s * centre[v, 0] + c * centre[v, 1]
+        arcs[v, 2] = c * normal[v, 0] - s * normal[v, 1]
+        arcs[v, 3] = s * normal[v, 0] + c * normal[v, 1]
+
+
+@kernel
+def _arc_on_arc(dx: float, dy: float, radii: float) -> tuple[float, float, float]:
+    """Opening of two arcs and the normal along the line of their centres ``(dx, dy)``."""
+    distance = math.hypot(dx, dy)
+    return distance - radii, dx / distance, dy / distance
+
+
+@kernel
+def sharp_opening(away: float, beyond: float) -> float:
+    """Opening of a sharp corner that is `away` from a side and `beyond` its far end, both negative inside.
+
+    A corner deeper in than it is far from that end is let go of, until twice as deep: it is coming out there, and
+    belongs to the side round the end. Else a block that slides onto the next one of its course would be stuck in the
+    flank of that one, by no more than the joint under it gives way. It changes by √5 times the way of the corner.
+    """
+    return away if away > beyond else 2.0 * beyond - away
+
+
+@kernel
+def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
+    """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``.
+
+    `geometry` is the outline of the blocks; radius of each corner and straight length of the side that starts there;
+    per end the corners v, w, the far corners of their sides, and sides e, f; whether inwards is along the tangent (1)
+    or against it (−1), the tilt without the blocks' turns and the area; and, written, the placed outline and, per
+    end, the point of contact and the normal.
+    """
+    outline, radius, straight, ends, inwards, tilt, _, placed, contact = geometry
+    place_outline(motion, outline, placed)
+    freedom = outline[1]
+    arcs = placed[1]
+    for k in range(inwards.size):
+        v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
+        dx, dy = arcs[v, 0] - arcs[w, 0], arcs[v, 1] - arcs[w, 1]
+        r_v, r_w = radius[v], radius[w]
+        sense = inwards[k]
+        turned = motion[freedom[v] + TWO] - motion[freedom[w] + TWO] + tilt[k]
+        nx, ny = arcs[f, 2], arcs[f, 3]
+        along = dy * nx - dx * ny
+        on_f = sense * along
+        away = dx * nx + dy * ny - r_v - r_w
+        moved = along - r_v * turned
+        x, y = arcs[v, 0], arcs[v, 1]
+        behind = r_v
+        if on_f >= 0.0:
+            beyond = on_f - straight[f]
+            far = ends[k, 3]
+            if r_v + radius[far] == 0.0:
+                away = sharp_opening(away, beyond)
+            elif beyond > 0.0:
+                dx, dy = arcs[v, 0] - arcs[far, 0], arcs[v, 1] - arcs[far, 1]
+                away, moved, nx, ny = _far_arcs(dx, dy, r_v, radius[far], arcs, e, f)
+                moved += sense * straight[f]
+        else:
+            ex, ey = -arcs[e, 2], -arcs[e, 3]
+            along_e = dy * ex - dx * ey
+            on_e = -sense * along_e
+            if on_e >= 0.0:
+                nx, ny = ex, ey
+                away = dx * nx + dy * ny - r_v - r_w
+                moved = along_e + r_w * turned
+                x, y, behind = arcs[w, 0], arcs[w, 1], -r_w
+                beyond = on_e - straight[e]
+                far = ends[k, 2]
+                if r_w + radius[far] == 0.0:
+                    away = sharp_opening(away, beyond)
+                elif beyond > 0.0:
+                    dx, dy = arcs[far, 0] - arcs[w, 0], arcs[far, 1] - arcs[w, 1]
+                    away, moved, nx, ny = _far_arcs(dx, dy, radius[far], r_w, arcs, e, f)
+                    moved -= sense * straight[e]
+            elif r_v + r_w > 0.0:
+                away, nx, ny = _arc_on_arc(dx, dy, r_v + r_w)
+                moved = r_v * _angle(nx, ny, ex, ey) + r_w * _angle(nx, ny, arcs[f, 2], arcs[f, 3])
+        opening[k] = away
+        slip[k] = moved
+        contact[k, 0] = x - behind * nx
+        contact[k, 1] = y - behind * ny
+        contact[k, 2] = nx
+        contact[k, 3] = ny
+
+
+@kernel
+def _angle(nx: float, ny: float, fx: float, fy: float) -> float:
+    """Angle from one unit vector f to another n."""
+    return math.atan2(fx * ny - fy * nx, fx * nx + fy * ny)
+
+
+@kernel
+def _far_arcs(
+    dx: float, dy: float, r_v: float, r_w: float, arcs: Array, e: int, f: int
+) -> tuple[float, float, float, float]:
+    """Opening, slip and normal of two arcs by which blocks come off each other's sides.
+
+    Beyond a tilt of 45° on the average, they belong to the sides round the corners; so they are not counted twice.
+    """
+    away, nx, ny = _arc_on_arc(dx, dy, r_v + r_w)
+    of_e = _angle(nx, ny, -arcs[e, 2], -arcs[e, 3])
+    of_f = _angle(nx, ny, arcs[f, 2], arcs[f, 3])
+    if abs(of_e + of_f) > 0.5 * math.pi:
+        away = abs(away)
+    return away, r_v * of_e + r_w * of_f, nx, ny
+
+
+@kernel
+def scatter_finite(normal: Array, tangential: Array, geometry: Geometry, force: Array) -> None:
+    """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
+    outline, ends, area, placed, contact = geometry[0], geometry[3], geometry[6], geometry[7], geometry[8]
+    freedom, turned = outline[1], placed[0]
+    for k in range(normal.size):
+        if normal[k] == 0.0:
+            continue
+        v, w = ends[k, 0], ends[k, 1]
+        x, y, nx, ny = contact[k, 0], contact[k, 1], contact[k, 2], contact[k, 3]
+        pull, shear = area[k] * normal[k], area[k] * tangential[k]
+        fx = pull * nx - shear * ny
+        fy = pull * ny + shear * nx
+        b, a = freedom[v], freedom[w]
+        p, q = b // THREE, a // THREE
+        force[b] -= fx
+        force[b + ONE] -= fy
+        force[a] += fx
+        force[a + ONE] += fy
+        force[b + TWO] -= (x - turned[p, 2]) * fy - (y - turned[p, 3]) * fx
+        force[a + TWO] += (x - turned[q, 2]) * fy - (y - turned[q, 3]) * fx

@@ -1,0 +1,252 @@
+"""Central differences with lagged viscous and local damping, compiled for one pair of kinematics and one law.
+
+Each step is a gather of jumps, the law over all points, a scatter of forces and one diagonal update:
+
+    f = f_dead + λ f_live − K q − Bᵀ t(B q) − c v⁻
+    v⁺ = v⁻ + Δt (f − α |f| sign v⁻) / m
+    q⁺ = q + Δt v⁺
+
+with v half a step behind q (Cundall & Strack 1979; Munjiza 2004).
+"""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from runningbond.joints import compiled
+from runningbond.scene import Array, Indices
+
+from .system import Kernel
+
+kernel = compiled.kernel
+
+LOOK = 100
+"""Steps between two looks at the energy."""
+
+CERTAIN = 0.05
+"""Share of the energy in motion and in springs that a stable run certainly was supplied with.
+
+Of the work W of the loads, central differences make energy E in motion and in springs and energy D spent, with
+W = D + E + R to rounding, where |R| ≤ (Δt / Δt_critical) E for velocities are half a step behind. A stable run has
+W ≥ D + (1 − Δt / Δt_critical) E, then; this share holds up to 0.95 of the critical step. Where a swing comes back to
+its start W passes through nothing, and the velocity of half a step ago does not: W is the largest of the run so far.
+"""
+
+TOO_MUCH = 2.0
+"""Energy spent on damping, in energies supplied, that no stable run comes to: 1, but it is added up step by step."""
+
+
+@kernel
+def _restrained(motion: Array, freedom: Indices, basis: Array, moved: Array) -> None:
+    moved[:] = motion
+    for r in range(freedom.shape[0]):
+        for row in range(3):
+            total = 0.0
+            for column in range(3):
+                total += basis[r, row, column] * motion[freedom[r, column]]
+            moved[freedom[r, row]] = total
+
+
+@kernel
+def _project(force: Array, freedom: Indices, basis: Array) -> None:
+    for r in range(freedom.shape[0]):
+        x, y, m = force[freedom[r, 0]], force[freedom[r, 1]], force[freedom[r, 2]]
+        for column in range(3):
+            force[freedom[r, column]] = basis[r, 0, column] * x + basis[r, 1, column] * y + basis[r, 2, column] * m
+
+
+@kernel
+def _update(
+    force: Array,
+    stiffness: Array,
+    viscosity: Array,
+    mobility: Array,
+    local: float,
+    dt: float,
+    motion: Array,
+    velocity: Array,
+    damped: Array,
+) -> None:
+    for i in range(motion.size):
+        before = velocity[i]
+        viscous = viscosity[i] * before
+        f = force[i] - stiffness[i] * motion[i] - viscous
+        force[i] = f
+        sense = (1.0 if before > 0.0 else 0.0) - (1.0 if before < 0.0 else 0.0)
+        resisted = local * abs(f) * sense
+        after = before + dt * mobility[i] * (f - resisted)
+        damped[i] += 0.5 * dt * (resisted + viscous) * (before + after)
+        motion[i] += dt * after
+        velocity[i] = after
+
+
+@kernel
+def _sound(given: float, load: Array, modes: Any, state: Any, most: Array) -> bool:
+    """Whether no more energy [J] is in motion, in springs and spent on damping than was supplied; not where it is NaN.
+
+    Supplied are what was given and the work of a load that was constant; `most` keeps the most of it. The joints' work
+    is left out: at high frequencies that of their viscosity is told too large, and in a wall that rings without
+    damping so is that of their friction.
+    """
+    stiffness, _, mobility = modes
+    motion, velocity, _, damped, _ = state
+    supplied = given
+    kept = 0.0
+    spent = 0.0
+    for i in range(motion.size):
+        supplied += load[i] * motion[i]
+        if mobility[i] > 0.0:
+            kept += 0.5 * velocity[i] * velocity[i] / mobility[i]
+        kept += 0.5 * stiffness[i] * motion[i] * motion[i]
+        spent += damped[i]
+    most[0] = max(most[0], supplied)
+    # Local damping that makes a mode unstable gives energy instead of taking it.
+    return bool(max(spent, 0.0) + CERTAIN * kept <= TOO_MUCH * most[0])
+
+
+@cache
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kernel]:
+    """Compile the two loops of a model: at a constant load, and at a prescribed work-conjugate speed.
+
+    Returns
+    -------
+    hold, drive
+        ``hold(steps, dt, local, joint_viscosity, load, …)`` and ``drive(…, load, live, speed, …)``. Both return the
+        steps taken and whether no more energy is spent than was supplied; they look every `LOOK` steps of the state's
+        life, and stop where it is not so. The latter also returns the mean multiplier of its steps and the work of
+        the live load.
+    """
+    respond = _responder(gather, law, scatter)
+    return _holder(respond), _driver(respond)
+
+
+def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
+    """Compile what one step begins with: from motions to the forces on the modes."""
+
+    @kernel
+    def respond(
+        load: Array,
+        joint_viscosity: float,
+        geometry: Any,
+        parameters: Any,
+        restraint: Any,
+        motion: Array,
+        history: Array,
+        force: Array,
+        work: Any,
+    ) -> None:
+        """Write the forces on the modes: the load, less those of the joints' tractions."""
+        freedom, basis = restraint
+        moved, opening, slip, normal, tangential = work
+        if freedom.size:
+            _restrained(motion, freedom, basis, moved)
+            gather(moved, geometry, opening, slip)
+        else:
+            gather(motion, geometry, opening, slip)
+        law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
+        if freedom.size:
+            force[:] = 0.0
+            scatter(normal, tangential, geometry, force)
+            _project(force, freedom, basis)
+            force += load
+        else:
+            force[:] = load
+            scatter(normal, tangential, geometry, force)
+
+    return respond
+
+
+def _holder(respond: Kernel) -> Any:
+    """Compile the loop at a constant load."""
+
+    @kernel
+    def hold(
+        steps: int,
+        dt: float,
+        local: float,
+        joint_viscosity: float,
+        load: Array,
+        geometry: Any,
+        parameters: Any,
+        modes: Any,
+        restraint: Any,
+        state: Any,
+        work: Any,
+        watch: Any,
+    ) -> tuple[int, bool]:
+        stiffness, viscosity, mobility = modes
+        motion, velocity, history, damped, force = state
+        before, given, most = watch
+        for step in range(steps):
+            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
+            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+            if (before + step + 1) % LOOK == 0 and given < np.inf and not _sound(given, load, modes, state, most):
+                return step + 1, False
+        return steps, True
+
+    return hold
+
+
+def _driver(respond: Kernel) -> Any:
+    """Compile the loop at a prescribed work-conjugate speed."""
+
+    @kernel
+    def drive(
+        steps: int,
+        dt: float,
+        local: float,
+        joint_viscosity: float,
+        load: Array,
+        live: Array,
+        speed: float,
+        geometry: Any,
+        parameters: Any,
+        modes: Any,
+        restraint: Any,
+        state: Any,
+        work: Any,
+        watch: Any,
+    ) -> tuple[int, bool, float, float]:
+        stiffness, viscosity, mobility = modes
+        motion, velocity, history, damped, force = state
+        already, given, most = watch
+        response = 0.0
+        for i in range(live.size):
+            response += live[i] * mobility[i] * live[i]
+        total = 0.0
+        worked = 0.0
+        for step in range(steps):
+            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
+            pushed = 0.0
+            before = 0.0
+            for i in range(live.size):
+                pushed += live[i] * mobility[i] * (force[i] - stiffness[i] * motion[i] - viscosity[i] * velocity[i])
+                before += live[i] * velocity[i]
+            multiplier = -pushed / response
+            for i in range(live.size):
+                force[i] += multiplier * live[i]
+            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+            # Local damping acts on the live load too; what it takes from the prescribed speed is given back.
+            after = 0.0
+            for i in range(live.size):
+                after += live[i] * velocity[i]
+            returned = (speed - after) / (dt * response)
+            for i in range(live.size):
+                change = dt * returned * mobility[i] * live[i]
+                velocity[i] += change
+                motion[i] += dt * change
+            multiplier += returned
+            total += multiplier
+            worked += 0.5 * multiplier * dt * (before + speed)
+            due = (already + step + 1) % LOOK == 0 and given < np.inf
+            if due and not _sound(given + worked, load, modes, state, most):
+                return step + 1, False, total / (step + 1), worked
+        return steps, True, total / steps, worked
+
+    return drive
+
+
+def work_arrays(n_modes: int, n_points: int) -> tuple[Array, ...]:
+    """Buffers of one run: motions, then opening, slip, normal and tangential traction of the points."""
+    return (np.zeros(n_modes), *(np.zeros(n_points) for _ in range(4)))

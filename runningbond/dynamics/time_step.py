@@ -1,0 +1,73 @@
+"""The stable time step, from each block alone, and the mass scaling of its deformable modes."""
+
+import math
+
+import numpy as np
+
+from runningbond.scene import Array
+
+SAFETY = 0.9
+
+
+def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: float = 0.0) -> float:
+    """Time step [s] at which central differences stay bounded.
+
+    Δt = 0.9 · (2/ω') (√(1 + ξ'²) − ξ') with ω' = √(1 + α) ω and ξ' = √(1 + α) ξ: local damping makes 1 + α times as
+    large what slows a mode down, its lagged viscous force included. Exact for α or ξ alone; for both, safe.
+
+    Parameters
+    ----------
+    frequency_squared
+        Largest ω² [1/s²], or a bound above it.
+    damping_ratio
+        ξ of the viscous damping of that mode.
+    local
+        α of the local damping.
+    """
+    enlarged = math.sqrt(1 + local)
+    ratio = enlarged * damping_ratio
+    return SAFETY * 2 / (enlarged * math.sqrt(frequency_squared)) * (math.sqrt(1 + ratio**2) - ratio)
+
+
+def joint_shares(mass: Array, exponent: float) -> Array:
+    """Factors on the two sides' own energy in a joint, by which together they exceed that of the jump, ``(n, 2)``.
+
+    For any c > 0, (u_b − u_a)² ≤ (1 + c) u_b² + (1 + 1/c) u_a². With c = (m_b / m_a)^exponent, and nothing for a
+    side that is held, two blocks of different mass share a joint fairly.
+
+    Parameters
+    ----------
+    mass : (n, 2) float
+        Masses of the blocks on either side [kg], inf where one is held.
+    exponent
+        0 shares by halves, 1 by mass.
+    """
+    with np.errstate(invalid="ignore"):
+        ratio = mass / mass[:, ::-1]
+    return np.asarray(1 + np.nan_to_num(ratio, nan=1.0, posinf=0.0) ** exponent)
+
+
+def block_frequency_squared(stiffness: Array, mass: Array) -> Array:
+    """Largest ω² of blocks against their own share of their joints' energy, ``(nb,)`` [1/s²].
+
+    Where the two sides' shares are at least the energy of the jump between them (twice each side's own energy, for
+    one), the largest over all blocks bounds the system without a global matrix.
+
+    Parameters
+    ----------
+    stiffness : (nb, m, m) float
+        Stiffness of each block's modes against its share of its joints.
+    mass : (nb, m) float
+        Modal masses.
+    """
+    root = 1 / np.sqrt(mass)
+    scaled = stiffness * root[:, :, None] * root[:, None, :]
+    return np.asarray(np.linalg.eigvalsh(scaled)[:, -1])
+
+
+def mass_factor(stiffness: Array, mass: Array, dt: float, local: float = 0.0) -> Array:
+    """Factor by which each mode's mass grows so that its own stiffness does not limit the step, ``(nd,)``.
+
+    M* = M + β (Δt² / 4) K with β = 1.2 (1 + α): one for rigid modes, and next to one for modes slow enough.
+    """
+    return 1 + 0.3 * (1 + local) * dt**2 * stiffness / mass

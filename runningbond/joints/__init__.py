@@ -1,0 +1,29 @@
+"""Joint points and the Mohr–Coulomb joint: the one place where its signs are written down."""
+
+from .mohr_coulomb import PointStrength, point_strength
+from .point_law import PointLaw, PointResponse
+from .points import JointPoints, Rule, gauss, joint_points, lobatto
+from .resultant_law import ResultantLaw, resultant_law
+from .stiffness import joint_stiffness
+from .stiffness_range import stiffness_note
+from .wall_points import wall_inset, wall_points, wall_stiffness, wall_strength
+
+__all__ = [
+    "JointPoints",
+    "PointLaw",
+    "PointResponse",
+    "PointStrength",
+    "ResultantLaw",
+    "Rule",
+    "gauss",
+    "joint_points",
+    "joint_stiffness",
+    "lobatto",
+    "point_strength",
+    "resultant_law",
+    "stiffness_note",
+    "wall_inset",
+    "wall_points",
+    "wall_stiffness",
+    "wall_strength",
+]

@@ -1,0 +1,39 @@
+"""Joint points of a wall, each with the strength and the stiffness of its joint's material."""
+
+import numpy as np
+
+from runningbond.scene import Array, Indices, Scene
+
+from .mohr_coulomb import PointStrength, truncated_cone
+from .points import JointPoints, Rule, joint_points
+from .stiffness import joint_stiffness
+
+
+def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
+    """Lay a quadrature rule on every joint of a scene, its ends moved in by the joint's inset."""
+    return joint_points(scene.joints, scene.thickness, rule, wall_inset(scene))
+
+
+def wall_inset(scene: Scene) -> Array:
+    """Distance [m] by which the points of each joint of a scene keep from its ends, ``(nj,)``."""
+    return np.array([material.inset for material in scene.joint_materials])[scene.material_of_joint]
+
+
+def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:
+    """Strength of points on a scene's joints."""
+    cones = np.array([truncated_cone(material) for material in scene.joint_materials])
+    friction, tension, shear = cones[scene.material_of_joint[points.joint]].T
+    return PointStrength(friction, tension * points.area, shear * points.area)
+
+
+def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
+    """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m].
+
+    Raises
+    ------
+    SceneError
+        If the scene gives its joints no stiffness.
+    """
+    of_material = np.array([(found.normal, found.shear) for found in map(joint_stiffness, scene.joint_materials)])
+    normal, shear = of_material[scene.material_of_joint[joint]].T
+    return normal, shear

@@ -1,0 +1,268 @@
+"""Associated limit analysis: the largest load multiplier that admissible joint forces can balance.
+
+Static and kinematic theorems hold for an associated joint (slip opens it by tan φ times the slip), so the
+program's optimum and its dual, the collapse mechanism, bracket one number (Livesley 1978). For true, zero
+dilatancy friction that number is an upper bound.
+"""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from runningbond.joints import PointStrength
+from runningbond.results import Outcome, Status
+from runningbond.scene import Array, Scene
+
+from .equilibrium import Equilibrium, equilibrium
+from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+
+FALLS = "falls under its dead load: no admissible forces balance it"
+ZERO = 1e-6
+"""Multiplier, in units of the live load, below which a bracket need not be relatively narrow: zero is an answer."""
+
+SOUND = 1e-6
+"""Largest relative residual, violation or duality gap with which a program's answer is believed."""
+
+GLUED = 1e6
+"""Strength of a joint point, in weights of the heaviest block, above which the program is first tried with this one.
+
+Forces that such a point never comes to need not be in the program, where they would drown those that it does.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class LimitState:
+    """The optimum of a scene's limit analysis, with the measures by which it is believed.
+
+    Parameters
+    ----------
+    system
+        The equilibrium equations.
+    forces
+        The solution of the linear program.
+    """
+
+    system: Equilibrium
+    forces: ForceSolution
+
+    @property
+    def residual(self) -> float:
+        """Largest unbalanced force or moment, relative to the largest force."""
+        system, forces = self.system, self.forces
+        normal = system.strength.tension - forces.pressure
+        unbalanced = (
+            system.opening @ normal
+            + system.slip @ forces.tangential
+            + system.reaction @ forces.reaction
+            - forces.multiplier * system.live
+            - system.dead
+        )
+        return float(np.abs(unbalanced).max() / self._largest_force)
+
+    @property
+    def violation(self) -> float:
+        """Largest distance of a point's forces from its cone of strength, relative to the largest force."""
+        normal = self.system.strength.tension - self.forces.pressure
+        strength = self.system.strength
+        outside = strength.violation(normal, self.forces.tangential) / np.hypot(1.0, strength.friction)
+        return float(outside.max(initial=0.0) / self._largest_force)
+
+    @property
+    def jumps(self) -> tuple[Array, Array]:
+        """Opening and slip rates of the mechanism at each point, two ``(np,)``."""
+        return self.system.opening.T @ self.forces.motion, self.system.slip.T @ self.forces.motion
+
+    @property
+    def penetration(self) -> float:
+        """Largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion."""
+        opening, slip = self.jumps
+        largest = float(np.abs(self.forces.motion).max(initial=0.0))
+        short = self.system.strength.friction * np.abs(slip) - opening
+        return float(short.max(initial=0.0) / largest) if largest > 0 else 0.0
+
+    @property
+    def kinematic_multiplier(self) -> float:
+        """Multiplier at which the mechanism's loads do the work that its joints dissipate, in scaled units."""
+        system, motion = self.system, self.forces.motion
+        dissipated = system.strength.dissipation(*self.jumps).sum()
+        return float((dissipated - system.dead @ motion) / (system.live @ motion))
+
+    @property
+    def complementarity(self) -> float:
+        """Power of the forces short of the dissipation, point by point; zero at an optimum. Relative."""
+        opening, slip = self.jumps
+        strength, forces = self.system.strength, self.forces
+        power = (strength.tension - forces.pressure) * opening + forces.tangential * slip
+        short = np.abs(strength.dissipation(opening, slip) - power)
+        scale = np.abs(self.system.live @ forces.motion) * max(1.0, forces.multiplier)
+        return float(short.max(initial=0.0) / scale)
+
+    @property
+    def gap(self) -> float:
+        """Distance between static and kinematic multiplier, relative to the larger of them and 1."""
+        static, kinematic = self.forces.multiplier, self.kinematic_multiplier
+        return abs(kinematic - static) / max(1.0, abs(static))
+
+    @property
+    def sound(self) -> bool:
+        """Whether forces and mechanism prove each other right."""
+        return max(self.measures.values()) <= SOUND
+
+    @property
+    def measures(self) -> dict[str, float]:
+        """Everything that is zero for an exact answer."""
+        return {
+            "residual": self.residual,
+            "violation": self.violation,
+            "penetration": self.penetration,
+            "gap": self.gap,
+            "complementarity": self.complementarity,
+        }
+
+    @property
+    def _largest_force(self) -> float:
+        system, forces = self.system, self.forces
+        largest = max(np.abs(forces.pressure).max(initial=0.0), np.abs(forces.tangential).max(initial=0.0))
+        return float(max(largest, np.abs(system.dead).max(initial=0.0), forces.multiplier)) or 1.0
+
+
+def limit_state(system: Equilibrium) -> LimitState:
+    """Solve the associated limit analysis of a scene; its status may be other than optimal.
+
+    The state's system has strengths of at most `GLUED` where they prove the answer: its forces are admissible for
+    stronger joints all the more, and its mechanism does not break them. Where it would, forces are so large that they
+    are measured in that strength.
+    """
+    weaker = _cut(system)
+    if weaker is system:
+        return _solved(system)
+    state = _solved(weaker)
+    if (
+        state.forces.status == "optimal"
+        and state.sound
+        and not breaks(system, weaker, state.forces.motion, dilatancy=system.strength.friction)
+    ):
+        return state
+    return limit_state(system.in_forces_of(GLUED))
+
+
+def _cut(system: Equilibrium) -> Equilibrium:
+    """The same equations with strengths of at most `GLUED`."""
+    strength = system.strength
+    if strength.strongest <= GLUED:
+        return system
+    # The cone is cut off farther down, where it is wider: whoever only slips has as much to overcome as before.
+    tension = strength.tension.clip(max=GLUED)
+    shear = (strength.cohesion - strength.friction * tension).clip(max=GLUED)
+    return replace(system, strength=PointStrength(strength.friction, tension, shear))
+
+
+def breaks(whole: Equilibrium, weaker: Equilibrium, motion: Array, *, dilatancy: Array | float) -> bool:
+    """Whether a mechanism ``(nd,)`` spends, beyond rounding, of a strength that a weaker system has less of.
+
+    What opens by `dilatancy` times its slip, as the mechanism's flow rule has it, spends of its cohesion only.
+    """
+    unit = weaker.force_unit / whole.force_unit * (1 + SOUND)
+    slip = np.abs(whole.slip.T @ motion)
+    jumps = np.array([np.abs(whole.opening.T @ motion - dilatancy * slip), slip])
+    pairs = [(each.strength.tension, each.strength.cohesion) for each in (weaker, whole)]
+    cut = np.array([unit * less < strength for less, strength in zip(*pairs, strict=True)])
+    return float(jumps[cut].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))
+
+
+def _solved(system: Equilibrium) -> LimitState:
+    forces = solve_forces(system, coulomb(system.strength))
+    if forces.status in ("infeasible", "numerical"):  # simplex settles what the interior point is unsure of
+        forces = solve_forces(system, coulomb(system.strength), method="highs-ds")
+    return LimitState(system, forces)
+
+
+def stands_under_dead_load(system: Equilibrium) -> bool | None:
+    """Whether admissible forces balance the dead load alone; None if the solver cannot tell.
+
+    Normal forces nearly always suffice and make a much smaller program; the friction cones are tried
+    only where they do not.
+    """
+    if not system.dead.any():
+        return True
+    dry = system.without_strength(system.dead)
+    if solve_forces(dry, frozen_friction(dry.strength, np.zeros(len(dry.points))), "zero").status == "optimal":
+        return True
+    for method in ("highs-ds", "highs-ipm"):
+        status = solve_forces(system, coulomb(system.strength), "zero", method=method).status
+        if status in ("optimal", "infeasible"):
+            return status == "optimal"
+    return None
+
+
+def locks(system: Equilibrium) -> bool:
+    """Whether forces that no strength limits balance the live load alone, so that every λ is carried."""
+    dry = system.without_strength(system.live)
+    return solve_forces(dry, coulomb(dry.strength), "zero").status == "optimal"
+
+
+def judge(state: LimitState) -> tuple[Status, str]:
+    """Status of a limit analysis, and a line that says why.
+
+    An answer is believed only with its proof: an optimum with matching forces and mechanism, a dead
+    load that no forces balance, or forces that lock.
+    """
+    system, program = state.system, state.forces.status
+    stands = stands_under_dead_load(system)
+    if stands is None:
+        return "failed", "the solver cannot tell whether the wall stands under its dead load"
+    if not stands:
+        return "infeasible", FALLS
+    if program == "optimal":
+        if not state.sound:
+            return "failed", f"forces and mechanism disagree: {state.measures}"
+        return "collapse", "static and kinematic bound, associated joints; true friction may collapse earlier"
+    if program == "budget":
+        return "undecided", "the linear program ran out of iterations"
+    if locks(system):
+        return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
+    return "failed", f"the linear program solver gave up: {program}"
+
+
+def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
+    """Associated limit analysis of a scene.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    tolerance
+        Relative width of the bracket asked for; strong duality closes it to about 1e-9.
+
+    Returns
+    -------
+    Outcome
+        `lower` from the forces, `upper` from the mechanism; `motion` is the mechanism, `force` the forces.
+    """
+    start = time.perf_counter()
+    system = equilibrium(scene)
+    state = limit_state(system)
+    status, message = judge(state)
+    found = Outcome(
+        scene.title, "limit", "undecided", dofs=system.freedoms, steps=state.forces.iterations, message=message
+    )
+    found = _bracketed(found, state, tolerance) if status == "collapse" else replace(found, status=status)
+    return replace(found, seconds=time.perf_counter() - start)
+
+
+def _bracketed(found: Outcome, state: LimitState, tolerance: float) -> Outcome:
+    system, forces = state.system, state.forces
+    static, kinematic = (system.live_unit * max(0.0, x) for x in (forces.multiplier, state.kinematic_multiplier))
+    lower, upper = min(static, kinematic), max(static, kinematic)
+    if upper - lower > tolerance * max(upper, system.live_unit * ZERO):
+        return replace(found, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
+    return replace(
+        found,
+        status="collapse",
+        multiplier=static,
+        lower=lower,
+        upper=upper,
+        motion=system.motion(forces.motion),
+        force=system.point_forces(forces.pressure, forces.tangential),
+    )

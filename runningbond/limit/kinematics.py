@@ -1,0 +1,116 @@
+"""Rigid-block kinematics: from the motion of blocks to the jumps at joint points.
+
+Degrees of freedom of block i are 3i, 3i + 1, 3i + 2: the displacement of its centroid [m] along x and y, and
+its rotation [rad], counter-clockwise. A point x of the block moves by u + ω × (x − centroid).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from runningbond.joints import JointPoints
+from runningbond.scene import Array, Indices, PointLoad, Scene
+
+
+def _point_rows(direction: Array, arm: Array) -> Array:
+    """Displacement of points along directions, per degree of freedom of their block, ``(n, 3)``."""
+    return np.column_stack([direction, direction[:, 1] * arm[:, 0] - direction[:, 0] * arm[:, 1]])
+
+
+def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
+    """Displacements of points of blocks along directions.
+
+    Parameters
+    ----------
+    block : (n,) int
+        Block of each point.
+    point, direction : (n, 2) float
+        Where [m], and the unit vector along which the displacement is read.
+    centroid : (nb, 2) float
+        Centroids of all blocks [m].
+
+    Returns
+    -------
+    (n, 3 nb) sparse array
+    """
+    values = _point_rows(direction, point - centroid[block])
+    rows = np.repeat(np.arange(len(block)), 3)
+    columns = (3 * block[:, None] + np.arange(3)).ravel()
+    return csr_array(coo_array((values.ravel(), (rows, columns)), shape=(len(block), 3 * len(centroid))))
+
+
+@dataclass(frozen=True, eq=False)
+class Jump:
+    """Jump operator B = (B_n, B_t) of rigid blocks: opening and slip at joint points.
+
+    Parameters
+    ----------
+    opening, slip : (np, 3 nb) sparse array
+        Normal and tangential jump u_b − u_a at each point [m] per degree of freedom.
+    """
+
+    opening: csr_array
+    slip: csr_array
+
+
+def jump_operator(points: JointPoints, centroid: Array) -> Jump:
+    """Jumps at joint points from the motion of rigid blocks with the given centroids ``(nb, 2)`` [m]."""
+    a, b = points.block.T
+
+    def along(direction: Array) -> csr_array:
+        return csr_array(
+            point_operator(b, points.position, direction, centroid)
+            - point_operator(a, points.position, direction, centroid)
+        )
+
+    return Jump(along(points.normal), along(points.tangent))
+
+
+def pin_operator(scene: Scene) -> csr_array:
+    """Displacement of each pinned point along its direction, ``(n_pins, 3 nb)``."""
+    pins = scene.pins
+    return point_operator(pins.block, pins.point, pins.direction, scene.blocks.centroid)
+
+
+def mass_matrix_diagonal(scene: Scene) -> Array:
+    """Mass, mass and polar moment of inertia of each block, ``(3 nb,)`` [kg, kg, kg m²]."""
+    inertia = scene.block.density * scene.thickness * scene.blocks.polar_moment
+    return np.column_stack([scene.mass, scene.mass, inertia]).ravel()
+
+
+def dead_load(scene: Scene) -> Array:
+    """Weight of the blocks as forces and moments on their degrees of freedom, ``(3 nb,)`` [N, N, N m]."""
+    return _body_force(scene, scene.load.gravity)
+
+
+def live_load(scene: Scene) -> Array:
+    """Load that λ multiplies, ``(3 nb,)`` [N, N, N m]; a point load is shared equally by the blocks it touches."""
+    live = scene.load.live
+    if isinstance(live, PointLoad):
+        force = np.array(live.force)
+        shared = scene.loaded_blocks
+        at = np.tile(live.at, (len(shared), 1))
+        loaded = point_operator(shared, at, np.tile(force / len(shared), (len(shared), 1)), scene.blocks.centroid)
+        return np.asarray(loaded.T @ np.ones(len(shared)), dtype=np.float64)
+    gravity = float(np.hypot(*scene.load.gravity))
+    return _body_force(scene, (gravity * live.direction[0], gravity * live.direction[1]))
+
+
+def _body_force(scene: Scene, acceleration: tuple[float, float]) -> Array:
+    load = np.zeros((len(scene.blocks), 3))
+    load[:, :2] = scene.mass[:, None] * np.array(acceleration)
+    return load.ravel()
+
+
+def movable_freedoms(scene: Scene) -> Indices:
+    """Degrees of freedom of the blocks that are not fixed."""
+    return np.flatnonzero(np.repeat(~scene.fixed, 3))
+
+
+def control_row(scene: Scene) -> Array:
+    """Displacement of the control point along the live load, per motion of the blocks, ``(3 nb,)``."""
+    block, at, direction = scene.control_point
+    n = len(block)
+    rows = point_operator(block, np.tile(at, (n, 1)), np.tile(direction, (n, 1)), scene.blocks.centroid)
+    return np.asarray(rows.T @ np.full(n, 1 / n), dtype=np.float64)

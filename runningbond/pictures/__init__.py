@@ -1,0 +1,1 @@
+"""What people look at: drawings of walls and mechanisms, charts, and files for ParaView."""

@@ -1,0 +1,98 @@
+"""The outcome of one model on one scene: a bracket and a status, never a bare number."""
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Literal, TypeAlias, get_args
+
+import numpy as np
+
+from runningbond.scene import Array, frozen
+
+Status: TypeAlias = Literal["collapse", "unbounded", "infeasible", "undecided", "failed"]
+STATUSES: tuple[str, ...] = get_args(Status)
+
+
+def _no_rows(columns: int) -> Array:
+    return np.zeros((0, columns))
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What a model found.
+
+    Parameters
+    ----------
+    scene
+        Title of the scene.
+    model
+        Name of the model.
+    status
+        ``collapse``: a load was found at which the wall collapses; ``unbounded``: it locks, no multiple of
+        the live load brings it down; ``infeasible``: it falls under its dead load; ``undecided``: the budget
+        ran out or nothing was proved; ``failed``: the numbers cannot be trusted.
+    multiplier
+        λ at collapse; for a point load of 1 N, newtons. None unless there is a collapse.
+    lower, upper
+        Bracket of the collapse multiplier; each None where the model has no such bound. What the bracket
+        means, a proof or a pair of runs, is in the message.
+    dofs
+        Degrees of freedom; None for a closed form.
+    steps
+        Steps, iterations or programs that were solved; None for a closed form.
+    seconds
+        Wall-clock time.
+    message
+        One line for the reader.
+    motion : (nb, 3) float
+        Collapse mechanism: displacement of each block's centroid [m] and rotation [rad], the fastest corner
+        moving by one metre. Empty without one.
+    force : (np, 2) float
+        Normal and tangential force at each contact point [N], tension positive. Empty without them.
+    curve : (n, 2) float
+        Pushover curve: displacement of the control point along the live load [m], and λ. Empty for models
+        that follow no path. The control point is where a point load acts, or the wall's highest corner that
+        lies farthest along a lateral load.
+    """
+
+    scene: str
+    model: str
+    status: Status
+    multiplier: float | None = None
+    lower: float | None = None
+    upper: float | None = None
+    dofs: int | None = None
+    steps: int | None = None
+    seconds: float = 0.0
+    message: str = ""
+    motion: Array = field(default_factory=lambda: _no_rows(3))
+    force: Array = field(default_factory=lambda: _no_rows(2))
+    curve: Array = field(default_factory=lambda: _no_rows(2))
+
+    def __post_init__(self) -> None:
+        for name, columns in ARRAYS.items():
+            object.__setattr__(self, name, frozen(getattr(self, name)).reshape(-1, columns))
+        if self.status not in STATUSES:
+            raise ValueError(f"status = {self.status!r}: must be one of {', '.join(STATUSES)}")
+        numbers = [x for x in (self.lower, self.multiplier, self.upper) if x is not None]
+        if not all(math.isfinite(x) for x in numbers):
+            raise ValueError(f"bracket = {numbers}: a number that does not exist is None")
+        if numbers != sorted(numbers):
+            raise ValueError(f"bracket = {numbers}: lower, multiplier and upper must not decrease")
+        if (self.status == "collapse") != (self.multiplier is not None):
+            raise ValueError(f"multiplier = {self.multiplier}: exists if and only if the status is collapse")
+
+    def summary(self) -> dict[str, Any]:
+        """The scalars, in the order of the command line's contract."""
+        return {key: getattr(self, key) for key in SCALARS}
+
+
+SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")
+ARRAYS = {"motion": 3, "force": 2, "curve": 2}
+"""Array fields and their number of columns."""
+
+
+def number(value: float) -> str:
+    """Four decimals for a multiplier of order one, whole newtons for a force."""
+    if value != 0 and abs(value) < 0.01:
+        return f"{value:.3g}"
+    return f"{value:.4f}" if abs(value) < 100 else f"{value:,.0f}"

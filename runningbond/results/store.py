@@ -1,0 +1,137 @@
+"""Outcomes on disk: written whole or not at all, and never read by halves.
+
+A result folder holds ``outcome.json`` and the arrays it names. The arrays are written first, under a name
+that carries their digest; the JSON file is moved into place last, and only what it vouches for is read.
+"""
+
+import hashlib
+import io
+import json
+import os
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runningbond.scene import Scene
+from runningbond.scene.folder_lock import alone
+
+from .outcome import ARRAYS, Outcome
+from .scene_record import ROOT, scene_from_arrays, scene_to_arrays
+
+RECORD = "outcome.json"
+
+
+class StoreError(Exception):
+    """A result folder that cannot be trusted; the message says why."""
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file so that it is there whole, or as it was before; an OSError names the file."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _write_beside(path, content)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+def _write_beside(path: Path, content: bytes) -> None:
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(name, 0o644)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and see that it takes files, before anything is computed for it; an OSError names the folder."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(folder)) from error
+
+
+def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | None = None) -> None:
+    """Write an outcome into a folder of its own.
+
+    Parameters
+    ----------
+    outcome
+        The outcome.
+    folder
+        The folder; made if missing.
+    key
+        What the outcome was computed from, given back by `load_outcome`.
+    scene
+        The wall it is about, given back by `load_scene`.
+    """
+    buffer = io.BytesIO()
+    kept: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
+    np.savez_compressed(buffer, allow_pickle=False, **kept, **(scene_to_arrays(scene) if scene else {}))
+    content = buffer.getvalue()
+    arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
+    scalars = {"key": key, "arrays": arrays, **outcome.summary()}
+    record = {**scalars, "sha256": _seal(scalars, content)}
+    make_folder(folder)
+    with alone(folder):  # or another writer would take these arrays for stale ones
+        write_atomically(folder / arrays, content)
+        write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
+        for stale in (*folder.glob("arrays-*.npz"), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{RECORD}.*")):
+            if stale.name != arrays:
+                stale.unlink(missing_ok=True)
+
+
+def _seal(scalars: dict[str, object], content: bytes) -> str:
+    """Digest of everything that is kept."""
+    return hashlib.sha256(json.dumps(scalars, sort_keys=True).encode() + content).hexdigest()
+
+
+def load_outcome(folder: Path) -> tuple[Outcome, str]:
+    """Read an outcome and its key back.
+
+    Raises
+    ------
+    StoreError
+        If there is no outcome, or anything about it is missing, damaged or not what was written.
+    """
+    with _trusted(folder) as (record, stored):
+        arrays: dict[str, Any] = {name: stored[name] for name in ARRAYS}
+        scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}
+        return Outcome(**scalars, **arrays), str(record["key"])
+
+
+def load_scene(folder: Path) -> Scene:
+    """Read back the scene of an outcome; StoreError as of `load_outcome`, or where none was kept."""
+    with _trusted(folder) as (_, stored):
+        if ROOT not in stored:
+            raise StoreError(f"{folder}: holds an outcome without its scene")
+        return scene_from_arrays(stored)
+
+
+@contextmanager
+def _trusted(folder: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
+    """Give the record and the arrays of a folder, if they are what was written."""
+    try:
+        with alone(folder, reading=True):
+            record = json.loads((folder / RECORD).read_bytes())
+            content = (folder / record["arrays"]).read_bytes()
+        seal = record.pop("sha256")
+        if _seal(record, content) != seal:
+            raise StoreError(f"{folder}: is not what {RECORD} vouches for")
+        with np.load(io.BytesIO(content)) as stored:
+            yield record, stored
+    except OSError as error:
+        raise StoreError(f"{folder}: holds no outcome: {error.strerror or error}") from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise StoreError(f"{folder / RECORD}: is damaged: {error}") from error

@@ -1,0 +1,152 @@
+"""Blocks: convex polygons in one ragged array, with their exact areas, centroids and inertias."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import shapely
+
+from .arrays import Array, Indices, Mask, frozen
+from .errors import SceneError
+
+CONTACT_TOLERANCE = 1e-4
+"""Gap that still counts as contact, as a fraction of the smallest block's size (root of its area).
+
+On a brick of 240 × 60 mm it is 12 µm: wider than the rounding of a drawing, finer than any joint.
+"""
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Convex polygons, counter-clockwise, stored one after another.
+
+    Parameters
+    ----------
+    vertices : (nv, 2) float
+        Corners of all blocks [m].
+    first : (nb + 1,) int
+        Block ``i`` owns ``vertices[first[i]:first[i + 1]]``.
+    """
+
+    vertices: Array
+    first: Indices
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "vertices", frozen(self.vertices))
+        object.__setattr__(self, "first", frozen(self.first, np.int64))
+
+    @classmethod
+    def from_polygons(cls, polygons: Sequence[Array]) -> "Blocks":
+        """Gather a list of ``(n, 2)`` polygons [m], each given counter-clockwise."""
+        counts = [len(polygon) for polygon in polygons]
+        return cls(np.concatenate(polygons), np.concatenate([[0], np.cumsum(counts)]))
+
+    def __len__(self) -> int:
+        return len(self.first) - 1
+
+    def polygon(self, block: int) -> Array:
+        """Corners of one block, ``(n, 2)`` [m]."""
+        return self.vertices[self.first[block] : self.first[block + 1]]
+
+    @cached_property
+    def owner(self) -> Indices:
+        """Block of each vertex and of the edge that starts there, ``(nv,)``."""
+        return np.repeat(np.arange(len(self)), np.diff(self.first))
+
+    @cached_property
+    def successor(self) -> Indices:
+        """Vertex at the far end of the edge that starts at each vertex, ``(nv,)``."""
+        following = np.arange(1, len(self.vertices) + 1)
+        following[self.first[1:] - 1] = self.first[:-1]
+        return following
+
+    @cached_property
+    def _local(self) -> tuple[Array, Array, Array]:
+        """Vertices, successors and their cross products, about each block's first vertex.
+
+        Local origins keep the moments exact to rounding for a wall far from the origin.
+        """
+        origin = self.vertices[self.first[:-1]][self.owner]
+        here, there = self.vertices - origin, self.vertices[self.successor] - origin
+        return here, there, here[:, 0] * there[:, 1] - here[:, 1] * there[:, 0]
+
+    @cached_property
+    def area(self) -> Array:
+        """Area of each block, ``(nb,)`` [m²]."""
+        return np.add.reduceat(self._local[2], self.first[:-1]) / 2
+
+    @cached_property
+    def centroid(self) -> Array:
+        """Centroid of each block, ``(nb, 2)`` [m]."""
+        here, there, cross = self._local
+        moment = np.add.reduceat((here + there) * cross[:, None], self.first[:-1], axis=0)
+        return self.vertices[self.first[:-1]] + moment / (6 * self.area[:, None])
+
+    @cached_property
+    def polar_moment(self) -> Array:
+        """Polar second moment of area about each centroid, ``(nb,)`` [m⁴]."""
+        here, there, cross = self._local
+        square = (here**2 + here * there + there**2).sum(axis=1) * cross
+        about_origin = np.add.reduceat(square, self.first[:-1]) / 12
+        arm = self.centroid - self.vertices[self.first[:-1]]
+        moment: Array = about_origin - self.area * (arm**2).sum(axis=1)
+        return moment
+
+    @cached_property
+    def tolerance(self) -> float:
+        """Largest gap that counts as contact [m]."""
+        return float(CONTACT_TOLERANCE * np.sqrt(self.area.min()))
+
+    def extent(self, block: int | Mask | slice = slice(None)) -> tuple[Array, Array]:
+        """Lower and upper corner of the bounding box of all or some blocks, two ``(2,)`` [m]."""
+        chosen = np.zeros(len(self), dtype=bool)
+        chosen[block] = True
+        corners = self.vertices[chosen[self.owner]]
+        return corners.min(axis=0), corners.max(axis=0)
+
+    def containing(self, point: Array) -> Indices:
+        """Blocks that hold or touch a point ``(2,)`` [m], to within the contact tolerance."""
+        start, edge = self.vertices, self.vertices[self.successor] - self.vertices
+        reach = point - start
+        depth = (edge[:, 0] * reach[:, 1] - edge[:, 1] * reach[:, 0]) / np.hypot(*edge.T)
+        return np.flatnonzero(np.minimum.reduceat(depth, self.first[:-1]) >= -self.tolerance)
+
+    def check(self) -> None:
+        """Refuse polygons that enclose nothing or are not convex.
+
+        Raises
+        ------
+        SceneError
+            Naming the first offending block and where it is.
+        """
+        here, there, _ = self._local
+        edge = there - here
+        turn = edge[:, 0] * edge[self.successor, 1] - edge[:, 1] * edge[self.successor, 0]
+        length = np.hypot(*edge.T)
+        with np.errstate(invalid="ignore"):
+            thin = ~(self.area > 1e-9 * np.maximum.reduceat(length, self.first[:-1]) ** 2)
+        if thin.any():
+            fault = "encloses no area; its corners must run round it counter-clockwise"
+            raise SceneError(self.name(int(np.argmax(thin))), fault)
+        scale = length * length[self.successor]
+        reflex = np.logical_or.reduceat(turn < -CONTACT_TOLERANCE * scale, self.first[:-1])
+        # A polygon that winds twice has only left turns, and yet crosses itself.
+        angle = np.arctan2(turn, (edge * edge[self.successor]).sum(axis=1))
+        reflex |= np.add.reduceat(angle, self.first[:-1]) > 3 * np.pi
+        if reflex.any():
+            raise SceneError(self.name(int(np.argmax(reflex))), "is not convex; split it into convex blocks")
+
+    def name(self, block: int) -> str:
+        """What a message calls a block: its number and its centre in metres."""
+        low, high = self.extent(block)
+        x, y = (low + high) / 2
+        return f"block {block} at ({x:.4g}, {y:.4g})"
+
+    def neighbours(self) -> tuple[Indices, Indices]:
+        """Pairs ``a < b`` of blocks whose bounding boxes touch."""
+        low = np.minimum.reduceat(self.vertices, self.first[:-1]) - self.tolerance
+        high = np.maximum.reduceat(self.vertices, self.first[:-1]) + self.tolerance
+        boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
+        a, b = shapely.STRtree(boxes).query(boxes)
+        return a[a < b], b[a < b]

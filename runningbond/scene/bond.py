@@ -1,0 +1,128 @@
+"""Generators: blocks of running bond and of course patterns, on the half-block lattice."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from .arrays import Array
+from .errors import SceneError
+
+FirstCourse: TypeAlias = Literal["full", "half"]
+Ends: TypeAlias = Literal["flush", "toothed"]
+
+MOST_BLOCKS = 1_000_000
+LATTICE_TOLERANCE = 1e-6
+"""How far a length may be from a whole number of half blocks, in half blocks."""
+
+
+@dataclass(frozen=True)
+class Bond:
+    """Nominal block of a bonded wall: width along the course and height [m]."""
+
+    width: float
+    height: float
+
+
+def running_bond(
+    bond: Bond, length: float, height: float, first_course: FirstCourse = "full", ends: Ends = "flush"
+) -> list[Array]:
+    """Blocks of a running-bond panel, course by course from the bottom, left to right.
+
+    Parameters
+    ----------
+    bond
+        The block.
+    length, height
+        Size of the panel [m]: whole half blocks long, whole blocks high.
+    first_course
+        Whether the first course starts with a full or a half block.
+    ends
+        ``"flush"``: half blocks close the courses; ``"toothed"``: courses that would start with a half
+        block leave it out at both ends.
+
+    Returns
+    -------
+    list of (4, 2) float
+        Rectangles [m], counter-clockwise, with the panel's lower left corner at the origin.
+    """
+    n_half = _whole(length / (bond.width / 2), "wall.length", length, f"half blocks of {bond.width / 2:g}")
+    n_courses = _whole(height / bond.height, "wall.height", height, f"courses of {bond.height:g}")
+    if n_half * n_courses / 2 > MOST_BLOCKS:
+        raise SceneError("wall.length", f"gives more than {MOST_BLOCKS} blocks; make the wall smaller", length)
+    if ends == "toothed" and (n_half % 2 or n_half < 4):
+        raise SceneError("wall.length", "toothed ends need a whole number of blocks, at least two", length)
+    courses = []
+    for course in range(n_courses):
+        starts_half = (course % 2 == 1) != (first_course == "half")
+        cuts = np.arange(1 if starts_half else 0, n_half + 1, 2, dtype=np.float64)
+        if ends == "flush":
+            cuts = np.unique(np.concatenate([[0.0], cuts, [n_half]]))
+        courses.append((course, cuts[:-1], cuts[1:]))
+    return _rectangles(courses, bond)
+
+
+def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array]:
+    """Blocks of a wall given course by course.
+
+    Parameters
+    ----------
+    bond
+        The block.
+    courses
+        Bottom to top; each a list of widths in blocks, left to right from x = 0, negative for an opening.
+        Both sides of an opening lie on the half-block lattice.
+
+    Returns
+    -------
+    list of (4, 2) float
+        Rectangles [m], counter-clockwise, course by course, left to right.
+    """
+    if sum(len(course) for course in courses) > MOST_BLOCKS:
+        raise SceneError("wall.courses", f"has more than {MOST_BLOCKS} blocks; make the wall smaller")
+    if not courses:
+        raise SceneError("wall.courses", "has no course; give at least one, bottom to top", [])
+    rows = []
+    for course, widths in enumerate(courses):
+        name = f"wall.courses[{course}]"
+        width = np.asarray(widths, dtype=float)
+        if not (width > 0).any():
+            raise SceneError(name, "is an empty course; give it at least one block", list(widths))
+        if (width == 0).any():
+            raise SceneError(name, "has a width of 0; a block is positive, an opening negative", list(widths))
+        cuts = 2 * np.concatenate([[0.0], np.cumsum(np.abs(width))])
+        nearest = np.rint(cuts)
+        on_lattice = np.abs(cuts - nearest) <= LATTICE_TOLERANCE * np.maximum(1.0, nearest)
+        cuts = np.where(on_lattice, nearest, cuts)
+        off = (width < 0) & ~(on_lattice[:-1] & on_lattice[1:])
+        if off.any():
+            i = int(np.argmax(off))
+            raise SceneError(
+                f"{name}[{i}]",
+                f"is an opening off the lattice, from {cuts[i] / 2:g} to {cuts[i + 1] / 2:g} blocks; "
+                "both its sides must lie at whole or half blocks",
+                float(width[i]),
+            )
+        solid = width > 0
+        rows.append((course, cuts[:-1][solid], cuts[1:][solid]))
+    return _rectangles(rows, bond)
+
+
+def _rectangles(courses: Sequence[tuple[int, Array, Array]], bond: Bond) -> list[Array]:
+    """Rectangles from course numbers and left and right sides in half blocks."""
+    half = bond.width / 2
+    blocks: list[Array] = []
+    for course, left, right in courses:
+        low, high = course * bond.height, (course + 1) * bond.height
+        x0, x1 = left * half, right * half
+        y0, y1 = np.full_like(x0, low), np.full_like(x0, high)
+        blocks.extend(np.stack([np.stack([x0, x1, x1, x0], 1), np.stack([y0, y0, y1, y1], 1)], 2))
+    return blocks
+
+
+def _whole(ratio: float, key: str, value: float, unit: str) -> int:
+    nearest = round(ratio) if np.isfinite(ratio) and ratio < 1e9 else 0
+    if nearest < 1 or abs(ratio - nearest) > LATTICE_TOLERANCE * max(1.0, nearest):
+        raise SceneError(key, f"must be a whole number of {unit} m; this is {ratio:.6g} of them", value)
+    return nearest

@@ -1,0 +1,123 @@
+"""Joints: the segments along which two blocks touch, found from their geometry alone."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import shapely
+
+from .arrays import Array, Indices, Mask, frozen
+from .blocks import Blocks
+from .errors import SceneError
+
+
+@dataclass(frozen=True, eq=False)
+class Joints:
+    """Segments shared by two blocks.
+
+    Parameters
+    ----------
+    block : (nj, 2) int
+        The blocks a and b on either side; the joint's normal points from a to b.
+    ends : (nj, 2, 2) float
+        End points [m], in the sense in which a's counter-clockwise boundary runs.
+    inner : (nj,) bool
+        Whether a joint is a potential crack inside what was one block; none is where it is left out.
+    """
+
+    block: Indices
+    ends: Array
+    inner: Mask = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "block", frozen(self.block, np.int64))
+        object.__setattr__(self, "ends", frozen(self.ends))
+        inner = self.inner if len(self.inner) else np.zeros(len(self.block), dtype=np.bool_)
+        object.__setattr__(self, "inner", frozen(inner, np.bool_))
+
+    def __len__(self) -> int:
+        return len(self.block)
+
+    @cached_property
+    def length(self) -> Array:
+        """Length of each joint, ``(nj,)`` [m]."""
+        run = self.ends[:, 1] - self.ends[:, 0]
+        return np.hypot(run[:, 0], run[:, 1])
+
+    def part(self, chosen: Mask | Indices) -> "Joints":
+        """Some of the joints, or all in another order."""
+        return Joints(self.block[chosen], self.ends[chosen], self.inner[chosen])
+
+
+def find_joints(blocks: Blocks) -> Joints:
+    """Find every segment along which two blocks touch.
+
+    Two edges make a joint where they run in opposite senses, lie on one line to within the contact
+    tolerance, and overlap by more than it. Nothing is asked of courses or rows, so T-junctions, half
+    blocks, openings and inclined edges all come out right.
+
+    Raises
+    ------
+    SceneError
+        Where two blocks overlap.
+    """
+    tolerance = blocks.tolerance
+    start = blocks.vertices
+    stop = start[blocks.successor]
+    a, b = _touching_edges(blocks, tolerance)
+    a, b = a[blocks.owner[a] < blocks.owner[b]], b[blocks.owner[a] < blocks.owner[b]]
+    along = stop[a] - start[a]
+    length = np.hypot(*along.T)
+    along = along / length[:, None]
+    outward = np.column_stack([along[:, 1], -along[:, 0]])
+
+    # b runs backwards along a: its stop comes first.
+    s_low = np.einsum("ij,ij->i", stop[b] - start[a], along)
+    s_high = np.einsum("ij,ij->i", start[b] - start[a], along)
+    d_low = np.einsum("ij,ij->i", stop[b] - start[a], outward)
+    d_high = np.einsum("ij,ij->i", start[b] - start[a], outward)
+    low, high = np.maximum(s_low, 0.0), np.minimum(s_high, length)
+    found = high - low > tolerance
+    a, b, along, low, high = a[found], b[found], along[found], low[found], high[found]
+    # Distance between the two lines at both ends of the overlap.
+    slope = (d_high - d_low)[found] / (s_high - s_low)[found]
+    gap_low = d_low[found] + slope * (low - s_low[found])
+    gap_high = d_low[found] + slope * (high - s_low[found])
+    on_line = np.maximum(np.abs(gap_low), np.abs(gap_high)) <= tolerance
+    a, b, along, low, high = a[on_line], b[on_line], along[on_line], low[on_line], high[on_line]
+
+    pair = np.column_stack([blocks.owner[a], blocks.owner[b]])
+    ends = start[a][:, None, :] + np.stack([low, high], axis=1)[:, :, None] * along[:, None, :]
+    _refuse_overlaps(blocks, pair)
+    return Joints(pair, ends)
+
+
+def _touching_edges(blocks: Blocks, tolerance: float) -> tuple[Indices, Indices]:
+    """Pairs of edges whose bounding boxes meet."""
+    start, stop = blocks.vertices, blocks.vertices[blocks.successor]
+    low, high = np.minimum(start, stop) - tolerance, np.maximum(start, stop) + tolerance
+    boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
+    a, b = shapely.STRtree(boxes).query(boxes)
+    return a, b
+
+
+def _refuse_overlaps(blocks: Blocks, joined: Indices) -> None:
+    """Refuse blocks that overlap by more than the contact tolerance.
+
+    Convex blocks that share a joint lie on either side of its line, so only the other neighbours
+    need an intersection.
+    """
+    a, b = blocks.neighbours()
+    apart = ~np.isin(a * len(blocks) + b, joined[:, 0] * len(blocks) + joined[:, 1])
+    a, b = a[apart], b[apart]
+    involved, local = np.unique(np.concatenate([a, b]), return_inverse=True)
+    polygons = np.array([shapely.Polygon(blocks.polygon(i)) for i in involved])
+    common = shapely.intersection(polygons[local[: len(a)]], polygons[local[len(a) :]])
+    # A strip as wide as the tolerance is contact; what is left after eating it away is overlap.
+    deep = ~shapely.is_empty(shapely.buffer(common, -blocks.tolerance / 2))
+    if deep.any():
+        first = int(np.argmax(deep))
+        raise SceneError(
+            blocks.name(int(a[first])),
+            f"overlaps {blocks.name(int(b[first]))}; blocks may touch, not share an area",
+        )

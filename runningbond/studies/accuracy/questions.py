@@ -1,0 +1,172 @@
+"""Questions that a model is asked about a wall, with its knobs turned."""
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from dem import limit_nonassociated
+from dem.dynamic import dem_dynamic, finite_pushover
+from dem.rigid_system import rigid_system
+from dem.static import dem_static
+from fem_interface import ModeCount
+from fem_interface.finite import fem_pushover
+from fem_interface.model import fem
+from fem_interface.system import fem_system
+from homog import elastic_moduli, homog
+from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
+from runningbond.dynamics.verdict import COLLAPSE
+from runningbond.joints import joint_stiffness
+from runningbond.limit import limit
+from runningbond.results import Outcome
+from runningbond.scene import Array, Scene, SceneError, Stiffness
+
+from .answer import Answer
+from .cell import deformable_cell, rigid_cell
+from .walls import TURNED, Question
+
+DRIVEN = 0.05
+"""Displacement of the control point to which a wall is driven, in block sizes."""
+
+SPEED = 1e-3
+"""Speed at which the turned block is pushed where nothing else is said [m/s]."""
+
+STEPS, RUNS = 2000, 5
+"""Time steps of a measurement of their cost, and measurements."""
+
+SOFT = 1e10
+"""Stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner."""
+
+
+Asked: TypeAlias = Callable[..., Answer]
+
+MODELS: dict[str, Callable[..., Outcome]] = {
+    "homog": homog,
+    "limit": limit,
+    "limit-nonassociated": limit_nonassociated,
+    "dem-static": dem_static,
+    "dem-dynamic": dem_dynamic,
+    "fem": fem,
+}
+
+
+def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> Answer:
+    """Ask a model a question about a scene.
+
+    Parameters
+    ----------
+    question, model
+        What is asked, and whom.
+    scene
+        The scene.
+    settings
+        Arguments of the model, from `knobs`.
+    """
+    try:
+        return QUESTIONS[question](model, scene, **settings)
+    except SceneError as reason:
+        return Answer("not applicable", message=str(reason))
+
+
+def _collapse(model: str, scene: Scene, **settings: Any) -> Answer:
+    if "drive" in settings:
+        return _driven(model, scene, settings["drive"])
+    found = MODELS[model](scene, **settings)
+    return Answer(found.status, found.multiplier, found.lower, found.upper, found.dofs, found.steps, found.message)
+
+
+def _driven(model: str, scene: Scene, steps: int) -> Answer:
+    """The peak of the curve under work-conjugate displacement control, at a speed that some steps give."""
+    system = _system(model, scene)
+    found = _drive(system, scene, DRIVEN * scene.block_size, steps)
+    speed = f"largest λ while driven {1e3 * DRIVEN * scene.block_size:.3g} mm"
+    return Answer("collapse", found.peak, None, None, system.freedoms, found.state.steps, speed)
+
+
+def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:
+    run = Run(system)
+    state = State.at_rest(system)
+    settle(run, state, 0.0, Criteria(collapse=COLLAPSE * scene.block_size))
+    return drive(run, state, distance, steps)
+
+
+def _system(model: str, scene: Scene, **settings: Any) -> BlockSystem:
+    return fem_system(scene, **settings) if model == "fem" else rigid_system(scene)
+
+
+def _turned(model: str, scene: Scene, speed: float = SPEED, **settings: Any) -> Answer:
+    """λ of one block that has turned by `TURNED`: read off a parabola through its curve on either side."""
+    scene = replace(scene, joint=replace(scene.joint, elasticity=Stiffness(SOFT, SOFT)))
+    height = scene.lowest_block
+    distance = height * np.sin(1.5 * TURNED)
+    if "drive" in settings:
+        system = _system(model, scene)
+        pushed = _drive(system, scene, distance, settings["drive"])
+        return _read_off(pushed.curve[:, 0] / height, pushed.curve[:, 1], system.freedoms, pushed.state.steps)
+    push = fem_pushover if model == "fem" else finite_pushover
+    curve = push(scene, distance, speed=speed)
+    # The control point stands above the corner about which the block turns.
+    return _read_off(np.arcsin(curve[:, 0] / height), curve[:, 2], _system(model, scene).freedoms, None)
+
+
+def _read_off(turned: Array, multiplier: Array, dofs: int, steps: int | None) -> Answer:
+    turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # a row's λ is the mean since the last row
+    near = np.abs(turned - TURNED) < TURNED / 2
+    parabola = np.polynomial.Polynomial.fit(turned[near], multiplier[near], 2)
+    scatter = float(np.std(multiplier[near] - parabola(turned[near])))
+    value = float(parabola(TURNED))
+    return Answer("collapse", value, None, None, dofs, steps, f"curve scatters by {scatter:.1e}")
+
+
+def _compression(model: str, scene: Scene, **settings: Any) -> Answer:
+    return _modulus(1, model, scene, **settings)
+
+
+def _shear(model: str, scene: Scene, **settings: Any) -> Answer:
+    return _modulus(2, model, scene, **settings)
+
+
+def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
+    """A2222 or A1212 of a periodic cell; the energy of a shear E12 is 4 A1212 / 2."""
+    if model == "homog":
+        joint = joint_stiffness(scene.joint)
+        assert scene.bond is not None
+        moduli = elastic_moduli(
+            scene.bond.width,
+            scene.bond.height,
+            bed_normal=joint.normal,
+            bed_shear=joint.shear,
+            head_normal=joint.normal,
+            head_shear=joint.shear,
+        )
+        return Answer("elastic", (moduli.a2222, moduli.a1212)[which - 1])
+    found, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
+    return Answer("elastic", float(found[which, which]) / (1, 1, 4)[which], dofs=dofs)
+
+
+def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
+    """Processor seconds that a second of the wall's time takes, with the spread of the measurements."""
+    system = _system(model, scene, **settings)
+    run = Run(system)
+    state = State.at_rest(system)
+    run.hold(state, 0.2, STEPS)
+    costs = []
+    for _ in range(RUNS):
+        start = time.process_time()
+        run.hold(state, 0.2, STEPS)
+        costs.append((time.process_time() - start) / (STEPS * run.dt))
+    middle = statistics.median(costs)
+    step = f"time step {1e6 * run.dt:.4g} µs"
+    return Answer("measured", middle, min(costs), max(costs), system.freedoms, STEPS, step)
+
+
+QUESTIONS: dict[Question, Asked] = {
+    "collapse": _collapse,
+    "turned block": _turned,
+    "compression": _compression,
+    "shear": _shear,
+    "physical second": _physical_second,
+}

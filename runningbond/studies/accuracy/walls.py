@@ -1,0 +1,150 @@
+"""Walls whose answer is known: exactly, as published to some digits, or as an interval of certified loads."""
+
+import math
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any, Literal, TypeAlias
+
+from homog import elastic_moduli
+from runningbond.compare.published import published_scene
+from runningbond.joints import joint_stiffness
+from runningbond.scene import BlockMaterial, Scene, scene_from_dict
+
+Known: TypeAlias = Literal["exact", "published", "certified", ""]
+"""What an answer is worth; nothing where none is known."""
+
+Question: TypeAlias = Literal["collapse", "turned block", "compression", "shear", "physical second"]
+"""λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second."""
+
+Interval: TypeAlias = tuple[float, float]
+
+INSET = 0.02
+"""Distance of the contacts from the ends of their joints [m], with which λ of Ferris & Tin-Loi's walls is unique."""
+
+PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
+"""Their λ with contacts moved in (Ferris & Tin-Loi 2001), to four digits."""
+
+DIGITS = 5e-5
+"""Half of the last digit that is published."""
+
+TURNED = 0.1
+"""Rotation of the turned block [rad]."""
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+STIFF = 1e12
+"""Young's modulus of blocks where nothing else is said, the paper's [Pa]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A wall and what is known of it.
+
+    Parameters
+    ----------
+    scene
+        The wall.
+    question
+        What is asked.
+    known
+        What the answer is worth; a certified one is found by the study itself.
+    answer
+        The interval in which the answer lies; None where it is to be certified, or not known.
+    """
+
+    scene: Scene
+    question: Question = "collapse"
+    known: Known = ""
+    answer: Interval | None = None
+
+    @property
+    def blocks(self) -> int:
+        """Number of its blocks."""
+        return int(self.scene.wall.sum())
+
+
+def _exactly(scene: Scene, answer: float, question: Question = "collapse") -> Wall:
+    return Wall(scene, question, "exact", (answer, answer))
+
+
+def _scene(block: tuple[float, float], friction: float, young: float = STIFF, **wall: Any) -> Scene:
+    size = {"block_width": block[0], "block_height": block[1], "thickness": 0.12}
+    return scene_from_dict(
+        {
+            "wall": {**size, **wall},
+            "block": {"density": 1800.0, "young": young, "poisson": 0.0},
+            "joint": {"friction": friction, "mortar": dict(MORTAR)},
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+        }
+    )
+
+
+def pile(width: float, height: float, count: int, friction: float) -> Wall:
+    """A stack of n blocks b × h, which falls at λ = min(tan φ, b / (n h))."""
+    scene = _scene((width, height), friction, courses=[[1]] * count)
+    return _exactly(scene, min(friction, width / (count * height)))
+
+
+def turned_block(width: float, height: float) -> Wall:
+    """A block that has turned by θ about its corner bears λ = tan(α − θ), tan α = b / h."""
+    scene = _scene((width, height), 0.9, courses=[[1]])
+    return _exactly(scene, math.tan(math.atan2(width, height) - TURNED), "turned block")
+
+
+def elastic_cell(young: float, question: Question, width: float = 0.24, height: float = 0.06) -> Wall:
+    """A periodic cell of running bond.
+
+    Compressed across its bed joints, blocks without lateral strain are springs in series with them,
+    1 / A2222 = 1 / (a k_n) + 1 / E; sheared, rigid blocks have the closed form of `homog`.
+    """
+    scene = _scene((width, height), 0.6, young, length=6 * width, height=6 * height)
+    joint = joint_stiffness(scene.joint)
+    if question == "compression":
+        return _exactly(scene, 1 / (1 / (height * joint.normal) + 1 / young), question)
+    stiffness = {"bed_normal": joint.normal, "bed_shear": joint.shear}
+    stiffness |= {"head_normal": joint.normal, "head_shear": joint.shear}
+    return _exactly(scene, elastic_moduli(width, height, **stiffness).a1212, question)
+
+
+def inset_wall(name: str) -> Wall:
+    """A wall of Ferris & Tin-Loi with contacts moved in."""
+    scene = published_scene(name)
+    middle = PUBLISHED_INSET[name]
+    moved = replace(scene, joint=replace(scene.joint, inset=INSET))
+    return Wall(moved, "collapse", "published", (middle - DIGITS, middle + DIGITS))
+
+
+def square_panel(courses: int, young: float = STIFF) -> Scene:
+    """A square panel of blocks twice as wide as high, the texture of panel-06; its number of courses is even."""
+    return _scene((0.12, 0.06), 0.6, young, length=0.06 * courses, height=0.06 * courses)
+
+
+@cache
+def accuracy_walls() -> dict[str, Wall]:
+    """Walls of which the answer is known, by name."""
+    return {
+        "block-topples": pile(0.23, 0.36, 1, 0.9),
+        "block-slides": pile(0.23, 0.36, 1, 0.497),
+        "stack-of-5": pile(0.23, 0.1, 5, 0.9),
+        **{f"{name}-inset": inset_wall(name) for name in PUBLISHED_INSET},
+        **{name: Wall(published_scene(name), known="certified") for name in ("panel-02", "panel-03", "panel-04")},
+        "turned-block": turned_block(0.1, 0.4),
+        **{f"cell-{young:.0e}".replace("+", ""): elastic_cell(young, "compression") for young in (1e10, 1e11, 1e12)},
+        "cell-shear": elastic_cell(STIFF, "shear"),
+    }
+
+
+@cache
+def growth_walls() -> dict[str, Wall]:
+    """Square panels of one texture, each of four times the blocks of the one before."""
+    return {f"square-{courses}": Wall(square_panel(courses)) for courses in (6, 12, 24, 48)}
+
+
+@cache
+def stiffness_walls() -> dict[str, Wall]:
+    """One wall whose blocks are ever stiffer."""
+    scene = square_panel(12)
+    return {
+        f"stiff-1e{power}": Wall(replace(scene, block=BlockMaterial(1800.0, 10.0**power)), "physical second")
+        for power in range(9, 14)
+    }

@@ -1,0 +1,41 @@
+"""Walls whose joints hold whatever they bear, and their frequencies: what stability can be reckoned of exactly."""
+
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import eigh
+
+from runningbond.dynamics import BlockSystem
+from runningbond.scene import Array, Scene
+
+HOLDS = 1e15
+"""Cohesion and tensile strength [Pa] that no motion of an experiment comes near."""
+
+
+def bonded(scene: Scene) -> Scene:
+    """The same wall with joints that neither open nor slide."""
+    return replace(scene, joint=replace(scene.joint, cohesion=HOLDS, tensile_strength=HOLDS))
+
+
+def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
+    """Stiffness of the modes that move, blocks and closed joints together, ``(n, n)`` [N/m], and their masses ``(n,)``.
+
+    Assembled from the jumps that each mode makes, one after another.
+    """
+    moving, one = np.flatnonzero(np.isfinite(system.mass)), np.eye(len(system.mass))
+    jump = np.zeros((len(moving), 2, system.law.points))
+    for row, mode in zip(jump, moving, strict=True):
+        system.gather(one[mode], system.geometry, *row)
+    springs = system.area * np.stack([system.law.normal_stiffness, system.law.shear_stiffness])
+    joints = np.einsum("idp,dp,jdp->ij", jump, springs, jump, optimize=True)
+    return joints + np.diag(system.stiffness[moving]), system.mass[moving]
+
+
+def vibrations(system: BlockSystem) -> tuple[Array, Array]:
+    """Frequencies ω [1/s] of a system in ascending order, ``(n,)``, and their shapes, mass-normalised ``(nd, n)``."""
+    stiffness, mass = elastic_stiffness(system)
+    root = 1 / np.sqrt(mass)
+    square, vectors = eigh(stiffness * root[:, None] * root)
+    shapes = np.zeros((len(system.mass), len(mass)))
+    shapes[np.isfinite(system.mass)] = root[:, None] * vectors
+    return np.sqrt(np.maximum(square, 0.0)), shapes
