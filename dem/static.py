@@ -25,7 +25,7 @@ from runningbond.limit.kinematics import control_row, movable_freedoms
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
-from .pushover import State, StaticObserver, Way, lengthened, nobody, state_of
+from .pushover import State, StaticObserver, Way, lengthened, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system
 
@@ -56,7 +56,7 @@ def dem_static(
     collapse: float = COLLAPSE,
     budget: int = BUDGET,
     past: int = PAST,
-    observe: StaticObserver = nobody,
+    observe: StaticObserver = no_observer,
 ) -> Outcome:
     """Collapse of a scene under growing loads, each held until the wall rests or falls, at small displacements.
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
+from scipy.sparse import coo_array, csr_array
 
 from meshing import WallMesh
 from runningbond.scene import Array, Blocks, Indices, Joints, Mask, Pins, Scene, SceneError
@@ -41,6 +42,31 @@ class Pieces:
     mesh: WallMesh
     owner: Indices
     node: Indices
+
+    @property
+    def whole(self) -> bool:
+        """Whether each piece is a block."""
+        return bool((np.diff(self.owner) > 0).all())
+
+
+def motion_of_blocks(wall: Pieces) -> csr_array:
+    """Rigid motion of blocks per rigid motion of their pieces, ``(3 nb, 3 np)``.
+
+    A block's motion is the rigid one with the linear and the angular momentum of its pieces.
+    """
+    blocks, owner = wall.scene.blocks, wall.owner
+    count = int(owner[-1]) + 1
+    area = np.bincount(owner, blocks.area, minlength=count)
+    centre = np.column_stack([np.bincount(owner, blocks.area * x, minlength=count) for x in blocks.centroid.T])
+    x, y = (blocks.centroid - (centre / area[:, None])[owner]).T
+    moment = np.bincount(owner, blocks.polar_moment + blocks.area * (x**2 + y**2), minlength=count)
+    part, spin = blocks.area / area[owner], blocks.area / moment[owner]
+    own = blocks.polar_moment / moment[owner]
+    entries = [(0, 0, part), (1, 1, part), (2, 0, -y * spin), (2, 1, x * spin), (2, 2, own)]
+    rows = np.concatenate([3 * owner + i for i, _, _ in entries])
+    columns = np.concatenate([3 * np.arange(len(owner)) + j for _, j, _ in entries])
+    values = np.concatenate([value for _, _, value in entries])
+    return csr_array(coo_array((values, (rows, columns)), shape=(3 * count, 3 * len(owner))))
 
 
 def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:

@@ -114,6 +114,26 @@ class ModalWall:
         pieces = np.split(motion, self.first[1:])[:-1]
         return [piece.reshape(-1, len(t.blocks)) for piece, t in zip(pieces, self.templates, strict=True)]
 
+    def places(self, local: list[Indices]) -> tuple[Indices, Indices]:
+        """Places for the displacements of some nodes of each template's blocks, given in numbers of their own nodes.
+
+        Returns
+        -------
+        (nn, 2) int
+            Place of each node's displacements along x and y, those of a template's blocks side by side; after the
+            last of all where there are none.
+        (n_templates + 1,) int
+            First place of each template, then the number of places.
+        """
+        counts = [2 * len(own) * len(template.blocks) for own, template in zip(local, self.templates, strict=True)]
+        first = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+        place = np.full((len(self.mesh.points), 2), first[-1])
+        for template, own, at in zip(self.templates, local, first, strict=False):
+            n = len(template.blocks)
+            rows = at + n * np.arange(2 * len(own)).reshape(-1, 2)
+            place[self.mesh.first_node[template.blocks][:, None] + own] = rows + np.arange(n)[:, None, None]
+        return place, first
+
     def nodal_force(self, force: Array) -> Array:
         """Modal forces of forces on the nodes ``(nn, 2)`` [N], ``(nd,)`` [N]; the transpose of `displacement`."""
         found = np.zeros(self.first[-1] + 1)

@@ -21,28 +21,26 @@ Model: TypeAlias = Callable[..., Outcome]
 
 def _dem_static(scene: Scene, tolerance: float, observe: "StaticObserver | None" = None, **asked: Any) -> Outcome:
     """`dem.static.dem_static`, imported when it is wanted, as `_dem_dynamic` is."""
-    from dem.pushover import nobody
+    from dem.pushover import no_observer
     from dem.static import dem_static
 
-    return dem_static(scene, tolerance, observe=observe or nobody, **asked)
+    return dem_static(scene, tolerance, observe=observe or no_observer, **asked)
 
 
 def _dem_dynamic(scene: Scene, tolerance: float, observe: "Observer | None" = None) -> Outcome:
     """`dem.dynamic.dem_dynamic`, imported when it is wanted, for its compiler takes a second to load."""
     from dem.dynamic import dem_dynamic
-    from runningbond.dynamics import nobody
+    from runningbond.dynamics import no_observer
 
-    return dem_dynamic(scene, tolerance, observe=observe or nobody)
+    return dem_dynamic(scene, tolerance, observe=observe or no_observer)
 
 
 def _fem(scene: Scene, tolerance: float, observe: "Observer | None" = None, **asked: Any) -> Outcome:
-    """`fem_interface.model.fem`, imported when it is wanted; whether a wall locks is asked of its rigid blocks."""
+    """`fem_interface.model.fem`, imported when it is wanted."""
     from fem_interface.model import fem
-    from runningbond.dynamics import nobody
-    from runningbond.limit import equilibrium
-    from runningbond.limit.associated import locks
+    from runningbond.dynamics import no_observer
 
-    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), observe=observe or nobody, **asked)
+    return fem(scene, tolerance, observe=observe or no_observer, **asked)
 
 
 MODELS: dict[str, Model] = {

@@ -71,7 +71,10 @@ def whole(mesh: WallMesh, scene: Scene) -> tuple[csr_array, csr_array]:
 
 
 def joint_stiffness_of(system: BlockSystem, opening: Any, slip: Any) -> csr_array:
-    k_n, k_t = system.law.normal_stiffness * system.area, system.law.shear_stiffness * system.area
+    k_n, k_t = (
+        system.interface.law.normal_stiffness * system.interface.area,
+        system.interface.law.shear_stiffness * system.interface.area,
+    )
     return csr_array(opening.T @ (opening * k_n[:, None]) + slip.T @ (slip * k_t[:, None]))
 
 

@@ -63,7 +63,7 @@ def finite_peak(scene: Scene, model: Finite, tolerance: float, way: float, bound
 
 def _push(scene: Scene, model: Finite, distance: float, speed: float) -> Array:
     if model == "fem, finite":
-        from fem_interface.finite import fem_pushover
+        from fem_interface.finite_pushover import fem_pushover
 
         return fem_pushover(scene, distance, speed=speed)
     from dem.dynamic import finite_pushover

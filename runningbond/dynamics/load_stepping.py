@@ -6,9 +6,10 @@ import numpy as np
 
 from runningbond.scene import Array
 
+from .collapse import Criteria, HeldLoad, Verdict, hold_load, settle
 from .controls import ramp
-from .run import Criteria, Observer, Run, Verdict, moved_by, nobody, settle
-from .system import State
+from .run import Observer, Run, no_observer
+from .state import State
 
 LOADING, LOADING_WEIGHTLESS = 16, 4
 """Times in which the load grows by its first step, in times that the wall takes to rest under that step put on at once.
@@ -17,14 +18,14 @@ A wall that is loaded faster slips in several places at once where it would slip
 to bear more, or less.
 """
 
-PAUSES, NEARLY = 10, 1e-3
+PAUSES, NEARLY_AT_REST = 10, 1e-3
 """How often the load of a wall without weight pauses in a step, and the unbalanced force at which it grows again.
 
 Such a wall has no pressure on its joints but what the load gives it, and slips for good wherever a wave takes that
 away. A wall with a weight chatters at such loads without end, and slow growth does it better.
 """
 
-LOOK = 200
+PAUSE_INTERVAL = 200
 """Time steps of a pause between two looks."""
 
 RESOLVED = 10
@@ -33,32 +34,34 @@ RESOLVED = 10
 GROWTH = 1 / 8
 """Largest step, once the first ones are borne, as a fraction of the load."""
 
-UNANSWERED = 4
-"""Loads without an answer, side by side, after which a search that knows of a fall is given up; half as many end one
-that knows of none. Each has cost the whole budget."""
+MOST_UNDECIDED = 4
+"""Undecided loads, side by side, after which a search that has seen a fall ends; half as many end one that has seen
+none. Each has cost the whole budget."""
 
-BEYOND = 200
-"""Load, in first steps, beyond which it is doubled in each: at ten weights a wall that still stands is like to lock."""
+DOUBLED_BEYOND = 200
+"""Load, in first steps, beyond which it is doubled in each: at ten weights a wall that stands probably locks."""
 
 
 @dataclass(eq=False)
 class LoadSteps:
-    """What a search by steps of constant load came to.
+    """Result of a search by steps of constant load.
 
     Parameters
     ----------
     lower, upper
         Largest multiplier that the wall bore at rest, smallest that brought it down; None where none did.
     verdict
-        Of the last load tried, or ``undecided`` where loads without an answer ended the search; ``stable`` without
-        `upper` where it was given up.
+        Of the last load tried, or ``undecided`` where undecided loads ended the search; ``stable`` without `upper`
+        where it ended beyond the largest load or displacement.
     borne
         State at rest under `lower`; None if not even the dead load was borne.
     fallen
-        State in the collapse under `upper`.
+        State in the collapse under `upper`, or under the dead load.
+    fall : (nd,) float
+        Motion over the last half of the way to it.
     rests : list of (multiplier, State)
         Every state at rest, in order of load.
-    taken
+    steps
         Steps taken, on every path.
     interrupted
         Whether Ctrl-C ended it.
@@ -69,22 +72,24 @@ class LoadSteps:
     verdict: Verdict = "undecided"
     borne: State | None = None
     fallen: State | None = None
+    fall: Array | None = None
     rests: list[tuple[float, State]] = field(default_factory=list)
-    taken: int = 0
+    steps: int = 0
     interrupted: bool = False
 
-    def add(self, trial: float, state: State) -> None:
-        """Take note of a load that held or brought the wall down, and of the wall under it."""
+    def add(self, trial: float, state: State, held: HeldLoad) -> None:
+        """Take note of a load and of the wall under it."""
+        self.verdict = held.verdict
         if self.verdict == "stable":
             self.lower, self.borne = trial, state
             self.rests.append((trial, state))
         elif self.verdict == "collapse":
-            self.upper, self.fallen = trial, state
+            self.upper, self.fallen, self.fall = trial, state, held.fall
 
 
 @dataclass(frozen=True)
-class Gap:
-    """Loads that neither held nor fell, inside the bracket.
+class UndecidedLoads:
+    """Undecided loads inside the bracket.
 
     Parameters
     ----------
@@ -94,20 +99,19 @@ class Gap:
 
     loads: tuple[float, ...] = ()
 
-    def sides(self, found: LoadSteps) -> tuple[float, float]:
+    def sides(self, result: LoadSteps) -> tuple[float, float]:
         """Width of the bracket below the lowest of the loads, and above the highest."""
-        return min(self.loads) - (found.lower or 0.0), (found.upper or np.inf) - max(self.loads)
+        return min(self.loads) - (result.lower or 0.0), (result.upper or np.inf) - max(self.loads)
 
-    def closed(self, found: LoadSteps, width: float) -> bool:
-        """Whether nothing more is to be learnt of the loads around these for a bracket of some width."""
-        most = UNANSWERED // 2 if found.upper is None else UNANSWERED
-        return bool(self.loads) and (len(self.loads) >= most or max(self.sides(found)) <= width / 4)
+    def closed(self, result: LoadSteps, width: float) -> bool:
+        """Whether loads around these would make a bracket of some width no narrower."""
+        most = MOST_UNDECIDED // 2 if result.upper is None else MOST_UNDECIDED
+        return bool(self.loads) and (len(self.loads) >= most or max(self.sides(result)) <= width / 4)
 
-    def after(self, found: LoadSteps, trial: float) -> "Gap":
-        """These loads and one more without an answer; none where the wall held above them or fell below them."""
-        loads = (*self.loads, trial) if found.verdict == "undecided" else self.loads
-        gap = Gap(loads)
-        return gap if loads and min(gap.sides(found)) > 0 else Gap()
+    def after(self, result: LoadSteps, trial: float) -> "UndecidedLoads":
+        """These loads and one more if it is undecided; none where the wall held above them or fell below them."""
+        undecided = UndecidedLoads((*self.loads, trial) if result.verdict == "undecided" else self.loads)
+        return undecided if undecided.loads and min(undecided.sides(result)) > 0 else UndecidedLoads()
 
 
 def load_steps(
@@ -119,14 +123,13 @@ def load_steps(
     most: float = np.inf,
     farthest: float | Array = np.inf,
     loading: float | None = None,
-    observe: Observer = nobody,
+    observe: Observer = no_observer,
 ) -> LoadSteps:
     """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
 
     Every trial starts from the last state at rest, so that a fall leaves no trace in the states that count.
-    Steps grow while they are borne, so that the first one need not know the answer's size. A load that neither
-    holds nor falls is passed by, just beside it; once a fall is known the bracket closes in on such loads from both
-    sides.
+    Steps grow while they are borne, so that the first one need not know the answer's size. An undecided load is passed
+    by, just beside it; once a fall is known the bracket closes in on such loads from both sides.
 
     Parameters
     ----------
@@ -139,9 +142,9 @@ def load_steps(
     criteria
         When a load counts as borne.
     most
-        Multiplier beyond which the search is given up.
-    farthest : float or (nb,) float
-        Displacement [m] of any block, or of each, since the dead load was borne, beyond which it is given up.
+        Multiplier beyond which the search ends.
+    farthest : float or (n,) float
+        Displacement [m] of any body, or of each, since the dead load was borne, beyond which it ends.
     loading
         Time in which the load grows by its first step, or by an eighth where that is more, in times that the wall
         takes to rest under the first step put on at once; `LOADING` or `LOADING_WEIGHTLESS` where none is given.
@@ -151,20 +154,20 @@ def load_steps(
     Returns
     -------
     LoadSteps
-        Ctrl-C ends the search with what it had found.
+        Ctrl-C ends the search with the result so far.
     """
-    found = LoadSteps()
+    result = LoadSteps()
     if loading is None:
         loading = LOADING_WEIGHTLESS if run.system.weightless else LOADING
     try:
-        _search(found, run, first, tolerance, criteria, (most, farthest), loading, observe)
+        _search(result, run, first, tolerance, criteria, (most, farthest), loading, observe)
     except KeyboardInterrupt:
-        found.interrupted, found.verdict = True, "undecided"
-    return found
+        result.interrupted, result.verdict = True, "undecided"
+    return result
 
 
 def _search(
-    found: LoadSteps,
+    result: LoadSteps,
     run: Run,
     first: float,
     tolerance: float,
@@ -173,56 +176,56 @@ def _search(
     loading: float,
     observe: Observer,
 ) -> None:
-    """Fill in what a search finds, as it finds it."""
-    state = State.at_rest(run.system)
-    found.verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
-    found.taken = state.steps
-    if found.verdict != "stable":
-        found.fallen = state
+    """Fill in the result of a search as it goes on."""
+    system, state = run.system, State.at_rest(run.system)
+    result.verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
+    result.steps = state.steps
+    if result.verdict != "stable":
+        result.fallen = state
         return
     most, farthest = limits
-    found.lower, found.borne = 0.0, state
-    found.rests.append((0.0, state))
+    result.lower, result.borne = 0.0, state
+    result.rests.append((0.0, state))
     probe = state.copy()
-    seen = settle(run, probe, first, criteria, sudden=True) != "undecided"
-    unhurried = loading * (probe.steps - state.steps) if seen else criteria.budget
-    found.taken = probe.steps
-    step, gap = first, Gap()
-    narrowest = RESOLVED * criteria.rest / (run.system.measure(run.system.live) or 1.0)
-    while found.upper is None or found.upper - found.lower > max(tolerance * found.upper, narrowest):
-        if gap.closed(found, max(tolerance * (found.upper or 0.0), narrowest)):
-            found.verdict = "undecided"
+    answered = settle(run, probe, first, criteria, sudden=True) != "undecided"
+    unhurried = loading * (probe.steps - state.steps) if answered else criteria.budget
+    result.steps = probe.steps
+    step, undecided = first, UndecidedLoads()
+    narrowest = RESOLVED * criteria.rest / (system.measure(system.live) or 1.0)
+    while result.upper is None or result.upper - result.lower > max(tolerance * result.upper, narrowest):
+        if undecided.closed(result, max(tolerance * (result.upper or 0.0), narrowest)):
+            result.verdict = "undecided"
             return
-        trial = _next_trial(found, step, gap, tolerance)
+        trial = _next_trial(result, step, undecided, tolerance)
         if trial > most:
             return
-        state = found.borne.copy()
-        growth = 1.0 if trial > BEYOND * first and not run.system.weightless else GROWTH
-        share = (trial - found.lower) / max(first, growth * trial)
-        trial = _raise(run, state, found.lower, trial, unhurried * share, PAUSES * share, criteria)
-        found.verdict = settle(run, state, trial, criteria, observe)
-        found.taken += state.steps - found.borne.steps
-        found.add(trial, state)
-        gap = gap.after(found, trial)
-        if found.verdict == "stable":
-            if found.upper is None and moved_by(run.system, state, found.rests[0][1].motion, farthest) > 1:
+        state = result.borne.copy()
+        growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
+        share = (trial - result.lower) / max(first, growth * trial)
+        trial = _raise(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
+        held = hold_load(run, state, trial, criteria, observe)
+        result.steps += state.steps - result.borne.steps
+        result.add(trial, state, held)
+        undecided = undecided.after(result, trial)
+        if result.verdict == "stable":
+            if result.upper is None and system.farthest(state.motion - result.rests[0][1].motion, farthest) > 1:
                 return
             if growth > GROWTH:
                 step = growth * trial
-            elif len(found.rests) % 3 == 0:
+            elif len(result.rests) % 3 == 0:
                 step = max(step, min(2 * step, GROWTH * trial))
 
 
-def _next_trial(found: LoadSteps, step: float, gap: Gap, tolerance: float) -> float:
-    """Next load to try: a step up, or the middle of the bracket; beside a load without an answer, or well off two."""
-    lower, upper = found.lower or 0.0, found.upper
-    if not gap.loads:
+def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float) -> float:
+    """Next load to try: a step up, or the middle of the bracket; beside an undecided load, or well off two."""
+    lower, upper = result.lower or 0.0, result.upper
+    if not undecided.loads:
         return lower + step if upper is None else (lower + upper) / 2
-    low, high = min(gap.loads), max(gap.loads)
-    if upper is None or len(gap.loads) == 1:
+    low, high = min(undecided.loads), max(undecided.loads)
+    if upper is None or len(undecided.loads) == 1:
         above = high * (1 + tolerance / 4)
         return above if upper is None or upper > above else low * (1 - tolerance / 4)
-    below, above = gap.sides(found)
+    below, above = undecided.sides(result)
     return (lower + low) / 2 if below > above else (high + upper) / 2
 
 
@@ -250,10 +253,10 @@ def _raise(run: Run, state: State, start: float, stop: float, steps: float, paus
 def _pauses(run: Run, state: State, multiplier: float, motion: Array, criteria: Criteria) -> bool:
     """Hold a load, in place, until the wall is nearly at rest; not where it has come far from a motion before."""
     given = run.given(state)
-    for _ in range(criteria.budget // LOOK):
-        if run.unbalanced(state) < NEARLY:
+    for _ in range(criteria.budget // PAUSE_INTERVAL):
+        if run.unbalanced(state) < NEARLY_AT_REST:
             return True
-        run.hold(state, multiplier, LOOK, given=given)
-        if moved_by(run.system, state, motion, criteria.collapse) > 1:
+        run.hold(state, multiplier, PAUSE_INTERVAL, given=given)
+        if run.system.farthest(state.motion - motion, criteria.collapse) > 1:
             return False
     return False
