@@ -30,7 +30,7 @@ def finite_system(blocks: FiniteWall, *, damping: float = DAMPING, mass_scaling:
     """Set up the deformable blocks of a wall on its undeformed contacts; see `fem_system` for the arguments."""
     wall, contacts = blocks.wall, blocks.undeformed
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    dead, live = wall.body_force(wall.scene.load.gravity), wall.live_load()
+    dead, live = wall.load(wall.scene.dead_forces), wall.load(wall.scene.live_forces)
     law = contact_law(wall.scene.joint, contacts)
     system = BlockSystem(
         mass=scaled.mass,

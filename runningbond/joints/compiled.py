@@ -16,7 +16,7 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
-from runningbond.scene.folder_lock import alone
+from runningbond.scene.folder_lock import locked
 
 _HOME = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "runningbond"
 _ROOMS = ("runningbond/joints", "runningbond/contacts", "runningbond/dynamics", "dem", "fem_interface")
@@ -53,7 +53,7 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
         try:
             return super().load_overload(sig, target_context)
         except Exception:  # whatever unpickling half a file raises
-            with suppress(OSError), alone(Path(self.cache_path)):
+            with suppress(OSError), locked(Path(self.cache_path)):
                 self.flush()
             return None
 
@@ -61,7 +61,7 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
         """Keep a compiled kernel."""
         with suppress(OSError):
             self._impl.locator.ensure_cache_path()
-            with alone(Path(self.cache_path)):
+            with locked(Path(self.cache_path)):
                 super().save_overload(sig, data)
 
 
