@@ -15,8 +15,8 @@ from runningbond import dynamics
 from runningbond.contacts.contacts import Contacts
 from runningbond.dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares, stable_step
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Array, Indices, JointMaterial
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.dynamics import BlockSystem, Restraint, force_unit
 from runningbond.joints import Rule
-from runningbond.joints.laws import kernel_law
+from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Scene
 

@@ -9,9 +9,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dem.dynamic import dem_dynamic
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import FRICTION_WORK, KernelLaw
-from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.joints.law import FRICTION_WORK, KernelLaw
+from runningbond.joints.softening import DAMAGE
+from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Array, JointMaterial, Stiffness
 
 from .walls import panel
