@@ -9,8 +9,8 @@ from runningbond.contacts.rigid_sides import RigidSides, gather_sides, scatter_s
 from runningbond.contacts.search import Contacts, find_contacts, resting
 from runningbond.dynamics import BlockSystem, Interface, block_frequency_squared, force_unit, joint_shares
 from runningbond.joints import wall_points, wall_strength
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .rigid_system import loads_and_masses

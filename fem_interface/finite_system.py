@@ -23,8 +23,8 @@ from runningbond.dynamics import (
     stable_step,
 )
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Array, Indices, JointMaterial
 
@@ -38,7 +38,7 @@ def finite_system(blocks: NodeOutline, *, damping: float = DAMPING, mass_scaling
     """Set up the deformable blocks of a wall to move far; see `fem_system` for the arguments."""
     wall, contacts = blocks.wall, DeformableContacts(blocks)
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    dead, live = wall.body_force(wall.scene.load.gravity), wall.live_load()
+    dead, live = wall.load(wall.scene.dead_forces), wall.load(wall.scene.live_forces)
     strength = wall_strength(wall.scene, wall.interface.points)
     return BlockSystem(
         mass=scaled.mass,

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from runningbond.contacts.outline import Outline
-from runningbond.scene import Array, Indices, PointLoad, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, Sides
@@ -161,7 +161,7 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     joint = scene.joint
     if len(scene.pins):
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
-    if isinstance(scene.load.live, PointLoad):
+    if not (scene.live_forces.on_mass_alone and scene.dead_forces.on_mass_alone):
         raise SceneError("load.live", "finite displacements need a load on the blocks' mass")
     if scene.inner_joint is not None:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")

@@ -62,7 +62,7 @@ def pile(blocks: list[Array], friction: float, live: Lateral | PointLoad | None 
         thickness=0.1,
         block=BlockMaterial(2000.0),
         joint=JointMaterial(friction),
-        load=Load(live=live or Lateral()),
+        load=Load(live=(live or Lateral(),)),
     )
 
 
@@ -247,7 +247,7 @@ def mapped(scene: Scene, change: Callable[[Array], Array], *, turn: Callable[[Ar
         thickness=scene.thickness,
         block=scene.block,
         joint=scene.joint,
-        load=Load((float(gravity[0]), float(gravity[1])), Lateral((float(push[0]), float(push[1])))),
+        load=Load((float(gravity[0]), float(gravity[1])), (Lateral((float(push[0]), float(push[1]))),)),
         ground=outlines[-1],
     )
 

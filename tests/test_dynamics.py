@@ -29,8 +29,8 @@ from runningbond.dynamics import (
 from runningbond.dynamics.collapse import CollapseDetector
 from runningbond.joints import Rule, joint_points, joint_stiffness
 from runningbond.joints.compiled import kernel
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import FRICTION_WORK, KernelLaw
+from runningbond.joints.law import FRICTION_WORK, KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.limit import limit
 from runningbond.scene import Array, JointMaterial, Mortar, Scene, Stiffness
 

@@ -12,7 +12,6 @@ from fem_interface.element_order import modal_wall
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
-from runningbond.joints.softening_kernel import DAMAGE, softening_kernel
 from runningbond.limit.kinematics import movable_freedoms
 from runningbond.pictures.frame import Frame, Stage, Triangles, mechanism_frame, states_of_points
 from runningbond.pictures.painting import DRAWN, wall_size
@@ -157,9 +156,7 @@ class MotionRecorder(Recorder):
         """The moment of a run."""
         stage = self.stage
         opening, slip, normal, tangential = run.tractions(state)
-        damage = (
-            state.history[DAMAGE].copy() if run.interface.law.kernel is softening_kernel else np.zeros(len(opening))
-        )
+        damage = run.interface.law.damage(state.history)
         frame = Frame(
             multiplier,
             run.motion_of_blocks(state),

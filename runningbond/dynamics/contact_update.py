@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from runningbond.contacts.search import Contacts
-from runningbond.joints.point_kernel import DAMPED_WORK, FRICTION_WORK
+from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array, Indices
 
 from .state import PLASTIC_SLIP, State, history_free_of_shear
@@ -72,7 +72,8 @@ class ContactUpdate:
         search, before, history = self._search, contacts_of(state), state.history
         rested = search.resting(before, state.motion)
         opening, slip = interface.jumps(state.motion)
-        shear = slip - history[PLASTIC_SLIP]
+        plastic_slip = interface.law.law.row(PLASTIC_SLIP)
+        shear = slip - history[plastic_slip]
         state.friction += float(before.area @ history[FRICTION_WORK])
         state.absorbed += float(before.area @ history[DAMPED_WORK])
 
@@ -94,7 +95,7 @@ class ContactUpdate:
         state.contacts = replace(contacts, area=area, glued=glued)
         renewed = self.interface_on(state.contacts)
         state.history = history_free_of_shear(renewed, state.motion)
-        state.history[PLASTIC_SLIP, on] -= shear[turned[on]]
+        state.history[plastic_slip, on] -= shear[turned[on]]
         state.history[:, still] = history[:, same[still]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
         return renewed

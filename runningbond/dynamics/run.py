@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from runningbond.contacts.search import Contacts
-from runningbond.joints.point_kernel import DAMPED_WORK, FRICTION_WORK
+from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array
 
 from .central_differences import Modes, StateArrays, Watch, stepper, work_arrays

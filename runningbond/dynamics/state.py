@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from runningbond.contacts.search import Contacts
-from runningbond.joints.point_kernel import OPENING_BEFORE, SLIP_BEFORE
+from runningbond.joints.law import OPENING_BEFORE, SLIP_BEFORE
 from runningbond.scene import Array
 
 from .system import BlockSystem, Interface
 
-PLASTIC_SLIP = 4
-"""Row of every law's history: slip [m] at which a point would be free of shear."""
+PLASTIC_SLIP = "plastic slip"
+"""Name of the row of a law's history that holds the slip [m] at which a point would be free of shear."""
 
 
 @dataclass(eq=False)
@@ -79,5 +79,7 @@ def history_free_of_shear(interface: Interface, motion: Array) -> Array:
     """History ``(rows, np)`` of points that are free of shear after a motion ``(nd,)``."""
     history = np.zeros((interface.law.rows, interface.law.points))
     history[OPENING_BEFORE], history[SLIP_BEFORE] = interface.jumps(motion)
-    history[PLASTIC_SLIP] = history[SLIP_BEFORE]
+    law = interface.law.law
+    if PLASTIC_SLIP in law.history:
+        history[law.row(PLASTIC_SLIP)] = history[SLIP_BEFORE]
     return history

@@ -15,7 +15,7 @@ from scipy.sparse import csr_array
 from runningbond.contacts.outline import Outline
 from runningbond.contacts.search import Contacts
 from runningbond.joints import PointStrength
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
 
 Kernel: TypeAlias = Callable[..., Any]

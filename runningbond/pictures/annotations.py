@@ -1,11 +1,10 @@
 """The signs that engineers draw around a wall: hatched ground, pins and rollers, arrows of loads."""
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runningbond.scene import Array, PointLoad, Scene
+from runningbond.scene import Array, Arrow, Scene
 
 from .moment import Shown
 from .painting import View, wall_size
@@ -27,17 +26,22 @@ def with_signs(scene: Scene, view: View) -> tuple[float, float, float, float]:
     bottom = min(bottom, low[1] - 1.2 * a)
     if len(scene.pins):
         left, right = left - 0.8 * a, right + 0.8 * a
-    if isinstance(scene.load.live, PointLoad):
-        (x, y), (dx, dy) = scene.load.live.at, np.array(scene.load.live.force) / math.hypot(*scene.load.live.force)
-        x, y = x - 2.9 * a * dx, y - 2.9 * a * dy
-        return min(left, x - a), max(right, x + a), min(bottom, y - a), max(top, y + a)
-    dx, dy = scene.load.live.direction
-    return (
-        min(left, low[0] - 2.6 * a) if dx > 0 else left,
-        max(right, high[0] + 2.6 * a) if dx < 0 else right,
-        min(bottom, low[1] - 2.6 * a) if dy > 0 else bottom,
-        max(top, high[1] + 2.6 * a) if dy < 0 else top,
-    )
+    for arrow in live_arrows(scene):
+        dx, dy = arrow.direction
+        if arrow.at is not None:
+            x, y = arrow.at - 2.9 * a * arrow.direction
+            left, right, bottom, top = min(left, x - a), max(right, x + a), min(bottom, y - a), max(top, y + a)
+            continue
+        left = min(left, low[0] - 2.6 * a) if dx > 0 else left
+        right = max(right, high[0] + 2.6 * a) if dx < 0 else right
+        bottom = min(bottom, low[1] - 2.6 * a) if dy > 0 else bottom
+        top = max(top, high[1] + 2.6 * a) if dy < 0 else top
+    return left, right, bottom, top
+
+
+def live_arrows(scene: Scene) -> list[Arrow]:
+    """Arrows of all live loads."""
+    return [arrow for load in scene.load.live for arrow in load.arrows(scene)]
 
 
 def _unit(scene: Scene) -> float:
@@ -95,17 +99,21 @@ def _draw_pin(axes: "Axes", tip: Array, a: float, *, roller: bool) -> None:
 
 
 def draw_load(axes: "Axes", shown: Shown, name: str) -> None:
-    """Arrows of the live load, called by a name: one where a point load acts, or a row along the side pushed."""
+    """Arrows of the live loads, called by a name."""
+    for arrow in live_arrows(shown.scene):
+        _draw_arrow(axes, shown, arrow, name)
+
+
+def _draw_arrow(axes: "Axes", shown: Shown, arrow: Arrow, name: str) -> None:
+    """One arrow where a point load acts, or a row along the side pushed."""
     scene = shown.scene
-    live, a = scene.load.live, _unit(scene)
-    if isinstance(live, PointLoad):
-        direction = np.array(live.force) / math.hypot(*live.force)
-        tip = np.array(live.at) + shown.drawn_motion(scene.loaded_blocks, np.array(live.at))
+    a, direction = _unit(scene), arrow.direction
+    if arrow.at is not None:
+        tip = arrow.at + shown.drawn_motion(arrow.block, arrow.at)
         _arrow(axes, tip - 2.2 * a * direction, tip)
         beside = tip - 1.5 * a * direction + 0.5 * a * np.array([-direction[1], direction[0]])
     else:
         low, high = scene.blocks.extent(scene.wall)
-        direction = np.array(live.direction)
         across = np.array([-direction[1], direction[0]])
         reach, width = float((high - low) @ np.abs(direction)) / 2, float((high - low) @ np.abs(across)) / 2
         start = (low + high) / 2 - (reach + 2.2 * a) * direction

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from runningbond.results.outcome import Outcome, number
-from runningbond.scene import PointLoad, Scene
+from runningbond.scene import Scene
 
 from .annotations import SIZE, draw_load, draw_supports, with_signs
 from .frame import Stage, State, mechanism_frame
@@ -121,8 +121,8 @@ def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
 
 def newtons(scene: Scene) -> bool:
     """Whether λ is a force in newtons: that of a point load of one newton."""
-    live = scene.load.live
-    return isinstance(live, PointLoad) and math.isclose(math.hypot(*live.force), 1.0)
+    live = scene.live_forces
+    return live.at_points_alone and math.isclose(math.hypot(*live.force.sum(axis=0)), 1.0)
 
 
 def png(figure: "Figure", dpi: float = DPI) -> bytes:

@@ -9,9 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runningbond.scene import (
+    Action,
     BlockMaterial,
     Blocks,
+    Body,
     Bond,
+    Forces,
+    GivenForces,
+    JointLaw,
     JointMaterial,
     Joints,
     Lateral,
@@ -37,6 +42,9 @@ PARTS: dict[str, Any] = {
         Load,
         Lateral,
         PointLoad,
+        Body,
+        GivenForces,
+        Forces,
         Bond,
     )
 }
@@ -47,10 +55,19 @@ ROOT = "scene"
 
 
 def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
-    """Arrays that say everything about a scene, by names that start with ``scene``."""
+    """Arrays that say everything about a scene, by names that start with ``scene``.
+
+    Of a load of a user's own they have its forces, and of a law its name.
+    """
     arrays: dict[str, NDArray[Any]] = {}
 
     def plain(value: object, name: str) -> object:
+        if isinstance(value, JointLaw):
+            return {"named": value.name}
+        if isinstance(value, Action) and type(value).__name__ not in PARTS:
+            value = GivenForces(value.forces(scene))
+        if isinstance(value, tuple):
+            return [plain(inner, f"{name}.{k}") for k, inner in enumerate(value)]
         if is_dataclass(value):
             inner = {field.name: plain(getattr(value, field.name), f"{name}.{field.name}") for field in fields(value)}
             return {"part": type(value).__name__, **inner}
@@ -70,8 +87,10 @@ def scene_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Scene:
         if isinstance(value, dict):
             if "array" in value:
                 return arrays[value["array"]]
+            if "named" in value:
+                return None
             return PARTS[value["part"]](**{name: whole(inner) for name, inner in value.items() if name != "part"})
-        return tuple(value) if isinstance(value, list) else value
+        return tuple(map(whole, value)) if isinstance(value, list) else value
 
     scene: Scene = whole(json.loads(arrays[ROOT].tobytes()))
     return scene

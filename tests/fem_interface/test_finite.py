@@ -21,8 +21,8 @@ from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.contact_update import contacts_of
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.point_kernel import OPENING_BEFORE
-from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.joints.law import OPENING_BEFORE
+from runningbond.joints.softening import DAMAGE
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
 from tests.test_dem import pile, rectangle
 from tests.test_dynamics import GRAVITY
