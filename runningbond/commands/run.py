@@ -80,12 +80,12 @@ def _record(scene: Scene, outcome: Outcome, out: Path, recorder: "Recorder | Non
 
 def _draw(out: Path) -> None:
     """Draw the mechanism, or say in a line why there is no picture: the numbers are kept all the same."""
-    from runningbond.pictures.render import draw_mechanism, forget_pictures
+    from runningbond.pictures.render import remove_pictures, render_mechanism
 
-    forget_pictures(out)
+    remove_pictures(out)
     why_not = why_not_drawn()
     if not why_not:
-        draw_mechanism(out)
+        render_mechanism(out)
     else:
         print(f"runningbond: {why_not}", file=sys.stderr)
 

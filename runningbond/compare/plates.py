@@ -1,14 +1,18 @@
 """Plates of a campaign: collapse mechanisms, walls by models; the paper's Figures 8 to 10 and 12."""
 
+import textwrap
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
-from runningbond.pictures.frame import State
-from runningbond.pictures.mechanisms import draw_wall, key, multiplier_text, png, show_mechanism, show_undeformed
-from runningbond.pictures.moment import Shown
-from runningbond.pictures.painting import Painter, View
-from runningbond.results import write_atomically
+from runningbond.pictures.captions import colour_key, multiplier_text, to_png
+from runningbond.pictures.deformed_shape import DeformedShape, Extent, undeformed_shape
+from runningbond.pictures.joint_state import JointState
+from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
+from runningbond.pictures.pyvista_figure import draw_painted
+from runningbond.pictures.pyvista_painter import Painter
+from runningbond.results import Outcome, write_atomically
+from runningbond.scene import Scene
 
 from .figures import SLENDERNESS, TEXTURES
 from .published import BARALDI, CONCENTRATED, FERRIS, PUBLISHED
@@ -87,7 +91,7 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
 
     models = _models(comparison, plate)
     rows = [_row(comparison, name, models) for name in plate.walls]
-    aspect = [(row.view.top - row.view.bottom) / (row.view.right - row.view.left) for row in rows]
+    aspect = [(top - bottom) / (right - left) for left, right, bottom, top in (row.extent for row in rows)]
     room = TALLEST - HEAD - FOOT - CAPTION * len(rows)
     width = min((WIDTH - SIDE) / max(len(models), 3), room / sum(aspect))
     heights = [width * ratio + CAPTION for ratio in aspect]
@@ -102,14 +106,14 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     for row, label, height in zip(rows, plate.walls.values(), heights, strict=True):
         bottom = top - height + CAPTION
         figure.text(0.08 / total_width, (top + bottom) / 2 / total, label, va="center", fontsize=7.5)
-        for middle, shown, caption in zip(middles, row.shown, row.captions, strict=True):
+        for middle, shape, caption in zip(middles, row.shapes, row.captions, strict=True):
             left = middle - width / 2 / total_width
             axes = figure.add_axes((left, bottom / total, width / total_width, (top - bottom) / total))
-            draw_wall(axes, shown, painter, row.view, signs=False)
+            draw_painted(axes, shape, painter, row.extent, annotated=False)
             figure.text(middle, (bottom - 0.03) / total, caption, ha="center", va="top", fontsize=6.3)
         top -= height
     figure.legend(
-        handles=key((State.SLIDE, State.OPEN)),
+        handles=colour_key((JointState.SLIDE, JointState.OPEN)),
         loc="lower center",
         bbox_to_anchor=(0.5, 0.02 / total),
         ncols=4,
@@ -117,30 +121,29 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
         fontsize=7,
         handlelength=1.6,
     )
-    return png(figure, DPI)
+    return to_png(figure, DPI)
 
 
 @dataclass(frozen=True)
 class Row:
-    """One wall by all models: what is drawn, its captions, and a view that shows all of it."""
+    """One wall by all models: what is drawn, its captions, and an extent that shows all of it."""
 
-    shown: list[Shown]
+    shapes: list[DeformedShape]
     captions: list[str]
-    view: View
+    extent: Extent
 
 
 def _row(comparison: Comparison, name: str, models: list[str]) -> Row:
     scene = comparison.scenes[name]
     outcomes = [comparison.campaign.outcomes.get((name, model)) for model in models]
-    mechanisms = [None if outcome is None else show_mechanism(scene, outcome) for outcome in outcomes]
-    shown = [found or show_undeformed(scene) for found in mechanisms]
-    views = [each.view(PIXELS) for each in shown]
-    view = View(
-        min(view.left for view in views),
-        max(view.right for view in views),
-        min(view.bottom for view in views),
-        max(view.top for view in views),
-        PIXELS,
-    )
-    captions = ["n/a" if outcome is None else "\n".join(multiplier_text(scene, outcome)) for outcome in outcomes]
-    return Row(shown, captions, view)
+    mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
+    shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
+    lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
+    extent = min(lefts), max(rights), min(bottoms), max(tops)
+    return Row(shapes, ["n/a" if outcome is None else _caption(scene, outcome) for outcome in outcomes], extent)
+
+
+def _caption(scene: Scene, outcome: Outcome) -> str:
+    """The load, its bracket, and what is wrong with the mechanism where something is."""
+    lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 34)]
+    return "\n".join(filter(None, lines))

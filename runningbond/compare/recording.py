@@ -14,10 +14,13 @@ from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.run import CALM
 from runningbond.joints.softening_kernel import DAMAGE, softening_kernel
 from runningbond.limit.kinematics import movable_freedoms
-from runningbond.pictures.frame import Frame, Stage, Triangles, mechanism_frame, states_of_points
-from runningbond.pictures.painting import DRAWN, wall_size
-from runningbond.pictures.series import Series
-from runningbond.pictures.vtk_messages import VtkError
+from runningbond.pictures.deformed_shape import wall_size
+from runningbond.pictures.frame import Discretisation, Frame, Triangles
+from runningbond.pictures.joint_state import states_under_load
+from runningbond.pictures.mechanism import mechanism_frame
+from runningbond.pictures.style import DRAWN
+from runningbond.pictures.time_series import TimeSeries
+from runningbond.pictures.vtk_errors import VtkError
 from runningbond.results import Outcome
 from runningbond.results.mechanism import rigid_jumps
 from runningbond.results.store import RECORD
@@ -44,15 +47,15 @@ class Recorder:
 
     Parameters
     ----------
-    stage
+    discretisation
         The wall.
     folder
         Where the series is written.
     """
 
-    def __init__(self, stage: Stage, folder: Path) -> None:
-        self.stage = stage
-        self._series = Series(stage, folder)
+    def __init__(self, discretisation: Discretisation, folder: Path) -> None:
+        self.discretisation = discretisation
+        self._series = TimeSeries(discretisation, folder)
         self._folder = folder
         self._broken: OSError | VtkError | None = None
 
@@ -84,17 +87,17 @@ class StaticRecorder(Recorder):
     """Writes every state of rest that `dem.static` finds."""
 
     def __init__(self, scene: Scene, folder: Path) -> None:
-        super().__init__(Stage.of_rigid_blocks(scene), folder)
+        super().__init__(Discretisation.of_rigid_blocks(scene), folder)
 
     def __call__(self, system: StaticSystem, state: StaticState) -> None:
         """Write a state."""
-        scene, points, equations = self.stage.scene, self.stage.points, system.equilibrium
+        scene, points, equations = self.discretisation.scene, self.discretisation.points, system.equilibrium
         motion = np.zeros(3 * len(scene.blocks))
         motion[movable_freedoms(scene)] = state.x[: system.freedoms] * equations.scale * system.length_unit
         opening, slip = rigid_jumps(scene.blocks, points, motion.reshape(-1, 3))
         normal, tangential = (equations.force_unit * state.force / points.area[:, None]).T
         undamaged = np.zeros(len(points))
-        shown = states_of_points(scene, points, opening, normal, tangential, undamaged)
+        shown = states_under_load(scene, points, opening, normal, tangential, undamaged)
         load = equations.live_unit * state.multiplier
         self.keep(Frame(load, motion.reshape(-1, 3), opening, slip, normal, tangential, shown))
 
@@ -115,7 +118,7 @@ class MotionRecorder(Recorder):
     def __init__(self, scene: Scene, model: str, folder: Path) -> None:
         wall = modal_wall(scene) if model == "fem" else None
         points = contact_points(scene) if wall is None else wall.interface.points
-        super().__init__(Stage(scene, points, None if wall is None else _triangles(wall)), folder)
+        super().__init__(Discretisation(scene, points, None if wall is None else _triangles(wall)), folder)
         self._wall = wall
         self._multiplier = np.nan
         self._calm = 0
@@ -155,7 +158,7 @@ class MotionRecorder(Recorder):
 
     def frame(self, run: Run, state: State, multiplier: float) -> Frame:
         """The moment of a run."""
-        stage = self.stage
+        wall = self.discretisation
         opening, slip, normal, tangential = run.tractions(state)
         damage = state.history[DAMAGE].copy() if run.system.law.kernel is softening_kernel else np.zeros(len(opening))
         frame = Frame(
@@ -165,7 +168,7 @@ class MotionRecorder(Recorder):
             slip,
             normal,
             tangential,
-            states_of_points(stage.scene, stage.points, opening, normal, tangential, damage),
+            states_under_load(wall.scene, wall.points, opening, normal, tangential, damage),
             run.velocity_of_blocks(state),
             damage,
         )
@@ -178,7 +181,7 @@ class MotionRecorder(Recorder):
 def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
     """Write the mechanism of an outcome as it grows; nothing where it has none."""
     frame = mechanism_frame(scene, outcome)
-    series = Series(Stage.of_rigid_blocks(scene), folder)
+    series = TimeSeries(Discretisation.of_rigid_blocks(scene), folder)
     series.clear()
     if frame is not None:
         series.add(replace(frame.scaled(0.0), state=np.zeros_like(frame.state)))

@@ -1,13 +1,14 @@
-"""VTK's modules import one another, and crash the process where an exception breaks that off."""
+"""Imports of VTK that no signal interrupts: an exception in the midst of them crashes the process."""
 
 import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 
 @contextmanager
-def whole_imports() -> Iterator[None]:
+def uninterrupted_imports() -> Iterator[None]:
     """Hold back Ctrl-C, and what else raises an exception at a signal, until what is imported inside is there."""
     if threading.current_thread() is not threading.main_thread():  # where no signal is heard
         yield
@@ -26,10 +27,12 @@ def whole_imports() -> Iterator[None]:
             signal.raise_signal(heard[0])
 
 
-def import_pyvista() -> None:
-    """Import all that pictures are drawn with."""
-    with whole_imports():
+def import_pyvista(*names: str) -> Any:
+    """Import PyVista with what is needed of it, such as its ``Plotter``, and return it."""
+    with uninterrupted_imports():
         import pyvista
         import vtkmodules.vtkIOXML  # noqa: F401
 
-        _ = pyvista.Plotter  # which imports most of it
+        for name in names:  # imported by PyVista when they are first asked for
+            getattr(pyvista, name)
+    return pyvista

@@ -21,7 +21,7 @@ from runningbond.scene import Scene
 from runningbond.scene.folder_lock import alone
 
 from .outcome import ARRAYS, Outcome
-from .scene_record import ROOT, scene_from_arrays, scene_to_arrays
+from .scene_arrays import SCENE_KEY, scene_from_arrays, scene_to_arrays
 
 RECORD = "outcome.json"
 
@@ -114,7 +114,7 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
 def load_scene(folder: Path) -> Scene:
     """Read back the scene of an outcome; StoreError as of `load_outcome`, or where none was kept."""
     with _trusted(folder) as (_, stored):
-        if ROOT not in stored:
+        if SCENE_KEY not in stored:
             raise StoreError(f"{folder}: holds an outcome without its scene")
         return scene_from_arrays(stored)
 

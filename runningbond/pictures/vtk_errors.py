@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from .vtk_imports import whole_imports
+from .vtk_imports import uninterrupted_imports
 
 
 class VtkError(Exception):
@@ -14,7 +14,7 @@ class VtkError(Exception):
 @contextmanager
 def vtk_errors_raised() -> Iterator[None]:
     """Raise the first error that VTK reports inside, once it has been left; warnings pass unheard."""
-    with whole_imports():
+    with uninterrupted_imports():
         from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
     before, window = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
