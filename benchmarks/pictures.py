@@ -11,7 +11,7 @@ import numpy as np
 from runningbond.pictures.captions import to_png
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.frame import Discretisation, Frame
-from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape
+from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.pictures.pyvista_figure import mechanism_figure
 from runningbond.pictures.pyvista_painter import Painter
@@ -73,9 +73,7 @@ def write(scene: Scene, frame: Frame, folder: Path) -> None:
 
 def draw(scene: Scene, outcome: Outcome, painter: Painter, path: Path) -> None:
     """Draw and write a picture of a mechanism."""
-    shape = mechanism_shape(scene, outcome)
-    assert shape is not None
-    write_atomically(path, to_png(mechanism_figure(shape, outcome, painter)))
+    write_atomically(path, to_png(mechanism_figure(scene, outcome, painter)))
 
 
 if __name__ == "__main__":

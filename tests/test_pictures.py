@@ -222,7 +222,7 @@ def test_every_support_and_load_has_its_sign(painter: Painter, kind: str) -> Non
         "limit",
         "undecided",
     )
-    figure = mechanism_figure(undeformed_shape(scene), outcome, painter)
+    figure = mechanism_figure(scene, outcome, painter)
     content = to_png(figure)
     image = np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(int)
     margin = 4

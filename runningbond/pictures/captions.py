@@ -3,13 +3,14 @@
 import io
 import math
 import textwrap
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import PointLoad, Scene
 
-from .deformed_shape import DeformedShape, Extent, wall_size
+from .deformed_shape import Extent, wall_size
 from .joint_state import JointState
 from .style import AT_REST, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
@@ -20,8 +21,80 @@ if TYPE_CHECKING:
 WIDTH, TALLEST, DPI = 3.5, 4.2, 300
 """Width of a picture, that of a journal's column, largest height of the wall in it [in], and dots per inch."""
 
-LINE, FOOT = 0.14, 0.36
-"""Height of a line of the title, and room for the key and a note below a drawing [in]."""
+LINE, KEY_LINE, NOTE_LINE, AIR = 0.14, 0.135, 0.105, 0.08
+"""Heights of a line of the title, of the key and of a note, and of the air above and below them [in]."""
+
+
+@dataclass(frozen=True)
+class Caption:
+    """The words around a drawing.
+
+    Parameters
+    ----------
+    heading
+        Lines in bold above the drawing.
+    subtitle
+        Line below them; empty for none.
+    notes
+        Lines below the drawing and its key.
+    key
+        What colours and lines stand for: handles of a legend.
+    columns
+        Columns of the key.
+    """
+
+    heading: Sequence[str]
+    subtitle: str
+    notes: Sequence[str]
+    key: Sequence[Any]
+    columns: int = 5
+
+    @property
+    def room(self) -> tuple[float, float]:
+        """Heights above and below the drawing [in]."""
+        above = LINE * (len(self.heading) + bool(self.subtitle))
+        return above + AIR, self._key_height + NOTE_LINE * len(self.notes) + AIR
+
+    @property
+    def _key_height(self) -> float:
+        return KEY_LINE * math.ceil(len(self.key) / self.columns) + 0.04
+
+    def write(self, axes: "Axes") -> None:
+        """Write the words above and below some axes."""
+        level = 0.04
+        for text, weight in ((self.subtitle, "normal"), *((line, "bold") for line in reversed(self.heading))):
+            if text:
+                _write(axes, text, 1.0, level, va="bottom", fontsize=TYPE, fontweight=weight)
+                level += LINE
+        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "ncols": self.columns}
+        spacing = {"handlelength": 1.5, "handletextpad": 0.5, "columnspacing": 1.0, "borderpad": 0.0}
+        axes.legend(handles=self.key, frameon=False, fontsize=SMALL_TYPE, borderaxespad=0.4, **place, **spacing)
+        _write(axes, "\n".join(self.notes), 0.0, -self._key_height, va="top", fontsize=SMALL_TYPE, color=DARK)
+
+
+def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -> None:
+    """Text in the middle of the width of axes, so far above their bottom (0) or top (1)."""
+    place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False}
+    axes.annotate(text, (0.5, level), (0.0, 72 * inches), ha="center", **place, **style)
+
+
+def figure_with_room(extent: Extent, caption: Caption) -> "tuple[Figure, Axes]":
+    """A figure of one drawing, with room for its caption."""
+    from matplotlib.figure import Figure
+
+    left, right, bottom, top = extent
+    above, below = caption.room
+    height = min(WIDTH * (top - bottom) / (right - left), TALLEST)
+    total = height + above + below
+    figure = Figure(figsize=(WIDTH, total), dpi=DPI)
+    return figure, figure.add_axes((0, below / total, 1, height / total))
+
+
+def show_extent(axes: "Axes", extent: Extent) -> None:
+    """Show a part of the plane in some axes, at one scale both ways and without ticks."""
+    left, right, bottom, top = extent
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    axes.axis("off")
 
 
 def load_symbol(scene: Scene) -> str:
@@ -46,88 +119,37 @@ def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     return f"{name} = {number(outcome.multiplier)}{unit}", bracket
 
 
-def outcome_title(scene: Scene, outcome: Outcome) -> list[str]:
-    """Lines of a title: the wall, and the load that a model found."""
-    return [*_wrapped(outcome.scene), f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"]
+def outcome_text(scene: Scene, outcome: Outcome) -> str:
+    """The load that a model found, as the line below a title."""
+    return f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
 
 
-def frame_title(shape: DeformedShape, outcome: Outcome) -> list[str]:
-    """Lines of a title: the wall, and the load at one moment of a run."""
-    load = f"{load_symbol(shape.scene)} = {number(shape.multiplier)}"
-    return [*_wrapped(outcome.scene), f"{outcome.model}: {load}"]
+def wall_title(title: str) -> list[str]:
+    """Lines of a wall's name, none longer than a figure is wide."""
+    return textwrap.wrap(title, 60) or [""]
 
 
-def _wrapped(title: str) -> list[str]:
-    return textwrap.wrap(title, 62) or [""]
+def mechanism_notes(scene: Scene, warning: str) -> list[str]:
+    """How large a mechanism is drawn, and what is to be said of it."""
+    size = f"mechanism; the fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
+    return [size, warning] if warning else [size]
 
 
-def mechanism_note(scene: Scene) -> str:
-    """How large a mechanism is drawn."""
-    return f"mechanism; the fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
-
-
-def colour_key(states: Sequence[JointState] = tuple(STATE_COLOURS), colouring: Colouring = "displacement") -> list[Any]:
-    """What the colours of a picture stand for, for a legend."""
+def colour_key(
+    states: Sequence[JointState] = tuple(STATE_COLOURS),
+    colouring: Colouring = "displacement",
+    dashes: Mapping[JointState, Any] | None = None,
+) -> list[Any]:
+    """What the colours of a picture stand for, and the dashes of its lines: handles of a legend."""
     from matplotlib.lines import Line2D
-
-    lines = [Line2D([], [], color=STATE_COLOURS[state], lw=1.6, label=STATE_NAMES[state]) for state in states]
-    return lines if colouring == "course" else [*lines, *motion_key()]
-
-
-def motion_key() -> list[Any]:
-    """What the colours of blocks stand for, for a legend."""
     from matplotlib.patches import Patch
 
+    styles = dashes or dict.fromkeys(STATE_COLOURS, "solid")
+    lines = [Line2D([], [], color=STATE_COLOURS[x], ls=styles[x], lw=1.5, label=STATE_NAMES[x]) for x in states]
+    if colouring == "course":
+        return lines
     ends = ((AT_REST, "block at rest"), (FASTEST, "fastest block"))
-    return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=label) for colour, label in ends]
-
-
-def figure_with_room(extent: Extent, lines: int) -> "tuple[Figure, Axes]":
-    """A figure of one drawing, with room for a title of some lines above and a caption below."""
-    from matplotlib.figure import Figure
-
-    left, right, bottom, top = extent
-    height = min(WIDTH * (top - bottom) / (right - left), TALLEST)
-    total = height + LINE * lines + 0.1 + FOOT
-    figure = Figure(figsize=(WIDTH, total), dpi=DPI)
-    return figure, figure.add_axes((0, FOOT / total, 1, height / total))
-
-
-def caption(axes: "Axes", title: Sequence[str], note: str, key: Sequence[Any]) -> None:
-    """Write a title above a drawing, its wall in bold, and a key and a note below."""
-    points = 72 * LINE
-    for line, text in enumerate(reversed(title)):
-        bold = {"fontweight": "bold"} if line > 0 or len(title) == 1 else {}
-        _write(axes, text, 1.0, 3 + line * points, "bottom", TYPE, **bold)
-    axes.legend(
-        handles=list(key),
-        loc="upper center",
-        bbox_to_anchor=(0.5, 0.0),
-        ncols=5,
-        frameon=False,
-        fontsize=SMALL_TYPE,
-        handlelength=1.5,
-        handletextpad=0.5,
-        columnspacing=1.0,
-        borderpad=0.0,
-        borderaxespad=0.3,
-    )
-    _write(axes, note, 0.0, -14, "top", SMALL_TYPE, color=DARK)
-
-
-def _write(
-    axes: "Axes", text: str, level: float, points: float, va: Literal["top", "bottom"], size: float, **style: Any
-) -> None:
-    """Text in the middle of a drawing's width, so many points above its bottom (0) or top (1)."""
-    middle: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False}
-    axes.annotate(text, (0.5, level), (0.0, points), ha="center", va=va, fontsize=size, **middle, **style)
-
-
-def frame_axes(axes: "Axes", extent: Extent) -> None:
-    """Show a part of the plane, at one scale both ways and without ticks."""
-    left, right, bottom, top = extent
-    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
-    axes.axis("off")
+    return [*lines, *(Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=label) for colour, label in ends)]
 
 
 def to_png(figure: "Figure", dpi: float = DPI) -> bytes:

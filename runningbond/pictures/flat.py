@@ -12,11 +12,19 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Scene
 
 from .annotations import annotate, annotated_extent
-from .captions import caption, figure_with_room, frame_axes, mechanism_note, motion_key, outcome_title
+from .captions import (
+    Caption,
+    colour_key,
+    figure_with_room,
+    mechanism_notes,
+    outcome_text,
+    show_extent,
+    wall_title,
+)
 from .deformed_shape import DeformedShape, outline, undeformed_shape
 from .joint_state import VISIBLE, JointState
-from .mechanism import has_mechanism, mechanism_shape, mechanism_warning
-from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, STATE_NAMES, tint
+from .mechanism import mechanism_shape, mechanism_warning
+from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, tint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,57 +42,76 @@ DASHES: dict[JointState, Any] = {
     JointState.DEBONDED: (0, (0.8, 1.2)),
 }
 
+HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DARK, "zorder": 5}
+
 
 def draw_wall(axes: "Axes", scene: Scene) -> None:
     """Draw a wall before any analysis: blocks, joints by material, supports, and arrows of the live load."""
-    from matplotlib.lines import Line2D
-
     shape = undeformed_shape(scene)
-    frame_axes(axes, annotated_extent(scene, shape.extent))
+    show_extent(axes, annotated_extent(scene, shape.extent))
     width = _line_width(axes, scene)
     _draw_blocks(axes, shape, 0.5 * width)
-    key = []
-    for number, (material, colour) in enumerate(zip(scene.joint_materials, MATERIAL_COLOURS, strict=False)):
+    for number, colour in _material_colours(scene):
         _draw_lines(axes, scene.joints.ends[scene.material_of_joint == number], colour, 0.6 * width, "solid")
-        key.append(Line2D([], [], color=colour, lw=1.2, label=_strength(material)))
     annotate(axes, shape)
-    length, height = np.subtract(*scene.blocks.extent(scene.wall)[::-1])
-    size = f"{length:.4g} × {height:.4g} m, {scene.wall.sum()} blocks, {len(scene.joints)} joints"
-    caption(axes, [scene.title], size, key)
+    _wall_caption(scene).write(axes)
 
 
 def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     """Draw the mechanism of an outcome over the undeformed wall, its joints by what they do and hinges as circles.
 
-    Where there is none, or none that the loads drive, the undeformed wall is drawn and the note below says so.
+    Where there is none, or none that the loads drive, the undeformed wall is drawn and a note below says so.
     """
-    mechanism = mechanism_shape(scene, outcome)
-    shape = mechanism or undeformed_shape(scene)
-    frame_axes(axes, annotated_extent(scene, shape.extent))
+    shape = mechanism_shape(scene, outcome) or undeformed_shape(scene)
+    show_extent(axes, annotated_extent(scene, shape.extent))
     width = _line_width(axes, scene)
     _draw_ghost(axes, scene, width)
     _draw_blocks(axes, shape, 0.5 * width)
-    key = [_draw_joints(axes, shape, state, width) for state in shape.states]
-    key += _draw_hinges(axes, shape, 2.2 * width)
+    for state in shape.states:
+        _draw_joints(axes, shape, state, width)
+    axes.plot(*_hinges(shape).T, ms=2.2 * width, mew=0.4 * width, **HINGE)
     annotate(axes, shape)
-    warning = mechanism_warning(scene, outcome)
-    if mechanism is None:
-        note = warning or f"no mechanism{' of every block' if has_mechanism(scene, outcome) else ''}"
-    else:
-        note = "\n".join(filter(None, [mechanism_note(scene), warning]))
-    caption(axes, outcome_title(scene, outcome), note, [*key, *(motion_key() if mechanism else [])])
+    _mechanism_caption(scene, outcome).write(axes)
 
 
 def figure_of(scene: Scene, outcome: Outcome | None = None) -> "Figure":
     """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column."""
     shape = (mechanism_shape(scene, outcome) if outcome else None) or undeformed_shape(scene)
-    lines = len(outcome_title(scene, outcome)) if outcome else 1
-    figure, axes = figure_with_room(annotated_extent(scene, shape.extent), lines)
+    caption = _mechanism_caption(scene, outcome) if outcome else _wall_caption(scene)
+    figure, axes = figure_with_room(annotated_extent(scene, shape.extent), caption)
     if outcome is None:
         draw_wall(axes, scene)
     else:
         draw_mechanism(axes, scene, outcome)
     return figure
+
+
+def _wall_caption(scene: Scene) -> Caption:
+    from matplotlib.lines import Line2D
+
+    materials = scene.joint_materials
+    key = [
+        Line2D([], [], color=colour, lw=1.2, label=_strength(materials[k])) for k, colour in _material_colours(scene)
+    ]
+    length, height = np.subtract(*scene.blocks.extent(scene.wall)[::-1])
+    size = f"{length:.4g} × {height:.4g} m, {scene.wall.sum()} blocks, {len(scene.joints)} joints"
+    return Caption(wall_title(scene.title), "", [size], key, columns=1)
+
+
+def _mechanism_caption(scene: Scene, outcome: Outcome) -> Caption:
+    from matplotlib.lines import Line2D
+
+    shape, warning = mechanism_shape(scene, outcome), mechanism_warning(scene, outcome)
+    title, load = wall_title(outcome.scene), outcome_text(scene, outcome)
+    if shape is None:
+        return Caption(title, load, [warning or "no mechanism"], [])
+    hinge = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if len(_hinges(shape)) else []
+    return Caption(title, load, mechanism_notes(scene, warning), [*hinge, *colour_key(shape.states, dashes=DASHES)])
+
+
+def _material_colours(scene: Scene) -> list[tuple[int, str]]:
+    """Number and colour of each joint material."""
+    return [(k, MATERIAL_COLOURS[k % len(MATERIAL_COLOURS)]) for k in range(len(scene.joint_materials))]
 
 
 def _line_width(axes: "Axes", scene: Scene) -> float:
@@ -112,20 +139,17 @@ def _draw_blocks(axes: "Axes", shape: DeformedShape, width: float) -> None:
     axes.add_collection(blocks, autolim=False)
 
 
-def _draw_joints(axes: "Axes", shape: DeformedShape, state: JointState, width: float) -> Any:
-    """The gaps and lines of joints in one state; returns what stands for them in a legend."""
+def _draw_joints(axes: "Axes", shape: DeformedShape, state: JointState, width: float) -> None:
+    """The gaps and lines of joints in one state."""
     from matplotlib.collections import PolyCollection
-    from matplotlib.lines import Line2D
 
     faces, colour = shape.placed_faces[shape.state == state], STATE_COLOURS[state]
     gaps = PolyCollection(list(faces), facecolors=[tint(colour)], edgecolors="none", zorder=3)
     axes.add_collection(gaps, autolim=False)
-    if state == JointState.OPEN:
-        lines = np.concatenate([faces[:, :2], faces[:, 2:]])
-    else:  # one line along the middle, so that its dashes stay apart
-        lines = (faces[:, :2] + faces[:, :1:-1]) / 2
+    # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.
+    middle = (faces[:, :2] + faces[:, :1:-1]) / 2
+    lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
     _draw_lines(axes, lines, colour, width, DASHES[state])
-    return Line2D([], [], color=colour, lw=1.4, ls=DASHES[state], label=STATE_NAMES[state])
 
 
 def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: Any) -> None:
@@ -137,20 +161,13 @@ def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: A
     axes.add_collection(drawn, autolim=False)
 
 
-def _draw_hinges(axes: "Axes", shape: DeformedShape, size: float) -> list[Any]:
-    """Circles where joints that open turn about one end; returns what stands for them in a legend."""
-    placed = shape.placed_faces[shape.state == JointState.OPEN]
-    gaps = np.hypot(*(placed[:, [3, 2]] - placed[:, [0, 1]]).transpose(2, 0, 1))
+def _hinges(shape: DeformedShape) -> Array:
+    """Ends about which joints that open turn, where they are drawn, ``(n, 2)`` [m]."""
+    faces = shape.placed_faces[shape.state == JointState.OPEN]
+    gaps = np.hypot(*(faces[:, [3, 2]] - faces[:, [0, 1]]).transpose(2, 0, 1))
     least = VISIBLE * shape.scale * float(np.hypot(*shape.displacement.T).max(initial=0.0))
     turns = (gaps.min(axis=1) < least) & (gaps.max(axis=1) > least)
-    if not turns.any():
-        return []
-    at = placed[turns, gaps[turns].argmin(axis=1)]
-    style: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DARK, "zorder": 5}
-    axes.plot(*at.T, ms=size, mew=0.4 * size / 2, **style)
-    from matplotlib.lines import Line2D
-
-    return [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **style)]
+    return faces[turns, gaps[turns].argmin(axis=1)]
 
 
 def _strength(material: JointMaterial) -> str:

@@ -1,25 +1,43 @@
 """Figures with a wall painted by PyVista: a mechanism, or one moment of a run."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from runningbond.results.outcome import Outcome
+from runningbond.results.outcome import Outcome, number
+from runningbond.scene import Scene
 
 from .annotations import annotate, annotated_extent
-from .captions import caption, colour_key, figure_with_room, frame_axes, frame_title, mechanism_note, outcome_title
-from .deformed_shape import DeformedShape, Extent
+from .captions import (
+    Caption,
+    colour_key,
+    figure_with_room,
+    load_symbol,
+    mechanism_notes,
+    outcome_text,
+    show_extent,
+    wall_title,
+)
+from .deformed_shape import DeformedShape, Extent, undeformed_shape
 from .joint_state import JointState
+from .mechanism import mechanism_shape, mechanism_warning
 from .pyvista_painter import Painter, square_around
+from .style import Colouring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
-def mechanism_figure(shape: DeformedShape, outcome: Outcome, painter: Painter, warning: str = "") -> "Figure":
-    """Figure of a collapse mechanism, or of the undeformed wall with a warning that says why none is drawn."""
-    scale = "" if shape.scale == 1.0 and warning else mechanism_note(shape.scene)
-    note = "\n".join(filter(None, [scale, warning]))
-    return _figure(shape, painter, outcome_title(shape.scene, outcome), note, shape.extent, shape.states)
+def mechanism_figure(
+    scene: Scene, outcome: Outcome, painter: Painter, colouring: Colouring = "displacement"
+) -> "Figure":
+    """Figure of an outcome's mechanism; of the undeformed wall where there is none that the loads drive."""
+    shape, warning = mechanism_shape(scene, outcome), mechanism_warning(scene, outcome)
+    notes = mechanism_notes(scene, warning) if shape else [warning or "no mechanism"]
+    drawn = replace(shape or undeformed_shape(scene), colouring=colouring)
+    key = colour_key(drawn.states, colouring)
+    caption = Caption(wall_title(outcome.scene), outcome_text(scene, outcome), notes, key)
+    return _figure(drawn, painter, caption, drawn.extent)
 
 
 def frame_figure(
@@ -30,17 +48,16 @@ def frame_figure(
     states: list[JointState] | None = None,
 ) -> "Figure":
     """Figure of one moment of a run; with an extent and a key that are not its own, so that several make a film."""
+    load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
-    title = frame_title(shape, outcome)
-    return _figure(shape, painter, title, note, extent or shape.extent, shape.states if states is None else states)
+    key = colour_key(shape.states if states is None else states, shape.colouring)
+    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), extent or shape.extent)
 
 
-def _figure(
-    shape: DeformedShape, painter: Painter, title: list[str], note: str, extent: Extent, states: list[JointState]
-) -> "Figure":
-    figure, axes = figure_with_room(annotated_extent(shape.scene, extent), len(title))
+def _figure(shape: DeformedShape, painter: Painter, caption: Caption, extent: Extent) -> "Figure":
+    figure, axes = figure_with_room(annotated_extent(shape.scene, extent), caption)
     draw_painted(axes, shape, painter, extent)
-    caption(axes, title, note, colour_key(states, shape.colouring))
+    caption.write(axes)
     return figure
 
 
@@ -49,6 +66,6 @@ def draw_painted(
 ) -> None:
     """Draw a painted wall into axes of its own, with or without its supports and loads around it."""
     axes.imshow(painter.paint(shape, extent), extent=square_around(extent), interpolation="antialiased", zorder=1)
-    frame_axes(axes, annotated_extent(shape.scene, extent) if annotated else extent)
+    show_extent(axes, annotated_extent(shape.scene, extent) if annotated else extent)
     if annotated:
         annotate(axes, shape)

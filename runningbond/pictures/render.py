@@ -11,7 +11,7 @@ from runningbond.scene import Scene
 
 from .captions import to_png
 from .deformed_shape import DeformedShape, undeformed_shape
-from .mechanism import has_mechanism, mechanism_shape, mechanism_warning
+from .mechanism import has_mechanism, mechanism_shape
 from .pyvista_figure import frame_figure, mechanism_figure
 from .pyvista_painter import Painter, fill_plotter, look_at
 from .style import Colouring
@@ -69,9 +69,7 @@ def _render_mechanism(folder: Path, colouring: Colouring, painter: Painter) -> l
     outcome, scene = load_outcome(folder)[0], load_scene(folder)
     if not has_mechanism(scene, outcome):
         return []
-    shape = replace(mechanism_shape(scene, outcome) or undeformed_shape(scene), colouring=colouring)
-    figure = mechanism_figure(shape, outcome, painter, mechanism_warning(scene, outcome))
-    write_atomically(folder / "mechanism.png", to_png(figure))
+    write_atomically(folder / "mechanism.png", to_png(mechanism_figure(scene, outcome, painter, colouring)))
     return [folder / "mechanism.png"]
 
 
