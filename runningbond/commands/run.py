@@ -80,12 +80,12 @@ def _record(scene: Scene, outcome: Outcome, out: Path, recorder: "Recorder | Non
 
 def _draw(out: Path) -> None:
     """Draw the mechanism, or say in a line why there is no picture: the numbers are kept all the same."""
-    from runningbond.pictures.render import remove_pictures, render_mechanism
+    from runningbond.pictures.render import remove_pictures, render_folder
 
     remove_pictures(out)
     why_not = why_not_drawn()
     if not why_not:
-        render_mechanism(out)
+        render_folder(out, moments=False)
     else:
         print(f"runningbond: {why_not}", file=sys.stderr)
 

@@ -12,6 +12,7 @@ from runningbond.scene import PointLoad, Scene
 
 from .deformed_shape import Extent, wall_size
 from .joint_state import JointState
+from .mechanism import mechanism_shape, mechanism_warning
 from .style import AT_REST, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
 if TYPE_CHECKING:
@@ -66,9 +67,10 @@ class Caption:
             if text:
                 _write(axes, text, 1.0, level, va="bottom", fontsize=TYPE, fontweight=weight)
                 level += LINE
-        place: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, 0.0), "ncols": self.columns}
+        place: dict[str, Any] = {"bbox_to_anchor": (0.5, 0.0), "ncols": self.columns, "borderaxespad": 0.4}
         spacing = {"handlelength": 1.5, "handletextpad": 0.5, "columnspacing": 1.0, "borderpad": 0.0}
-        axes.legend(handles=self.key, frameon=False, fontsize=SMALL_TYPE, borderaxespad=0.4, **place, **spacing)
+        legend = place | spacing | {"frameon": False, "fontsize": SMALL_TYPE}
+        axes.legend(handles=self.key, loc="upper center", **legend)
         _write(axes, "\n".join(self.notes), 0.0, -self._key_height, va="top", fontsize=SMALL_TYPE, color=DARK)
 
 
@@ -119,20 +121,19 @@ def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     return f"{name} = {number(outcome.multiplier)}{unit}", bracket
 
 
-def outcome_text(scene: Scene, outcome: Outcome) -> str:
-    """The load that a model found, as the line below a title."""
-    return f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
+def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any]) -> Caption:
+    """Title with load and bracket, how large the mechanism is drawn, and what is wrong with it where something is."""
+    title, load = wall_title(outcome.scene), f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
+    warning = mechanism_warning(scene, outcome)
+    if mechanism_shape(scene, outcome) is None:
+        return Caption(title, load, [warning or "no mechanism"], [])
+    size = f"mechanism; the fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
+    return Caption(title, load, [size, warning] if warning else [size], key)
 
 
 def wall_title(title: str) -> list[str]:
     """Lines of a wall's name, none longer than a figure is wide."""
     return textwrap.wrap(title, 60) or [""]
-
-
-def mechanism_notes(scene: Scene, warning: str) -> list[str]:
-    """How large a mechanism is drawn, and what is to be said of it."""
-    size = f"mechanism; the fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
-    return [size, warning] if warning else [size]
 
 
 def colour_key(

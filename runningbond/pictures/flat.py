@@ -12,18 +12,10 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Scene
 
 from .annotations import annotate, annotated_extent
-from .captions import (
-    Caption,
-    colour_key,
-    figure_with_room,
-    mechanism_notes,
-    outcome_text,
-    show_extent,
-    wall_title,
-)
+from .captions import Caption, colour_key, figure_with_room, mechanism_caption, show_extent, wall_title
 from .deformed_shape import DeformedShape, outline, undeformed_shape
 from .joint_state import VISIBLE, JointState
-from .mechanism import mechanism_shape, mechanism_warning
+from .mechanism import mechanism_shape
 from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, tint
 
 if TYPE_CHECKING:
@@ -71,13 +63,13 @@ def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
         _draw_joints(axes, shape, state, width)
     axes.plot(*_hinges(shape).T, ms=2.2 * width, mew=0.4 * width, **HINGE)
     annotate(axes, shape)
-    _mechanism_caption(scene, outcome).write(axes)
+    _mechanism_caption(scene, outcome, shape).write(axes)
 
 
 def figure_of(scene: Scene, outcome: Outcome | None = None) -> "Figure":
     """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column."""
     shape = (mechanism_shape(scene, outcome) if outcome else None) or undeformed_shape(scene)
-    caption = _mechanism_caption(scene, outcome) if outcome else _wall_caption(scene)
+    caption = _mechanism_caption(scene, outcome, shape) if outcome else _wall_caption(scene)
     figure, axes = figure_with_room(annotated_extent(scene, shape.extent), caption)
     if outcome is None:
         draw_wall(axes, scene)
@@ -98,15 +90,11 @@ def _wall_caption(scene: Scene) -> Caption:
     return Caption(wall_title(scene.title), "", [size], key, columns=1)
 
 
-def _mechanism_caption(scene: Scene, outcome: Outcome) -> Caption:
+def _mechanism_caption(scene: Scene, outcome: Outcome, shape: DeformedShape) -> Caption:
     from matplotlib.lines import Line2D
 
-    shape, warning = mechanism_shape(scene, outcome), mechanism_warning(scene, outcome)
-    title, load = wall_title(outcome.scene), outcome_text(scene, outcome)
-    if shape is None:
-        return Caption(title, load, [warning or "no mechanism"], [])
     hinge = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if len(_hinges(shape)) else []
-    return Caption(title, load, mechanism_notes(scene, warning), [*hinge, *colour_key(shape.states, dashes=DASHES)])
+    return mechanism_caption(scene, outcome, [*hinge, *colour_key(shape.states, dashes=DASHES)])
 
 
 def _material_colours(scene: Scene) -> list[tuple[int, str]]:
@@ -167,7 +155,7 @@ def _hinges(shape: DeformedShape) -> Array:
     gaps = np.hypot(*(faces[:, [3, 2]] - faces[:, [0, 1]]).transpose(2, 0, 1))
     least = VISIBLE * shape.scale * float(np.hypot(*shape.displacement.T).max(initial=0.0))
     turns = (gaps.min(axis=1) < least) & (gaps.max(axis=1) > least)
-    return faces[turns, gaps[turns].argmin(axis=1)]
+    return np.asarray(faces[turns, gaps[turns].argmin(axis=1)])
 
 
 def _strength(material: JointMaterial) -> str:

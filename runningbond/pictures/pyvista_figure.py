@@ -7,19 +7,10 @@ from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
 from .annotations import annotate, annotated_extent
-from .captions import (
-    Caption,
-    colour_key,
-    figure_with_room,
-    load_symbol,
-    mechanism_notes,
-    outcome_text,
-    show_extent,
-    wall_title,
-)
+from .captions import Caption, colour_key, figure_with_room, load_symbol, mechanism_caption, show_extent, wall_title
 from .deformed_shape import DeformedShape, Extent, undeformed_shape
 from .joint_state import JointState
-from .mechanism import mechanism_shape, mechanism_warning
+from .mechanism import mechanism_shape
 from .pyvista_painter import Painter, square_around
 from .style import Colouring
 
@@ -32,12 +23,9 @@ def mechanism_figure(
     scene: Scene, outcome: Outcome, painter: Painter, colouring: Colouring = "displacement"
 ) -> "Figure":
     """Figure of an outcome's mechanism; of the undeformed wall where there is none that the loads drive."""
-    shape, warning = mechanism_shape(scene, outcome), mechanism_warning(scene, outcome)
-    notes = mechanism_notes(scene, warning) if shape else [warning or "no mechanism"]
-    drawn = replace(shape or undeformed_shape(scene), colouring=colouring)
-    key = colour_key(drawn.states, colouring)
-    caption = Caption(wall_title(outcome.scene), outcome_text(scene, outcome), notes, key)
-    return _figure(drawn, painter, caption, drawn.extent)
+    shape = replace(mechanism_shape(scene, outcome) or undeformed_shape(scene), colouring=colouring)
+    caption = mechanism_caption(scene, outcome, colour_key(shape.states, colouring))
+    return _figure(shape, painter, caption, shape.extent)
 
 
 def frame_figure(

@@ -36,20 +36,17 @@ def remove_pictures(folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
-def render_mechanism(folder: Path, colouring: Colouring = "displacement") -> list[Path]:
-    """Draw ``mechanism.png`` of a folder's outcome, where it has a mechanism.
+def render_folder(folder: Path, colouring: Colouring = "displacement", *, moments: bool = True) -> list[Path]:
+    """Draw what a folder has to show: its mechanism, and of its time series the last moment and a film.
 
-    Raises
-    ------
-    StoreError
-        If the folder holds no outcome that can be trusted, or not its scene.
-    """
-    with closing(Painter()) as painter:
-        return _render_mechanism(folder, colouring, painter)
-
-
-def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[Path]:
-    """Draw what a folder has to show: its mechanism, the last moment of its run, and a film of its time series.
+    Parameters
+    ----------
+    folder
+        Result folder of one outcome.
+    colouring
+        How blocks are coloured.
+    moments
+        Whether the time series is drawn, too.
 
     Returns
     -------
@@ -61,16 +58,14 @@ def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[P
     StoreError
         If the folder holds no outcome that can be trusted, or not its scene, or a damaged time series.
     """
-    with closing(Painter()) as painter:
-        return _render_mechanism(folder, colouring, painter) + _render_series(folder, colouring, painter)
-
-
-def _render_mechanism(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:
     outcome, scene = load_outcome(folder)[0], load_scene(folder)
-    if not has_mechanism(scene, outcome):
-        return []
-    write_atomically(folder / "mechanism.png", to_png(mechanism_figure(scene, outcome, painter, colouring)))
-    return [folder / "mechanism.png"]
+    written = []
+    with closing(Painter()) as painter:
+        if has_mechanism(scene, outcome):
+            figure = mechanism_figure(scene, outcome, painter, colouring)
+            write_atomically(folder / "mechanism.png", to_png(figure))
+            written.append(folder / "mechanism.png")
+        return written + (_render_series(folder, colouring, painter) if moments else [])
 
 
 def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:

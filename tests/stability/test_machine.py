@@ -167,7 +167,7 @@ def test_a_damaged_list_of_moments_is_named(content: bytes, tmp_path: Path) -> N
 def shown(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     if why_not_drawn():
         pytest.skip("nothing can be drawn here")
-    monkeypatch.setattr("runningbond.pictures.render._render_mechanism", lambda *_: [])
+    monkeypatch.setattr("runningbond.pictures.render.has_mechanism", lambda *_: False)
     return Scratch(RENDER, home).fresh(tmp_path / "shown")
 
 
