@@ -24,8 +24,8 @@ WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250
 PIXELS = 640
 """Longer side of the image of one wall."""
 
-SIDE, HEAD, FOOT, CAPTION = 0.62, 0.46, 0.34, 0.3
-"""Room for the names of walls, for those of models, for the key and under each wall [in]."""
+SIDE, HEAD, FOOT, LINE = 0.62, 0.46, 0.34, 0.11
+"""Room for the names of walls, for those of models, for the key and for a line under a wall [in]."""
 
 MOST_OWN = 12
 """Walls of one's own that go on a plate."""
@@ -91,10 +91,11 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
 
     models = _models(comparison, plate)
     rows = [_row(comparison, name, models) for name in plate.walls]
+    captions = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
     aspect = [(top - bottom) / (right - left) for left, right, bottom, top in (row.extent for row in rows)]
-    room = TALLEST - HEAD - FOOT - CAPTION * len(rows)
+    room = TALLEST - HEAD - FOOT - captions * len(rows)
     width = min((WIDTH - SIDE) / max(len(models), 3), room / sum(aspect))
-    heights = [width * ratio + CAPTION for ratio in aspect]
+    heights = [width * ratio + captions for ratio in aspect]
     total_width, total = max(SIDE + width * len(models), NARROWEST), sum(heights) + HEAD + FOOT
     width = (total_width - SIDE) / len(models)
     figure = Figure(figsize=(total_width, total), dpi=DPI)
@@ -104,7 +105,7 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
         figure.text(middle, 1 - (HEAD - 0.06) / total, model, ha="center", va="bottom", fontsize=8)
     top = total - HEAD
     for row, label, height in zip(rows, plate.walls.values(), heights, strict=True):
-        bottom = top - height + CAPTION
+        bottom = top - height + captions
         figure.text(0.08 / total_width, (top + bottom) / 2 / total, label, va="center", fontsize=7.5)
         for middle, shape, caption in zip(middles, row.shapes, row.captions, strict=True):
             left = middle - width / 2 / total_width

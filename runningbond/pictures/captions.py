@@ -12,7 +12,7 @@ from runningbond.scene import PointLoad, Scene
 
 from .deformed_shape import Extent, wall_size
 from .joint_state import JointState
-from .mechanism import mechanism_shape, mechanism_warning
+from .mechanism import mechanism_warning
 from .style import AT_REST, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
 if TYPE_CHECKING:
@@ -121,11 +121,11 @@ def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     return f"{name} = {number(outcome.multiplier)}{unit}", bracket
 
 
-def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any]) -> Caption:
+def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, drawn: bool) -> Caption:
     """Title with load and bracket, how large the mechanism is drawn, and what is wrong with it where something is."""
     title, load = wall_title(outcome.scene), f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
     warning = mechanism_warning(scene, outcome)
-    if mechanism_shape(scene, outcome) is None:
+    if not drawn:
         return Caption(title, load, [warning or "no mechanism"], [])
     size = f"mechanism; the fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
     return Caption(title, load, [size, warning] if warning else [size], key)

@@ -176,7 +176,9 @@ def outline(scene: Scene) -> list[Array]:
     import shapely
 
     blocks = scene.blocks
-    polygons = [shapely.Polygon(blocks.polygon(int(i))) for i in np.flatnonzero(scene.wall)]
+    own = scene.wall[blocks.owner]
+    number = np.cumsum(scene.wall) - 1
+    polygons = shapely.polygons(shapely.linearrings(blocks.vertices[own], indices=number[blocks.owner[own]]))
     # What touches in the scene may be as far apart as the tolerance.
     union = shapely.union_all(shapely.buffer(polygons, blocks.tolerance, join_style="mitre"))
     return [np.asarray(ring.coords) for part in shapely.get_parts(union) for ring in (part.exterior, *part.interiors)]

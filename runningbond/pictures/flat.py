@@ -39,14 +39,7 @@ HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DAR
 
 def draw_wall(axes: "Axes", scene: Scene) -> None:
     """Draw a wall before any analysis: blocks, joints by material, supports, and arrows of the live load."""
-    shape = undeformed_shape(scene)
-    show_extent(axes, annotated_extent(scene, shape.extent))
-    width = _line_width(axes, scene)
-    _draw_blocks(axes, shape, 0.5 * width)
-    for number, colour in _material_colours(scene):
-        _draw_lines(axes, scene.joints.ends[scene.material_of_joint == number], colour, 0.6 * width, "solid")
-    annotate(axes, shape)
-    _wall_caption(scene).write(axes)
+    _draw_wall(axes, undeformed_shape(scene), _wall_caption(scene))
 
 
 def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
@@ -54,28 +47,39 @@ def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 
     Where there is none, or none that the loads drive, the undeformed wall is drawn and a note below says so.
     """
-    shape = mechanism_shape(scene, outcome) or undeformed_shape(scene)
+    _draw_mechanism(axes, *_mechanism(scene, outcome))
+
+
+def figure_of(scene: Scene, outcome: Outcome | None = None) -> "Figure":
+    """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column."""
+    drawn = (undeformed_shape(scene), _wall_caption(scene)) if outcome is None else _mechanism(scene, outcome)
+    figure, axes = figure_with_room(annotated_extent(scene, drawn[0].extent), drawn[1])
+    draw = _draw_wall if outcome is None else _draw_mechanism
+    draw(axes, *drawn)
+    return figure
+
+
+def _draw_wall(axes: "Axes", shape: DeformedShape, caption: Caption) -> None:
+    scene = shape.scene
     show_extent(axes, annotated_extent(scene, shape.extent))
     width = _line_width(axes, scene)
-    _draw_ghost(axes, scene, width)
+    _draw_blocks(axes, shape, 0.5 * width)
+    for number, colour in _material_colours(scene):
+        _draw_lines(axes, scene.joints.ends[scene.material_of_joint == number], colour, 0.6 * width, "solid")
+    annotate(axes, shape)
+    caption.write(axes)
+
+
+def _draw_mechanism(axes: "Axes", shape: DeformedShape, caption: Caption) -> None:
+    show_extent(axes, annotated_extent(shape.scene, shape.extent))
+    width = _line_width(axes, shape.scene)
+    _draw_ghost(axes, shape.scene, width)
     _draw_blocks(axes, shape, 0.5 * width)
     for state in shape.states:
         _draw_joints(axes, shape, state, width)
     axes.plot(*_hinges(shape).T, ms=2.2 * width, mew=0.4 * width, **HINGE)
     annotate(axes, shape)
-    _mechanism_caption(scene, outcome, shape).write(axes)
-
-
-def figure_of(scene: Scene, outcome: Outcome | None = None) -> "Figure":
-    """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column."""
-    shape = (mechanism_shape(scene, outcome) if outcome else None) or undeformed_shape(scene)
-    caption = _mechanism_caption(scene, outcome, shape) if outcome else _wall_caption(scene)
-    figure, axes = figure_with_room(annotated_extent(scene, shape.extent), caption)
-    if outcome is None:
-        draw_wall(axes, scene)
-    else:
-        draw_mechanism(axes, scene, outcome)
-    return figure
+    caption.write(axes)
 
 
 def _wall_caption(scene: Scene) -> Caption:
@@ -90,11 +94,15 @@ def _wall_caption(scene: Scene) -> Caption:
     return Caption(wall_title(scene.title), "", [size], key, columns=1)
 
 
-def _mechanism_caption(scene: Scene, outcome: Outcome, shape: DeformedShape) -> Caption:
+def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption]:
+    """What is drawn of an outcome, and its caption."""
     from matplotlib.lines import Line2D
 
+    mechanism = mechanism_shape(scene, outcome)
+    shape = mechanism or undeformed_shape(scene)
     hinge = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if len(_hinges(shape)) else []
-    return mechanism_caption(scene, outcome, [*hinge, *colour_key(shape.states, dashes=DASHES)])
+    key = [*hinge, *colour_key(shape.states, dashes=DASHES)]
+    return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None)
 
 
 def _material_colours(scene: Scene) -> list[tuple[int, str]]:
@@ -132,7 +140,7 @@ def _draw_joints(axes: "Axes", shape: DeformedShape, state: JointState, width: f
     from matplotlib.collections import PolyCollection
 
     faces, colour = shape.placed_faces[shape.state == state], STATE_COLOURS[state]
-    gaps = PolyCollection(list(faces), facecolors=[tint(colour)], edgecolors="none", zorder=3)
+    gaps = PolyCollection(faces, facecolors=[tint(colour)], edgecolors="none", zorder=3)
     axes.add_collection(gaps, autolim=False)
     # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.
     middle = (faces[:, :2] + faces[:, :1:-1]) / 2

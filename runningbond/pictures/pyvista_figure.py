@@ -23,8 +23,9 @@ def mechanism_figure(
     scene: Scene, outcome: Outcome, painter: Painter, colouring: Colouring = "displacement"
 ) -> "Figure":
     """Figure of an outcome's mechanism; of the undeformed wall where there is none that the loads drive."""
-    shape = replace(mechanism_shape(scene, outcome) or undeformed_shape(scene), colouring=colouring)
-    caption = mechanism_caption(scene, outcome, colour_key(shape.states, colouring))
+    mechanism = mechanism_shape(scene, outcome)
+    shape = replace(mechanism or undeformed_shape(scene), colouring=colouring)
+    caption = mechanism_caption(scene, outcome, colour_key(shape.states, colouring), drawn=mechanism is not None)
     return _figure(shape, painter, caption, shape.extent)
 
 
