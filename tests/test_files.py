@@ -21,7 +21,7 @@ from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.pictures.joint_state import JointState, states_under_load
 from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.time_series import MAX_FRAMES, TimeSeries, frame_files, read_grid
-from runningbond.pictures.vtk_errors import VtkError, vtk_errors_raised
+from runningbond.pictures.vtk_safety import VtkError, vtk_errors_raised
 from runningbond.results import Outcome, StoreError, load_scene, save_outcome, write_atomically
 from runningbond.results.mechanism import carried, rigid_jumps
 from runningbond.scene import Scene

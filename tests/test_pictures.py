@@ -28,8 +28,7 @@ from runningbond.pictures.pyvista_figure import mechanism_figure
 from runningbond.pictures.pyvista_painter import Painter, square_around
 from runningbond.pictures.render import render_folder
 from runningbond.pictures.style import AT_REST, FASTEST, HELD, STATE_COLOURS
-from runningbond.pictures.vtk_errors import vtk_errors_raised
-from runningbond.pictures.vtk_imports import uninterrupted_imports
+from runningbond.pictures.vtk_safety import uninterrupted_imports, vtk_errors_raised
 from runningbond.results import Outcome, load_outcome, save_outcome
 from runningbond.results.mechanism import carried
 from runningbond.results.outcome import number

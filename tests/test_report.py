@@ -20,7 +20,7 @@ from runningbond.compare.plates import draw_plates, plates
 from runningbond.compare.report import report_html
 from runningbond.compare.table import Comparison
 from runningbond.pictures.offscreen import why_not_drawn
-from runningbond.pictures.vtk_errors import vtk_errors_raised
+from runningbond.pictures.vtk_safety import vtk_errors_raised
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.scene import Scene
 

@@ -9,7 +9,7 @@ from importlib.metadata import version
 
 from cyclopts import App, CycloptsError
 
-from runningbond.pictures.vtk_errors import VtkError
+from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import StoreError
 from runningbond.scene import SceneError
 

@@ -20,7 +20,7 @@ from runningbond.pictures.joint_state import states_under_load
 from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.style import DRAWN
 from runningbond.pictures.time_series import TimeSeries
-from runningbond.pictures.vtk_errors import VtkError
+from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import Outcome
 from runningbond.results.mechanism import rigid_jumps
 from runningbond.results.store import RECORD

@@ -155,18 +155,16 @@ def colour_key(
 
 def to_png(figure: "Figure", dpi: float = DPI) -> bytes:
     """A figure as the content of a PNG file."""
-    return _saved(figure, format="png", dpi=dpi)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=dpi)
+    return buffer.getvalue()
 
 
-def to_svg(figure: "Figure") -> bytes:
-    """A figure as the content of an SVG file, the same for the same figure."""
+def to_svg(figure: "Figure") -> str:
+    """A figure as the text of an SVG file, the same for the same figure."""
     import matplotlib
 
-    with matplotlib.rc_context({"svg.hashsalt": "runningbond", "svg.fonttype": "path"}):
-        return _saved(figure, format="svg", metadata={"Date": None})
-
-
-def _saved(figure: "Figure", **options: Any) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, **options)
+    buffer = io.StringIO()
+    with matplotlib.rc_context({"svg.hashsalt": "runningbond"}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
     return buffer.getvalue()

@@ -10,8 +10,7 @@ from runningbond.scene import Array, Indices
 from .deformed_shape import DeformedShape, Extent, outline
 from .joint_state import JointState
 from .style import EDGE, OUTLINE, STATE_COLOURS, tint
-from .vtk_errors import vtk_errors_raised
-from .vtk_imports import import_pyvista, uninterrupted_imports
+from .vtk_safety import import_pyvista, uninterrupted_imports, vtk_errors_raised
 
 Image: TypeAlias = NDArray[np.uint8]
 

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
-from runningbond.scene import Scene
 
 from .captions import to_png
 from .deformed_shape import DeformedShape, undeformed_shape
@@ -16,9 +15,8 @@ from .pyvista_figure import frame_figure, mechanism_figure
 from .pyvista_painter import Painter, fill_plotter, look_at
 from .style import Colouring
 from .time_series import frame_files, read_grid
-from .vtk_errors import VtkError
 from .vtk_grids import shape_of_grids
-from .vtk_imports import import_pyvista
+from .vtk_safety import VtkError, import_pyvista
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -87,16 +85,15 @@ def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list
 
 def _shapes(folder: Path, colouring: Colouring) -> list[DeformedShape]:
     scene = load_scene(folder)
-    pairs = zip(frame_files(folder, "blocks"), frame_files(folder, "joints"), strict=False)
-    return [replace(_shape(scene, blocks, joints), colouring=colouring) for blocks, joints in pairs]
-
-
-def _shape(scene: Scene, blocks: Path, joints: Path) -> DeformedShape:
-    try:
-        return shape_of_grids(scene, read_grid(blocks), read_grid(joints))
-    except (VtkError, ValueError, KeyError, IndexError, AttributeError) as error:
-        what = "are damaged or of another wall; another run replaces them"
-        raise StoreError(f"{blocks}, {joints.name}: {what}") from error
+    shapes = []
+    for blocks, joints in zip(frame_files(folder, "blocks"), frame_files(folder, "joints"), strict=False):
+        try:
+            shape = shape_of_grids(scene, read_grid(blocks), read_grid(joints))
+        except (VtkError, ValueError, KeyError, IndexError, AttributeError) as error:
+            what = "are damaged or of another wall; another run replaces them"
+            raise StoreError(f"{blocks}, {joints.name}: {what}") from error
+        shapes.append(replace(shape, colouring=colouring))
+    return shapes
 
 
 def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:

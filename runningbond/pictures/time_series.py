@@ -7,9 +7,8 @@ from typing import Any
 from runningbond.results.store import StoreError, write_atomically
 
 from .frame import Discretisation, Frame
-from .vtk_errors import vtk_errors_raised
 from .vtk_grids import Grid, GridBuilder
-from .vtk_imports import import_pyvista
+from .vtk_safety import import_pyvista, vtk_errors_raised
 
 KINDS = ("blocks", "joints")
 """What a series consists of: ``blocks.pvd`` and ``joints.pvd``, each with its own VTU files."""

@@ -15,7 +15,7 @@ from runningbond.scene import Array, Blocks, Indices, Scene
 from .deformed_shape import DeformedShape, course_numbers, outer_edges, visible_scale
 from .frame import Discretisation, Frame
 from .joint_state import joint_states
-from .vtk_imports import import_pyvista
+from .vtk_safety import import_pyvista
 
 Grid: TypeAlias = Any
 """A ``pyvista.UnstructuredGrid``; PyVista is only imported where one is made."""
@@ -32,12 +32,7 @@ class GridBuilder:
         self._triangles = discretisation.triangles
 
     def blocks(self, frame: Frame) -> Grid:
-        """Blocks, each a polygon, or in triangles where they deform.
-
-        Of points: displacement [m] and velocity [m/s]. Of cells: block number, its template (congruent blocks share
-        a number), its course counted from below, and whether it is held; of triangles also the stress
-        (σ_x, σ_y, τ_xy) [Pa].
-        """
+        """Blocks, each a polygon, or in triangles where they deform, with the arrays of ``blocks.pvd``."""
         blocks, triangles = self._scene.blocks, self._triangles
         if triangles is None:
             block, owner, points = np.arange(len(blocks)), blocks.owner, blocks.vertices
@@ -58,11 +53,9 @@ class GridBuilder:
         return grid
 
     def joints(self, frame: Frame) -> Grid:
-        """Joints, piece by piece between neighbouring points: mid-lines first, then quadrilaterals from side to side.
+        """Joints, piece by piece between neighbouring points, with the arrays of ``joints.pvd``.
 
-        Of points: displacement [m], opening and slip [m], sigma and tau [Pa], damage and state of the joint point.
-        Of cells: joint number, whether it is a potential crack in a block, and the state, that of the end with the
-        most to show.
+        Mid-lines come first, then quadrilaterals from side to side.
         """
         points, pair = self._points, self._pieces
         # Points of a piece: its mid-line's two ends, then around it, a's side along the tangent and b's back.

@@ -16,13 +16,8 @@ WORK_TOLERANCE = 0.01
 
 def fastest_corner_by_one(blocks: Blocks, motion: Array) -> Array:
     """Scale motions ``(nb, 3)`` so that the fastest corner of any block moves by one metre."""
-    fastest = fastest_corner(blocks, motion)
+    fastest = float(np.hypot(*carried(blocks, blocks.owner, blocks.vertices, motion).T).max())
     return motion / fastest if fastest > 0 else motion
-
-
-def fastest_corner(blocks: Blocks, motion: Array) -> float:
-    """How far the fastest corner of any block moves [m], blocks moving by ``(nb, 3)``."""
-    return float(np.hypot(*carried(blocks, blocks.owner, blocks.vertices, motion).T).max())
 
 
 def carried(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Imports of VTK that no signal interrupts: an exception in the midst of them crashes the process."""
+"""VTK made safe: no signal interrupts its imports, which would crash the process, and its errors are raised."""
 
 import signal
 import threading
@@ -36,3 +36,34 @@ def import_pyvista(*names: str) -> Any:
         for name in names:  # imported by PyVista when they are first asked for
             getattr(pyvista, name)
     return pyvista
+
+
+class VtkError(Exception):
+    """VTK reported an error; the message is its own."""
+
+
+@contextmanager
+def vtk_errors_raised() -> Iterator[None]:
+    """Raise the first error that VTK reports inside, once it has been left; warnings pass unheard."""
+    with uninterrupted_imports():
+        from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+
+    before, window = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    errors: list[str] = []
+
+    def heard(caller: object, event: str, message: str = "") -> None:
+        errors.append(message)
+
+    heard.CallDataType = "string0"  # type: ignore[attr-defined]
+    listening: Any = window
+    listening.AddObserver("ErrorEvent", heard)
+    vtkOutputWindow.SetInstance(window)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        vtkLogger.SetStderrVerbosity(verbosity)
+        vtkOutputWindow.SetInstance(before)
+    if errors:
+        raise VtkError(" ".join(errors[0].split()) or "VTK reported an error")
