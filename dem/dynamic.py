@@ -13,8 +13,7 @@ import numpy as np
 
 from runningbond.dynamics import Observer, Run, collapse_by_steps, finite_curve, nobody
 from runningbond.dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
-from runningbond.limit.associated import locks
-from runningbond.limit.equilibrium import equilibrium
+from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 
@@ -61,7 +60,7 @@ def dem_dynamic(
         Run(rigid_system(scene)),
         tolerance,
         point_order=np.argsort(contact_points(scene).joint, kind="stable"),
-        locks=lambda: locks(equilibrium(scene)),
+        locks=lambda: is_self_locking(scene),
         collapse=collapse,
         first_step=first_step,
         budget=budget,

@@ -11,8 +11,8 @@ from runningbond.contacts.side_kernels import gather_finite, scatter_finite
 from runningbond.dynamics import BlockSystem, block_frequency_squared, force_unit, joint_shares
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints import wall_points, wall_strength
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .rigid_system import loads_and_masses

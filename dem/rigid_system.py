@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from runningbond.dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares
 from runningbond.joints import JointPoints, wall_points, wall_strength
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.limit.kinematics import (
     control_row,
     dead_load,

@@ -15,8 +15,8 @@ from runningbond import dynamics
 from runningbond.contacts.contacts import Contacts
 from runningbond.dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares, stable_step
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Array, Indices, JointMaterial
 
@@ -30,7 +30,7 @@ def finite_system(blocks: FiniteWall, *, damping: float = DAMPING, mass_scaling:
     """Set up the deformable blocks of a wall on its undeformed contacts; see `fem_system` for the arguments."""
     wall, contacts = blocks.wall, blocks.undeformed
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    dead, live = wall.body_force(wall.scene.load.gravity), wall.live_load()
+    dead, live = wall.load(wall.scene.dead_forces), wall.load(wall.scene.live_forces)
     law = contact_law(wall.scene.joint, contacts)
     system = BlockSystem(
         mass=scaled.mass,

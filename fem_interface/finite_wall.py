@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from runningbond.contacts.contacts import Contacts, Outline, facing_sides, find_contacts, overlaps, resting
-from runningbond.scene import Array, Indices, PointLoad, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .element_order import modal_wall
 from .modal_wall import ModalWall
@@ -243,7 +243,7 @@ def finite_wall(scene: Scene, cells: int = 1, modes: ModeCount | None = None) ->
     joint = scene.joint
     if len(scene.pins):
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
-    if isinstance(scene.load.live, PointLoad):
+    if not (scene.live_forces.on_mass_alone and scene.dead_forces.on_mass_alone):
         raise SceneError("load.live", "finite displacements need a load on the blocks' mass")
     if scene.inner_joint is not None:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")

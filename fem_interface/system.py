@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.dynamics import BlockSystem, Restraint, force_unit
 from runningbond.joints import Rule
-from runningbond.joints.laws import kernel_law
+from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Scene
 
@@ -87,7 +87,7 @@ def system_of(
     scene, points = wall.scene, wall.interface.points
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     materials, of_joint = fractured(scene, energies)
-    dead, live = wall.body_force(scene.load.gravity, loads), wall.live_load(loads)
+    dead, live = wall.load(scene.dead_forces, loads), wall.load(scene.live_forces, loads)
     return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,

@@ -39,10 +39,9 @@ def _fem(scene: Scene, tolerance: float, observe: "Observer | None" = None, **as
     """`fem_interface.model.fem`, imported when it is wanted; whether a wall locks is asked of its rigid blocks."""
     from fem_interface.model import fem
     from runningbond.dynamics import nobody
-    from runningbond.limit import equilibrium
-    from runningbond.limit.associated import locks
+    from runningbond.limit.associated import is_self_locking
 
-    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), observe=observe or nobody, **asked)
+    return fem(scene, tolerance, locks=lambda: is_self_locking(scene), observe=observe or nobody, **asked)
 
 
 MODELS: dict[str, Model] = {

@@ -12,7 +12,6 @@ from fem_interface.element_order import modal_wall
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.run import CALM
-from runningbond.joints.softening_kernel import DAMAGE, softening_kernel
 from runningbond.limit.kinematics import movable_freedoms
 from runningbond.pictures.deformed_shape import wall_size
 from runningbond.pictures.frame import Discretisation, Frame, Triangles
@@ -160,7 +159,7 @@ class MotionRecorder(Recorder):
         """The moment of a run."""
         wall = self.discretisation
         opening, slip, normal, tangential = run.tractions(state)
-        damage = state.history[DAMAGE].copy() if run.system.law.kernel is softening_kernel else np.zeros(len(opening))
+        damage = run.system.law.damage(state.history)
         frame = Frame(
             multiplier,
             run.motion_of_blocks(state),

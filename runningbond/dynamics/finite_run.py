@@ -10,7 +10,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.contacts.contacts import Contacts, Outline, find_contacts
-from runningbond.joints.point_kernel import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE
+from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE
 from runningbond.scene import Array, Indices, Scene
 
 from .controls import push
@@ -18,9 +18,6 @@ from .run import Criteria, Ledger, Run, settle
 from .system import BlockSystem, State
 from .time_step import stable_step
 from .verdict import COLLAPSE
-
-PLASTIC_SLIP = 4
-"""Row of the law's history: slip [m] at which a contact would be free of shear."""
 
 HASTE = 2
 """Times the speed that blocks have, and that loads alone would give them, with which they are reckoned to move on."""
@@ -88,6 +85,7 @@ class FiniteRun(Run, ABC):
         self, system: BlockSystem, outline: Outline, contacts: Contacts, *, local: float, viscous: float, part: float
     ) -> None:
         self.outline, self.viscous, self.part = outline, viscous, part
+        self._plastic_slip = system.law.law.row("plastic slip")  # at which a contact would be free of shear
         self._start(system, local)
         self._undeformed = self._contacts = contacts
         self._undeformed_bound = system.block_frequency_squared
@@ -181,7 +179,7 @@ class FiniteRun(Run, ABC):
         before, history = state.contacts, state.history
         rested = self._resting(before, state.motion)
         opening, slip = self._jumps(before, state.motion)
-        shear = slip - history[PLASTIC_SLIP]
+        shear = slip - history[self._plastic_slip]
         state.friction += float(before.area @ history[FRICTION_WORK])
         state.absorbed += float(before.area @ history[DAMPED_WORK])
 
@@ -203,7 +201,7 @@ class FiniteRun(Run, ABC):
         state.contacts = replace(found, area=area, glued=glued)
         self._take_up(state.contacts)
         state.history = self._fresh_history(state.contacts, state.motion)
-        state.history[PLASTIC_SLIP, on] -= shear[turned[on]]
+        state.history[self._plastic_slip, on] -= shear[turned[on]]
         state.history[:, still] = history[:, same[still]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
 
@@ -217,7 +215,7 @@ class FiniteRun(Run, ABC):
         """History of contacts that are free of shear after a motion ``(nd,)``; `contacts` have been taken up."""
         opening, slip = self._jumps(contacts, motion)
         history = np.zeros((self.system.law.rows, len(opening)))
-        history[OPENING_BEFORE], history[SLIP_BEFORE], history[PLASTIC_SLIP] = opening, slip, slip
+        history[OPENING_BEFORE], history[SLIP_BEFORE], history[self._plastic_slip] = opening, slip, slip
         return history
 
     def _farthest(self, motion: Array) -> float:

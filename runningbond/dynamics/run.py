@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from runningbond.joints.point_kernel import DAMPED_WORK, FRICTION_WORK
+from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array, Scene
 
 from .stepping import stepper, work_arrays

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from runningbond.joints import PointStrength
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
 
 Kernel: TypeAlias = Callable[..., Any]

@@ -4,9 +4,10 @@ import numpy as np
 
 from runningbond.scene import Array, Indices, Scene
 
-from .mohr_coulomb import PointStrength, truncated_cone
+from .mohr_coulomb import PointStrength
 from .points import JointPoints, Rule, joint_points
 from .stiffness import joint_stiffness
+from .wall_law import law_of
 
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
@@ -21,7 +22,7 @@ def wall_inset(scene: Scene) -> Array:
 
 def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:
     """Strength of points on a scene's joints."""
-    cones = np.array([truncated_cone(material) for material in scene.joint_materials])
+    cones = np.array([law_of(material).cone(material) for material in scene.joint_materials])
     friction, tension, shear = cones[scene.material_of_joint[points.joint]].T
     return PointStrength(friction, tension * points.area, shear * points.area)
 
@@ -34,6 +35,6 @@ def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
     SceneError
         If the scene gives its joints no stiffness.
     """
-    of_material = np.array([(found.normal, found.shear) for found in map(joint_stiffness, scene.joint_materials)])
+    of_material = np.array([(each.normal, each.shear) for each in map(joint_stiffness, scene.joint_materials)])
     normal, shear = of_material[scene.material_of_joint[joint]].T
     return normal, shear

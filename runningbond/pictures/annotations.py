@@ -1,11 +1,10 @@
 """What engineers draw around a wall: hatched ground, pins and rollers, arrows of loads."""
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runningbond.scene import Array, Indices, PointLoad, Scene
+from runningbond.scene import Array, Arrow, Scene
 
 from .captions import load_symbol
 from .deformed_shape import DeformedShape, Extent, wall_size
@@ -23,9 +22,10 @@ def annotated_extent(scene: Scene, extent: Extent) -> Extent:
     bottom = min(bottom, y0 - 1.2 * a)
     if len(scene.pins):
         left, right = left - 0.8 * a, right + 0.8 * a
-    for (dx, dy), at, _ in _live_arrows(scene):
-        if at is not None:
-            x, y = at - 2.9 * a * np.array([dx, dy])
+    for arrow in _live_arrows(scene):
+        dx, dy = arrow.direction
+        if arrow.at is not None:
+            x, y = arrow.at - 2.9 * a * arrow.direction
             left, right, bottom, top = min(left, x - a), max(right, x + a), min(bottom, y - a), max(top, y + a)
             continue
         left, right = min(left, x0 - 2.6 * a * (dx > 0)), max(right, x1 + 2.6 * a * (dx < 0))
@@ -36,20 +36,17 @@ def annotated_extent(scene: Scene, extent: Extent) -> Extent:
 def annotate(axes: "Axes", shape: DeformedShape) -> None:
     """Draw the supports of a wall and its live load."""
     _draw_supports(axes, shape)
-    for direction, at, block in _live_arrows(shape.scene):
-        if at is None:
-            _draw_push(axes, shape.scene, direction)
+    for arrow in _live_arrows(shape.scene):
+        if arrow.at is None:
+            _draw_push(axes, shape.scene, arrow.direction)
         else:
-            _draw_force(axes, shape.scene, direction, at + shape.drawn_displacement(block, at))
+            tip = arrow.at + shape.drawn_displacement(arrow.block, arrow.at)
+            _draw_force(axes, shape.scene, arrow.direction, tip)
 
 
-def _live_arrows(scene: Scene) -> list[tuple[Array, Array | None, Indices]]:
-    """Forces of the live load: unit vector, the point where it acts, None for all blocks, and the blocks there."""
-    live = scene.load.live
-    if isinstance(live, PointLoad):
-        force = np.array(live.force)
-        return [(force / math.hypot(*force), np.array(live.at), scene.loaded_blocks)]
-    return [(np.array(live.direction), None, scene.loaded_blocks)]
+def _live_arrows(scene: Scene) -> list[Arrow]:
+    """Arrows of all live loads."""
+    return [arrow for load in scene.load.live for arrow in load.arrows(scene)]
 
 
 def _unit(scene: Scene) -> float:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from runningbond.results.outcome import Outcome, number
-from runningbond.scene import PointLoad, Scene
+from runningbond.scene import Scene
 
 from .deformed_shape import Extent, wall_size
 from .joint_state import JointState
@@ -106,8 +106,8 @@ def load_symbol(scene: Scene) -> str:
 
 def is_force(scene: Scene) -> bool:
     """Whether λ is a force in newtons: that of a point load of one newton."""
-    live = scene.load.live
-    return isinstance(live, PointLoad) and math.isclose(math.hypot(*live.force), 1.0)
+    live = scene.live_forces
+    return live.at_points_alone and math.isclose(math.hypot(*live.force.sum(axis=0)), 1.0)
 
 
 def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import runningbond.scene
-from runningbond.scene import Scene
+from runningbond.scene import Action, GivenForces, JointLaw, Scene
 
 DATACLASSES: dict[str, Any] = {
     name: part for name, part in vars(runningbond.scene).items() if isinstance(part, type) and is_dataclass(part)
@@ -21,10 +21,19 @@ SCENE_KEY = "scene"
 
 
 def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
-    """Arrays that say everything about a scene, by names that start with ``scene``."""
+    """Arrays that say everything about a scene, by names that start with ``scene``.
+
+    Of a load of a user's own they hold its forces, and of a law its name.
+    """
     arrays: dict[str, NDArray[Any]] = {}
 
     def encoded(value: object, name: str) -> object:
+        if isinstance(value, JointLaw):
+            return {"named": value.name}
+        if isinstance(value, Action) and type(value).__name__ not in DATACLASSES:
+            value = GivenForces(value.forces(scene))
+        if isinstance(value, tuple):
+            return [encoded(inner, f"{name}.{k}") for k, inner in enumerate(value)]
         if is_dataclass(value):
             inner = {field.name: encoded(getattr(value, field.name), f"{name}.{field.name}") for field in fields(value)}
             return {"part": type(value).__name__, **inner}
@@ -44,10 +53,12 @@ def scene_from_arrays(arrays: Mapping[str, NDArray[Any]]) -> Scene:
         if isinstance(value, dict):
             if "array" in value:
                 return arrays[value["array"]]
+            if "named" in value:
+                return None
             return DATACLASSES[value["part"]](
                 **{name: decoded(inner) for name, inner in value.items() if name != "part"}
             )
-        return tuple(value) if isinstance(value, list) else value
+        return tuple(map(decoded, value)) if isinstance(value, list) else value
 
     scene: Scene = decoded(json.loads(arrays[SCENE_KEY].tobytes()))
     return scene

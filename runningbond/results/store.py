@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runningbond.scene import Scene
-from runningbond.scene.folder_lock import alone
+from runningbond.scene.folder_lock import locked
 
 from .outcome import ARRAYS, Outcome
 from .scene_arrays import SCENE_KEY, scene_from_arrays, scene_to_arrays
@@ -84,7 +84,7 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
     scalars = {"key": key, "arrays": arrays, **outcome.summary()}
     record = {**scalars, "sha256": _seal(scalars, content)}
     make_folder(folder)
-    with alone(folder):  # or another writer would take these arrays for stale ones
+    with locked(folder):  # or another writer would take these arrays for stale ones
         write_atomically(folder / arrays, content)
         write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
         for stale in (*folder.glob("arrays-*.npz"), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{RECORD}.*")):
@@ -123,7 +123,7 @@ def load_scene(folder: Path) -> Scene:
 def _trusted(folder: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
     """Give the record and the arrays of a folder, if they are what was written."""
     try:
-        with alone(folder, reading=True):
+        with locked(folder, reading=True):
             record = json.loads((folder / RECORD).read_bytes())
             content = (folder / record["arrays"]).read_bytes()
         seal = record.pop("sha256")

@@ -16,8 +16,8 @@ from fem_interface.model import fem
 from fem_interface.piece_run import PieceRun
 from fem_interface.system import system_of
 from runningbond.dynamics import Criteria, Run, State, settle
-from runningbond.joints.point_kernel import FRICTION_WORK
-from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.joints.law import FRICTION_WORK
+from runningbond.joints.softening import DAMAGE
 from runningbond.scene import (
     Array,
     BlockMaterial,

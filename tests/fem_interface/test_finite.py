@@ -20,8 +20,8 @@ from fem_interface.templates import nodes_of, triangles_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, FiniteState, Run, State, settle
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.point_kernel import OPENING_BEFORE
-from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.joints.law import OPENING_BEFORE
+from runningbond.joints.softening import DAMAGE
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
 from tests.test_dem import pile, rectangle
 from tests.test_dynamics import GRAVITY

@@ -20,7 +20,7 @@ from fem_interface.system import fem_system, system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.controls import ramp
-from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError
 from runningbond.studies.stability.elastic import elastic_stiffness as of_modes
 from runningbond.studies.stability.elastic import vibrations

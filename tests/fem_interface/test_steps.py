@@ -13,7 +13,7 @@ from fem_interface.frequency_shift import elastic_stiffness
 from fem_interface.mass_scaling import scaled_modes
 from fem_interface.system import fem_system, system_of
 from runningbond.dynamics import Run, State
-from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import JointMaterial, Mortar
 from tests.walls import panel
 

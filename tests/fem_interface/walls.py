@@ -11,7 +11,7 @@ from fem_interface.modes import rigid_motions
 from fem_interface.templates import nodes_of, triangles_of
 from meshing import WallMesh
 from runningbond.dynamics import BlockSystem, Run, State
-from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
 from tests.walls import panel
 
