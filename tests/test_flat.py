@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from runningbond.limit import limit
-from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of, to_png, to_svg
+from runningbond.pictures.captions import to_png, to_svg
+from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.style import DRAWN, STATE_COLOURS
@@ -159,7 +160,7 @@ def test_axes_of_ones_own_are_drawn_into() -> None:
 def test_flat_drawings_do_without_vtk() -> None:
     program = (
         "import sys; from tests.walls import panel; from runningbond.limit import limit;"
-        "from runningbond.pictures.flat import figure_of, to_svg;"
+        "from runningbond.pictures.flat import figure_of; from runningbond.pictures.captions import to_svg;"
         "to_svg(figure_of(panel(), limit(panel()))); print([name for name in sys.modules if 'vtk' in name and "
         "not name.startswith('runningbond') or name == 'pyvista'])"
     )

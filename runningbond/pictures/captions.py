@@ -160,11 +160,11 @@ def to_png(figure: "Figure", dpi: float = DPI) -> bytes:
     return buffer.getvalue()
 
 
-def to_svg(figure: "Figure") -> str:
-    """A figure as the text of an SVG file, the same for the same figure."""
+def to_svg(figure: "Figure") -> bytes:
+    """A figure as the content of an SVG file, the same for the same figure."""
     import matplotlib
 
-    buffer = io.StringIO()
+    buffer = io.BytesIO()
     with matplotlib.rc_context({"svg.hashsalt": "runningbond"}):
         figure.savefig(buffer, format="svg", metadata={"Date": None})
     return buffer.getvalue()

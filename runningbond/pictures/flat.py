@@ -12,16 +12,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Scene
 
 from .annotations import annotate, annotated_extent
-from .captions import (
-    Caption,
-    colour_key,
-    figure_with_room,
-    mechanism_caption,
-    show_extent,
-    to_png,
-    to_svg,
-    wall_title,
-)
+from .captions import Caption, colour_key, figure_with_room, mechanism_caption, show_extent, wall_title
 from .deformed_shape import DeformedShape, outline, undeformed_shape
 from .joint_state import VISIBLE, JointState
 from .mechanism import mechanism_shape
@@ -30,8 +21,6 @@ from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, tint
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-__all__ = ["draw_mechanism", "draw_wall", "figure_of", "to_png", "to_svg"]
 
 MATERIAL_COLOURS = ("0.35", "#0072b2", "#cc79a7", "#e69f00", "#56b4e9")
 """Joints by material; from the palette of Okabe and Ito (2008)."""
