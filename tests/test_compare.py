@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,8 +19,8 @@ from runningbond.compare import MODELS, PUBLISHED, published_scene, run_campaign
 from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
 from runningbond.compare.fingerprint import fingerprint
 from runningbond.compare.table import corrected_homo
-from runningbond.results import load_outcome
-from runningbond.scene import SceneError
+from runningbond.results import Outcome, load_outcome
+from runningbond.scene import Scene, SceneError
 
 from .walls import panel
 
@@ -114,14 +115,14 @@ def test_a_damaged_result_is_computed_again(tmp_path: Path) -> None:
 def test_a_model_that_breaks_on_one_scene_does_not_lose_the_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sound = MODELS["limit"]
+    limit = MODELS["limit"]
 
-    def fragile(scene: object, tolerance: float) -> object:
-        if getattr(scene, "title", "") == "broken":
+    def fragile(scene: Scene, tolerance: float) -> Outcome:
+        if scene.title == "broken":
             raise ZeroDivisionError("division by zero")
-        return sound(scene, tolerance)
+        return limit.solve(scene, tolerance)
 
-    monkeypatch.setitem(MODELS, "limit", fragile)
+    monkeypatch.setitem(MODELS, "limit", replace(limit, solve=fragile))
     scenes = {"good": panel(), "bad": panel(title="broken")}
     campaign = run_campaign(scenes, ["limit"], folder=tmp_path, jobs=1)
     assert campaign.outcomes["good", "limit"].status == "collapse"

@@ -327,7 +327,7 @@ def test_states_under_load_follow_the_law() -> None:
 def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
     """The loads of the series are those of the curve; at the end the wall falls, its base open at the back."""
     scene = courses([[1], [1]], width=0.2, height=0.2, **STIFF)
-    recorder = MotionRecorder(scene, "dem-dynamic", tmp_path)
+    recorder = MotionRecorder(scene, tmp_path)
     outcome = run_model("dem-dynamic", scene, 0.02, recorder)
     recorder.finish(outcome)
     assert outcome.status == "collapse"
@@ -410,7 +410,7 @@ def test_stress_of_a_uniform_strain_is_hookes(modes: ModeCount) -> None:
 def test_deformable_blocks_come_in_triangles_with_their_stress(tmp_path: Path) -> None:
     """A wall at rest under its weight: the mean vertical stress of a course is the weight above its middle."""
     scene = panel(wall__length=0.48, wall__height=0.18, block__young=1e9, **STIFF)
-    recorder = MotionRecorder(scene, "fem", tmp_path)
+    recorder = MotionRecorder(scene, tmp_path)
     outcome = run_model("fem", scene, 0.1, recorder)
     recorder.finish(outcome)
     grids = [read_grid(path) for path in moments(tmp_path, "blocks")]

@@ -11,7 +11,7 @@ from runningbond.compare.published import find_scene
 from runningbond.scene import read_scene
 
 from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
-from .interruptions import interruptions
+from .terminal import interruptions
 
 
 def advise(
@@ -45,6 +45,7 @@ def advise(
             print(rung_line(rung), flush=True)
         if stopped:
             return STOPPED
-        stopped = interruptions((rung.onward or "").removesuffix(", finite"))
+        if rung.next.model is not None:
+            stopped = interruptions(rung.next.model)
     print(advice_json(advice) if json else answer_lines(advice), flush=True)
     return NO_ANSWER if advice.outcome().status in UNDECIDED else DONE

@@ -69,14 +69,13 @@ PUBLISHED: tuple[PublishedCase, ...] = (
 """The sixteen panels of Baraldi, Reccia & Cecchi and three walls of Ferris & Tin-Loi."""
 
 
-def published_scene(name: str) -> Scene:
-    """Read a published scene.
+def cases_of(source: str) -> tuple[PublishedCase, ...]:
+    """Cases of one source, in the order in which they were published."""
+    return tuple(case for case in PUBLISHED if case.source == source)
 
-    Parameters
-    ----------
-    name
-        Name of a case, for example ``panel-01``.
-    """
+
+def published_scene(name: str) -> Scene:
+    """Read a published scene by its name, for example ``panel-01``."""
     return read_scene(find_scene(name))
 
 
@@ -95,5 +94,5 @@ def find_scene(scene: str) -> Path:
             return case.path
     names = f"{PUBLISHED[0].name} … {PUBLISHED[-1].name}"
     if path.exists():
-        raise SceneError(scene, "cannot be read: it is a folder")
+        raise SceneError(scene, f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
     raise SceneError(scene, f"there is no such file, nor a published scene of that name ({names})")

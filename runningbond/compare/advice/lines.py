@@ -10,10 +10,10 @@ from .climb import Advice, Rung
 
 def rung_line(rung: Rung) -> str:
     """What a rung found, the cost so far, what follows from it, and the next rung with its cost."""
-    found = "–"
+    result = "–"
     if rung.outcome is not None:
-        found = bracket(rung.outcome) if rung.outcome.status == "collapse" else rung.outcome.status
-    line = f"{rung.model:20} {found:19} {rung.seconds:7.2f} s  {rung.reason}"
+        result = bracket(rung.outcome) if rung.outcome.status == "collapse" else rung.outcome.status
+    line = f"{rung.model:20} {result:19} {rung.seconds:7.2f} s  {rung.reason}"
     if rung.onward is None:
         return line
     return f"{line} → {rung.onward}, {rung.next_cost or 'at a cost that no law gives'}"
@@ -22,8 +22,8 @@ def rung_line(rung: Rung) -> str:
 def answer_lines(advice: Advice) -> str:
     """The answer, by which model, and what its bracket means."""
     outcome = advice.outcome()
-    found = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
-    return f"{found} by {outcome.model}, {outcome.seconds:.2f} s\n  {outcome.message}"
+    result = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
+    return f"{result} by {outcome.model}, {outcome.seconds:.2f} s\n  {outcome.message}"
 
 
 def advice_json(advice: Advice) -> str:
