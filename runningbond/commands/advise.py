@@ -4,7 +4,8 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from runningbond.compare.advice import TOLERANCE, advice_on
+from runningbond.compare.advice import TOLERANCE, Advice
+from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.advice.lines import advice_json, answer_lines, rung_line
 from runningbond.compare.models import check_tolerance
 from runningbond.compare.published import find_scene
@@ -36,7 +37,7 @@ def advise(
         Print one JSON object and nothing else.
     """
     check_tolerance(tolerance)
-    advice = advice_on(read_scene(find_scene(scene)), tolerance, finite=finite)
+    advice = Advice(Knowledge(read_scene(find_scene(scene)), tolerance, finite))
     if not json:
         print(f"{advice.known.scene.title}: λ to {100 * tolerance:g} %", flush=True)
     stopped: list[int] = []

@@ -20,21 +20,11 @@ from .tasks import Answer, Cell, ClusterError, Task, side_by_side
 
 @dataclass
 class Campaign:
-    """What a campaign has so far.
-
-    Parameters
-    ----------
-    outcomes
-        Outcome of each cell.
-    inapplicable
-        Why a model says nothing about a scene.
-    reused
-        Cells whose outcome was in the folder.
-    """
+    """What a campaign has so far."""
 
     outcomes: dict[Cell, Outcome] = field(default_factory=dict)
-    inapplicable: dict[Cell, str] = field(default_factory=dict)
-    reused: set[Cell] = field(default_factory=set)
+    inapplicable: dict[Cell, str] = field(default_factory=dict)  # why a model does not apply to a scene
+    reused: set[Cell] = field(default_factory=set)  # whose outcome was in the folder
 
     def __len__(self) -> int:
         return len(self.outcomes) + len(self.inapplicable)
@@ -59,20 +49,11 @@ class Campaign:
 
 
 class Interrupted(Exception):
-    """A campaign that stopped before its end; what it has is in the folder.
-
-    Parameters
-    ----------
-    campaign
-        What there is.
-    reason
-        Why it stopped, if not by Ctrl-C.
-    """
+    """A campaign that stopped before its end, for a reason if not by Ctrl-C; what it has is in the folder."""
 
     def __init__(self, campaign: Campaign, reason: str = "") -> None:
         super().__init__(reason or "interrupted")
-        self.campaign = campaign
-        self.reason = reason
+        self.campaign, self.reason = campaign, reason
 
 
 def run_campaign(
@@ -126,7 +107,10 @@ def run_campaign(
             warnings.filterwarnings("ignore", ".*tasks (have been|which were)", UserWarning, "joblib")
             with closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
                 for answer in answers:
-                    _keep(answer, scenes[answer.cell[0]], folder)
+                    outcome = answer.outcome
+                    # A failure is tried again the next time, perhaps by better code.
+                    if outcome is not None and outcome.status != "failed" and not answer.reused:
+                        save_outcome(outcome, folder.joinpath(*answer.cell), answer.key, scenes[answer.cell[0]])
                     campaign.add(answer)
                     progress(answer.cell)
     except KeyboardInterrupt:
@@ -136,12 +120,6 @@ def run_campaign(
     except OSError as error:
         raise Interrupted(campaign, f"{error.filename or folder}: {error.strerror or error}") from error
     return campaign
-
-
-def _keep(answer: Answer, scene: Scene, folder: Path) -> None:
-    """Write a new outcome; a failure is tried again, perhaps by better code."""
-    if answer.outcome is not None and answer.outcome.status != "failed" and not answer.reused:
-        save_outcome(answer.outcome, folder.joinpath(*answer.cell), answer.key, scene)
 
 
 def _stored(task: Task, folder: Path) -> Answer | None:

@@ -106,9 +106,9 @@ def table_2(comparison: Comparison) -> Figure:
     looks += [(model.name, model.colour, model.marker) for model in comparison.models]
     handles = [Line2D([], [], color=c, marker=m, ms=5, mew=1.5, ls="none", label=label) for label, c, m in looks]
     if hollow:
-        label = "hollow: no collapse load found; at the bound that is known, or at 0"
+        label = "hollow: a bound only, or none (at 0)"
         handles.append(Line2D([], [], color="0.3", marker="o", mfc="white", ms=5, mew=1, ls="none", label=label))
-    legend_below(figure, handles, columns=3)
+    legend_below(figure, handles, columns=5)
     return figure
 
 

@@ -1,7 +1,7 @@
 """What a model is: how a scene becomes an outcome, and what tables, charts and `advise` need to know of it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal, Protocol, TypeAlias
 
@@ -15,33 +15,15 @@ collapse is proved possible, `history` the collapse of a wall that is followed t
 
 @dataclass(frozen=True)
 class Cost:
-    """Law of what a model costs; `runningbond.compare.advice.costs` says how it is used.
+    """Law of what a model costs; `runningbond.compare.advice.costs` says how it is used."""
 
-    Parameters
-    ----------
-    at_100
-        Seconds for 100 blocks.
-    growth
-        Power of the number of blocks.
-    spread
-        Factor within which two thirds of the walls lie about the law.
-    weightless
-        How many times as much walls without weight cost.
-    finer
-        Power of the tolerance; 0 for a model that does not bisect.
-    start
-        Seconds until its compiled kernels are loaded, once a process.
-    cracked
-        How many times as much walls whose blocks may crack cost.
-    """
-
-    at_100: float
-    growth: float
-    spread: float
-    weightless: float = 1.0
-    finer: float = 0.0
-    start: float = 0.0
-    cracked: float = 1.0
+    at_100: float  # seconds for 100 blocks
+    growth: float  # power of the number of blocks
+    spread: float  # factor within which two thirds of the walls lie about the law
+    weightless: float = 1.0  # how many times as much walls without weight cost
+    finer: float = 0.0  # power of the tolerance; 0 for a model that does not bisect
+    start: float = 0.0  # seconds until its compiled kernels are loaded, once a process
+    cracked: float = 1.0  # how many times as much walls whose blocks may crack cost
 
 
 class Recorder(Protocol):
@@ -60,10 +42,8 @@ class Model:
 
     Parameters
     ----------
-    name
-        What the command line, tables and charts call it.
-    title
-        What it does, in half a line.
+    name, title
+        What the command line, tables and charts call it, and what it does, in half a line.
     solve
         From a scene and the relative width of the bracket asked for, to an outcome. It is handed `parameters` by
         name, and ``observe=…`` if it has an `observer`.
@@ -95,17 +75,17 @@ class Model:
     observer: Callable[[Scene, Path], Recorder] | None = None
     interruptible: bool = False
     cost: Cost | None = None
-    pushover: Callable[..., Array] | None = field(default=None, repr=False)
+    pushover: Callable[..., Array] | None = None
     colour: str = "0.35"
     marker: str = "*"
     line: str | tuple[int, tuple[int, ...]] = "-"
 
     def unread(self, scene: Scene) -> list[str]:
         """Keys of its file that a scene gives and this model does not take into account."""
-        given = [("block", scene.block), ("joint", scene.joint), ("inner_joint", scene.inner_joint)]
-        keys = [f"{table}.{key}" for table, material in given if material for key in _given_keys(material)]
-        read = {*self.reads, *(f"inner_{key}" for key in self.reads if "inner_joint" in self.reads)}
-        return [key for key in keys if key not in read]
+        tables = {"block": scene.block, "joint": scene.joint, "inner_joint": scene.inner_joint}
+        given = [f"{table}.{key}" for table, material in tables.items() if material for key in _given_keys(material)]
+        inner = {f"inner_{key}" for key in self.reads if "inner_joint" in self.reads}
+        return [key for key in given if key not in self.reads | inner]
 
 
 def _given_keys(material: Any) -> list[str]:

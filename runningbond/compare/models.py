@@ -5,9 +5,10 @@ A model of one's own is one more `Model`: put into `MODELS`, or handed to `run_m
 
 import difflib
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from dem import limit_nonassociated
 from homog import homog
@@ -16,10 +17,6 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
 from .model import Cost, Model, Recorder
-
-if TYPE_CHECKING:
-    from dem.pushover import StaticObserver
-    from runningbond.dynamics import Observer
 
 DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
@@ -38,28 +35,25 @@ def _homog(scene: Scene, tolerance: float) -> Outcome:
 # What needs a compiler or VTK, which take a second to load, is imported when it is wanted.
 
 
-def _dem_static(scene: Scene, tolerance: float, observe: "StaticObserver | None" = None, **parameters: Any) -> Outcome:
-    from dem.pushover import nobody
+def _dem_static(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
     from dem.static import dem_static
 
-    return dem_static(scene, tolerance, observe=observe or nobody, **parameters)
+    return dem_static(scene, tolerance, **settings)
 
 
-def _dem_dynamic(scene: Scene, tolerance: float, observe: "Observer | None" = None, **parameters: Any) -> Outcome:
+def _dem_dynamic(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
     from dem.dynamic import dem_dynamic
-    from runningbond.dynamics import nobody
 
-    return dem_dynamic(scene, tolerance, observe=observe or nobody, **parameters)
+    return dem_dynamic(scene, tolerance, **settings)
 
 
-def _fem(scene: Scene, tolerance: float, observe: "Observer | None" = None, **parameters: Any) -> Outcome:
+def _fem(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
     """`fem_interface.model.fem`; whether a wall locks is asked of its rigid blocks."""
     from fem_interface.model import fem
-    from runningbond.dynamics import nobody
     from runningbond.limit import equilibrium
     from runningbond.limit.associated import locks
 
-    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), observe=observe or nobody, **parameters)
+    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), **settings)
 
 
 def _dem_pushover(scene: Scene, distance: float, speed: float) -> Array:
@@ -89,86 +83,63 @@ def _motion_recorder(scene: Scene, folder: Path) -> Recorder:
 IN_STEPS = ("collapse", "first_step", "budget")
 """Settings of every model that raises its loads in steps."""
 
-MODELS: dict[str, Model] = {
-    model.name: model
-    for model in (
-        Model(
-            "homog",
-            "homogenised continuum in closed form",
-            _homog,
-            DRY,
-            cost=Cost(0.00029, 0.59, 1.15),
-            colour="black",
-            marker="_",
-            line=(0, (6, 4)),
-        ),
-        Model(
-            "limit",
-            "limit analysis of the blocks",
-            limit,
-            STRENGTH,
-            kind="bound",
-            cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
-            colour="#0b559f",
-            marker="o",
-        ),
-        Model(
-            "limit-nonassociated",
-            "limit analysis with friction that does not dilate",
-            limit_nonassociated,
-            STRENGTH,
-            kind="certificate",
-            cost=Cost(0.22, 1.87, 1.48),
-            colour="#c2410c",
-            marker="s",
-        ),
-        Model(
-            "dem-static",
-            "equilibrium of rigid blocks, load by load",
-            _dem_static,
-            STIFFNESS,
-            kind="history",
-            parameters=(*IN_STEPS, "past"),
-            observer=_static_recorder,
-            cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
-            colour="#7c3aed",
-            marker="v",
-        ),
-        Model(
-            "dem-dynamic",
-            "rigid blocks in motion",
-            _dem_dynamic,
-            SOFTENING,
-            kind="history",
-            parameters=IN_STEPS,
-            observer=_motion_recorder,
-            interruptible=True,
-            cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
-            pushover=_dem_pushover,
-            colour="#2a9d8f",
-            marker="^",
-            line=":",
-        ),
-        Model(
-            "fem",
-            "deformable blocks in motion",
-            _fem,
-            ELASTIC,
-            kind="history",
-            parameters=(
-                *IN_STEPS,
-                *("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies"),
-            ),
-            observer=_motion_recorder,
-            interruptible=True,
-            cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
-            pushover=_fem_pushover,
-            colour="#be185d",
-            marker="D",
-            line=(0, (3, 1, 1, 1)),
-        ),
-    )
-}
+OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")
+"""Settings of deformable blocks and their interfaces."""
+
+_EVERY_MODEL = (
+    Model(
+        *("homog", "homogenised continuum in closed form", _homog, DRY),
+        cost=Cost(0.00029, 0.59, 1.15),
+        colour="black",
+        marker="_",
+        line=(0, (6, 4)),
+    ),
+    Model(
+        *("limit", "limit analysis of the blocks", limit, STRENGTH, "bound"),
+        cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
+        colour="#0b559f",
+        marker="o",
+    ),
+    Model(
+        *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
+        kind="certificate",
+        cost=Cost(0.22, 1.87, 1.48),
+        colour="#c2410c",
+        marker="s",
+    ),
+    Model(
+        *("dem-static", "equilibrium of rigid blocks, load by load", _dem_static, STIFFNESS, "history"),
+        parameters=(*IN_STEPS, "past"),
+        observer=_static_recorder,
+        cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
+        colour="#7c3aed",
+        marker="v",
+    ),
+    Model(
+        *("dem-dynamic", "rigid blocks in motion", _dem_dynamic, SOFTENING, "history"),
+        parameters=IN_STEPS,
+        observer=_motion_recorder,
+        interruptible=True,
+        cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
+        pushover=_dem_pushover,
+        colour="#2a9d8f",
+        marker="^",
+        line=":",
+    ),
+    Model(
+        *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
+        parameters=(*IN_STEPS, *OF_BLOCKS),
+        observer=_motion_recorder,
+        interruptible=True,
+        cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
+        pushover=_fem_pushover,
+        colour="#be185d",
+        marker="D",
+        line=(0, (3, 1, 1, 1)),
+    ),
+)
+
+MODELS: dict[str, Model] = {model.name: model for model in _EVERY_MODEL}
 """Every model by its name, the cheapest first."""
 
 TOLERANCE = 0.01
@@ -202,7 +173,7 @@ def run_model(
     model: str | Model,
     scene: Scene,
     tolerance: float = TOLERANCE,
-    observe: "Observer | StaticObserver | Recorder | None" = None,
+    observe: Callable[..., None] | None = None,
     **parameters: Any,
 ) -> Outcome:
     """Run a model.
@@ -245,10 +216,6 @@ def run_model(
         raise
     except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
-    return _naming_unread(outcome, model.unread(scene))
-
-
-def _naming_unread(outcome: Outcome, unread: list[str]) -> Outcome:
-    """An outcome that says in its message which keys of its scene had no influence on it."""
+    unread = model.unread(scene)
     note = f"not taken into account: {', '.join(unread)}" if unread else ""
     return replace(outcome, message="; ".join(part for part in (outcome.message, note) if part))

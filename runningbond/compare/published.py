@@ -14,21 +14,11 @@ FERRIS = "Ferris & Tin-Loi (2001): dry walls under lateral load"
 
 @dataclass(frozen=True)
 class PublishedCase:
-    """A published wall.
+    """A published wall."""
 
-    Parameters
-    ----------
-    name
-        Name of its scene file without the ending.
-    source
-        Where it was published; cases of one source share a table.
-    printed
-        Values printed for it, by what the table calls them.
-    """
-
-    name: str
-    source: str
-    printed: dict[str, float] = field(default_factory=dict)
+    name: str  # that of its scene file without the ending
+    source: str  # where it was published; cases of one source share a table
+    printed: dict[str, float] = field(default_factory=dict)  # values printed for it, by what the table calls them
 
     @property
     def path(self) -> Path:

@@ -55,19 +55,7 @@ def _line(cells: Sequence[str]) -> str:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Scenes, the models run on them, what came out, and which of the scenes are published ones.
-
-    Parameters
-    ----------
-    scenes
-        Scenes by name.
-    models
-        The models.
-    campaign
-        Their outcomes.
-    published
-        Published cases by the names of their scenes.
-    """
+    """Scenes by name, the models run on them, what came out, and the published cases by the names of their scenes."""
 
     scenes: Mapping[str, Scene]
     models: Sequence[Model]
@@ -121,33 +109,41 @@ def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
     sheets = []
     for title, names in comparison.groups().items():
         labels = comparison.labels(names)
-        printed_heads = [label if label == CORRECTED else f"printed {label}" for label in labels]
-        rows = [
-            [
-                *(name, comparison.scenes[name].title),
-                *(_printed_number(label, comparison.printed(name)) for label in labels),
-                *(comparison.cell(name, model, answer) for model in comparison.models),
-            ]
+        heads = ["title", *(label if label == CORRECTED else f"printed {label}" for label in labels)]
+        cells = {
+            name: [comparison.scenes[name].title, *(_printed_number(x, comparison.printed(name)) for x in labels)]
             for name in names
-        ]
-        sheets.append(Sheet(title, ["scene", "title", *printed_heads, *comparison.names], rows))
+        }
+        sheets.append(_sheet(comparison, title, heads, cells, answer))
     return sheets
 
 
 def cost_sheets(comparison: Comparison) -> list[Sheet]:
     """Degrees of freedom, steps and seconds, one table a group of scenes."""
-    sheets = []
-    for title, names in comparison.groups().items():
-        rows = [
-            [
-                *(name, str(int(comparison.scenes[name].wall.sum()))),
-                *(comparison.cell(name, model, _cost) for model in comparison.models),
-            ]
-            for name in names
-        ]
-        heads = ["scene", "blocks", *comparison.names]
-        sheets.append(Sheet(f"{title}: degrees of freedom / steps / seconds", heads, rows))
-    return sheets
+    blocks = {name: [str(int(scene.wall.sum()))] for name, scene in comparison.scenes.items()}
+    return [
+        _sheet(
+            comparison,
+            f"{title}: degrees of freedom / steps / seconds",
+            ["blocks"],
+            {name: blocks[name] for name in names},
+            _cost,
+        )
+        for title, names in comparison.groups().items()
+    ]
+
+
+def _sheet(
+    comparison: Comparison,
+    title: str,
+    heads: list[str],
+    cells: Mapping[str, list[str]],
+    text: Callable[[Outcome], str],
+) -> Sheet:
+    """A row a scene: its name, the cells that are its own, and the text of each model's outcome."""
+    models = comparison.models
+    rows = [[name, *own, *(comparison.cell(name, model, text) for model in models)] for name, own in cells.items()]
+    return Sheet(title, ["scene", *heads, *comparison.names], rows)
 
 
 def csv_text(comparison: Comparison) -> str:

@@ -25,27 +25,13 @@ TOLERANCE = 0.05
 
 @dataclass(frozen=True)
 class Rung:
-    """One rung: what a model found, and what follows from it.
-
-    Parameters
-    ----------
-    step
-        The model.
-    outcome
-        What it found; None where it does not apply to such a scene.
-    next
-        What follows: which model, and why; or why this is enough.
-    next_cost
-        What that model is going to cost; None on the last rung, and where no law says.
-    seconds
-        Seconds since the foot of the ladder.
-    """
+    """One rung: what a model found, and what follows from it."""
 
     step: Step
-    outcome: Outcome | None
-    next: Step
-    next_cost: Estimate | None
-    seconds: float
+    outcome: Outcome | None  # None where the model does not apply to such a scene
+    next: Step  # which model follows, and why; or why this is enough
+    next_cost: Estimate | None  # None on the last rung, and where no law says
+    seconds: float  # since the foot of the ladder
 
     @property
     def model(self) -> str:
@@ -65,15 +51,7 @@ class Rung:
 
 @dataclass
 class Advice:
-    """A climb.
-
-    Parameters
-    ----------
-    known
-        What the scene is, what is asked of it, and what the rungs so far have shown.
-    rungs
-        Rungs climbed.
-    """
+    """A climb: what is asked of a scene, what is known of it, and the rungs so far."""
 
     known: Knowledge
     rungs: list[Rung] = field(default_factory=list)
@@ -118,8 +96,8 @@ class Advice:
         return run_model(model, known.scene, known.tolerance, **settings)
 
 
-def advice_on(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
-    """Stand at the foot of the ladder.
+def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
+    """Climb the ladder as far as a scene needs.
 
     Parameters
     ----------
@@ -131,12 +109,7 @@ def advice_on(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = Fals
         Whether to end at finite displacements, however small they may be.
     """
     check_tolerance(tolerance)
-    return Advice(Knowledge(scene, tolerance, finite))
-
-
-def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
-    """Climb the ladder as far as a scene needs; see `advice_on`."""
-    advice = advice_on(scene, tolerance, finite=finite)
+    advice = Advice(Knowledge(scene, tolerance, finite))
     for _ in advice.climb():
         pass
     return advice

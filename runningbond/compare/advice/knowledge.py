@@ -28,36 +28,16 @@ def deforms(model: Model) -> bool:
 
 @dataclass
 class Knowledge:
-    """What the models run so far have shown.
-
-    Parameters
-    ----------
-    scene
-        The scene.
-    tolerance
-        Relative width of the bracket asked for.
-    finite
-        Whether finite displacements are asked for, however small they may be.
-    outcomes
-        What the models found, one after the other.
-    bound
-        Associated load, above which nothing stands at small displacements; None where there is none.
-    evidence
-        What the answer rests on.
-    answer
-        The outcome whose bracket it is.
-    collapses
-        Loads at which a proof, a certificate or a model brought the wall down.
-    """
+    """What is asked of a scene, and what the models run so far have shown."""
 
     scene: Scene
-    tolerance: float
-    finite: bool = False
+    tolerance: float  # relative width of the bracket asked for
+    finite: bool = False  # whether finite displacements are asked for, however small they may be
     outcomes: list[Outcome] = field(default_factory=list)
-    bound: float | None = None
-    evidence: Evidence = ""
-    answer: Outcome | None = None
-    collapses: list[float] = field(default_factory=list)
+    bound: float | None = None  # associated load, above which nothing stands at small displacements
+    evidence: Evidence = ""  # what the answer rests on
+    answer: Outcome | None = None  # the outcome whose bracket it is
+    collapses: list[float] = field(default_factory=list)  # loads at which a proof, a certificate or a model found it
 
     def __post_init__(self) -> None:
         self.needs: Needs = needs_of(self.scene)

@@ -28,25 +28,15 @@ def answer_lines(advice: Advice) -> str:
 
 def advice_json(advice: Advice) -> str:
     """The answer and its rungs as one JSON object."""
-    found = advice.outcome().summary()
-    kept = ("scene", "model", "status", "multiplier", "lower", "upper", "seconds", "message")
-    answer = {key: found[key] for key in kept}
-    extra = {
-        "lowest": advice.known.lowest,
-        "bound": advice.known.bound,
-        "rungs": [_rung(rung) for rung in advice.rungs],
-    }
-    return json.dumps({**answer, **extra}, allow_nan=False)
+    keys = ("scene", "model", "status", "multiplier", "lower", "upper", "seconds", "message")
+    outcome = advice.outcome()
+    answer = {key: getattr(outcome, key) for key in keys}
+    bounds = {"lowest": advice.known.lowest, "bound": advice.known.bound}
+    return json.dumps({**answer, **bounds, "rungs": [_rung(rung) for rung in advice.rungs]}, allow_nan=False)
 
 
 def _rung(rung: Rung) -> dict[str, Any]:
-    outcome, cost = rung.outcome, rung.next_cost
-    found = {key: getattr(outcome, key, None) for key in ("status", "multiplier", "lower", "upper", "dofs", "steps")}
-    return {
-        "model": rung.model,
-        **found,
-        "seconds": rung.seconds,
-        "reason": rung.reason,
-        "next": rung.onward,
-        "next_seconds": None if cost is None else cost.seconds,
-    }
+    keys = ("status", "multiplier", "lower", "upper", "dofs", "steps")
+    next_seconds = None if rung.next_cost is None else rung.next_cost.seconds
+    said = {"seconds": rung.seconds, "reason": rung.reason, "next": rung.onward, "next_seconds": next_seconds}
+    return {"model": rung.model, **{key: getattr(rung.outcome, key, None) for key in keys}, **said}

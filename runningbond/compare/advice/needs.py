@@ -17,24 +17,12 @@ NO_SLIP = 1e-6
 
 @dataclass(frozen=True)
 class Needs:
-    """What a scene asks of a model.
+    """What a scene asks of a model."""
 
-    Parameters
-    ----------
-    compliance
-        Share of the blocks in the compliance of the wall; see `block_compliance`.
-    softens
-        Whether joints lose their strength as they open and slip: they have a strength to lose and fracture energies.
-    cracks
-        Whether blocks may crack.
-    weightless
-        Whether nothing but the live load presses the joints.
-    """
-
-    compliance: float
-    softens: bool
-    cracks: bool
-    weightless: bool
+    compliance: float  # share of the blocks in the compliance of the wall; see `block_compliance`
+    softens: bool  # joints have a strength to lose, and fracture energies by which they lose it
+    cracks: bool  # blocks may crack
+    weightless: bool  # nothing but the live load presses the joints
 
 
 def needs_of(scene: Scene) -> Needs:
