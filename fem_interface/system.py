@@ -104,6 +104,7 @@ def system_of(
         block_frequency_squared=scaled.frequency_squared,
         control=wall.control_row(),
         force_unit=force_unit(scene, wall.block, wall.mass, live, wall_strength(scene, points)),
+        source=wall,
     )
 
 

@@ -329,7 +329,7 @@ def test_states_under_load_follow_the_law() -> None:
 def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
     """The loads of the series are those of the curve; at the end the wall falls, its base open at the back."""
     scene = courses([[1], [1]], width=0.2, height=0.2, **STIFF)
-    recorder = MotionRecorder(scene, "dem-dynamic", tmp_path)
+    recorder = MotionRecorder(scene, tmp_path)
     outcome = run_model("dem-dynamic", scene, 0.02, recorder)
     recorder.finish(outcome)
     assert outcome.status == "collapse"
@@ -409,10 +409,30 @@ def test_stress_of_a_uniform_strain_is_hookes(modes: ModeCount) -> None:
     assert not found[~moved].any()
 
 
+@pytest.mark.parametrize("settings", [{"cells": 2, "modes": "all"}, {"cracks": "blocks"}])
+def test_a_run_is_recorded_on_its_own_mesh(settings: dict[str, Any], tmp_path: Path) -> None:
+    """Of other settings than the default ones; at rest, its mean vertical stress is that at half its height."""
+    inner = {"friction": 0.6, "cohesion": 1e6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    crack = {"inner_joint": inner} if "cracks" in settings else {}
+    scene = panel(wall__length=0.48, wall__height=0.12, block__young=1e9, **STIFF, **crack)
+    recorder = MotionRecorder(scene, tmp_path)
+    outcome = run_model("fem", scene, 0.3, recorder, **settings)
+    recorder.finish(outcome)
+    wall = modal_wall(scene, settings.get("cells", 1), settings.get("modes"), cracks=settings.get("cracks", "joints"))
+    grids = [read_grid(path) for path in frame_files(tmp_path, "blocks")]
+    assert {grid.GetNumberOfCells() for grid in grids} == {len(wall.mesh.triangles)}
+    corners = wall.mesh.points[wall.mesh.triangles]
+    (x1, y1), (x2, y2) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    area = np.where(wall.scene.fixed[wall.mesh.triangle_block], 0.0, np.abs(x1 * y2 - x2 * y1))
+    stress = arrays(grids[0].GetCellData())["stress"]
+    assert arrays(grids[0].GetFieldData())["multiplier"] == 0
+    assert area @ stress[:, 1] / area.sum() == pytest.approx(-1800 * 9.81 * 0.12 / 2, rel=1e-4)
+
+
 def test_deformable_blocks_come_in_triangles_with_their_stress(tmp_path: Path) -> None:
     """A wall at rest under its weight: the mean vertical stress of a course is the weight above its middle."""
     scene = panel(wall__length=0.48, wall__height=0.18, block__young=1e9, **STIFF)
-    recorder = MotionRecorder(scene, "fem", tmp_path)
+    recorder = MotionRecorder(scene, tmp_path)
     outcome = run_model("fem", scene, 0.1, recorder)
     recorder.finish(outcome)
     grids = [read_grid(path) for path in frame_files(tmp_path, "blocks")]

@@ -1,8 +1,9 @@
 """Plates of a campaign: collapse mechanisms, walls by models; the paper's Figures 8 to 10 and 12."""
 
 import textwrap
+from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from runningbond.pictures.captions import colour_key, multiplier_text, to_png
@@ -15,8 +16,9 @@ from runningbond.results import Outcome, write_atomically
 from runningbond.scene import Scene
 
 from .figures import SLENDERNESS, TEXTURES
-from .published import BARALDI, CONCENTRATED, FERRIS, PUBLISHED
-from .table import OWN, Comparison
+from .model import Model
+from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
+from .table import Comparison
 
 WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250
 """Width of a plate, that of a page, and the least; its largest height [in]; and dots per inch."""
@@ -27,8 +29,8 @@ PIXELS = 640
 SIDE, HEAD, FOOT, LINE = 0.62, 0.46, 0.34, 0.11
 """Room for the names of walls, for those of models, for the key and for a line under a wall [in]."""
 
-MOST_OWN = 12
-"""Walls of one's own that go on a plate."""
+OWN_WALLS = 12
+"""Largest number of walls on the plate of one's own."""
 
 
 @dataclass(frozen=True)
@@ -41,10 +43,10 @@ class Plate:
 
 
 def plates(comparison: Comparison) -> list[Plate]:
-    """Plates that a comparison has anything for."""
-    panels = [case.name for case in PUBLISHED if case.source == BARALDI]
+    """Plates that a comparison has anything for: the paper's, and one of the walls that are nobody's figure."""
     textures = [f"b/a = {label}" for label, _ in TEXTURES]
-    found = [
+    panels = _names(BARALDI)
+    drawn = [
         Plate(
             f"figure-{8 + k}",
             f"Mechanisms under self-weight and lateral load, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})",
@@ -52,18 +54,18 @@ def plates(comparison: Comparison) -> list[Plate]:
         )
         for k, (label, _) in enumerate(SLENDERNESS)
     ]
-    concentrated = [case.name for case in PUBLISHED if case.source == CONCENTRATED]
     title = "Mechanisms under a concentrated load (cf. Baraldi et al., Fig. 12)"
-    found.append(Plate("figure-12", title, dict(zip(concentrated, textures, strict=True))))
-    walls = [case.name for case in PUBLISHED if case.source == FERRIS]
-    labels = [name.removeprefix("wall-").upper() for name in walls]
-    found.append(
-        Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", dict(zip(walls, labels, strict=True)))
-    )
-    own = comparison.by_source().get(OWN, [])[:MOST_OWN]
-    found.append(Plate("mechanisms", "Mechanisms", {name: name for name in own}))
-    present = [Plate(p.name, p.title, {n: w for n, w in p.walls.items() if n in comparison.scenes}) for p in found]
+    drawn.append(Plate("figure-12", title, dict(zip(_names(CONCENTRATED), textures, strict=True))))
+    labels = {name: name.removeprefix("wall-").upper() for name in _names(FERRIS)}
+    drawn.append(Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", labels))
+    present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in drawn]
+    own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
+    present.append(Plate("mechanisms", "Mechanisms", {name: name for name in own}))
     return [plate for plate in present if _models(comparison, plate)]
+
+
+def _names(source: str) -> list[str]:
+    return [case.name for case in cases_of(source)]
 
 
 def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
@@ -76,14 +78,10 @@ def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
     return written
 
 
-def _models(comparison: Comparison, plate: Plate) -> list[str]:
+def _models(comparison: Comparison, plate: Plate) -> list[Model]:
     """Models that have a mechanism of any wall of a plate."""
-    outcomes = comparison.campaign.outcomes
-    return [
-        model
-        for model in comparison.models
-        if any(len(outcomes[name, model].motion) for name in plate.walls if (name, model) in outcomes)
-    ]
+    outcomes = {model: [comparison.outcome(name, model) for name in plate.walls] for model in comparison.models}
+    return [model for model, found in outcomes.items() if any(out is not None and len(out.motion) for out in found)]
 
 
 def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
@@ -102,7 +100,7 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     figure.text(0.5, 1 - 0.06 / total, plate.title, ha="center", va="top", fontsize=8, fontweight="bold")
     middles = [(SIDE + (column + 0.5) * width) / total_width for column in range(len(models))]
     for middle, model in zip(middles, models, strict=True):
-        figure.text(middle, 1 - (HEAD - 0.06) / total, model, ha="center", va="bottom", fontsize=8)
+        figure.text(middle, 1 - (HEAD - 0.06) / total, model.name, ha="center", va="bottom", fontsize=8)
     top = total - HEAD
     for row, label, height in zip(rows, plate.walls.values(), heights, strict=True):
         bottom = top - height + captions
@@ -134,14 +132,15 @@ class Row:
     extent: Extent
 
 
-def _row(comparison: Comparison, name: str, models: list[str]) -> Row:
+def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> Row:
     scene = comparison.scenes[name]
-    outcomes = [comparison.campaign.outcomes.get((name, model)) for model in models]
+    outcomes = [comparison.outcome(name, model) for model in models]
     mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
     shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
     lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
     extent = min(lefts), max(rights), min(bottoms), max(tops)
-    return Row(shapes, ["n/a" if outcome is None else _caption(scene, outcome) for outcome in outcomes], extent)
+    captions = [comparison.cell(name, model, lambda outcome: _caption(scene, outcome)) for model in models]
+    return Row(shapes, captions, extent)
 
 
 def _caption(scene: Scene, outcome: Outcome) -> str:

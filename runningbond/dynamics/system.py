@@ -66,6 +66,8 @@ class BlockSystem:
         Displacement of the control point along the live load, per modal motion.
     force_unit : (nd,) float
         Force of each mode against which its unbalanced one is measured; inf where a mode is held.
+    source
+        What it was set up from, for observers: the wall in modal coordinates where blocks deform.
     """
 
     mass: Array
@@ -83,6 +85,7 @@ class BlockSystem:
     block_frequency_squared: float
     control: Array
     force_unit: Array
+    source: object = None
 
     @property
     def freedoms(self) -> int:

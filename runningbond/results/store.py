@@ -57,7 +57,8 @@ def make_folder(folder: Path) -> None:
     """Make a folder and check that files can be written there, before a long computation; an OSError names it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(b" ")
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(folder)) from error
 
