@@ -21,8 +21,7 @@ from runningbond.dynamics import (
     pushover_curve,
 )
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
-from runningbond.limit.associated import locks as is_self_locking
-from runningbond.limit.equilibrium import equilibrium
+from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 
@@ -69,7 +68,7 @@ def dem_dynamic(
         Run(rigid_system(scene)),
         tolerance,
         point_order=np.argsort(contact_points(scene).joint, kind="stable"),
-        is_self_locking=lambda: is_self_locking(equilibrium(scene)),
+        is_self_locking=lambda: is_self_locking(scene),
         collapse=collapse,
         first_step=first_step,
         budget=budget,

@@ -11,8 +11,7 @@ from dataclasses import replace
 from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.joints import Rule
-from runningbond.limit.associated import locks as is_self_locking
-from runningbond.limit.equilibrium import equilibrium
+from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
@@ -93,7 +92,7 @@ def fem(
         Run(system),
         tolerance,
         point_order=wall.interface.listing,
-        is_self_locking=lambda: is_self_locking(equilibrium(scene)),
+        is_self_locking=lambda: is_self_locking(scene),
         note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",
         collapse=collapse,
         first_step=first_step,

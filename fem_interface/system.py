@@ -103,6 +103,7 @@ def system_of(
         restraint=_restraint(wall),
         interface=Interface(law, points.area, gather_modes, scatter_modes, geometry, scaled.frequency_squared),
         block_motion=None if pieces.whole else motion_of_blocks(pieces),
+        source=wall,
     )
 
 

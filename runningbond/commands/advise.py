@@ -4,14 +4,15 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from runningbond.compare.advice import TOLERANCE, advice_on
+from runningbond.compare.advice import TOLERANCE, Advice
+from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.advice.lines import advice_json, answer_lines, rung_line
 from runningbond.compare.models import check_tolerance
 from runningbond.compare.published import find_scene
 from runningbond.scene import read_scene
 
 from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
-from .interruptions import interruptions
+from .terminal import interruptions
 
 
 def advise(
@@ -36,7 +37,7 @@ def advise(
         Print one JSON object and nothing else.
     """
     check_tolerance(tolerance)
-    advice = advice_on(read_scene(find_scene(scene)), tolerance, finite=finite)
+    advice = Advice(Knowledge(read_scene(find_scene(scene)), tolerance, finite))
     if not json:
         print(f"{advice.known.scene.title}: λ to {100 * tolerance:g} %", flush=True)
     stopped: list[int] = []
@@ -45,6 +46,7 @@ def advise(
             print(rung_line(rung), flush=True)
         if stopped:
             return STOPPED
-        stopped = interruptions((rung.onward or "").removesuffix(", finite"))
+        if rung.next.model is not None:
+            stopped = interruptions(rung.next.model)
     print(advice_json(advice) if json else answer_lines(advice), flush=True)
     return NO_ANSWER if advice.outcome().status in UNDECIDED else DONE

@@ -1,15 +1,20 @@
 """What an outcome was computed from, as one digest: scene, model, tolerance, code and numerical libraries."""
 
 import hashlib
+import inspect
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from runningbond.scene import Scene
+
+from .model import Model
 
 COMPUTING_ROOMS = (
     *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics")),
@@ -19,12 +24,27 @@ COMPUTING_ROOMS = (
 LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh")
 
 
-def fingerprint(scene: Scene, model: str, tolerance: float) -> str:
-    """Digest under which the outcome of a model on a scene is kept."""
+def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
+    """Digest under which the outcome of a model, or one of the package's own by its name, on a scene is kept."""
     digest = hashlib.sha256(code_digest().encode())
+    if isinstance(model, Model):
+        digest.update(_own_code(model.solve))
+        model = model.name
     digest.update(f"{model} {tolerance!r} ".encode())
     _feed(digest, scene)
     return digest.hexdigest()
+
+
+def _own_code(solve: Callable[..., Any]) -> bytes:
+    """The file that a user's model stands in, or its compiled code where there is none; nothing for the package's."""
+    function: Any = getattr(solve, "func", solve)
+    if function.__module__.split(".")[0] in {room.split(".")[0] for room in COMPUTING_ROOMS}:
+        return b""
+    try:
+        return Path(inspect.getfile(function)).read_bytes()
+    except (TypeError, OSError):
+        code = getattr(function, "__code__", None)
+        return b"" if code is None else code.co_code + repr(code.co_consts).encode()
 
 
 @cache

@@ -126,6 +126,8 @@ class BlockSystem:
         How contacts are found anew as bodies move; None at small displacements.
     block_motion : (3 nb, 3 n) sparse array
         Rigid motion of the blocks per rigid motion of the bodies; None where each body is a block.
+    source
+        What it was set up from, for observers: the wall in modal coordinates where blocks deform.
     """
 
     mass: Array
@@ -141,6 +143,7 @@ class BlockSystem:
     interface: Interface
     contacts: ContactSearch | None = None
     block_motion: csr_array | None = None
+    source: object = None
 
     @property
     def freedoms(self) -> int:
@@ -165,8 +168,12 @@ class BlockSystem:
 
     def motion_of_blocks(self, motion: Array) -> Array:
         """Translation and rotation of each block in a motion or velocity ``(nd,)``, ``(nb, 3)`` [m, m, rad]."""
-        rigid = self.unrestrained(motion)[self.rigid]
+        rigid = self.motion_of_bodies(motion)
         return rigid if self.block_motion is None else np.reshape(self.block_motion @ rigid.ravel(), (-1, 3))
+
+    def motion_of_bodies(self, motion: Array) -> Array:
+        """Translation and rotation of each body in a motion or velocity ``(nd,)``, ``(n, 3)`` [m, m, rad]."""
+        return self.unrestrained(motion)[self.rigid]
 
     def farthest(self, motion: Array, unit: float | Array = 1.0) -> float:
         """Largest translation of any body in a motion ``(nd,)``, in a unit [m] or in each body's own ``(n,)``."""

@@ -1,6 +1,7 @@
 """The scene file: TOML in, `Scene` or one clear line out."""
 
 import math
+import os
 import tomllib
 from pathlib import Path
 from typing import Any, cast, get_args
@@ -40,7 +41,12 @@ def read_scene(path: str | Path) -> Scene:
         raise SceneError(str(path), "is no scene file: it is not UTF-8 text") from error
     except (RecursionError, ValueError) as error:
         raise SceneError(str(path), f"is no valid TOML: {error}") from error
-    return scene_from_dict(content, folder=path.parent, default_title=path.stem)
+    return scene_from_dict(content, folder=path.parent, default_title=plain_stem(path))
+
+
+def plain_stem(path: Path) -> str:
+    """A file's name without its ending, as text: what is no UTF-8 in it is replaced."""
+    return os.fsencode(path.stem).decode(errors="replace")
 
 
 def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_title: str = "untitled") -> Scene:
