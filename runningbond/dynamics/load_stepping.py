@@ -57,8 +57,8 @@ class LoadSteps:
         State at rest under `lower`; None if not even the dead load was borne.
     fallen
         State in the collapse under `upper`, or under the dead load.
-    fall : (nd,) float
-        Motion over the last half of the way to it.
+    fall_starts : list of (nd,) float
+        Where the wall was on its way to that collapse, the latest first: half the way before, then each rest.
     rests : list of (multiplier, State)
         Every state at rest, in order of load.
     steps
@@ -72,7 +72,7 @@ class LoadSteps:
     verdict: Verdict = "undecided"
     borne: State | None = None
     fallen: State | None = None
-    fall: Array | None = None
+    fall_starts: list[Array] = field(default_factory=list)
     rests: list[tuple[float, State]] = field(default_factory=list)
     steps: int = 0
     interrupted: bool = False
@@ -84,7 +84,9 @@ class LoadSteps:
             self.lower, self.borne = trial, state
             self.rests.append((trial, state))
         elif self.verdict == "collapse":
-            self.upper, self.fallen, self.fall = trial, state, held.fall
+            self.upper, self.fallen = trial, state
+            rests = [rest.motion for _, rest in reversed(self.rests)]
+            self.fall_starts = rests if held.halfway is None else [held.halfway, *rests]
 
 
 @dataclass(frozen=True)
