@@ -54,12 +54,12 @@ class HeldLoad:
     ----------
     verdict
         Whether it rests or falls.
-    fall : (nd,) float or None
-        Its motion over the last half of the way of a fall.
+    halfway : (nd,) float or None
+        Where it was half the way before it counted as falling.
     """
 
     verdict: Verdict
-    fall: Array | None = None
+    halfway: Array | None = None
 
 
 def settle(
@@ -107,7 +107,7 @@ def hold_load(
             return HeldLoad("stable")
         marks = detector.marks
         if detector.goes_on(run.system.farthest(state.motion - start, criteria.collapse), state.steps):
-            return HeldLoad("collapse", state.motion - halfway)
+            return HeldLoad("collapse", halfway)
         if detector.marks > marks:
             halfway = state.motion.copy()
     return HeldLoad("undecided")

@@ -27,6 +27,9 @@ LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 So far small displacements are none, and what is elastic between two loads is more than counts as collapse.
 """
 
+DRAWN_OVERLAP = 0.02
+"""Overlap of joints in a mechanism, in largest displacements of a block, that is hardly seen."""
+
 BUDGET = 2_000_000
 """Time steps after which a load is left undecided."""
 
@@ -131,9 +134,9 @@ def _judge(
     if result.interrupted:
         message = "interrupted: the bracket so far"
         return replace(outcome, lower=result.lower, upper=result.upper, curve=curve, force=force, message=message)
-    if result.upper is None or result.lower is None or result.fallen is None or result.fall is None:
+    if result.upper is None or result.lower is None or result.fallen is None:
         return _never_fallen(outcome, result, is_self_locking)
-    motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(result.fall))
+    motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(_fall(run, result, result.fallen)))
     outcome = replace(outcome, lower=result.lower, upper=result.upper, curve=curve, motion=motion, force=force)
     lost = _unaccounted(run, result.fallen)
     if lost > UNACCOUNTED:
@@ -170,6 +173,20 @@ def _never_fallen(outcome: Outcome, result: LoadSteps, is_self_locking: Callable
     if result.verdict == "stable":
         message = f"it bore every load tried, the largest of them {result.lower:.3g}"
     return replace(outcome, lower=result.lower, message=message)
+
+
+def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
+    """Motion of the fall, ``(nd,)``: as late as the wall can be drawn in it.
+
+    Gaps that earlier loads opened may close in a fall; drawn on the undeformed wall, blocks would lie in each other.
+    """
+    motions = [fallen.motion - start for start in result.fall_starts]
+    for motion in motions:
+        opening, _ = run.interface.jumps(run.system.unrestrained(motion))
+        overlap = -opening.min(initial=0.0)
+        if run.system.live @ motion > 0 and overlap <= DRAWN_OVERLAP * run.system.farthest(motion):
+            return motion
+    return motions[-1]
 
 
 def _unaccounted(run: Run, state: State) -> float:

@@ -38,6 +38,9 @@ MOST_UNDECIDED = 4
 """Undecided loads, side by side, after which a search that has seen a fall ends; half as many end one that has seen
 none. Each has cost the whole budget."""
 
+UNDECIDED_BUDGETS = 3
+"""Budgets that may be spent on undecided loads, wherever they are, before a search ends."""
+
 DOUBLED_BEYOND = 200
 """Load, in first steps, beyond which it is doubled in each: at ten weights a wall that stands probably locks."""
 
@@ -57,8 +60,8 @@ class LoadSteps:
         State at rest under `lower`; None if not even the dead load was borne.
     fallen
         State in the collapse under `upper`, or under the dead load.
-    fall : (nd,) float
-        Motion over the last half of the way to it.
+    fall_starts : list of (nd,) float
+        Where the wall was on its way to that collapse, the latest first: half the way before, then each rest.
     rests : list of (multiplier, State)
         Every state at rest, in order of load.
     steps
@@ -72,7 +75,7 @@ class LoadSteps:
     verdict: Verdict = "undecided"
     borne: State | None = None
     fallen: State | None = None
-    fall: Array | None = None
+    fall_starts: list[Array] = field(default_factory=list)
     rests: list[tuple[float, State]] = field(default_factory=list)
     steps: int = 0
     interrupted: bool = False
@@ -84,7 +87,9 @@ class LoadSteps:
             self.lower, self.borne = trial, state
             self.rests.append((trial, state))
         elif self.verdict == "collapse":
-            self.upper, self.fallen, self.fall = trial, state, held.fall
+            self.upper, self.fallen = trial, state
+            rests = [rest.motion for _, rest in reversed(self.rests)]
+            self.fall_starts = rests if held.halfway is None else [held.halfway, *rests]
 
 
 @dataclass(frozen=True)
@@ -188,9 +193,10 @@ def _search(
     result.rests.append((0.0, state))
     probe = state.copy()
     answered = settle(run, probe, first, criteria, sudden=True) != "undecided"
-    unhurried = loading * (probe.steps - state.steps) if answered else criteria.budget
+    # A wall that comes to rest slowly is loaded as slowly as the budget allows.
+    unhurried = min(loading * (probe.steps - state.steps), criteria.budget) if answered else criteria.budget
     result.steps = probe.steps
-    step, undecided = first, UndecidedLoads()
+    step, undecided, in_vain = first, UndecidedLoads(), 0
     narrowest = RESOLVED * criteria.rest / (system.measure(system.live) or 1.0)
     while result.upper is None or result.upper - result.lower > max(tolerance * result.upper, narrowest):
         if undecided.closed(result, max(tolerance * (result.upper or 0.0), narrowest)):
@@ -204,8 +210,12 @@ def _search(
         share = (trial - result.lower) / max(first, growth * trial)
         trial = _raise(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
         held = hold_load(run, state, trial, criteria, observe)
-        result.steps += state.steps - result.borne.steps
+        taken = state.steps - result.borne.steps
+        result.steps += taken
         result.add(trial, state, held)
+        in_vain += taken if result.verdict == "undecided" else 0
+        if in_vain > UNDECIDED_BUDGETS * criteria.budget:
+            return
         undecided = undecided.after(result, trial)
         if result.verdict == "stable":
             if result.upper is None and system.farthest(state.motion - result.rests[0][1].motion, farthest) > 1:

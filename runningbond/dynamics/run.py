@@ -1,7 +1,7 @@
 """A run: a system brought forward in time, at small or at finite displacements, with its energy ledger."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -105,15 +105,16 @@ class Run:
         if self._update is not None and self._contacts is not (contacts := contacts_of(state)):
             self._take_up(self._update.interface_on(contacts), contacts)
 
-    def _pieces(self, state: State, steps: int) -> Iterator[int]:
+    def _pieces(self, state: State, steps: int) -> Iterable[int]:
         """Numbers of steps to take one after the other, on contacts that are good for so many."""
+        return (steps,) if self._update is None else self._pieces_on_contacts(state, steps, self._update)
+
+    def _pieces_on_contacts(self, state: State, steps: int, update: ContactUpdate) -> Iterator[int]:
         while steps > 0:
-            piece = steps
-            if self._update is not None:
-                self._return_to(state)
-                if self._update.is_due(state):
-                    self._take_up(self._update.renew(state, self.interface, self.dt), contacts_of(state))
-                piece = min(steps, self._update.steps_until_next_look(state, self.dt))
+            self._return_to(state)
+            if update.is_due(state):
+                self._take_up(update.renew(state, self.interface, self.dt), contacts_of(state))
+            piece = min(steps, update.steps_until_next_look(state, self.dt))
             yield piece
             steps -= piece
 

@@ -7,6 +7,7 @@ one for ever; at finite ones a `ContactSearch` finds the contacts anew as bodies
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
@@ -157,7 +158,14 @@ class BlockSystem:
 
     def measure(self, force: Array) -> float:
         """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
-        return float((np.abs(force) / self.force_unit)[np.isfinite(self.mass)].max(initial=0.0))
+        moving, unit = self._moving
+        return float((np.abs(force[moving]) / unit).max(initial=0.0))
+
+    @cached_property
+    def _moving(self) -> tuple[Indices, Array]:
+        """The modes that move, and their units of force."""
+        moving = np.flatnonzero(np.isfinite(self.mass))
+        return moving, self.force_unit[moving]
 
     def unrestrained(self, motion: Array) -> Array:
         """Motion or velocity with restrained coordinates turned back into those of their bodies, ``(nd,)``."""
