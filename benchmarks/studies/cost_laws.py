@@ -1,4 +1,4 @@
-"""Laws of what the models cost, fitted to tables of comparisons and printed as each `Cost` in `compare.models` has them.
+"""Laws of what the models cost, fitted to tables of comparisons and printed as the `Cost` of each model has them.
 
 From the project's directory, after ``runningbond compare --fresh --out fine`` and the same with ``--tolerance 0.05``
 and ``--out coarse``, which gives the powers of the tolerance:
