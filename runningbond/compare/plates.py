@@ -88,7 +88,7 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     rows = [_row(comparison, name, models) for name in plate.walls]
     ratios = [(row.view.top - row.view.bottom) / (row.view.right - row.view.left) for row in rows]
     room = TALLEST - TITLES - CAPTION * len(rows)
-    labels = [textwrap.wrap(label, 16) for label in plate.walls.values()]
+    labels = [textwrap.wrap(label, 16) or [""] for label in plate.walls.values()]
     side = 0.1 + LETTER * max(len(line) for label in labels for line in label)
     width = min((WIDTH - side) / max(len(models), 3) - GAP, room / sum(ratios))
     total = max(NARROWEST, side + (width + GAP) * len(models))
@@ -98,7 +98,16 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     for axes, model in zip(grid[0], models, strict=True):
         axes.set_title(model.name, fontsize=8)
     for line, row, label in zip(grid, rows, labels, strict=True):
-        line[0].text(-0.04, 0.5, "\n".join(label), transform=line[0].transAxes, ha="right", va="center", fontsize=7.5)
+        line[0].text(
+            -0.04,
+            0.5,
+            "\n".join(label),
+            transform=line[0].transAxes,
+            ha="right",
+            va="center",
+            fontsize=7.5,
+            parse_math=False,
+        )
         for axes, moment, caption in zip(line, row.drawn, row.captions, strict=True):
             draw_wall(axes, moment, painter, row.view, signs=False)
             axes.text(0.5, -0.02, caption, transform=axes.transAxes, ha="center", va="top", fontsize=6.3)
