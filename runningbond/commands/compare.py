@@ -58,7 +58,10 @@ def compare(
     check_tolerance(tolerance)
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
-    _check_cluster(cluster, jobs)
+    if cluster is not None and jobs != -1:
+        raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
+    if cluster is not None and find_spec("distributed") is None:
+        raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
     walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
     make_folder(out)
     console = Console(stderr=True, highlight=False)
@@ -89,16 +92,6 @@ def compare(
     for cell, message in failed:
         console.print(f"{', '.join(cell)}: {message}", markup=False)
     return NO_ANSWER if failed else DONE
-
-
-def _check_cluster(cluster: str | None, jobs: int) -> None:
-    """Refuse a cluster that cannot be used."""
-    if cluster is None:
-        return
-    if jobs != -1:
-        raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
-    if find_spec("distributed") is None:
-        raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
 
 
 def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, PublishedCase]]:

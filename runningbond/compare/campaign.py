@@ -4,7 +4,7 @@ Processes and the workers of a cluster compute and hand over; the campaign alone
 """
 
 import warnings
-from collections.abc import Callable, Container, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -42,10 +42,6 @@ class Campaign:
             self.outcomes[answer.cell] = answer.outcome
         if answer.reused:
             self.reused.add(answer.cell)
-
-    def only(self, names: Container[str]) -> "Campaign":
-        """The part of it that is about some scenes."""
-        return Campaign({cell: outcome for cell, outcome in self.outcomes.items() if cell[0] in names})
 
 
 class Interrupted(Exception):

@@ -57,10 +57,7 @@ class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
 def on_cluster(where: str) -> Iterator[None]:
     """Send the tasks that joblib is given inside to a cluster: the address of its scheduler, or its file.
 
-    Raises
-    ------
-    SceneError
-        Where no scheduler with a worker answers.
+    Where no scheduler with a worker answers, that is a `SceneError`.
     """
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what it tells is told here, in a line
     try:

@@ -40,45 +40,25 @@ class Recorder(Protocol):
 class Model:
     """A model: how a scene becomes an outcome, and what others need to know of that.
 
-    Parameters
-    ----------
-    name, title
-        What the command line, tables and charts call it, and what it does, in half a line.
-    solve
-        From a scene and the relative width of the bracket asked for, to an outcome. It is handed `parameters` by
-        name, and ``observe=…`` if it has an `observer`.
-    reads
-        Keys of a scene file that have an influence on its outcome, as ``joint.friction``, besides the wall, its
-        supports and its loads, which every model reads or refuses by name.
-    kind
-        What its multiplier is worth.
-    parameters
-        Names of its own settings.
-    observer
-        Makes an observer that records a run of a scene in a folder; None for a model that passes through no states.
-    interruptible
-        Whether it ends with what it has found so far on KeyboardInterrupt.
-    cost
-        What it costs; `advise` runs no model without.
-    pushover
-        Curve ``(n, 3)`` at finite displacements, from a scene, a distance [m] and a ``speed`` [m/s]; None without.
-    colour, marker, line
-        How charts draw it, and its pushover curve.
+    `solve` goes from a scene and the relative width of the bracket asked for to an outcome. It is handed `parameters`
+    by name, and ``observe=…`` if the model has an `observer`. `reads` has the keys of a scene file that have an
+    influence on the outcome, as ``joint.friction``, besides the wall, its supports and its loads, which every model
+    reads or refuses by name.
     """
 
-    name: str
-    title: str
+    name: str  # what the command line, tables and charts call it
+    title: str  # what it does, in half a line
     solve: Callable[..., Outcome]
     reads: frozenset[str]
-    kind: Kind = "estimate"
-    parameters: tuple[str, ...] = ()
-    observer: Callable[[Scene, Path], Recorder] | None = None
-    interruptible: bool = False
-    cost: Cost | None = None
-    pushover: Callable[..., Array] | None = None
-    colour: str = "0.35"
+    kind: Kind = "estimate"  # what its multiplier is worth
+    parameters: tuple[str, ...] = ()  # names of its own settings
+    observer: Callable[[Scene, Path], Recorder] | None = None  # records a run in a folder, if it passes through states
+    interruptible: bool = False  # whether it ends with what it has found so far on KeyboardInterrupt
+    cost: Cost | None = None  # `advise` runs no model without
+    pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed
+    colour: str = "0.35"  # how charts draw it,
     marker: str = "*"
-    line: str | tuple[int, tuple[int, ...]] = "-"
+    line: str | tuple[int, tuple[int, ...]] = "-"  # and its pushover curve
 
     def unread(self, scene: Scene) -> list[str]:
         """Keys of its file that a scene gives and this model does not take into account."""

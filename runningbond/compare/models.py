@@ -215,4 +215,4 @@ def run_model(
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     unread = model.unread(scene)
     note = f"not taken into account: {', '.join(unread)}" if unread else ""
-    return replace(outcome, message="; ".join(part for part in (outcome.message, note) if part))
+    return replace(outcome, model=model.name, message="; ".join(part for part in (outcome.message, note) if part))

@@ -23,11 +23,11 @@ from .table import Comparison
 WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250
 """Width of a plate, that of a page, and the least; its largest height [in]; and dots per inch."""
 
+TITLES, LINE, LETTER, GAP = 0.85, 0.11, 0.06, 0.1
+"""Height of its titles and its key, and of a line under a wall; width of a letter and of a gap between walls [in]."""
+
 PIXELS = 640
 """Longer side of the image of one wall."""
-
-SIDE, HEAD, FOOT, LINE = 0.62, 0.46, 0.34, 0.11
-"""Room for the names of walls, for those of models, for the key and for a line under a wall [in]."""
 
 OWN_WALLS = 12
 """Largest number of walls on the plate of one's own."""
@@ -90,36 +90,33 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     models = _models(comparison, plate)
     rows = [_row(comparison, name, models) for name in plate.walls]
     captions = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
-    aspect = [(top - bottom) / (right - left) for left, right, bottom, top in (row.extent for row in rows)]
-    room = TALLEST - HEAD - FOOT - captions * len(rows)
-    width = min((WIDTH - SIDE) / max(len(models), 3), room / sum(aspect))
-    heights = [width * ratio + captions for ratio in aspect]
-    total_width, total = max(SIDE + width * len(models), NARROWEST), sum(heights) + HEAD + FOOT
-    width = (total_width - SIDE) / len(models)
-    figure = Figure(figsize=(total_width, total), dpi=DPI)
-    figure.text(0.5, 1 - 0.06 / total, plate.title, ha="center", va="top", fontsize=8, fontweight="bold")
-    middles = [(SIDE + (column + 0.5) * width) / total_width for column in range(len(models))]
-    for middle, model in zip(middles, models, strict=True):
-        figure.text(middle, 1 - (HEAD - 0.06) / total, model.name, ha="center", va="bottom", fontsize=8)
-    top = total - HEAD
-    for row, label, height in zip(rows, plate.walls.values(), heights, strict=True):
-        bottom = top - height + captions
-        figure.text(0.08 / total_width, (top + bottom) / 2 / total, label, va="center", fontsize=7.5)
-        for middle, shape, caption in zip(middles, row.shapes, row.captions, strict=True):
-            left = middle - width / 2 / total_width
-            axes = figure.add_axes((left, bottom / total, width / total_width, (top - bottom) / total))
+    ratios = [(top - bottom) / (right - left) for left, right, bottom, top in (row.extent for row in rows)]
+    room = TALLEST - TITLES - captions * len(rows)
+    labels = [textwrap.wrap(label, 16) or [""] for label in plate.walls.values()]
+    side = 0.1 + LETTER * max(len(line) for label in labels for line in label)
+    width = min((WIDTH - side) / max(len(models), 3) - GAP, room / sum(ratios))
+    total = max(NARROWEST, side + (width + GAP) * len(models))
+    figure = Figure((total, TALLEST - room + sum(ratios) * width), DPI, layout="constrained")
+    figure.suptitle(plate.title, fontsize=8, fontweight="bold")
+    grid = figure.subplots(len(rows), len(models), squeeze=False, height_ratios=ratios)
+    for axes, model in zip(grid[0], models, strict=True):
+        axes.set_title(model.name, fontsize=8)
+    for line, row, label in zip(grid, rows, labels, strict=True):
+        line[0].text(
+            -0.04,
+            0.5,
+            "\n".join(label),
+            transform=line[0].transAxes,
+            ha="right",
+            va="center",
+            fontsize=7.5,
+            parse_math=False,
+        )
+        for axes, shape, caption in zip(line, row.shapes, row.captions, strict=True):
             draw_painted(axes, shape, painter, row.extent, annotated=False)
-            figure.text(middle, (bottom - 0.03) / total, caption, ha="center", va="top", fontsize=6.3)
-        top -= height
-    figure.legend(
-        handles=colour_key((JointState.SLIDE, JointState.OPEN)),
-        loc="lower center",
-        bbox_to_anchor=(0.5, 0.02 / total),
-        ncols=4,
-        frameon=False,
-        fontsize=7,
-        handlelength=1.6,
-    )
+            axes.text(0.5, -0.02, caption, transform=axes.transAxes, ha="center", va="top", fontsize=6.3)
+    handles = colour_key((JointState.SLIDE, JointState.OPEN))
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
     return to_png(figure, DPI)
 
 

@@ -32,15 +32,7 @@ MECHANISM_FRAMES = 8
 
 
 class SeriesRecorder:
-    """Writes moments. One that cannot be written does not end the run; `finish` raises the error.
-
-    Parameters
-    ----------
-    discretisation
-        The wall.
-    folder
-        Where the series is written.
-    """
+    """Writes moments of a wall into a folder. One that cannot be written does not end the run; see `finish`."""
 
     def __init__(self, discretisation: Discretisation, folder: Path) -> None:
         self.discretisation = discretisation
@@ -59,13 +51,7 @@ class SeriesRecorder:
                 self._error = error
 
     def finish(self, outcome: Outcome) -> None:
-        """End the series, once the outcome is known.
-
-        Raises
-        ------
-        OSError, VtkError
-            If a moment could not be written.
-        """
+        """End the series, once the outcome is known; raises the error of a moment that could not be written."""
         if self._error is not None:
             raise self._error
         if not len(self._series):

@@ -26,19 +26,7 @@ figure { margin: 1.5rem 0; } img { max-width: 100%; height: auto; } figcaption {
 
 
 def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: float, why_no_plates: str = "") -> str:
-    """Write the page.
-
-    Parameters
-    ----------
-    comparison
-        What was run.
-    pictures
-        PNG files of charts and plates, in the order in which they are to stand.
-    tolerance
-        Relative width of the brackets that was asked for.
-    why_no_plates
-        Why there are no pictures of mechanisms; empty where there are.
-    """
+    """Write the page, with the PNG files of charts and plates in their order, or why there are no plates."""
     parts = [
         "<h1>Masonry walls from their description to their collapse</h1>",
         f"<p>{len(comparison.campaign)} cases: {len(comparison.scenes)} walls by {len(comparison.models)} models.</p>",

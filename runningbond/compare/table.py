@@ -101,7 +101,8 @@ class Comparison:
     def only_published(self) -> "Comparison":
         """The part of it that is about published scenes."""
         scenes = {name: scene for name, scene in self.scenes.items() if name in self.published}
-        return replace(self, scenes=scenes, campaign=self.campaign.only(scenes))
+        outcomes = {cell: outcome for cell, outcome in self.campaign.outcomes.items() if cell[0] in scenes}
+        return replace(self, scenes=scenes, campaign=Campaign(outcomes))
 
 
 def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
