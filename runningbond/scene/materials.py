@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, runtime_checkable
 
 from .errors import SceneError
-from .ranges import NotNegative, Positive, Range, check_numbers
+from .ranges import ABOVE_ZERO, NotNegative, Positive, Range, check_numbers
 
 LEAST_FRICTION = 1e-6
 """Least tan φ that is not 0: what is smaller drowns in a linear program's tolerance, cohesion / tan φ with it."""
@@ -64,11 +64,12 @@ class Mortar:
 class Stiffness:
     """Stiffness of a joint per unit area, normal and tangential [Pa/m]."""
 
-    normal: Positive
-    shear: Positive
+    normal: float
+    shear: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, "joint.stiffness")
+        for name in ("normal", "shear"):
+            object.__setattr__(self, name, ABOVE_ZERO.take(f"joint.{name}_stiffness", getattr(self, name)))
 
 
 @runtime_checkable
