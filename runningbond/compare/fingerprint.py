@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from runningbond.joints import Law
 from runningbond.scene import Scene
 
 COMPUTING_ROOMS = (
@@ -23,7 +24,8 @@ def fingerprint(scene: Scene, model: str, tolerance: float) -> str:
     """Digest under which the outcome of a model on a scene is kept."""
     digest = hashlib.sha256(code_digest().encode())
     digest.update(f"{model} {tolerance!r} ".encode())
-    _feed(digest, scene)
+    for value in (scene, scene.dead_forces, scene.live_forces):  # of a user's own load, what it does as well
+        _feed(digest, value)
     return digest.hexdigest()
 
 
@@ -39,7 +41,9 @@ def code_digest() -> str:
 
 
 def _feed(digest: "hashlib._Hash", value: object) -> None:
-    if is_dataclass(value):
+    if isinstance(value, Law):
+        digest.update(repr(value.identity).encode())
+    elif is_dataclass(value):
         digest.update(type(value).__name__.encode())
         for entry in fields(value):
             digest.update(entry.name.encode())

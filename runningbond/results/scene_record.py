@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runningbond.joints import Law
 from runningbond.scene import (
     Action,
     BlockMaterial,
@@ -16,7 +17,6 @@ from runningbond.scene import (
     Bond,
     Forces,
     GivenForces,
-    JointLaw,
     JointMaterial,
     Joints,
     Lateral,
@@ -62,7 +62,7 @@ def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
     arrays: dict[str, NDArray[Any]] = {}
 
     def plain(value: object, name: str) -> object:
-        if isinstance(value, JointLaw):
+        if isinstance(value, Law):
             return {"named": value.name}
         if isinstance(value, Action) and type(value).__name__ not in PARTS:
             value = GivenForces(value.forces(scene))
