@@ -61,6 +61,7 @@ def test_a_load_of_ones_own_runs_in_every_model() -> None:
     assert homog_says(scene).startswith("model homog: has no closed form for this scene: it needs load.live.kind")
     held = tower(load__live=Wind(1.0), support__kind="fixed-first-course")
     assert live_load(held)[0::3] == pytest.approx([0.0, 0.0144, 0.0144])
+    assert held.control_point[1].tolist() == pytest.approx([0.0, 0.18])
     _, at, direction = scene.control_point
     assert (at.tolist(), direction.tolist()) == ([0.0, 0.06], [1.0, 0.0])
     assert len(scene.load.live[0].arrows(scene)) == 3

@@ -36,7 +36,7 @@ class Action:
         """Refuse a scene that the load cannot act on, in a `SceneError` under its key."""
 
     def factor(self, time: float) -> float:
-        """What multiplies the load at a time [s], for models in motion."""
+        """What multiplies the load at a time [s]; only models that follow a history of loads read it."""
         return 1.0
 
     def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
@@ -54,18 +54,20 @@ class Action:
     def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
         """Blocks whose displacement is averaged at the control point ``(n,)``, the point and a direction ``(2,)``.
 
-        It is where the first force at a point acts, or else the highest corner that lies farthest along the load (the
-        paper's upper corner on the side of the push); its displacement is read along the load.
+        It is where the first force at a point of a block that can move acts, or else the highest corner that
+        lies farthest along the load (the paper's upper corner on the side of the push).
         """
         arrows = self.arrows(scene)
-        if arrows and arrows[0].at is not None:
-            return arrows[0].block, arrows[0].at, arrows[0].direction
-        direction = arrows[0].direction if arrows else np.array([1.0, 0.0])
+        for arrow in arrows:
+            movable = arrow.block[~scene.fixed[arrow.block]]
+            if arrow.at is not None and len(movable):
+                return movable, arrow.at, arrow.direction
+        direction = arrows[-1].direction if arrows else np.array([1.0, 0.0])
         blocks, gravity = scene.blocks, scene.load.gravity
         up = -_unit(np.array(gravity)) if any(gravity) else np.array([0.0, 1.0])
-        movable = np.flatnonzero(~scene.fixed[blocks.owner])
-        height = blocks.vertices[movable] @ up
-        top = movable[height >= height.max() - blocks.tolerance]
+        corners = np.flatnonzero(~scene.fixed[blocks.owner])
+        height = blocks.vertices[corners] @ up
+        top = corners[height >= height.max() - blocks.tolerance]
         corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
         return blocks.owner[corner], blocks.vertices[corner[0]], direction
 
