@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.sparse import csc_array, csr_array
 
-from runningbond.joints import PointResponse, StaticLaw, static_law, wall_stiffness
+from runningbond.joints import PointLaw, PointResponse, static_law, wall_stiffness
 from runningbond.limit.equilibrium import Equilibrium, equilibrium
 from runningbond.scene import Array, Indices, Scene
 
@@ -45,7 +45,7 @@ class StaticSystem:
     """
 
     equilibrium: Equilibrium
-    law: StaticLaw
+    law: PointLaw
     length_unit: float
 
     @property

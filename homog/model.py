@@ -101,8 +101,8 @@ def _is_running_bond(scene: Scene, bond: Bond) -> bool:
     if not np.allclose(column, middle[:, 0], rtol=0, atol=1e-3):
         return False
     columns, courses = np.rint((high - low) / [bond.width / 2, bond.height]).astype(int)
-    found = set(zip(column.tolist(), course.tolist(), strict=True))
+    heads = set(zip(column.tolist(), course.tolist(), strict=True))
     return any(
-        found == {(x, y) for y in range(courses) for x in range(1, columns) if (x + y) % 2 == parity}
+        heads == {(x, y) for y in range(courses) for x in range(1, columns) if (x + y) % 2 == parity}
         for parity in (0, 1)
     )

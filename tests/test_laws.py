@@ -1,6 +1,10 @@
 """A law of one's own, written here: it runs in the models without a line of the package being touched."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,10 +12,14 @@ import pytest
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from dem.static import dem_static
+from runningbond.compare.fingerprint import fingerprint
 from runningbond.dynamics import Criteria, Run, State, settle
-from runningbond.joints import COULOMB, SOFTENING, KernelLaw, Law, joint_stiffness, kernel_law
+from runningbond.joints import KernelLaw, Law, joint_stiffness
 from runningbond.joints.compiled import kernel
+from runningbond.joints.coulomb import COULOMB
 from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE, Parameters
+from runningbond.joints.softening import SOFTENING
+from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Array, JointMaterial, Scene, SceneError, Stiffness
 
 from .walls import courses
@@ -99,4 +107,19 @@ def test_what_is_no_law_is_refused_in_files_and_in_python() -> None:
     with pytest.raises(SceneError, match=r"joint\.law = 'brittle': must be a law of joints"):
         tower(law="brittle")
     with pytest.raises(SceneError, match=r"joint\.law = 'brittle': must be a law of joints"):
-        JointMaterial(0.6, law="brittle")  # type: ignore[arg-type]
+        JointMaterial(0.6, law="brittle")
+
+
+def test_what_is_kept_of_a_wall_is_kept_for_its_law_in_every_process() -> None:
+    """The fingerprint of an outcome tells laws apart, and is the same in another process."""
+    program = """
+from runningbond.compare.fingerprint import fingerprint
+from tests.test_laws import SPRINGS, tower
+print(fingerprint(tower(law=SPRINGS), "limit", 0.01))
+"""
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parent.parent)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
+    own = fingerprint(tower(law=SPRINGS), "limit", 0.01)
+    assert done.stdout.strip() == own
+    other = replace(SPRINGS, constants=lambda material: (1.0, 1.0, np.inf))
+    assert len({own, *(fingerprint(tower(law=law), "limit", 0.01) for law in (None, other))}) == 3

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from runningbond.joints import Law
 from runningbond.scene import Scene
 
 from .model import Model
@@ -31,7 +32,8 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
         digest.update(_own_code(model.solve))
         model = model.name
     digest.update(f"{model} {tolerance!r} ".encode())
-    _feed(digest, scene)
+    for value in (scene, scene.dead_forces, scene.live_forces):  # of a user's own load, what it does as well
+        _feed(digest, value)
     return digest.hexdigest()
 
 
@@ -59,7 +61,9 @@ def code_digest() -> str:
 
 
 def _feed(digest: "hashlib._Hash", value: object) -> None:
-    if is_dataclass(value):
+    if isinstance(value, Law):
+        digest.update(repr(value.identity).encode())
+    elif is_dataclass(value):
         digest.update(type(value).__name__.encode())
         for entry in fields(value):
             digest.update(entry.name.encode())

@@ -57,7 +57,7 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
     """
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
-        return sig, codegen.magic_tuple(), _identity(self._py_func)
+        return sig, codegen.magic_tuple(), identity(self._py_func)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Give the compiled kernel for a signature, or None."""
@@ -76,8 +76,11 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
                 super().save_overload(sig, data)
 
 
-def _identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
-    """What a function is called in its source, and what it is closed over; of a foreign one, its code as well."""
+def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
+    """What a function is called in its source, and what it is closed over; of a foreign one, its code as well.
+
+    The same in every process, as long as the function does the same. `callers` are functions that are being named.
+    """
     code = function.__code__
     used = [cell.cell_contents for cell in function.__closure__ or ()]
     own: tuple[Any, ...] = ()
@@ -87,7 +90,7 @@ def _identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
         used += [value for value in named if isinstance(value, (Dispatcher, bool, int, float, tuple, np.ndarray))]
     callers = (*callers, function)
     known_by = (
-        _identity(value.py_func, callers) if isinstance(value, Dispatcher) else dumps(value)
+        identity(value.py_func, callers) if isinstance(value, Dispatcher) else dumps(value)
         for value in used
         if not isinstance(value, Dispatcher) or value.py_func not in callers
     )

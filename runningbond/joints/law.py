@@ -5,7 +5,7 @@ Kernels know tractions and jumps; the area that a point stands for is its weight
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from runningbond.scene import Array, JointMaterial, SceneError
 
 from .mohr_coulomb import PointStrength, truncated_cone
-from .point_law import PointResponse
+from .point_law import PointLaw
 
 COMMON_ROWS = ("work", "viscous work", "opening before", "slip before")
 """Rows of the history that every law has: work spent on the joint and on its viscosity, both [J/m²], and the jumps of
@@ -23,21 +23,6 @@ FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
 """Their numbers."""
 
 Parameters: TypeAlias = tuple[NDArray[np.uint64], Array]
-
-
-class StaticLaw(Protocol):
-    """Joint points that answer jumps with forces and their tangent, for models that solve for rest."""
-
-    @property
-    def normal_stiffness(self) -> Array:
-        """Elastic stiffness in opening of each point, ``(np,)``."""
-
-    @property
-    def shear_stiffness(self) -> Array:
-        """Elastic stiffness in slip of each point, ``(np,)``."""
-
-    def __call__(self, opening: Array, slip: Array, plastic_slip: Array, /) -> PointResponse:
-        """Answer to jumps ``(np,)`` of points with a given plastic slip ``(np,)``."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +50,8 @@ class Law:
     cone
         ``cone(material)``: tan φ, f_t [Pa] and shear at that tension [Pa] of the strength, which limit analysis reads.
     response
-        ``response(strength, normal_stiffness, shear_stiffness)``: the law with a tangent; models that solve for rest
-        refuse a law that has none.
+        ``response(strength, normal_stiffness, shear_stiffness)``: the law with a tangent, a `PointLaw` or a subclass;
+        models that solve for rest refuse a law that has none.
     """
 
     name: str
@@ -76,13 +61,21 @@ class Law:
     stored: Callable[["KernelLaw", Array, Array, Array], Array] = field(compare=False)
     damage: str | None = None
     cone: Callable[[JointMaterial], tuple[float, float, float]] = field(default=truncated_cone, compare=False)
-    response: Callable[[PointStrength, Array, Array], StaticLaw] | None = field(default=None, compare=False)
+    response: Callable[[PointStrength, Array, Array], PointLaw] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if self.history[:4] != COMMON_ROWS:
             raise SceneError("joint.law", f"must have a history that begins with {COMMON_ROWS}", self.history)
         if self.damage is not None:
             self.row(self.damage)
+
+    @property
+    def identity(self) -> tuple[Any, ...]:
+        """What tells the law from others, in every process the same: its names, and its functions' code."""
+        from .compiled import identity
+
+        functions = (getattr(self.kernel, "py_func", self.kernel), self.constants, self.stored, self.cone)
+        return self.name, self.history, *map(identity, functions)
 
     def row(self, name: str) -> int:
         """Number of a row of the history; a law without it is refused by name."""

@@ -1,14 +1,13 @@
-"""Which law the joint points of a wall have, and that law over all of them."""
+"""Which law the joint points of a wall have, and that law over all of them, with its compiled kernel."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from runningbond.scene import Array, Indices, JointMaterial, Scene, SceneError
+from runningbond.scene import Indices, JointMaterial, SceneError
 
 from .coulomb import COULOMB
-from .law import KernelLaw, Law, StaticLaw
-from .mohr_coulomb import PointStrength
+from .law import KernelLaw, Law
 from .softening import SOFTENING
 
 
@@ -53,17 +52,3 @@ def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelL
     segments = np.append(start, len(of_point)).astype(np.uint64)
     constants = np.array([law.constants(material) for material in materials])
     return KernelLaw(law, segments, np.ascontiguousarray(constants[of_point[start]]))
-
-
-def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Array) -> StaticLaw:
-    """Law of a scene's joint points with a tangent, of points with a strength and stiffnesses ``(np,)`` [N/m].
-
-    Raises
-    ------
-    SceneError
-        For a law that has no tangent.
-    """
-    law = common_law(scene.joint_materials)
-    if law.response is None:
-        raise SceneError("joint.law", f'"{law.name}" has no response with a tangent, which dem-static needs')
-    return law.response(strength, normal, shear)

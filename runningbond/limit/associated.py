@@ -27,7 +27,7 @@ SOUND = 1e-6
 GLUED = 1e6
 """Strength of a joint point, in weights of the heaviest block, above which the program is first tried with this one.
 
-Forces that such a point never reaches need not be in the program, where the others would drown beside them.
+Forces that such a point never reaches need not be in the program, where the others would be lost beside them.
 """
 
 

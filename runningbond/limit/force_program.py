@@ -153,6 +153,6 @@ def _mechanism_scale(system: Equilibrium) -> float:
     """Power unit that brings a mechanism's motions to order one, far above the solver's dual tolerance.
 
     With unit power the motions of a wall of a thousand blocks are a thousandth each, and its smallest
-    jumps drown in HiGHS's 1e-7.
+    jumps are lost in HiGHS's 1e-7.
     """
     return float(np.abs(system.live).sum())

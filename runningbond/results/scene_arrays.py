@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import runningbond.scene
-from runningbond.scene import Action, GivenForces, JointLaw, Scene
+from runningbond.joints import Law
+from runningbond.scene import Action, GivenForces, Scene
 
 DATACLASSES: dict[str, Any] = {
     name: part for name, part in vars(runningbond.scene).items() if isinstance(part, type) and is_dataclass(part)
@@ -28,7 +29,7 @@ def scene_to_arrays(scene: Scene) -> dict[str, NDArray[Any]]:
     arrays: dict[str, NDArray[Any]] = {}
 
     def encoded(value: object, name: str) -> object:
-        if isinstance(value, JointLaw):
+        if isinstance(value, Law):
             return {"named": value.name}
         if isinstance(value, Action) and type(value).__name__ not in DATACLASSES:
             value = GivenForces(value.forces(scene))

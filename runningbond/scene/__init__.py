@@ -7,7 +7,7 @@ from .errors import SceneError
 from .file import read_scene, scene_from_dict
 from .forces import Arrow, Forces
 from .loads import Action, Body, GivenForces, Lateral, Load, PointLoad
-from .materials import BlockMaterial, JointLaw, JointMaterial, Mortar, Stiffness
+from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
 from .segments import Joints, find_joints
 from .supports import NO_PINS, Pins, free_motions
 from .wall import Scene, build_scene
@@ -24,7 +24,6 @@ __all__ = [
     "Forces",
     "GivenForces",
     "Indices",
-    "JointLaw",
     "JointMaterial",
     "Joints",
     "Lateral",

@@ -13,7 +13,7 @@ from .ranges import ABOVE_ZERO, one_of
 FirstCourse: TypeAlias = Literal["full", "half"]
 Ends: TypeAlias = Literal["flush", "toothed"]
 
-MOST_BLOCKS = 1_000_000
+BLOCK_LIMIT = 1_000_000
 LATTICE_TOLERANCE = 1e-6
 """How far a length may be from a whole number of half blocks, in half blocks."""
 
@@ -56,8 +56,8 @@ def running_bond(
     one_of("wall.ends", ends, get_args(Ends))
     n_half = _whole_number(length / (bond.width / 2), "wall.length", length, f"half blocks of {bond.width / 2:g}")
     n_courses = _whole_number(height / bond.height, "wall.height", height, f"courses of {bond.height:g}")
-    if n_half * n_courses / 2 > MOST_BLOCKS:
-        raise SceneError("wall.length", f"gives more than {MOST_BLOCKS} blocks; make the wall smaller", length)
+    if n_half * n_courses / 2 > BLOCK_LIMIT:
+        raise SceneError("wall.length", f"gives more than {BLOCK_LIMIT} blocks; make the wall smaller", length)
     if ends == "toothed" and (n_half % 2 or n_half < 4):
         raise SceneError("wall.length", "toothed ends need a whole number of blocks, at least two", length)
     courses = []
@@ -86,8 +86,8 @@ def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array
     list of (4, 2) float
         Rectangles [m], counter-clockwise, course by course, left to right.
     """
-    if sum(len(course) for course in courses) > MOST_BLOCKS:
-        raise SceneError("wall.courses", f"has more than {MOST_BLOCKS} blocks; make the wall smaller")
+    if sum(len(course) for course in courses) > BLOCK_LIMIT:
+        raise SceneError("wall.courses", f"has more than {BLOCK_LIMIT} blocks; make the wall smaller")
     if not courses:
         raise SceneError("wall.courses", "has no course; give at least one, bottom to top", [])
     rows = []

@@ -1,4 +1,4 @@
-"""What loads come to: forces on the blocks of a scene, and the arrows that stand for them in drawings."""
+"""What loads do: forces on the blocks of a scene, and the arrows that stand for them in drawings."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING

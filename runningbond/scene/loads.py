@@ -6,7 +6,7 @@ it (`KINDS`). One of a user's own is a subclass of `Action` too, and an object o
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_type_hints
 
 import numpy as np
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from .wall import Scene
 
 LEAST_COMPONENT = 1e-6
-"""Least component of a force that is not 0, in the other one: what is smaller drowns in a program's tolerance."""
+"""Least component of a force that is not 0, in the other one: what is smaller is lost in a program's tolerance."""
 
 SIDES = {"right": (1.0, 0.0), "left": (-1.0, 0.0)}
 
@@ -36,7 +36,7 @@ class Action:
         """Refuse a scene that the load cannot act on, in a `SceneError` under its key."""
 
     def factor(self, time: float) -> float:
-        """What multiplies the load at a time [s], for models in motion."""
+        """What multiplies the load at a time [s]; only models that follow a history of loads read it."""
         return 1.0
 
     def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
@@ -54,25 +54,27 @@ class Action:
     def control(self, scene: "Scene") -> tuple[Indices, Array, Array]:
         """Blocks whose displacement is averaged at the control point ``(n,)``, the point and a direction ``(2,)``.
 
-        It is where the first force at a point acts, or else the highest corner that lies farthest along the load (the
-        paper's upper corner on the side of the push); its displacement is read along the load.
+        It is where the first force at a point of a block that can move acts, or else the highest corner that
+        lies farthest along the load (the paper's upper corner on the side of the push).
         """
         arrows = self.arrows(scene)
-        if arrows and arrows[0].at is not None:
-            return arrows[0].block, arrows[0].at, arrows[0].direction
-        direction = arrows[0].direction if arrows else np.array([1.0, 0.0])
+        for arrow in arrows:
+            movable = arrow.block[~scene.fixed[arrow.block]]
+            if arrow.at is not None and len(movable):
+                return movable, arrow.at, arrow.direction
+        direction = arrows[-1].direction if arrows else np.array([1.0, 0.0])
         blocks, gravity = scene.blocks, scene.load.gravity
         up = -_unit(np.array(gravity)) if any(gravity) else np.array([0.0, 1.0])
-        movable = np.flatnonzero(~scene.fixed[blocks.owner])
-        height = blocks.vertices[movable] @ up
-        top = movable[height >= height.max() - blocks.tolerance]
+        corners = np.flatnonzero(~scene.fixed[blocks.owner])
+        height = blocks.vertices[corners] @ up
+        top = corners[height >= height.max() - blocks.tolerance]
         corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
         return blocks.owner[corner], blocks.vertices[corner[0]], direction
 
     @classmethod
     def read(cls, table: Table) -> "Action":
-        """The load that a table of a file describes."""
-        raise NotImplementedError(f"{cls.__name__} is of no scene file")
+        """The load that a table of a file describes: vectors, named as the fields of its dataclass are."""
+        return cls(**{name: table.vector(name) for name in get_type_hints(cls)})
 
 
 @dataclass(frozen=True)
@@ -119,11 +121,6 @@ class Body(Action):
         """The same force per mass on each block."""
         return Forces.on(scene, self.acceleration)
 
-    @classmethod
-    def read(cls, table: Table) -> "Body":
-        """The load of a table with an acceleration."""
-        return cls(table.vector("acceleration"))
-
 
 @dataclass(frozen=True)
 class PointLoad(Action):
@@ -152,11 +149,6 @@ class PointLoad(Action):
             (x0, y0), (x1, y1) = scene.blocks.extent(scene.wall)
             spans = f"x {x0:.4g} … {x1:.4g} m, y {y0:.4g} … {y1:.4g} m"
             raise SceneError(f"{key}.at", f"touches no block that can move; the wall spans {spans}", list(self.at))
-
-    @classmethod
-    def read(cls, table: Table) -> "PointLoad":
-        """The load of a table with a point and a force."""
-        return cls(table.vector("at"), table.vector("force"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,7 +227,7 @@ def _read_actions(key: str, content: Any) -> tuple[Action, ...]:
 
 
 def _direction(key: str, value: Any) -> tuple[float, float]:
-    """A vector that is not zero, neither component of which drowns in the other."""
+    """A vector that is not zero, neither component of which is lost in the other."""
     pair = vector(key, value)
     if not any(pair):
         raise SceneError(key, "must not be zero", list(pair))

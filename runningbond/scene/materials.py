@@ -2,13 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Any, Protocol, runtime_checkable
+from typing import Annotated
 
 from .errors import SceneError
-from .ranges import NotNegative, Positive, Range, check_numbers
+from .ranges import ABOVE_ZERO, NotNegative, Positive, Range, check_numbers
 
 LEAST_FRICTION = 1e-6
-"""Least tan φ that is not 0: what is smaller drowns in a linear program's tolerance, cohesion / tan φ with it."""
+"""Least tan φ that is not 0: what is smaller is lost in a linear program's tolerance, cohesion / tan φ with it."""
 
 
 @dataclass(frozen=True)
@@ -64,24 +64,12 @@ class Mortar:
 class Stiffness:
     """Stiffness of a joint per unit area, normal and tangential [Pa/m]."""
 
-    normal: Positive
-    shear: Positive
+    normal: float
+    shear: float
 
     def __post_init__(self) -> None:
-        check_numbers(self, "joint.stiffness")
-
-
-@runtime_checkable
-class JointLaw(Protocol):
-    """A law of joint points; `runningbond.joints.Law` is one."""
-
-    @property
-    def name(self) -> str:
-        """What messages call it."""
-
-    @property
-    def kernel(self) -> Any:
-        """Its compiled kernel."""
+        for name in ("normal", "shear"):
+            object.__setattr__(self, name, ABOVE_ZERO.take(f"joint.{name}_stiffness", getattr(self, name)))
 
 
 @dataclass(frozen=True)
@@ -119,7 +107,7 @@ class JointMaterial:
     inset: NotNegative = 0.0
     fracture_energy_1: NotNegative | None = None
     fracture_energy_2: NotNegative | None = None
-    law: JointLaw | None = None
+    law: object = None
 
     def __post_init__(self) -> None:
         check_numbers(self, "joint")
@@ -134,7 +122,7 @@ class JointMaterial:
         if self.fracture_energy_1 is None and self.fracture_energy_2 is not None:
             what = "is missing; what a joint loses in slip it loses in opening as well"
             raise SceneError("joint.fracture_energy_1", what)
-        if self.law is not None and not isinstance(self.law, JointLaw):
+        if self.law is not None and not hasattr(self.law, "kernel"):
             raise SceneError("joint.law", "must be a law of joints, a runningbond.joints.Law in Python", self.law)
 
     @property

@@ -47,8 +47,8 @@ NotNegative: TypeAlias = Annotated[float, AT_LEAST_ZERO]
 def ranges_of(part: Any) -> dict[str, Range]:
     """Ranges of the fields of a dataclass, a type, that are annotated with one, by their names."""
     hints = get_type_hints(part, include_extras=True)
-    found = {name: [h for h in (hint, *get_args(hint)) if hasattr(h, "__metadata__")] for name, hint in hints.items()}
-    return {name: annotated[0].__metadata__[0] for name, annotated in found.items() if annotated}
+    parts = [(name, part) for name, hint in hints.items() for part in (hint, *get_args(hint))]
+    return {name: part.__metadata__[0] for name, part in parts if hasattr(part, "__metadata__")}
 
 
 def check_numbers(part: Any, table: str) -> None:

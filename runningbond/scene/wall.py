@@ -1,7 +1,7 @@
 """The scene: a wall with its joints, materials, supports and loads, complete and checked."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -98,7 +98,9 @@ class Scene:
         return self._sum(Forces.on(self), self.load.live)
 
     def _sum(self, forces: Forces, loads: Sequence[Action]) -> Forces:
-        return sum((load.forces(self) for load in loads), forces)
+        total = sum((load.forces(self) for load in loads), forces)
+        loose = ~self.fixed[total.block]
+        return replace(total, block=total.block[loose], at=total.at[loose], force=total.force[loose])
 
     @cached_property
     def control_point(self) -> tuple[Indices, Array, Array]:
