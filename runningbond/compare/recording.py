@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dem.pushover import State as StaticState
+from dem.pushover import StaticState
 from dem.rigid_system import contact_points
 from dem.static_system import StaticSystem
 from fem_interface.element_order import modal_wall
@@ -114,7 +114,7 @@ class MotionRecorder(Recorder):
 
     def __init__(self, scene: Scene, model: str, folder: Path) -> None:
         wall = modal_wall(scene) if model == "fem" else None
-        points = contact_points(scene) if wall is None else wall.interface.points
+        points = contact_points(scene) if wall is None else wall.elements.points
         super().__init__(Stage(scene, points, None if wall is None else _triangles(wall)), folder)
         self._wall = wall
         self._multiplier = np.nan
