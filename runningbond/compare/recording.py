@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dem.pushover import State as StaticState
+from dem.pushover import StaticState
 from dem.rigid_system import contact_points
 from dem.static_system import StaticSystem
 from fem_interface.modal_wall import ModalWall
@@ -111,7 +111,7 @@ class MotionRecorder(SeriesRecorder):
         """Turn to the mesh of a run; the pieces of blocks that may crack are blocks of their own there."""
         self._wall = wall
         triangles = Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
-        self.discretisation = Discretisation(wall.scene, wall.interface.points, triangles)
+        self.discretisation = Discretisation(wall.scene, wall.elements.points, triangles)
         self._series = TimeSeries(self.discretisation, self._folder)
 
     def _next_load(self, multiplier: float) -> None:
