@@ -246,13 +246,14 @@ def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_p
     assert {Path(*cell) for cell in campaign.reused} == {path for path in kept if path.parts[0] in scenes}
 
 
-def test_ctrl_c_with_tasks_waiting_says_one_thing(tmp_path: Path) -> None:
-    """More tasks than the workers' queue takes, and each worker at one: nothing is heard of them but the hint."""
+@pytest.mark.parametrize("work", [0.1, 4.0])
+def test_ctrl_c_with_tasks_waiting_says_one_thing(work: float, tmp_path: Path) -> None:
+    """More tasks than the workers' queue takes, while workers load and when each is at a task: the hint and no more."""
     process = start(tmp_path, "--models", "fem", "--jobs", "2", "--fresh")
     deadline, workers = time.monotonic() + 60, psutil.Process(process.pid)
     while time.monotonic() < deadline:
         busy = [child for child in workers.children() if "LokyProcess" in " ".join(child.cmdline())]
-        if len(busy) > 1 and all(sum(child.cpu_times()[:2]) > 4 for child in busy):
+        if len(busy) > 1 and all(sum(child.cpu_times()[:2]) > work for child in busy):
             break
         time.sleep(0.05)
     os.killpg(process.pid, signal.SIGINT)
