@@ -1,10 +1,10 @@
-"""Questions that a model is asked about a wall, with its knobs turned."""
+"""Questions that a model is asked about a wall, as it is or with a parameter changed."""
 
 import statistics
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +24,6 @@ from runningbond.limit import limit
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, Stiffness
 
-from .answer import Answer
 from .cell import deformable_cell, rigid_cell
 from .walls import TURNED, Question
 
@@ -41,7 +40,29 @@ SOFT = 1e10
 """Stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner."""
 
 
-Asked: TypeAlias = Callable[..., Answer]
+class Answer(NamedTuple):
+    """What a model said, as columns of the study's table.
+
+    Parameters
+    ----------
+    status
+        That of `runningbond.results.Outcome`; ``not applicable`` where the model has nothing to say.
+    value, lower, upper
+        The number that was asked for, and its bracket; None without one.
+    dofs, steps
+        Degrees of freedom and steps, where it has any.
+    message
+        One line for the reader.
+    """
+
+    status: str
+    value: float | None = None
+    lower: float | None = None
+    upper: float | None = None
+    dofs: int | None = None
+    steps: int | None = None
+    message: str = ""
+
 
 MODELS: dict[str, Callable[..., Outcome]] = {
     "homog": homog,
@@ -51,6 +72,7 @@ MODELS: dict[str, Callable[..., Outcome]] = {
     "dem-dynamic": dem_dynamic,
     "fem": fem,
 }
+"""Models as functions that take the arguments of `parameters`."""
 
 
 def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> Answer:
@@ -63,7 +85,7 @@ def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) 
     scene
         The scene.
     settings
-        Arguments of the model, from `knobs`.
+        Arguments of the model, from `parameters`.
     """
     try:
         return QUESTIONS[question](model, scene, **settings)
@@ -163,7 +185,7 @@ def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
     return Answer("measured", middle, min(costs), max(costs), system.freedoms, STEPS, step)
 
 
-QUESTIONS: dict[Question, Asked] = {
+QUESTIONS: dict[Question, Callable[..., Answer]] = {
     "collapse": _collapse,
     "turned block": _turned,
     "compression": _compression,

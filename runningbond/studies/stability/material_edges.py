@@ -4,21 +4,21 @@ Each extreme has an exact answer: a multiplier, a pair of loads between which it
 it, say that it cannot, or refuse; a number beside it is a wrong answer.
 """
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from runningbond.compare.models import MODELS, TOLERANCE
-from runningbond.results import Outcome, Status
+from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError, build_scene, scene_from_dict
 from runningbond.scene.blocks import CONTACT_TOLERANCE
-
-from .finding import Edge, Finding
+from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 """Of the joints of all walls that are not scaled."""
@@ -32,14 +32,18 @@ SIZES = (1e-6, 1.0, 1e3)
 PRESSED = {"gravity": 9.81, "live": {"kind": "point", "at": [0.24, 0.24], "force": [0.0, -1.0]}}
 """A load on the middle of the top of `panel`."""
 
-COLOURS = {
-    "right": "#a6cee3",
-    "estimate": "#dcdcdc",
-    "refused": "#f7f7f7",
-    "says so": "#fdd49e",
-    "wrong": "#d7301f",
+WORTH = {
+    "right": ("#a6cee3", "right"),
+    "estimate": ("#dcdcdc", "estimate, on either side"),
+    "refused": ("#f7f7f7", "refused: no closed form"),
+    "says so": ("#fdd49e", "no answer, and it says so"),
+    "wrong": ("#d7301f", "wrong"),
 }
-"""What an answer is worth, and its colour."""
+"""What an answer may be worth: its colour, and words for it."""
+
+PART = "Answers"
+Exact: TypeAlias = float | tuple[float, float] | str
+"""A multiplier, the two loads between which it lies, a status, or ``refused``."""
 
 
 @dataclass(frozen=True)
@@ -53,21 +57,12 @@ class Extreme:
     build
         The wall; it may be refused.
     exact
-        The multiplier, the two loads between which it lies, the status, or ``refused``.
+        What is true.
     """
 
     what: str
     build: Callable[[], Scene]
-    exact: float | tuple[float, float] | Status | str
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What a user gets: the outcome in short, what it is worth, and the message or the refusal."""
-
-    said: str
-    worth: str
-    message: str
+    exact: Exact
 
 
 def panel(**changes: Any) -> Scene:
@@ -173,18 +168,21 @@ def _held() -> Scene:
     return scene_from_dict(tables)
 
 
-def answer(extreme: Extreme, model: str) -> tuple[Answer, Outcome | None]:
-    """Ask a model about an extreme."""
+def answer(what: str, model: str) -> Row:
+    """What a model answers about an extreme, what that is worth, and the message or the refusal."""
+    exact, build = EXTREMES[what].exact, EXTREMES[what].build
+    row: Row = {"exact": _in_words(exact)}
     try:
-        outcome = MODELS[model](extreme.build(), TOLERANCE)
+        outcome = MODELS[model](build(), TOLERANCE)
     except SceneError as error:
         # `homog` refuses what it has no closed form for, and the reader what is no wall.
-        right = extreme.exact == "refused"
-        return Answer("refused", "right" if right else "refused" if model == "homog" else "wrong", str(error)), None
-    return Answer(_in_short(outcome), worth(outcome, extreme.exact), outcome.message), outcome
+        value = "right" if exact == "refused" else "refused" if model == "homog" else "wrong"
+        return row | {"answer": "refused", "worth": value, "message": str(error)}
+    row |= {"answer": _in_short(outcome), "worth": worth(outcome, exact), "λ": outcome.multiplier}
+    return row | {"message": outcome.message}
 
 
-def worth(outcome: Outcome, exact: float | tuple[float, float] | str) -> str:
+def worth(outcome: Outcome, exact: Exact) -> str:
     """What an outcome is worth beside the exact answer."""
     if outcome.status in ("undecided", "failed"):
         return "says so"
@@ -210,51 +208,13 @@ def _in_short(outcome: Outcome) -> str:
     return f"{number(lower)}–{number(upper)}"
 
 
-def experiment() -> Finding:
-    """Ask every model about every extreme."""
-    walls = extremes()
-    table = {(wall.what, model): answer(wall, model) for wall in walls for model in MODELS}
-    answers = {key: short for key, (short, _) in table.items()}
-    rows = [
-        (wall.what, _exact(wall.exact), model, answers[wall.what, model].said, answers[wall.what, model].worth,
-         answers[wall.what, model].message)
-        for wall in walls
-        for model in MODELS
-    ]  # fmt: skip
-    edges = [Edge("widest gap that is contact, in block sizes", _widest_gap(), CONTACT_TOLERANCE, 1e-3)]
-    for model in MODELS:
-        found = [table[f"{size:g} m wall, similar", model][1] for size in SIZES]
-        loads = [outcome.multiplier for outcome in found if outcome is not None and outcome.multiplier is not None]
-        for size, load in zip(SIZES, loads, strict=False):
-            if size != 1.0:
-                edges.append(Edge(f"λ of a wall of {size:g} m, of that of 1 m, {model}", load / loads[1], 1.0, 1e-9))
-    count = {value: sum(short.worth == value for short in answers.values()) for value in COLOURS}
-    wrong = [f"{what} ({model})" for (what, model), short in answers.items() if short.worth == "wrong"]
-    missed = f": {', '.join(wrong)}" if wrong else ""
-    silent = [f"{what} ({model})" for (what, model), short in answers.items() if short.worth == "says so"]
-    unanswered = f"; no answer, and why, to {', '.join(silent)}" if silent else ""
-    told = sorted({short.message for short in answers.values() if short.worth == "says so"})
-    return Finding(
-        title="Materials, shapes and sizes at the edge",
-        heads=("wall", "exact", "model", "answer", "worth", "message"),
-        rows=rows,
-        edges=edges,
-        trust=f"{count['right']} of {len(answers)} answers are right, {count['wrong']} wrong{missed}. Models in motion "
-        f"see no multiplier below {UNSEEN:g}, and brackets there are as wide{unanswered}.",
-        beyond="; ".join(told) or "nothing: every model answers",
-        draw=lambda figure: _draw(
-            figure, [wall.what for wall in walls], [_exact(wall.exact) for wall in walls], answers
-        ),
-    )
-
-
-def _exact(exact: float | tuple[float, float] | str) -> str:
+def _in_words(exact: Exact) -> str:
     if isinstance(exact, str):
         return exact
     return "–".join(map(number, exact)) if isinstance(exact, tuple) else number(exact)
 
 
-def _widest_gap() -> float:
+def widest_gap(what: str) -> Row:
     """Gap, in block sizes, at which two blocks begin to be none of one wall."""
     low, high = 0.5, 2.0
     while high - low > 1e-6:
@@ -264,28 +224,56 @@ def _widest_gap() -> float:
             low = middle
         except SceneError:
             high = middle
-    return low * CONTACT_TOLERANCE
+    return {"measured": low * CONTACT_TOLERANCE, "theory": CONTACT_TOLERANCE, "allowed": 1e-3}
 
 
-def _draw(figure: Figure, walls: Sequence[str], exact: Sequence[str], answers: dict[tuple[str, str], Answer]) -> None:
+def fits(rows: Rows) -> list[Edge]:
+    """One λ at every size, and what the answers are worth."""
+    found = []
+    for model in MODELS:
+        loads = {row["wall"]: row.get("λ") for row in rows[PART] if row["model"] == model}
+        usual = loads[f"{SIZES[1]:g} m wall, similar"]
+        for size in (SIZES[0], SIZES[2]):
+            load = loads[f"{size:g} m wall, similar"]
+            if load is not None and usual is not None:
+                found.append(Edge(f"λ of a wall of {size:g} m, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
+    count = Counter(row["worth"] for row in rows[PART])
+    return found + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
+
+
+def draw(figure: Figure, rows: Rows) -> None:
     """A map, walls by models, of what the user gets."""
-    figure.set_size_inches(10.5, 0.31 * len(walls) + 1.4)
-    figure.set_layout_engine("constrained")
+    figure.set_size_inches(10.5, 0.31 * len(EXTREMES) + 1.6)
     axes = figure.add_subplot()
-    for row, wall in enumerate(walls):
-        for column, model in enumerate(MODELS):
-            short = answers[wall, model]
-            axes.add_patch(Rectangle((column, row), 1, 1, facecolor=COLOURS[short.worth], edgecolor="white", lw=1.5))
-            colour = "white" if short.worth == "wrong" else "0.15"
-            axes.text(column + 0.5, row + 0.5, short.said, ha="center", va="center", fontsize=7.5, color=colour)
-        axes.text(len(MODELS) + 0.05, row + 0.5, exact[row], va="center", fontsize=8)
+    places = {wall: place for place, wall in enumerate(EXTREMES)}
+    for row in rows[PART]:
+        at, column = places[row["wall"]], list(MODELS).index(row["model"])
+        axes.add_patch(Rectangle((column, at), 1, 1, facecolor=WORTH[row["worth"]][0], edgecolor="white", lw=1.5))
+        colour = "white" if row["worth"] == "wrong" else "0.15"
+        axes.text(column + 0.5, at + 0.5, row["answer"], ha="center", va="center", fontsize=7.5, color=colour)
+        if column == 0:
+            axes.text(len(MODELS) + 0.05, at + 0.5, row["exact"], va="center", fontsize=8)
     axes.text(len(MODELS) + 0.05, -0.45, "exact", va="center", fontsize=9, weight="bold")
     axes.set_xticks(np.arange(len(MODELS)) + 0.5, list(MODELS))
-    axes.set_yticks(np.arange(len(walls)) + 0.5, list(walls), fontsize=8)
-    axes.set(xlim=(0, len(MODELS) + 0.75), ylim=(len(walls), 0))
+    axes.set_yticks(np.arange(len(EXTREMES)) + 0.5, list(EXTREMES), fontsize=8)
+    axes.set(xlim=(0, len(MODELS) + 0.75), ylim=(len(EXTREMES), 0))
     axes.xaxis.tick_top()
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
-    keys = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="0.6") for colour in COLOURS.values()]
-    labels = ["right", "estimate, on either side", "refused: no closed form", "no answer, and it says so", "wrong"]
-    figure.legend(keys, labels, loc="outside lower center", ncols=5, frameon=False, fontsize=8)
+    keys = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="0.6", label=label) for colour, label in WORTH.values()]
+    figure.legend(handles=keys, loc="outside lower center", ncols=5, frameon=False, fontsize=8)
+
+
+EXTREMES = {extreme.what: extreme for extreme in extremes()}
+STUDY = Study(
+    "material-edges",
+    "Materials, shapes and sizes at the edge",
+    trusted="no answer is wrong; models in motion see no multiplier below 0.0001, and brackets there are as wide",
+    beyond="`undecided` and why, or a refusal that names what is wrong",
+    parts={
+        PART: Part(("wall", "model"), [(wall, model) for wall in EXTREMES for model in MODELS], answer),
+        "widest gap that is contact [block sizes]": Part(("between",), [("two blocks",)], widest_gap),
+    },
+    charts=[Chart("material-edges", "What every model answers at the edge, beside the exact answer", draw)],
+    fits=fits,
+)

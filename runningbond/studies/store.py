@@ -1,0 +1,179 @@
+"""The table of a study: a row is kept as soon as it is measured, and taken again while nothing it depends on changes.
+
+``NAME.csv`` is written whole or not at all. Each row carries a key, the digest of all that it depends on, and a seal,
+the digest of the row itself.
+"""
+
+import csv
+import hashlib
+import io
+import json
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cache
+from pathlib import Path
+from threading import Event
+
+from runningbond.compare.fingerprint import code_digest
+from runningbond.results import write_atomically
+
+from .apart import measure_apart
+from .study import FAILURE, Case, Row, Rows, Study
+
+PART, KEY, SEAL = "part", "key", "seal"
+"""Columns beside those of the rows."""
+
+Where = tuple[str, Case]
+"""A case, and the part that it belongs to."""
+
+
+def run_study(
+    study: Study, folder: Path, *, jobs: int = 1, progress: Callable[[str], None] = lambda case: None
+) -> dict[str, list[Row]]:
+    """Measure what is not in the table yet.
+
+    Parameters
+    ----------
+    study
+        The study.
+    folder
+        Where its table is kept.
+    jobs
+        Cases measured side by side, each in a process of its own if there is more than one.
+    progress
+        Called with each case that is done, in words.
+
+    Returns
+    -------
+    dict
+        Every row by the names of the study's parts. A case that ended in an error has its words in column `FAILURE`.
+    """
+    kept = kept_rows(study, folder)
+    for where in kept:
+        progress(words(study, where))
+    for where, row in _measured(study, [where for where in study.cases if where not in kept], jobs):
+        kept[where] = row
+        write_atomically(table_path(study, folder), csv_text(study, kept).encode())
+        progress(words(study, where))
+    return {name: [kept[name, case] for case in part.cases] for name, part in study.parts.items()}
+
+
+def is_complete(study: Study, folder: Path) -> bool:
+    """Whether every case is in the table."""
+    return len(kept_rows(study, folder)) == len(study.cases)
+
+
+def words(study: Study, where: Where) -> str:
+    """A case for the progress bar."""
+    return ", ".join([study.name, *(str(entry) for entry in where[1] if entry != "")])
+
+
+def table_path(study: Study, folder: Path) -> Path:
+    """The table's file."""
+    return folder / f"{study.name}.csv"
+
+
+def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
+    """Rows of the table that are still good; what ended in an error is tried again."""
+    try:
+        rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    found = {}
+    for part, case in study.cases:
+        row = rows.get(key_of(study, part, case))
+        if row is not None and FAILURE not in row:
+            found[part, case] = dict(zip(study.parts[part].columns, case, strict=True)) | row
+    return found
+
+
+def csv_text(study: Study, rows: dict[Where, Row]) -> str:
+    """The table as CSV, in the order of the study; `read_csv` gives the same rows back, to the last bit."""
+    columns = list(dict.fromkeys(column for row in rows.values() for column in row))
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow([PART, *columns, KEY, SEAL])
+    for part, case in study.cases:
+        if (row := rows.get((part, case))) is not None:
+            cells = [part, *(_text(row.get(column)) for column in columns), key_of(study, part, case)]
+            writer.writerow([*cells, _seal(cells)])
+    return buffer.getvalue()
+
+
+def read_csv(text: str) -> dict[str, Row]:
+    """Rows of a table by their keys; damaged ones are left out."""
+    reader = csv.reader(io.StringIO(text))
+    heads = next(reader, [])
+    rows = {}
+    for cells in reader:
+        if len(cells) == len(heads) and cells[-1] == _seal(cells[:-1]):
+            entries = zip(heads[1:-2], cells[1:-2], strict=True)
+            rows[cells[-2]] = {head: _value(cell) for head, cell in entries if cell}
+    return rows
+
+
+def _text(value: object) -> str:
+    """An entry as a cell: words as they are unless they read as something else, all else as JSON."""
+    if value is None:
+        return ""
+    return value if isinstance(value, str) and value and value == _value(value) else json.dumps(value)
+
+
+def _value(cell: str) -> object:
+    try:
+        return json.loads(cell)
+    except ValueError:
+        return cell
+
+
+def _seal(cells: Sequence[str]) -> str:
+    return hashlib.sha256("\0".join(cells).encode()).hexdigest()[:16]
+
+
+def key_of(study: Study, part: str, case: Case) -> str:
+    """Digest of all that the row of a case depends on."""
+    depends = f"{code_digest()} {sources_digest(tuple(study.sources))} {part} {case!r} {study.depends(case)}"
+    return hashlib.sha256(depends.encode()).hexdigest()
+
+
+@cache
+def sources_digest(sources: tuple[Path, ...]) -> str:
+    """Digest of files, and of all code and scenes in folders."""
+    digest = hashlib.sha256()
+    for source in sources:
+        files = sorted(source.rglob("*")) if source.is_dir() else [source]
+        for path in files:
+            if path.suffix in (".py", ".toml"):
+                digest.update(f"{path.relative_to(source.parent)}\n".encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _measured(study: Study, cases: Sequence[Where], jobs: int) -> Iterator[tuple[Where, Row]]:
+    """Rows as they come: one after another in this process, or from threads that each wait for a process."""
+    stop = Event()
+    if jobs == 1:
+        for where in cases:
+            yield where, _row(study, where, stop)
+        return
+    with ThreadPoolExecutor(jobs) as threads:
+        tasks = {threads.submit(_row, study, where, stop): where for where in cases}
+        try:
+            for task in as_completed(tasks):
+                yield tasks[task], task.result()
+        finally:
+            stop.set()
+            threads.shutdown(cancel_futures=True)
+
+
+def _row(study: Study, where: Where, stop: Event) -> Row:
+    part, case = study.parts[where[0]], where[1]
+    row = dict(zip(part.columns, case, strict=True))
+    try:
+        return row | (measure_apart(part.measure, case, stop) if study.apart else part.measure(*case))
+    except Exception as error:  # a defect in one case must not lose the others
+        return row | {FAILURE: f"{type(error).__name__}: {error}"}
+
+
+def failures(rows: Rows) -> list[str]:
+    """Words of the errors among rows."""
+    return [f"{', '.join(map(str, row.values()))}" for own in rows.values() for row in own if FAILURE in row]
