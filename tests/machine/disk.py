@@ -1,4 +1,4 @@
-"""Mishaps of the disk: it is full before a command is done, or takes nothing at all."""
+"""Faults of the disk: it is full before a command is done, or takes nothing at all."""
 
 import json
 import os
@@ -11,8 +11,8 @@ from pathlib import Path
 
 from runningbond.commands.exits import BAD_INPUT, DONE
 
+from .commands import COMMANDS
 from .trial import NOT_TRIED, REDONE, REFUSED, Scratch, Trial, call, judged
-from .works import WORKS
 
 ROOM = 16 << 10
 """Bytes that a full disk still takes, so that it is full in the middle [B]."""
@@ -71,7 +71,7 @@ def fill(scratch: Scratch, folder: Path, disk: Disk) -> Trial:
     """Call a command on a disk that is full before it is done, then on one that has room again."""
     scratch.fresh(folder)
     disk.fill()
-    code, message = call(scratch.work.arguments(folder))
+    code, message = call(scratch.command.arguments(folder))
     trial = scratch.trial("full disk", folder, code, message, REDONE)
     disk.mend()
     return judged(trial, code == BAD_INPUT and scratch.does_it_again(folder))
@@ -82,7 +82,7 @@ def lock(scratch: Scratch, folder: Path, disk: Disk) -> Trial:
     scratch.fresh(folder)
     before = sorted(folder.rglob("*"))
     disk.lock()
-    code, message = call(scratch.work.arguments(folder))
+    code, message = call(scratch.command.arguments(folder))
     nothing = sorted(folder.rglob("*")) == before
     trial = scratch.trial("read-only folder", folder, code, message, REFUSED)
     disk.mend()
@@ -92,13 +92,13 @@ def lock(scratch: Scratch, folder: Path, disk: Disk) -> Trial:
 def disk_trials(home: Path, names: Sequence[str], mounts: bool) -> list[Trial]:
     """Give commands that have been prepared full and read-only disks."""
     trials: list[Trial] = []
-    for scratch in (Scratch(work, home) for work in WORKS if work.name in names):
-        for mishap, happen in (("full disk", fill), ("read-only folder", lock)):
-            place = home / f"{scratch.work.name}-{happen.__name__}"
+    for scratch in (Scratch(command, home) for command in COMMANDS if command.name in names):
+        for fault, happen in (("full disk", fill), ("read-only folder", lock)):
+            place = home / f"{scratch.command.name}-{happen.__name__}"
             place.mkdir()
             disk = Disk(place, mounts)
             if happen is lock and not disk.mounted and os.geteuid() == 0:
-                trials.append(Trial(scratch.work.name, mishap, 0, len(scratch.expected), "", DONE, NOT_TRIED))
+                trials.append(Trial(scratch.command.name, fault, 0, len(scratch.expected), "", DONE, NOT_TRIED))
             else:
                 trials.append(happen(scratch, place / "folder", disk))
     return trials
@@ -115,7 +115,7 @@ def disk_trials_apart(home: Path, names: Sequence[str]) -> list[Trial]:
 import json
 from dataclasses import asdict
 from pathlib import Path
-from compare.stability.machine.disk import disk_trials
+from tests.machine.disk import disk_trials
 print(json.dumps([asdict(trial) for trial in disk_trials(Path({str(home)!r}), {list(names)!r}, {bool(apart)})]))
 """
     done = subprocess.run([*apart, sys.executable, "-c", program], capture_output=True, text=True, check=False)

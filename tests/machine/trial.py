@@ -1,4 +1,4 @@
-"""What a mishap did to a command: trials of it, each in a folder of its own."""
+"""What a fault did to a command: trials of it, each in a folder of its own."""
 
 import io
 import re
@@ -13,31 +13,23 @@ from pathlib import Path
 from runningbond.commands.command_line import command
 from runningbond.commands.exits import DONE
 
-from .works import Work, pictures
+from .commands import Command, pictures
 
 WHOLE, REDONE, REFUSED, LOST, NOT_TRIED = "whole", "redone", "refused", "lost", "not tried"
-VERDICTS = {
-    WHOLE: ("does its work all the same", "#2a9d8f"),
-    REDONE: ("what it had finished is whole; called again, it does the rest", "#8ecae6"),
-    REFUSED: ("says in one line why not; nothing is half written", "#e9a23b"),
-    LOST: ("none of these", "#1f1f1f"),
-    NOT_TRIED: (
-        "needs a disk of its own here, and may mount none",
-        "#e5e5e5",
-    ),
-}
-"""What may come of a mishap, and its colour in the chart."""
+"""What may come of a fault: the command does its work all the same; what it had finished is whole, and called again it
+does the rest; it says in one line why not, and nothing is half written; none of these; or it needs a disk of its own
+here, and may mount none."""
 
 PROGRESS = re.compile(r"\d+/\d+ \d+:\d\d:\d\d\s*$")
 
 
 @dataclass(frozen=True)
 class Trial:
-    """What a mishap did to a command.
+    """What a fault did to a command.
 
     Parameters
     ----------
-    command, mishap
+    command, fault
         Which.
     kept
         Pieces of work that were whole afterwards, of those that an undisturbed command leaves.
@@ -48,11 +40,11 @@ class Trial:
     code
         What it left with; minus the signal that killed it.
     verdict
-        One of `VERDICTS`.
+        One of `WHOLE`, `REDONE`, `REFUSED`, `LOST` and `NOT_TRIED`.
     """
 
     command: str
-    mishap: str
+    fault: str
     kept: int
     pieces: int
     message: str
@@ -66,29 +58,29 @@ class Scratch:
 
     Parameters
     ----------
-    work
+    command
         The command.
     home
         Where its folders are: one with what it needs, one in which it has been called undisturbed.
     """
 
-    work: Work
+    command: Command
     home: Path
 
     @property
     def prepared(self) -> Path:
         """The folder with what it needs."""
-        return self.home / f"{self.work.name}-prepared"
+        return self.home / f"{self.command.name}-prepared"
 
     @property
     def done(self) -> Path:
         """The folder in which it has been called undisturbed."""
-        return self.home / f"{self.work.name}-done"
+        return self.home / f"{self.command.name}-done"
 
     @cached_property
     def expected(self) -> dict[str, object]:
         """What it leaves undisturbed."""
-        return self.work.found(self.done)
+        return self.command.found(self.done)
 
     def prepare(self, needed: Path | None = None) -> None:
         """Call it undisturbed, in a folder with what it needs."""
@@ -97,26 +89,26 @@ class Scratch:
             shutil.copytree(needed, self.prepared, dirs_exist_ok=True)
             for picture in pictures(self.prepared):
                 (self.prepared / picture).unlink()
-        call(self.work.arguments(self.fresh(self.done)))
+        call(self.command.arguments(self.fresh(self.done)))
 
     def fresh(self, folder: Path) -> Path:
         """Make a folder in which the command can be called."""
         return Path(shutil.copytree(self.prepared, folder))
 
-    def trial(self, mishap: str, folder: Path, code: int, message: str, verdict: str) -> Trial:
-        """Judge what is in a folder after a mishap; it is lost if it is not what an undisturbed command leaves."""
-        found = self.work.found(folder)
+    def trial(self, fault: str, folder: Path, code: int, message: str, verdict: str) -> Trial:
+        """Judge what is in a folder after a fault; it is lost if it is not what an undisturbed command leaves."""
+        found = self.command.found(folder)
         whole = found.items() <= self.expected.items()
         message = message.replace(str(folder), "OUT")
         said = len(message.splitlines()) <= 1 and "Traceback" not in message
         return Trial(
-            self.work.name, mishap, len(found), len(self.expected), message, code, verdict if whole and said else LOST
+            self.command.name, fault, len(found), len(self.expected), message, code, verdict if whole and said else LOST
         )
 
     def does_it_again(self, folder: Path) -> bool:
         """Call the command once more, and see whether everything is there."""
-        code, _ = call(self.work.arguments(folder))
-        return code == DONE and self.work.found(folder) == self.expected
+        code, _ = call(self.command.arguments(folder))
+        return code == DONE and self.command.found(folder) == self.expected
 
 
 def call(arguments: Sequence[str]) -> tuple[int, str]:

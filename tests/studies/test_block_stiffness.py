@@ -1,7 +1,5 @@
 """What mass scaling leaves as it is, and what one factor for all deformable modes does not."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,9 +7,8 @@ from fem_interface.element_order import modal_wall
 from fem_interface.mass_scaling import LOST, LOWEST
 from fem_interface.model import fem
 from fem_interface.system import system_of
-from runningbond.results import Outcome
-from runningbond.studies.stability.block_stiffness import INSET, Stiffness, beyond, uniformly_scaled, wall
-from runningbond.studies.stability.elastic import vibrations
+from runningbond.studies.stability.block_stiffness import uniformly_scaled, wall
+from runningbond.studies.walls import INSET, vibrations
 
 
 @pytest.mark.parametrize("young", [1e10, 1e12])
@@ -47,9 +44,3 @@ def test_the_multiplier_does_not_depend_on_the_blocks(young: float) -> None:
     assert outcome.lower is not None
     assert outcome.upper is not None
     assert outcome.lower <= 0.58558 <= outcome.upper
-
-
-def test_what_came_to_no_collapse_is_told() -> None:
-    kind = Stiffness(1e11, "none", 1e-6, 1.0, 0.0, 99, Outcome("", "fem", "undecided", message="the budget ran out"))
-    others = [replace(kind, scaling=name, outcome=None) for name in ("each mode by its own", "all modes by one factor")]
-    assert "1e+11 Pa undecided, the budget ran out" in beyond([kind, *others])

@@ -1,102 +1,79 @@
-"""`runningbond stability` keeps each finding as it comes, goes on where it was, and says where theory is not met."""
+"""`runningbond stability` tells of every experiment, goes on where it was, and says where theory is not met."""
 
-import json
-import math
 import os
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 from matplotlib.figure import Figure
-from PIL import Image
 
 from runningbond.commands.command_line import command
-from runningbond.studies.stability import EXPERIMENTS, Edge, Finding
-from runningbond.studies.stability.store import drawn, find, keep
+from runningbond.studies import Chart, Part, Row, Rows, Study
+from runningbond.studies.stability import EXPERIMENTS
 
 THREE = EXPERIMENTS[:3]
 
 
-def finding(title: str = "A beam", measured: float = 1.0) -> Finding:
-    def draw(figure: Figure) -> None:
-        figure.add_subplot().plot([0, 1], [0, measured])
+def draw(figure: Figure, rows: Rows) -> None:
+    figure.add_subplot().plot([0, 1], [0, 1])
 
-    edges = [Edge("largest load [N]", measured, 1.0, 1e-3), Edge("sag [m]", 0.5)]
-    return Finding(
-        title, ["load [N]", "sag [m]"], [[1, 0.25], ["many", math.inf]], edges, "loads | small", "falls", draw
-    )
+
+def beam(measure: Callable[[str], Row], name: str) -> Study:
+    """An experiment that takes no time."""
+    part = Part(("beam",), [("long",), ("short",)], measure)
+    return Study(name, f"Experiment {name}", "loads | small", "falls", {"sag": part}, [Chart(name, "Sag", draw)])
+
+
+def straight(beam: str) -> Row:
+    return {"measured": 1.0, "theory": 1.0, "allowed": 1e-3}
+
+
+def bent(beam: str) -> Row:
+    return {"measured": 1.002, "theory": 1.0, "allowed": 1e-3}
+
+
+def broken(beam: str) -> Row:
+    raise ZeroDivisionError("division by zero")
 
 
 @pytest.fixture
 def done(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Three experiments that take no time, and a list of those that were done."""
+    """Three experiments that take no time, and a list of the cases that were measured."""
     names: list[str] = []
 
-    def find_out(name: str) -> Finding:
-        names.append(name)
-        return finding(f"Experiment {name}")
+    def experiment(name: str) -> Study:
+        def measure(beam: str) -> Row:
+            names.append(f"{name} {beam}")
+            return straight(beam)
 
-    monkeypatch.setattr("runningbond.studies.stability.EXPERIMENTS", THREE)
-    monkeypatch.setattr("runningbond.studies.stability.report.EXPERIMENTS", THREE)
-    monkeypatch.setattr("runningbond.studies.stability.report.find_out", find_out)
+        return beam(measure, name)
+
+    _experiments(monkeypatch, experiment)
     return names
 
 
-def test_a_finding_is_read_back_as_it_was_kept(tmp_path: Path) -> None:
-    one = finding()
-    kept = keep("time-step", one, drawn(one), tmp_path)
-    assert find("time-step", tmp_path) == kept
-    assert kept.rows == [[1, 0.25], ["many", "∞"]]
-    assert (kept.title, kept.heads, kept.edges) == (one.title, one.heads, one.edges)
-    assert not kept.off
-    with Image.open(kept.chart) as chart:
-        assert chart.size == (1280, 736)
-
-
-def test_numbers_of_numpy_are_kept_as_numbers(tmp_path: Path) -> None:
-    rows: list[list[Any]] = [[np.int64(3), np.float32(0.5), np.float64("nan")]]
-    one = Finding("", ["a", "b", "c"], rows, [Edge("x", float(np.float64(2.0)))], "", "", lambda figure: None)
-    assert keep("verdict", one, drawn(one), tmp_path).rows == [[3, 0.5, "–"]]
-
-
-@pytest.mark.parametrize("suffix", [".json", ".png"])
-def test_a_damaged_finding_is_none(tmp_path: Path, suffix: str) -> None:
-    one = finding()
-    keep("time-step", one, drawn(one), tmp_path)
-    path = tmp_path / f"time-step{suffix}"
-    whole = path.read_bytes()
-    for damaged in (whole[:-9], whole.replace(b"1", b"2", 1), b""):
-        path.write_bytes(damaged)
-        assert find("time-step", tmp_path) is None
-    path.write_bytes(whole)
-    assert find("time-step", tmp_path) is not None
-
-
-def test_a_finding_of_other_code_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    one = finding()
-    keep("time-step", one, drawn(one), tmp_path)
-    monkeypatch.setattr("runningbond.studies.stability.store.stability_digest", lambda: "other")
-    assert find("time-step", tmp_path) is None
+def _experiments(monkeypatch: pytest.MonkeyPatch, experiment: Callable[[str], Study]) -> None:
+    monkeypatch.setattr("runningbond.studies.stability.EXPERIMENTS", THREE)
+    monkeypatch.setattr("runningbond.studies.stability.experiment", experiment)
 
 
 def test_the_command_tells_of_every_experiment(
     tmp_path: Path, done: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert command(["stability", "--out", str(tmp_path)]) == 0
-    assert done == list(THREE)
+    assert done == [f"{name} {which}" for name in THREE for which in ("long", "short")]
     assert "Where each method may be trusted" in capsys.readouterr().out
     text = (tmp_path / "stability.md").read_text()
     page = (tmp_path / "report.html").read_text()
     for name in THREE:
         assert f"## Experiment {name}" in text
-        assert f"![Experiment {name}]({name}.png)" in text
+        assert f"![Sag]({name}.png)" in text
         assert f"Experiment {name}" in page
-    assert "1 of 1 as theory has them" in text
+    assert "2 of 2 as theory has them" in text
     assert "loads \\| small" in text
     assert page.count("data:image/png;base64,") == len(THREE)
     assert "http" not in page.replace("http-equiv", "")
@@ -104,36 +81,35 @@ def test_the_command_tells_of_every_experiment(
 
 def test_what_is_kept_is_not_done_again(tmp_path: Path, done: list[str]) -> None:
     assert command(["stability", THREE[1], "--out", str(tmp_path)]) == 0
+    assert {name.split()[0] for name in done} == {THREE[1]}
     assert command(["stability", "--out", str(tmp_path)]) == 0
-    assert done == [THREE[1], THREE[0], THREE[2]]
+    assert len(done) == 6
     first = (tmp_path / "stability.md").read_bytes()
     assert command(["stability", THREE[0], "--out", str(tmp_path)]) == 0
-    assert len(done) == 3
+    assert len(done) == 6
     assert (tmp_path / "stability.md").read_bytes() == first
 
 
 def test_an_edge_that_is_not_where_theory_has_it_leaves_with_3(
-    tmp_path: Path, done: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("runningbond.studies.stability.report.find_out", lambda name: finding(measured=1.002))
-    for _ in range(2):  # done, then found
+    _experiments(monkeypatch, lambda name: beam(bent, name))
+    for _ in range(2):  # measured, then read
         assert command(["stability", THREE[0], "--out", str(tmp_path)]) == 3
-        assert f"{THREE[0]}: largest load [N]: measured 1.002, by theory 1" in capsys.readouterr().err
+        assert f"{THREE[0]}: sag: long: measured 1.002, by theory 1" in capsys.readouterr().err
     assert "0.2 %, does not agree" in (tmp_path / "stability.md").read_text()
 
 
 def test_an_experiment_that_breaks_does_not_lose_the_others(
-    tmp_path: Path, done: list[str], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    def find_out(name: str) -> Finding:
-        if name == THREE[1]:
-            raise ZeroDivisionError("division by zero")
-        return finding()
-
-    monkeypatch.setattr("runningbond.studies.stability.report.find_out", find_out)
+    _experiments(monkeypatch, lambda name: beam(broken if name == THREE[1] else straight, name))
     assert command(["stability", "--out", str(tmp_path)]) == 3
-    assert f"{THREE[1]} ended in an error: ZeroDivisionError: division by zero" in capsys.readouterr().err
-    assert {path.stem for path in tmp_path.glob("*.json")} == {THREE[0], THREE[2]}
+    assert f"{THREE[1]} ended in an error: long, ZeroDivisionError: division by zero" in capsys.readouterr().err
+    text = (tmp_path / "stability.md").read_text()
+    assert f"## Experiment {THREE[0]}" in text
+    assert f"## Experiment {THREE[1]}" not in text
+    assert f"{THREE[1]} ended in an error" in text
 
 
 def test_an_unknown_experiment_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -146,20 +122,20 @@ def test_an_unknown_experiment_is_refused(tmp_path: Path, capsys: pytest.Capture
 
 STOPPED_IN_THE_SECOND = """
 import sys, time
-import runningbond.studies.stability.report as report
-from compare.command import main
-from tests.stability.test_stability_command import finding
+from runningbond.commands.command_line import main
+from runningbond.studies import stability
+from tests.studies.test_stability_command import beam, straight
 
-def find_out(name):
-    if name == report.EXPERIMENTS[1] and "fast" not in sys.argv[1]:
+def slow(which):
+    if "fast" not in sys.argv[1] and which == "short":
         try:
             print("in the middle", flush=True)
             time.sleep(60)
         except KeyboardInterrupt:  # as a model takes it: for the end of one run, not of all
             pass
-    return finding(name)
+    return straight(which)
 
-report.find_out = find_out
+stability.experiment = lambda name: beam(slow if name == stability.EXPERIMENTS[1] else straight, name)
 main(["stability", "--out", sys.argv[2]])
 """
 
@@ -176,17 +152,18 @@ def test_a_command_stopped_in_the_middle_goes_on_where_it_was(how: signal.Signal
     time.sleep(0.1)
     os.kill(process.pid, how)
     _, errors = process.communicate(timeout=60)
-    kept = tmp_path / "found" / f"{EXPERIMENTS[0]}.json"
     if how != signal.SIGKILL:
         assert process.returncode == 130
         assert f"1 of {len(EXPERIMENTS)} experiments are kept in" in errors
         assert "the same command goes on" in errors
         assert "Traceback" not in errors
-    assert [path.name for path in (tmp_path / "found").iterdir() if path.suffix == ".json"] == [kept.name]
-    assert json.loads(kept.read_bytes())["title"] == EXPERIMENTS[0]
-    before = kept.stat().st_mtime_ns
+    whole, begun = (tmp_path / "found" / f"{name}.csv" for name in EXPERIMENTS[:2])
+    assert set((tmp_path / "found").glob("*.csv")) == {whole, begun}
+    assert "long" in begun.read_text()
+    assert "short" not in begun.read_text()
+    before = whole.stat().st_mtime_ns
     again = start("fast")
     again.communicate(timeout=120)
     assert again.returncode == 0
-    assert kept.stat().st_mtime_ns == before
-    assert {path.stem for path in (tmp_path / "found").glob("*.json")} == set(EXPERIMENTS)
+    assert whole.stat().st_mtime_ns == before
+    assert {path.stem for path in (tmp_path / "found").glob("*.csv")} == set(EXPERIMENTS)

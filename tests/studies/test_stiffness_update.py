@@ -2,71 +2,75 @@
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from dem.stiffness_update import load_step, resultant_wall
 from runningbond.compare.published import published_scene
 from runningbond.limit import limit
-from runningbond.studies.stability.blocks import one_block
+from runningbond.studies import Row
 from runningbond.studies.stability.stiffness_update import (
-    ARMS,
+    BLOCKS,
+    BORNE,
+    ENDED,
     INCREMENTS,
-    LOOKS,
     OUTSIDE,
-    Trial,
-    block_edges,
-    draw,
-    trial,
-    trials,
+    block_row,
+    collapse_load,
+    loaded,
+    measure,
 )
+from runningbond.studies.walls import one_block
+
+WALLS = ("panel-02", "panel-04", "wall-w2", "wall-w3")
 
 
 def test_one_block_is_borne_to_its_exact_collapse() -> None:
     """b/h, μ, and 2 b/h with l_c the whole length of the joint, to 1e-3."""
-    assert [edge.theory for edge in block_edges()] == [1.0, 1.0, 2.0]
-    assert all(edge.agrees for edge in block_edges())
+    rows = [block_row(what) for what in BLOCKS]
+    assert [row["theory"] for row in rows] == [1.0, 1.0, 2.0]
+    assert [row["measured"] for row in rows] == pytest.approx([1.0, 1.0, 2.0], rel=1e-3)
 
 
 def test_a_block_beyond_its_collapse_is_singular_and_what_follows_is_not_reached() -> None:
     """Loaded up to 1.25 b/h in ten steps: eight of them are borne."""
-    found = trial("block", one_block(0.5, 2.0, 0.6, 1e11), 1.25 * 0.25, 10, 0.5)
-    assert list(found.fates) == ["converged"] * 8 + ["singular", "unreached"]
-    assert found.borne == pytest.approx(0.8)
-    assert found.end == "singular"
+    row = loaded(one_block(0.5, 2.0, 0.6, 1e11), 1.25 * 0.25, 0.5, 10)
+    assert row["fates"] == ["converged"] * 8 + ["singular", "unreached"]
+    assert row[BORNE] == pytest.approx(0.8)
+    assert row[ENDED] == "singular"
 
 
 @pytest.fixture(scope="module")
-def found() -> list[Trial]:
-    return trials(("panel-02", "panel-04", "wall-w2", "wall-w3"), arms=ARMS[:1])
+def found() -> dict[tuple[str, int], Row]:
+    return {(wall, steps): measure(wall, 0.5, steps) for wall in WALLS for steps in INCREMENTS}
 
 
-def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(found: list[Trial]) -> None:
+def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(found: dict[tuple[str, int], Row]) -> None:
     """A load below the one that limit analysis allows, which `dem_static` bears."""
-    for each in found:
-        associated = limit(published_scene(each.wall)).upper
+    for (wall, _), row in found.items():
+        associated = limit(published_scene(wall)).upper
         assert associated is not None
-        assert each.collapse <= associated * (1 + 1e-6)
-        assert each.end in ("cycle", "singular", "wandering")
-        assert each.borne < 0.8
+        assert collapse_load(wall) <= associated * (1 + 1e-6)
+        assert row[ENDED] in ("cycle", "singular", "wandering")
+        assert row[BORNE] < 0.8
 
 
-def test_finer_steps_do_not_help(found: list[Trial]) -> None:
+def test_finer_steps_do_not_help(found: dict[tuple[str, int], Row]) -> None:
     """In a hundred steps panel-02 gets less far than in ten, and panel-04 and W3 nowhere in either."""
-    borne = {(each.wall, each.increments): each.borne for each in found}
+    borne = {which: row[BORNE] for which, row in found.items()}
     assert borne["panel-02", 100] < borne["panel-02", 10]
     assert borne["panel-04", 100] == borne["panel-04", 10] == 0.0
     assert borne["wall-w3", 100] == borne["wall-w3", 10] < 0.0
 
 
-def test_every_tenth_of_the_load_has_its_fate(found: list[Trial]) -> None:
+def test_every_tenth_of_the_load_has_its_fate(found: dict[tuple[str, int], Row]) -> None:
     """A run in steps ends once; what lies beyond is never told as borne."""
-    for each in found:
-        assert len(each.fates) == 10
-        if each.increments > 1:
-            end = each.fates.index(each.end)
-            assert set(each.fates[:end]) <= {"converged", "outside"}
-            assert set(each.fates[end + 1 :]) <= {"unreached"}
-            assert end <= 10 * max(each.borne, 0.0) + 1e-9 <= end + 1
+    for (_, steps), row in found.items():
+        fates = row["fates"]
+        assert len(fates) == 10
+        if steps > 1:
+            end = fates.index(row[ENDED])
+            assert set(fates[:end]) <= {"converged", "outside"}
+            assert set(fates[end + 1 :]) <= {"unreached"}
+            assert end <= 10 * max(row[BORNE], 0.0) + 1e-9 <= end + 1
 
 
 def test_a_step_may_converge_on_forces_that_break_the_law() -> None:
@@ -83,14 +87,3 @@ def test_a_step_may_converge_on_forces_that_break_the_law() -> None:
         excess.append(wall.excess(force))
     assert excess[0] < 1e-9
     assert max(excess) > 10 * OUTSIDE
-
-
-def test_chart_has_a_map_for_every_size_of_step(found: list[Trial]) -> None:
-    figure = Figure(figsize=(8, 4.6), layout="constrained")
-    draw(figure, found)
-    assert len(figure.axes) == len(INCREMENTS)
-    walls = list(dict.fromkeys(each.wall for each in found))
-    assert [label.get_text() for label in figure.axes[0].get_yticklabels()] == walls
-    for axes, increments in zip(figure.axes, INCREMENTS, strict=True):
-        fates = [fate for each in found if each.increments == increments for fate in each.fates]
-        assert [text.get_text() for text in axes.texts] == [LOOKS[fate][1] for fate in fates]

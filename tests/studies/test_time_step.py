@@ -14,9 +14,17 @@ from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
 from runningbond.dynamics.stepping import LOOK
 from runningbond.scene import Scene
-from runningbond.studies.stability import time_step
-from runningbond.studies.stability.elastic import bonded, elastic_stiffness, vibrations
-from runningbond.studies.stability.time_step import mass_edge, mass_growth, measured, one_mass, too_long
+from runningbond.studies.stability.time_step import (
+    GROWTH,
+    LOCAL,
+    TIMES,
+    VISCOUS,
+    critical_step,
+    growth_at,
+    mass_row,
+    run_beyond,
+)
+from runningbond.studies.walls import bonded, elastic_stiffness, vibrations
 from tests.walls import courses, panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
@@ -66,27 +74,27 @@ def test_vibrations_are_mass_normalised_and_keep_their_cosine() -> None:
 def test_a_wall_grows_beyond_the_step_of_its_largest_eigenvalue(modes: ModeCount, scaled: bool) -> None:
     """To 0.1 %; the bound from each block alone lies inside it, and no farther than a fifth."""
     system = fem_system(bonded(small()), modes=modes, damping=0.0, mass_scaling=scaled)
-    found = measured("", system)
-    assert found.edge == pytest.approx(found.exact, rel=1e-3)
-    assert 0.8 * found.exact < found.bound <= found.exact * (1 + 1e-12)
-    theory = [time_step.rate(times) for times in time_step.TIMES]
-    assert found.growth == pytest.approx(np.array(theory), rel=1e-6)
+    row = critical_step(system)
+    assert row["measured"] == pytest.approx(row["theory"], rel=1e-3)
+    assert 0.8 * row["theory"] < row["bound from each block"] <= row["theory"] * (1 + 1e-12)
+    assert row["growth"] == pytest.approx([growth_at(times) for times in TIMES], rel=1e-6)
 
 
 @pytest.mark.parametrize(("omega_dt", "exact"), [(2.1, 1.877328), (2.01, 1.221301), (1.99, 1.0)])
 def test_one_mass_grows_at_the_exact_rate(omega_dt: float, exact: float) -> None:
-    assert mass_growth(one_mass(), omega_dt) == pytest.approx(exact, abs=1e-6)
+    assert mass_row(GROWTH, omega_dt)["measured"] == pytest.approx(exact, abs=1e-6)
 
 
 @pytest.mark.parametrize("alpha", [0.2, 0.5, 0.8])
 def test_local_damping_moves_the_edge(alpha: float) -> None:
-    assert mass_edge(one_mass(), local=alpha) == pytest.approx(2 / math.sqrt(1 + alpha), rel=1e-3)
+    assert mass_row(LOCAL, alpha)["measured"] == pytest.approx(2 / math.sqrt(1 + alpha), rel=1e-3)
 
 
 @pytest.mark.parametrize("ratio", [0.05, 0.3, 1.0])
 def test_viscous_damping_moves_the_edge(ratio: float) -> None:
     """Of the joints, as a run has it."""
-    assert mass_edge(one_mass(), viscous=ratio) == pytest.approx(2 * (math.sqrt(1 + ratio**2) - ratio), rel=1e-3)
+    theory = 2 * (math.sqrt(1 + ratio**2) - ratio)
+    assert mass_row(VISCOUS, ratio)["measured"] == pytest.approx(theory, rel=1e-3)
 
 
 # --- what becomes of a run -----------------------------------------------------------------------------------
@@ -98,7 +106,7 @@ def test_a_run_beyond_the_critical_step_fails_at_its_first_look(
     model: Literal["dem-dynamic", "fem"], times: float
 ) -> None:
     """And names the step that it took and one that is safe; the latter is safe."""
-    outcome = too_long(model, times)
+    outcome = run_beyond(model, times)
     scene = published_scene("wall-w1")
     system = rigid_system(scene) if model == "dem-dynamic" else fem_system(scene)
     taken = times * 2 / vibrations(system)[0][-1]

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
@@ -10,63 +9,62 @@ from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, load_steps
 from runningbond.dynamics.loading import LOADING_WEIGHTLESS
 from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
-from runningbond.studies.stability.literature import KnownWall, rounded_wall, sliding_block, toppling_block
+from runningbond.studies import Rows
 from runningbond.studies.stability.verdict import (
+    DEFAULT,
+    FAR,
     INTERVAL,
+    PART,
     REST,
     WEIGHTLESS,
     WIDTH,
     believed,
-    experiment,
-    far_sweep,
-    interval_sweep,
-    rest_sweep,
-    trial,
-    weightless_sweep,
+    plateau,
+    search,
+    sweep,
 )
+from runningbond.studies.walls import SLIDING, TOPPLING, W1, W2, known_wall
 
-WALLS = [sliding_block(), toppling_block(), rounded_wall("wall-w1")]
+
+def swept(wall: str, criterion: str, values: tuple[float, ...]) -> Rows:
+    """Searches with one criterion changed, as rows of the study."""
+    case = {"wall": wall, "criterion": criterion}
+    return {PART: [case | {"value": value} | search(wall, criterion, value) for value in values]}
 
 
-@pytest.mark.parametrize("wall", WALLS, ids=lambda wall: str(wall.name))
-def test_the_suites_criteria_stand_on_a_plateau(wall: KnownWall) -> None:
+@pytest.mark.parametrize("wall", [SLIDING, TOPPLING, W1])
+@pytest.mark.parametrize("criterion", [REST, FAR, INTERVAL])
+def test_the_suites_criteria_stand_on_a_plateau(wall: str, criterion: str) -> None:
     """Half and twice each of them find the same λ, which is the one known."""
-    for sweep in (
-        rest_sweep(wall, (REST / 2, REST, 2 * REST)),
-        far_sweep(wall, (COLLAPSE / 2, COLLAPSE, 2 * COLLAPSE)),
-        interval_sweep(wall, (INTERVAL // 2, INTERVAL, 2 * INTERVAL)),
-    ):
-        assert sweep.plateau == (sweep.default / 2, 2 * sweep.default), sweep.criterion
-        assert sweep.trials[sweep.default].middle == pytest.approx(wall.multiplier, rel=WIDTH)
+    default = DEFAULT[criterion]
+    rows = sweep(swept(wall, criterion, (default / 2, default, 2 * default)), wall, criterion)
+    assert plateau(rows) == (default / 2, 2 * default)
+    assert rows[1]["λ"] == pytest.approx(known_wall(wall).multiplier, rel=WIDTH)
 
 
-@pytest.mark.parametrize("wall", WALLS, ids=lambda wall: str(wall.name))
-def test_a_threshold_of_rest_too_loose_takes_walls_for_standing_up_to_the_load_that_theory_has(
-    wall: KnownWall,
-) -> None:
+@pytest.mark.parametrize("wall", [SLIDING, TOPPLING, W1])
+def test_a_threshold_of_rest_too_loose_takes_walls_for_standing_up_to_the_load_that_theory_has(wall: str) -> None:
     """λ_c + r / w: false stability, 5 to 10 % above the load with r = 0.03."""
-    loose = (0.01, 0.03)
-    sweep = rest_sweep(wall, (REST, *loose))
-    middles = [sweep.trials[rest].middle for rest in loose]
-    assert middles == pytest.approx(list(believed(wall, np.array(loose))), rel=WIDTH)
-    assert (middles[1] or 0.0) > 1.04 * wall.multiplier
-    assert sweep.plateau == (REST, REST)
+    rest = DEFAULT[REST]
+    rows = sweep(swept(wall, REST, (rest, 0.01, 0.03)), wall, REST)
+    assert [row["λ"] for row in rows[1:]] == pytest.approx([believed(wall, r) for r in (0.01, 0.03)], rel=WIDTH)
+    assert rows[2]["λ"] > 1.04 * known_wall(wall).multiplier
+    assert plateau(rows) == (rest, rest)
 
 
 def test_a_threshold_of_rest_below_rounding_is_never_met() -> None:
-    assert trial(sliding_block().scene, COLLAPSE, rest=1e-16).answer == "undecided"
+    assert search(SLIDING, REST, 1e-16)["answer"] == "undecided"
 
 
 def test_a_displacement_too_small_takes_settlement_for_a_fall() -> None:
-    assert trial(rounded_wall("wall-w1").scene, 1e-7).answer == "infeasible"
+    assert search(W1, FAR, 1e-7)["answer"] == "infeasible"
 
 
 def test_a_displacement_too_small_takes_a_slip_for_a_fall() -> None:
     """W2 at a hundred-thousandth of a block: false collapse some 2 % below the load, where a thousandth is right."""
-    wall = rounded_wall("wall-w2")
-    slip, right = (trial(wall.scene, far).middle for far in (1e-5, 1e-3))
-    assert (slip or 0.0) < 0.985 * wall.multiplier
-    assert right == pytest.approx(wall.multiplier, rel=WIDTH)
+    known = known_wall(W2).multiplier
+    assert (search(W2, FAR, 1e-5).get("λ") or 0.0) < 0.985 * known
+    assert search(W2, FAR, 1e-3)["λ"] == pytest.approx(known, rel=WIDTH)
 
 
 def test_a_wall_without_weight_pauses_and_bears_the_same_at_any_speed() -> None:
@@ -83,14 +81,7 @@ def test_a_wall_without_weight_pauses_and_bears_the_same_at_any_speed() -> None:
 @pytest.mark.long
 def test_without_weight_the_suite_follows_it_far_enough() -> None:
     """Twice as far finds the same λ, inside the interval that is certified."""
-    sweep = weightless_sweep((COLLAPSE, 2 * COLLAPSE))
+    rows = sweep(swept(WEIGHTLESS, FAR, (COLLAPSE, 2 * COLLAPSE)), WEIGHTLESS, FAR)
     certified = limit_nonassociated(published_scene(WEIGHTLESS))
-    assert sweep.plateau == (COLLAPSE, 2 * COLLAPSE)
-    assert (certified.lower or np.inf) <= sweep.unit <= (certified.upper or 0.0)
-
-
-@pytest.mark.long
-def test_every_edge_lies_where_theory_has_it_and_defaults_inside() -> None:
-    found = experiment()
-    assert not [edge for edge in found.edges if edge.agrees is False]
-    found.draw(Figure(layout="constrained"))
+    assert plateau(rows) == (COLLAPSE, 2 * COLLAPSE)
+    assert (certified.lower or np.inf) <= rows[0]["λ"] <= (certified.upper or 0.0)

@@ -13,7 +13,7 @@ MODELS = ("homog", "limit", "limit-nonassociated", "dem-static")
 
 
 @dataclass(frozen=True)
-class Work:
+class Command:
     """A command as a user calls it.
 
     Parameters
@@ -77,14 +77,14 @@ def _damage_outcomes(folder: Path) -> None:
         _halve(record)
 
 
-RUN = Work(
+RUN = Command(
     "run",
     lambda folder: ["run", WALL, "--model", "dem-dynamic", "--tolerance", "0.1", "--out", str(folder)],
     lambda folder: (folder / "blocks.pvd").exists(),
     _outcomes,
     _damage_outcomes,
 )
-COMPARE = Work(
+COMPARE = Command(
     "compare",
     lambda folder: [
         *("compare", str(folder / "wall.toml"), "--models", ",".join(MODELS)),
@@ -94,18 +94,18 @@ COMPARE = Work(
     _outcomes,
     _damage_outcomes,
 )
-MESH = Work(
+MESH = Command(
     "mesh",
     lambda folder: ["mesh", "panel-06", "--cells", "4", "--out", str(folder / "wall.msh")],
     lambda folder: any(path.stat().st_size for path in folder.glob(".wall.*.msh")),
     _mesh_file,
     lambda folder: _halve(folder / "wall.msh"),
 )
-RENDER = Work(
+RENDER = Command(
     "render",
     lambda folder: ["render", str(folder)],
     lambda folder: (folder / "mechanism.png").exists(),
     pictures,
     lambda folder: _halve(folder / "blocks.pvd"),
 )
-WORKS = (RUN, COMPARE, MESH, RENDER)
+COMMANDS = (RUN, COMPARE, MESH, RENDER)
