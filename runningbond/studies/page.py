@@ -39,10 +39,9 @@ def write_page(subject: str, blocks: Sequence[Block], folder: Path, name: str) -
 
 
 def section(study: Study, rows: Rows, folder: Path) -> list[Block]:
-    """A study on a page that it shares with others: where it may be trusted, its charts, its edges and its rows."""
+    """An experiment on the page of all: where it may be trusted, its charts, its edges and its rows."""
     blocks: list[Block] = [f"## {study.title}", f"May be trusted: {study.trusted}", f"Beyond: {study.beyond}"]
-    blocks += draw_charts(study, rows, folder)
-    blocks += [edges_sheet(study.edges(rows)), *study.tables(rows)]
+    blocks += [*draw_charts(study, rows, folder), edges_sheet(study.edges(rows)), *study.tables(rows)]
     return [*blocks, f"`runningbond stability {study.name}` measures it."]
 
 

@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache
 from pathlib import Path
 from threading import Event
+from typing import TypeAlias
 
 from runningbond.compare.fingerprint import code_digest
 from runningbond.results import write_atomically
@@ -20,52 +21,46 @@ from runningbond.results import write_atomically
 from .apart import measure_apart
 from .study import FAILURE, Case, Row, Rows, Study
 
-PART, KEY, SEAL = "part", "key", "seal"
-"""Columns beside those of the rows."""
-
-Where = tuple[str, Case]
-"""A case, and the part that it belongs to."""
+Where: TypeAlias = tuple[str, Case]
+"""The name of a part, and one of its cases."""
 
 
 def run_study(
     study: Study, folder: Path, *, jobs: int = 1, progress: Callable[[str], None] = lambda case: None
 ) -> dict[str, list[Row]]:
-    """Measure what is not in the table yet.
+    """Measure what is not in the table yet; every row, by the names of the study's parts.
 
     Parameters
     ----------
-    study
-        The study.
-    folder
-        Where its table is kept.
+    study, folder
+        The study, and where its table is kept.
     jobs
-        Cases measured side by side, each in a process of its own if there is more than one.
+        Cases measured side by side.
     progress
         Called with each case that is done, in words.
-
-    Returns
-    -------
-    dict
-        Every row by the names of the study's parts. A case that ended in an error has its words in column `FAILURE`.
     """
     kept = kept_rows(study, folder)
+
+    def tell(where: Where) -> None:
+        progress(", ".join([study.name, *(str(entry) for entry in where[1] if entry != "")]))
+
     for where in kept:
-        progress(words(study, where))
+        tell(where)
     for where, row in _measured(study, [where for where in study.cases if where not in kept], jobs):
         kept[where] = row
         write_atomically(table_path(study, folder), csv_text(study, kept).encode())
-        progress(words(study, where))
+        tell(where)
     return {name: [kept[name, case] for case in part.cases] for name, part in study.parts.items()}
+
+
+def failures(rows: Rows) -> list[str]:
+    """Cases that ended in an error, and its words."""
+    return [", ".join(map(str, row.values())) for own in rows.values() for row in own if FAILURE in row]
 
 
 def is_complete(study: Study, folder: Path) -> bool:
     """Whether every case is in the table."""
     return len(kept_rows(study, folder)) == len(study.cases)
-
-
-def words(study: Study, where: Where) -> str:
-    """A case for the progress bar."""
-    return ", ".join([study.name, *(str(entry) for entry in where[1] if entry != "")])
 
 
 def table_path(study: Study, folder: Path) -> Path:
@@ -79,12 +74,8 @@ def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
         rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    found = {}
-    for part, case in study.cases:
-        row = rows.get(key_of(study, part, case))
-        if row is not None and FAILURE not in row:
-            found[part, case] = dict(zip(study.parts[part].columns, case, strict=True)) | row
-    return found
+    found = {where: rows.get(_key(study, where)) for where in study.cases}
+    return {where: _case(study, where) | row for where, row in found.items() if row is not None and FAILURE not in row}
 
 
 def csv_text(study: Study, rows: dict[Where, Row]) -> str:
@@ -92,19 +83,18 @@ def csv_text(study: Study, rows: dict[Where, Row]) -> str:
     columns = list(dict.fromkeys(column for row in rows.values() for column in row))
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow([PART, *columns, KEY, SEAL])
-    for part, case in study.cases:
-        if (row := rows.get((part, case))) is not None:
-            cells = [part, *(_text(row.get(column)) for column in columns), key_of(study, part, case)]
+    writer.writerow(["part", *columns, "key", "seal"])
+    for where in study.cases:
+        if where in rows:
+            cells = [where[0], *(_text(rows[where].get(column)) for column in columns), _key(study, where)]
             writer.writerow([*cells, _seal(cells)])
     return buffer.getvalue()
 
 
 def read_csv(text: str) -> dict[str, Row]:
     """Rows of a table by their keys; damaged ones are left out."""
-    reader = csv.reader(io.StringIO(text))
+    reader, rows = csv.reader(io.StringIO(text)), {}
     heads = next(reader, [])
-    rows = {}
     for cells in reader:
         if len(cells) == len(heads) and cells[-1] == _seal(cells[:-1]):
             entries = zip(heads[1:-2], cells[1:-2], strict=True)
@@ -130,9 +120,9 @@ def _seal(cells: Sequence[str]) -> str:
     return hashlib.sha256("\0".join(cells).encode()).hexdigest()[:16]
 
 
-def key_of(study: Study, part: str, case: Case) -> str:
+def _key(study: Study, where: Where) -> str:
     """Digest of all that the row of a case depends on."""
-    depends = f"{code_digest()} {sources_digest(tuple(study.sources))} {part} {case!r} {study.depends(case)}"
+    depends = f"{code_digest()} {sources_digest(tuple(study.sources))} {where!r} {study.depends(where[1])}"
     return hashlib.sha256(depends.encode()).hexdigest()
 
 
@@ -141,15 +131,14 @@ def sources_digest(sources: tuple[Path, ...]) -> str:
     """Digest of files, and of all code and scenes in folders."""
     digest = hashlib.sha256()
     for source in sources:
-        files = sorted(source.rglob("*")) if source.is_dir() else [source]
-        for path in files:
+        for path in sorted(source.rglob("*")) if source.is_dir() else [source]:
             if path.suffix in (".py", ".toml"):
                 digest.update(f"{path.relative_to(source.parent)}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 
 def _measured(study: Study, cases: Sequence[Where], jobs: int) -> Iterator[tuple[Where, Row]]:
-    """Rows as they come: one after another in this process, or from threads that each wait for a process."""
+    """Rows as they come: one after another in this thread, or from threads that each wait for a process."""
     stop = Event()
     if jobs == 1:
         for where in cases:
@@ -165,15 +154,13 @@ def _measured(study: Study, cases: Sequence[Where], jobs: int) -> Iterator[tuple
             threads.shutdown(cancel_futures=True)
 
 
+def _case(study: Study, where: Where) -> Row:
+    return dict(zip(study.parts[where[0]].columns, where[1], strict=True))
+
+
 def _row(study: Study, where: Where, stop: Event) -> Row:
-    part, case = study.parts[where[0]], where[1]
-    row = dict(zip(part.columns, case, strict=True))
+    measure, row = study.parts[where[0]].measure, _case(study, where)
     try:
-        return row | (measure_apart(part.measure, case, stop) if study.apart else part.measure(*case))
+        return row | (measure_apart(measure, where[1], stop) if study.apart else measure(*where[1]))
     except Exception as error:  # a defect in one case must not lose the others
         return row | {FAILURE: f"{type(error).__name__}: {error}"}
-
-
-def failures(rows: Rows) -> list[str]:
-    """Words of the errors among rows."""
-    return [f"{', '.join(map(str, row.values()))}" for own in rows.values() for row in own if FAILURE in row]

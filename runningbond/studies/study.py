@@ -64,16 +64,9 @@ class Edge:
 
 @dataclass(frozen=True)
 class Part:
-    """Cases of one kind.
+    """Cases of one kind, in the order in which they are measured, and what their entries are called.
 
-    Parameters
-    ----------
-    columns
-        What the entries of a case are called, units in brackets.
-    cases
-        The cases, in the order in which they are measured.
-    measure
-        Measures a case, whose entries are its arguments: what comes of it, by column. A function of a module.
+    `measure` takes the entries of a case as its arguments, and returns what comes of it by columns.
     """
 
     columns: tuple[str, ...]
@@ -83,17 +76,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart of a study.
-
-    Parameters
-    ----------
-    name
-        Name of its file, without suffix.
-    caption
-        What it shows.
-    draw
-        Draws it on an empty figure.
-    """
+    """A chart: name of its file without suffix, what it shows, and what draws it on an empty figure."""
 
     name: str
     caption: str

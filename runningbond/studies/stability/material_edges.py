@@ -6,7 +6,6 @@ it, say that it cannot, or refuse; a number beside it is a wrong answer.
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -20,17 +19,11 @@ from runningbond.scene import Scene, SceneError, build_scene, scene_from_dict
 from runningbond.scene.blocks import CONTACT_TOLERANCE
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 
-MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
-"""Of the joints of all walls that are not scaled."""
-
 UNSEEN = 1e-4
 """Multiplier below which models in motion see no difference from zero."""
 
 SIZES = (1e-6, 1.0, 1e3)
 """Lengths [m] of one and the same wall."""
-
-PRESSED = {"gravity": 9.81, "live": {"kind": "point", "at": [0.24, 0.24], "force": [0.0, -1.0]}}
-"""A load on the middle of the top of `panel`."""
 
 WORTH = {
     "right": ("#a6cee3", "right"),
@@ -43,63 +36,36 @@ WORTH = {
 
 PART = "Answers"
 Exact: TypeAlias = float | tuple[float, float] | str
-"""A multiplier, the two loads between which it lies, a status, or ``refused``."""
+"""What is true: a multiplier, two loads between which it lies, a status, or ``refused``."""
 
 
-@dataclass(frozen=True)
-class Extreme:
-    """A wall at an edge, and what is true of it.
-
-    Parameters
-    ----------
-    what
-        The edge in a few words.
-    build
-        The wall; it may be refused.
-    exact
-        What is true.
-    """
-
-    what: str
-    build: Callable[[], Scene]
-    exact: Exact
+def dry(**changes: Any) -> dict[str, Any]:
+    """The table of a joint with tan φ = 0.6 and 10 mm of mortar, some of its keys changed."""
+    return {"friction": 0.6, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}} | changes
 
 
-def panel(**changes: Any) -> Scene:
-    """A dry panel of four courses of blocks 240 × 60 mm, 480 mm long, with some keys of its scene changed."""
-    return scene_from_dict(_panel(**changes))
-
-
-def _panel(size: float = 1.0, **changes: Any) -> dict[str, Any]:
-    tables: dict[str, Any] = {
-        "wall": {
-            "block_width": 0.24 * size,
-            "block_height": 0.06 * size,
-            "thickness": 0.12 * size,
-            "length": 0.48 * size,
-            "height": 0.24 * size,
-        },
+def panel(size: float = 1.0, **tables: Any) -> Scene:
+    """A panel of four courses of blocks 240 × 60 mm, 480 mm long or of another size, with other tables of its scene."""
+    lengths = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.48, "height": 0.24}
+    usual = {
+        "wall": {name: length * size for name, length in lengths.items()},
         "block": {"density": 1800.0, "young": 2e10, "poisson": 0.2},
-        "joint": {"friction": 0.6, "mortar": MORTAR},
+        "joint": dry(),
         "support": {"kind": "base"},
         "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
     }
-    for name, value in changes.items():
-        table, _, key = name.partition("__")
-        tables[table] = value if not key else {**tables[table], key: value}
-    return tables
+    return scene_from_dict(usual | tables)
+
+
+def courses(pattern: list[list[float]], width: float, height: float, **joint: float) -> Scene:
+    """A wall given course by course."""
+    wall = {"block_width": width, "block_height": height, "thickness": 0.12, "courses": pattern}
+    return panel(wall=wall, joint=dry(**joint))
 
 
 def pier(width: float, height: float, blocks: int = 1, **joint: float) -> Scene:
     """A pier of equal blocks, which topples at width / height of the whole."""
     return courses([[1]] * blocks, width, height / blocks, **joint)
-
-
-def courses(pattern: list[list[float]], width: float, height: float, **joint: float) -> Scene:
-    """A wall given course by course."""
-    tables = _panel(joint={"friction": 0.6, "mortar": MORTAR, **joint})
-    tables["wall"] = {"block_width": width, "block_height": height, "thickness": 0.12, "courses": pattern}
-    return scene_from_dict(tables)
 
 
 def piled(*boxes: tuple[float, float, float, float]) -> Scene:
@@ -114,63 +80,61 @@ def gaping(gap: float) -> Scene:
     return piled((0, 0, 0.24, 0.24), (0, 0.24 * (1 + gap * CONTACT_TOLERANCE), 0.24, 0.24))
 
 
+def pressed(x: float, force: list[float], **tables: Any) -> Scene:
+    """The panel, or another, under a force at its top or corner."""
+    at = [x, 0.06 if "wall" in tables else 0.24]
+    return panel(load={"gravity": 9.81, "live": {"kind": "point", "at": at, "force": force}}, **tables)
+
+
 def similar(size: float) -> Scene:
     """The panel in another size, stiffness along: displacements, too, are in proportion to its size."""
-    stiffness = {"normal_stiffness": 1e11, "shear_stiffness": 4e10}
-    block = {"density": 1800.0, "young": 2e10 * size, "poisson": 0.2}
-    return panel(size=size, joint={"friction": 0.6, **stiffness}, block=block)
+    joint = {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    return panel(size, joint=joint, block={"density": 1800.0, "young": 2e10 * size, "poisson": 0.2})
 
 
-def extremes() -> list[Extreme]:
-    """Every wall that is tried."""
-    weak = {"cohesion": 1e-3, "fracture_energy_1": 1e-9, "fracture_energy_2": 1e-9}
-    brittle = {"cohesion": 1e3, "fracture_energy_1": 0.0, "fracture_energy_2": 0.0}
-    sliding = 300.0 / (1800.0 * 9.81 * 0.12)
-    return [
-        Extreme("tan φ = 0", lambda: panel(joint__friction=0.0), 0.0),
-        Extreme("tan φ = 1e-9", lambda: panel(joint__friction=1e-9), "refused"),
-        Extreme("tan φ = 1e-6", lambda: panel(joint__friction=1e-6), 1e-6),
-        Extreme("tan φ = 1e-3", lambda: panel(joint__friction=1e-3), 1e-3),
-        Extreme("tan φ = 3, pier", lambda: pier(0.24, 0.36, 3, friction=3.0), 2 / 3),
-        Extreme("tan φ = 1e6, pier", lambda: pier(0.24, 0.36, 3, friction=1e6), 2 / 3),
-        Extreme("c, G → 0", lambda: panel(joint={"friction": 0.6, "mortar": MORTAR, **weak}), 0.6),
-        Extreme("G = 0, c = 1 kPa", lambda: panel(joint={"friction": 0.6, "mortar": MORTAR, **brittle}), (0.6, 0.836)),
-        Extreme("f_t = 0, c = 10 kPa", lambda: pier(0.24, 0.36, 3, cohesion=1e4, tensile_strength=0.0), 2 / 3),
-        Extreme(
-            "tan φ = f_t = 0, c = 300 Pa",
-            lambda: pier(0.24, 0.12, friction=0.0, cohesion=300.0, tensile_strength=0.0),
-            sliding,
-        ),
-        Extreme("locks: pressed", lambda: panel(load=PRESSED), "unbounded"),
-        Extreme("locks: one block pinned", _held, "unbounded"),
-        Extreme("falls: overhang", lambda: courses([[1], [1, 2]], 0.24, 0.06), "infeasible"),
-        Extreme("falls: dry on corners", lambda: panel(support__kind="corners"), "infeasible"),
-        Extreme("gap, 0.99 tolerances", lambda: gaping(0.99), 0.5),
-        Extreme("gap, 1.01 tolerances", lambda: gaping(1.01), "refused"),
-        Extreme("overlap, 0.99 tolerances", lambda: gaping(-0.99), 0.5),
-        Extreme("block 1:50", lambda: pier(0.02, 1.0), 0.02),
-        Extreme("block 50:1", lambda: pier(1.0, 0.02), 0.6),
-        Extreme("small on large, 1:100", lambda: piled((0, 0, 1, 1), (0.495, 1, 0.01, 0.02)), 0.5),
-        Extreme("large on small, 100:1", lambda: piled((0.495, 0, 0.01, 0.01), (0, 0.01, 1, 1)), _ON_SMALL),
-        Extreme("1 µm wall, same mortar", lambda: panel(size=SIZES[0] / 0.48), 0.6),
-        *[Extreme(f"{size:g} m wall, similar", lambda s=size: similar(s / 0.48), 0.6) for size in SIZES],  # type: ignore[misc]
-    ]
-
-
-_ON_SMALL = (0.01 * 0.005 * 0.01 + 1 * 0.005) / (0.01 * 0.01 * 0.005 + 1 * 0.51)
+BRICK = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.24, "height": 0.06}
+SOFTENING = {"fracture_energy_1": 1e-9, "fracture_energy_2": 1e-9}
+BRITTLE = {"fracture_energy_1": 0.0, "fracture_energy_2": 0.0}
+GLUED = {"friction": 0.0, "cohesion": 300.0, "tensile_strength": 0.0}
+ON_SMALL = (0.01 * 0.005 * 0.01 + 1 * 0.005) / (0.01 * 0.01 * 0.005 + 1 * 0.51)
 """λ at which a block of 1 m on one of 10 mm turns with it about the ground: weights and their arms."""
 
-
-def _held() -> Scene:
-    load = {"gravity": 9.81, "live": {"kind": "point", "at": [0.12, 0.06], "force": [1.0, -1.0]}}
-    tables = _panel(support={"kind": "pinned-corners"}, load=load)
-    tables["wall"] |= {"length": 0.24, "height": 0.06}
-    return scene_from_dict(tables)
+EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {
+    "tan φ = 0": (lambda: panel(joint=dry(friction=0.0)), 0.0),
+    "tan φ = 1e-9": (lambda: panel(joint=dry(friction=1e-9)), "refused"),
+    "tan φ = 1e-6": (lambda: panel(joint=dry(friction=1e-6)), 1e-6),
+    "tan φ = 1e-3": (lambda: panel(joint=dry(friction=1e-3)), 1e-3),
+    "tan φ = 3, pier": (lambda: pier(0.24, 0.36, 3, friction=3.0), 2 / 3),
+    "tan φ = 1e6, pier": (lambda: pier(0.24, 0.36, 3, friction=1e6), 2 / 3),
+    "c, G → 0": (lambda: panel(joint=dry(cohesion=1e-3, **SOFTENING)), 0.6),
+    "G = 0, c = 1 kPa": (lambda: panel(joint=dry(cohesion=1e3, **BRITTLE)), (0.6, 0.836)),
+    "f_t = 0, c = 10 kPa": (lambda: pier(0.24, 0.36, 3, cohesion=1e4, tensile_strength=0.0), 2 / 3),
+    "tan φ = f_t = 0, c = 300 Pa": (lambda: pier(0.24, 0.12, 1, **GLUED), 300.0 / (1800.0 * 9.81 * 0.12)),
+    "self-locking: pressed": (lambda: pressed(0.24, [0.0, -1.0]), "unbounded"),
+    "self-locking: one block pinned": (
+        lambda: pressed(0.12, [1.0, -1.0], wall=BRICK, support={"kind": "pinned-corners"}),
+        "unbounded",
+    ),
+    "no equilibrium: overhang": (lambda: courses([[1], [1, 2]], 0.24, 0.06), "infeasible"),
+    "no equilibrium: dry on corners": (lambda: panel(support={"kind": "corners"}), "infeasible"),
+    "gap, 0.99 tolerances": (lambda: gaping(0.99), 0.5),
+    "gap, 1.01 tolerances": (lambda: gaping(1.01), "refused"),
+    "overlap, 0.99 tolerances": (lambda: gaping(-0.99), 0.5),
+    "block 1:50": (lambda: pier(0.02, 1.0), 0.02),
+    "block 50:1": (lambda: pier(1.0, 0.02), 0.6),
+    "small on large, 1:100": (lambda: piled((0, 0, 1, 1), (0.495, 1, 0.01, 0.02)), 0.5),
+    "large on small, 100:1": (lambda: piled((0.495, 0, 0.01, 0.01), (0, 0.01, 1, 1)), ON_SMALL),
+    "1 µm wall, same mortar": (lambda: panel(SIZES[0] / 0.48), 0.6),
+    "1e-06 m wall, similar": (lambda: similar(SIZES[0] / 0.48), 0.6),
+    "1 m wall, similar": (lambda: similar(SIZES[1] / 0.48), 0.6),
+    "1000 m wall, similar": (lambda: similar(SIZES[2] / 0.48), 0.6),
+}
+"""Walls at an edge, which may be refused, and what is true of them."""
 
 
 def answer(what: str, model: str) -> Row:
     """What a model answers about an extreme, what that is worth, and the message or the refusal."""
-    exact, build = EXTREMES[what].exact, EXTREMES[what].build
+    build, exact = EXTREMES[what]
     row: Row = {"exact": _in_words(exact)}
     try:
         outcome = MODELS[model](build(), TOLERANCE)
@@ -264,7 +228,6 @@ def draw(figure: Figure, rows: Rows) -> None:
     figure.legend(handles=keys, loc="outside lower center", ncols=5, frameon=False, fontsize=8)
 
 
-EXTREMES = {extreme.what: extreme for extreme in extremes()}
 STUDY = Study(
     "material-edges",
     "Materials, shapes and sizes at the edge",
