@@ -22,7 +22,10 @@ from runningbond.compare.published import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.dynamics.verdict import COLLAPSE
+from runningbond.results import Outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
+
+from .study import Row
 
 INSET = 0.02
 """Distance of contacts from the ends of the joints [m] with which the load multiplier of W1 to W3 is unique."""
@@ -89,6 +92,12 @@ def vibrations(system: BlockSystem) -> tuple[Array, Array]:
     shapes = np.zeros((len(system.mass), len(mass)))
     shapes[np.isfinite(system.mass)] = root[:, None] * vectors
     return np.sqrt(np.maximum(square, 0.0)), shapes
+
+
+def outcome_row(outcome: Outcome) -> Row:
+    """What a user is told of a collapse, as columns of a table."""
+    bracket = {"λ": outcome.multiplier, "λ lower": outcome.lower, "λ upper": outcome.upper}
+    return {"status": outcome.status, **bracket, "steps": outcome.steps, "message": outcome.message}
 
 
 @dataclass(frozen=True, eq=False)

@@ -256,7 +256,7 @@ def test_the_cheapest_within_a_tolerance_is_found() -> None:
     assert cheapest(found, 0.01, VARIED, ("fem",)) == ("fem", "", "")
     assert cheapest(found, 1e-9, VARIED, everything) is None
     assert found["limit-nonassociated", "", ""].own == ["panel-02"]
-    assert "panel-02" not in found["limit-nonassociated", "", ""].walls
+    assert "panel-02" not in found["limit-nonassociated", "", ""].all("wall")
     assert ["1 %", "follows a path", "dem-static", "16", "0.74 %"] in cheapest_table(table()).rows
 
 

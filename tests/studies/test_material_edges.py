@@ -23,7 +23,9 @@ def test_rigid_blocks_in_motion_are_right(what: str) -> None:
     assert found["worth"] == "right", found
 
 
-@pytest.mark.parametrize("what", ["block 1:50", "no equilibrium: overhang", "gap, 0.99 tolerances", "self-locking: one block pinned"])
+@pytest.mark.parametrize(
+    "what", ["block 1:50", "no equilibrium: overhang", "gap, 0.99 tolerances", "self-locking: one block pinned"]
+)
 def test_deformable_blocks_in_motion_are_right(what: str) -> None:
     found = answer(what, "fem")
     assert found["worth"] == "right", found

@@ -17,20 +17,9 @@ MODES: dict[str, dict[str, Any]] = {str(count): {"modes": count} for count in (3
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of some models, and its settings.
+    """A parameter of some models, arguments of the model by the name of each setting, and walls on which it is varied.
 
-    Parameters
-    ----------
-    name
-        What it is called in tables and charts.
-    models
-        Models that have it.
-    settings
-        Arguments of the model by the name of each setting.
-    walls
-        Walls on which it is varied.
-    expensive
-        Settings that are too expensive for walls other than those of `cheap`.
+    Settings that are too expensive for most walls are tried on those of `cheap` alone.
     """
 
     name: str

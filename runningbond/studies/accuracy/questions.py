@@ -4,6 +4,7 @@ import statistics
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,18 +42,9 @@ SOFT = 1e10
 
 
 class Answer(NamedTuple):
-    """What a model said, as columns of the study's table.
+    """What a model said, as columns of the study's table; the value that was asked for may have a bracket.
 
-    Parameters
-    ----------
-    status
-        That of `runningbond.results.Outcome`; ``not applicable`` where the model has nothing to say.
-    value, lower, upper
-        The number that was asked for, and its bracket; None without one.
-    dofs, steps
-        Degrees of freedom and steps, where it has any.
-    message
-        One line for the reader.
+    `status` is that of `runningbond.results.Outcome`, or ``not applicable`` where the model has nothing to say.
     """
 
     status: str
@@ -76,17 +68,7 @@ MODELS: dict[str, Callable[..., Outcome]] = {
 
 
 def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> Answer:
-    """Ask a model a question about a scene.
-
-    Parameters
-    ----------
-    question, model
-        What is asked, and whom.
-    scene
-        The scene.
-    settings
-        Arguments of the model, from `parameters`.
-    """
+    """Ask a model a question about a scene, with arguments of the model from `parameters`."""
     try:
         return QUESTIONS[question](model, scene, **settings)
     except SceneError as reason:
@@ -143,27 +125,14 @@ def _read_off(turned: Array, multiplier: Array, dofs: int, steps: int | None) ->
     return Answer("collapse", value, None, None, dofs, steps, f"curve scatters by {scatter:.1e}")
 
 
-def _compression(model: str, scene: Scene, **settings: Any) -> Answer:
-    return _modulus(1, model, scene, **settings)
-
-
-def _shear(model: str, scene: Scene, **settings: Any) -> Answer:
-    return _modulus(2, model, scene, **settings)
-
-
 def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
     """A2222 or A1212 of a periodic cell; the energy of a shear E12 is 4 A1212 / 2."""
     if model == "homog":
         joint = joint_stiffness(scene.joint)
         assert scene.bond is not None
-        moduli = elastic_moduli(
-            scene.bond.width,
-            scene.bond.height,
-            bed_normal=joint.normal,
-            bed_shear=joint.shear,
-            head_normal=joint.normal,
-            head_shear=joint.shear,
-        )
+        springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
+        springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
+        moduli = elastic_moduli(scene.bond.width, scene.bond.height, **springs)
         return Answer("elastic", (moduli.a2222, moduli.a1212)[which - 1])
     found, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
     return Answer("elastic", float(found[which, which]) / (1, 1, 4)[which], dofs=dofs)
@@ -188,7 +157,7 @@ def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
 QUESTIONS: dict[Question, Callable[..., Answer]] = {
     "collapse": _collapse,
     "turned block": _turned,
-    "compression": _compression,
-    "shear": _shear,
+    "compression": partial(_modulus, 1),
+    "shear": partial(_modulus, 2),
     "physical second": _physical_second,
 }

@@ -3,7 +3,7 @@
 import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -70,39 +70,26 @@ def times(ratio: float) -> str:
 class Record:
     """How one setting did on walls brought to collapse.
 
-    Parameters
-    ----------
-    judged
-        Rows of the walls on which it gave a number that can be judged.
-    unanswered
-        Walls on which it gave no number.
-    own
-        Walls whose answer it certified itself, on which it is not judged.
+    Rows with a number that can be judged, walls without a number, and walls whose answer it certified itself.
     """
 
     judged: Sequence[Row]
     unanswered: Sequence[str]
     own: Sequence[str]
 
-    @property
-    def walls(self) -> list[str]:
-        """Walls on which it is judged."""
-        return [row["wall"] for row in self.judged]
-
-    @property
-    def worst(self) -> Row:
-        """The row with its largest error."""
-        return max(self.judged, key=lambda row: float(row["error"]))
+    def all(self, column: str) -> list[Any]:
+        """A column of the rows that are judged."""
+        return [row[column] for row in self.judged]
 
     @property
     def error(self) -> float:
-        """Its largest error."""
-        return float(self.worst["error"])
+        """Largest error."""
+        return float(max(self.all("error")))
 
     @property
     def ratio(self) -> float:
         """Median cost, in runs of `REFERENCE`."""
-        return float(statistics.median(row["ratio"] for row in self.judged))
+        return float(statistics.median(self.all("ratio")))
 
 
 def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Record]:
@@ -133,7 +120,7 @@ def cheapest(
     good = [
         (record.ratio, setting)
         for setting, record in found.items()
-        if setting[0] in models and set(walls) <= {*record.walls, *record.own} and record.error <= tolerance
+        if setting[0] in models and set(walls) <= {*record.all("wall"), *record.own} and record.error <= tolerance
     ]
     return min(good)[1] if good else None
 
@@ -142,15 +129,15 @@ def models_table(rows: Rows) -> Sheet:
     """Every model as it is, on the walls whose answer is known."""
     body, found = [], records(rows)
     for model in MODEL_LOOKS:
-        record = found.get((model, "", ""))
-        if record is not None:
-            middle = statistics.median(row["error"] for row in record.judged)
-            missed = [row for row in record.judged if row["error"] > EXACT]
-            high = sum(row["value"] > row["answer_high"] for row in missed)
-            ratios = [row["ratio"] for row in record.judged]
-            errors = [percent(middle), percent(record.error), record.worst["wall"], str(high), str(len(missed) - high)]
-            cost = [times(record.ratio), f"{times(min(ratios))} – {times(max(ratios))}", ", ".join(record.unanswered)]
-            body.append([QUESTIONS[model], model, str(len(record.judged)), *errors, *cost])
+        if (record := found.get((model, "", ""))) is None:
+            continue
+        errors, ratios = record.all("error"), record.all("ratio")
+        worst = record.all("wall")[errors.index(max(errors))]
+        missed = [row for row in record.judged if row["error"] > EXACT]
+        high = sum(row["value"] > row["answer_high"] for row in missed)
+        error = [percent(statistics.median(errors)), percent(max(errors)), worst, str(high), str(len(missed) - high)]
+        cost = [times(record.ratio), f"{times(min(ratios))} – {times(max(ratios))}", ", ".join(record.unanswered)]
+        body.append([QUESTIONS[model], model, str(len(errors)), *error, *cost])
     heads = ["wanted", "model", "walls", "median error", "largest error", "on", "too high", "too low"]
     heads += [f"times {REFERENCE}", "from – to", "no number on"]
     return Sheet("Models as they are, on walls brought to collapse", heads, body)
@@ -160,17 +147,15 @@ def parameters_table(rows: Rows) -> Sheet:
     """Every parameter that was varied on walls brought to collapse, beside its model as it is on the same walls."""
     body, everywhere = [], records(rows)
     for setting, record in everywhere.items():
-        plain = everywhere.get((setting[0], "", ""))
-        both = [wall for wall in record.walls if plain is not None and wall in plain.walls]
-        if not setting[1] or not both:
-            continue
-        one, other = (records(rows, both)[which] for which in (setting, (setting[0], "", "")))
-        costs = zip(one.judged, other.judged, strict=True)
-        dearer = statistics.median(a["ratio"] / b["ratio"] for a, b in costs)
-        change = max(one.error, EXACT) / max(other.error, EXACT)
-        errors = (percent(one.error), percent(other.error))
-        effect = _effect(change, dearer)
-        body.append([*setting, str(len(both)), *errors, times(dearer), effect, ", ".join(record.unanswered)])
+        plain = (setting[0], "", "")
+        both = [wall for wall in record.all("wall") if plain in everywhere and wall in everywhere[plain].all("wall")]
+        if setting[1] and both:
+            one, other = (records(rows, both)[which] for which in (setting, plain))
+            costs = zip(one.all("ratio"), other.all("ratio"), strict=True)
+            dearer = statistics.median(a / b for a, b in costs)
+            effect = _effect(max(one.error, EXACT) / max(other.error, EXACT), dearer)
+            numbers = (str(len(both)), percent(one.error), percent(other.error), times(dearer))
+            body.append([*setting, *numbers, effect, ", ".join(record.unanswered)])
     heads = ["model", "parameter", "setting", "walls", "largest error", "as it is", "cost, times as it is"]
     return Sheet("Parameters, one changed at a time", [*heads, "what it changes", "no number on"], body)
 

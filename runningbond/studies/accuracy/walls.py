@@ -36,18 +36,9 @@ STIFF = 1e12
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A wall and what is known of it.
+    """A wall, what is asked of it, and what the answer is worth.
 
-    Parameters
-    ----------
-    scene
-        The wall.
-    question
-        What is asked.
-    known
-        What the answer is worth.
-    answer
-        The interval in which the answer lies; None where it is to be certified (`interval`), or not known.
+    `answer` is the interval in which it lies; None where it is to be certified (`interval`), or not known.
     """
 
     scene: Scene
@@ -116,8 +107,8 @@ def elastic_cell(young: float, question: Question, width: float = 0.24, height: 
     joint = joint_stiffness(scene.joint)
     if question == "compression":
         return _exactly(scene, 1 / (1 / (height * joint.normal) + 1 / young), question)
-    stiffness = {"bed_normal": joint.normal, "bed_shear": joint.shear}
-    stiffness |= {"head_normal": joint.normal, "head_shear": joint.shear}
+    stiffness = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
+    stiffness |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
     return _exactly(scene, elastic_moduli(width, height, **stiffness).a1212, question)
 
 

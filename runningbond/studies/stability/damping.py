@@ -50,20 +50,9 @@ CASES = [(name, load, a, x) for name in WALLS for load in (1 - BESIDE, 1 + BESID
 def judged(
     name: str, load: float, local: float = LOCAL, viscous: float = VISCOUS, mass_rate: float = 0.0, budget: int = BUDGET
 ) -> Row:
-    """Bring a wall to rest, ramp a load up, and hold it until the verdict: whether it is right, and steps until then.
+    """Bring a wall to rest, ramp up a load, in units of λ_c, and hold it: is the verdict right, and after which steps.
 
-    Parameters
-    ----------
-    name
-        The wall.
-    load
-        λ in units of the load that brings it down.
-    local, viscous
-        Local damping, and the joints' viscous damping ratio.
-    mass_rate
-        Mass-proportional damping [1/s].
-    budget
-        Steps after which the verdict is given up.
+    Damped by local damping, the joints' viscous ratio and a mass-proportional rate [1/s], within a budget of steps.
     """
     wall = known_wall(name)
     run = Run(_damped(wall.system, mass_rate), local=local, viscous=viscous)

@@ -157,7 +157,7 @@ def draw(figure: Figure, rows: Rows) -> None:
         right.errorbar(5, low, [[0], [high - low]], color=colour, lw=1.5, capsize=3)
         right.annotate(f"certified for\n{WEIGHTLESS}", (7, high + 0.005), ha="right", color=colour, fontsize=8)
     right.annotate("×  infeasible\n?  undecided", (2e-6, 0.77), color="0.4", fontsize=8)
-    right.set(xscale="log", xlim=(4e-8, 8), ylim=(0.7, 1.1), xlabel="displacement of a collapse [block sizes]")
+    right.set(xscale="log", xlim=(4e-8, 8), ylim=(0.6, 1.1), xlabel="displacement of a collapse [block sizes]")
     right.set_ylabel("λ / λ known (without weight: / the suite's)")
     right.set_title("fallen", fontsize=10)
     for axes in (left, right):
