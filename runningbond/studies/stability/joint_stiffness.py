@@ -22,7 +22,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene, Stiffness
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS, MODEL_LOOKS, bracket
-from runningbond.studies.walls import W1, inset_wall, known_wall
+from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 
 NORMAL = tuple(10.0**power for power in range(5, 16))
 """Normal stiffnesses of the joints [Pa/m]."""
@@ -75,13 +75,7 @@ def condition(scene: Scene) -> float:
 def collapse(normal: float, model: str) -> Row:
     """What a model makes of the wall."""
     outcome = SOLVE[model](wall(normal), TOLERANCE)
-    row = {"status": outcome.status, "λ": outcome.multiplier, "λ lower": outcome.lower, "λ upper": outcome.upper}
-    return {
-        **row,
-        "steps": outcome.steps,
-        "of the stiffness": stiffness_note(outcome.message),
-        "message": outcome.message,
-    }
+    return {"of the stiffness": stiffness_note(outcome.message), **outcome_row(outcome)}
 
 
 def stiffness_note(message: str) -> str:

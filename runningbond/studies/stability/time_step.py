@@ -22,7 +22,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, scene_from_dict
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.charts import looks_of
-from runningbond.studies.walls import bonded, vibrations
+from runningbond.studies.walls import bonded, outcome_row, vibrations
 
 STEPS, STEPS_DAMPED, PIECE = 4000, 100_000, 20
 """Steps after which a vibration that has not grown is not going to, a damped one too, and between two looks at it."""
@@ -152,8 +152,7 @@ def run_beyond(model: str, times: float = MUCH) -> Outcome:
 
 def run_row(model: str) -> Row:
     """What a user of a model is told beyond the critical step."""
-    outcome = run_beyond(model)
-    return {"status": outcome.status, "steps": outcome.steps, "message": outcome.message}
+    return outcome_row(run_beyond(model))
 
 
 def draw(figure: Figure, rows: Rows) -> None:
