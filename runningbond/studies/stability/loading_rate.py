@@ -23,7 +23,7 @@ from runningbond.dynamics.run import LOCAL
 from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
 from runningbond.scene import Array
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import level, looks_of, series
+from runningbond.studies.charts import LOOKS, level, looks_of, series
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 
 WALLS = (SLIDING, TOPPLING, W1)
@@ -192,7 +192,7 @@ def draw(figure: Figure, rows: Rows) -> None:
     level(middle, 1, "1 %")
     middle.set(xscale="log", yscale="log", xlabel="speed of the blocks [mm/s]", ylabel="peak of λ off by [%]")
     middle.annotate("0.0001 and less", (0.03, 0.1), xycoords="axes fraction", color="0.4", fontsize=8)
-    for (name, (colour, _)), aside in zip(looks_of((W1, *DRY)).items(), (-0.2, 0, 0.2), strict=True):
+    for name, (colour, _), aside in zip((W1, *DRY), LOOKS[2:], (-0.2, 0, 0.2), strict=True):
         places, (lower, upper) = np.arange(len(LOADINGS)) + aside, stepped_off(rows, name)
         right.vlines(places, lower, upper, color=colour, lw=5, label=name)
         default = LOADINGS.index(default_loading(name))
@@ -201,7 +201,7 @@ def draw(figure: Figure, rows: Rows) -> None:
     right.set_xticks(np.arange(len(LOADINGS)), [f"{loading:g}" for loading in LOADINGS])
     right.set(xlabel="first load step in\n[times to rest]; ▾ the suite's", ylabel="bracket of λ off by [%]")
     right.margins(y=0.15)
-    right.legend(frameon=False, fontsize=8, loc="upper right")
+    right.legend(frameon=False, fontsize=8, loc="center right")
     for axes, title in zip(
         (left, middle, right), ("ramp; lines: theory", "displacement control", "load steps"), strict=True
     ):
