@@ -107,37 +107,30 @@ class Study:
 
     Parameters
     ----------
-    name
-        Its name on the command line and of its table.
-    title
-        What is studied, in a few words.
-    trusted
-        Where the method may be trusted, in fixed words; the numbers are edges.
-    beyond
-        What a user is told beyond.
-    parts
-        Its cases, by the names of its parts.
-    charts
-        Its charts.
+    name, title
+        Its name on the command line and of its table, and what is studied, in a few words.
+    parts, charts
+        Its cases, by the names of its parts, and its charts.
+    trusted, beyond
+        Where the method may be trusted and what a user is told beyond, in fixed words; the numbers are edges.
     fits
         Edges that are read off several rows; a row that has a column `measured` is an edge itself, with `theory` and
         `allowed` beside it where there is one.
     tables
         Tables of the page, from rows.
-    sources
-        Files and folders beside the computing rooms in which a change makes rows invalid.
-    depends
-        What else the row of a case depends on, as words.
+    sources, depends
+        Files and folders beside the computing rooms in which a change makes rows invalid, and what else the row of a
+        case depends on, as words.
     apart
         Whether each case is measured in a process of its own.
     """
 
     name: str
     title: str
-    trusted: str
-    beyond: str
     parts: Mapping[str, Part]
     charts: Sequence[Chart]
+    trusted: str = ""
+    beyond: str = ""
     fits: Callable[[Rows], list[Edge]] = lambda rows: []
     tables: Callable[[Rows], list[Sheet]] = all_rows
     sources: Sequence[Path] = (PACKAGE,)

@@ -46,11 +46,11 @@ def fits(rows: Rows) -> list[Edge]:
 BEAMS = Study(
     "beams",
     "Beams | and loads",
-    "loads are small",
-    "they fall",
     {"Beams": Part(("load [N]", "beam"), CASES, measure)},
     [Chart("beams", "Sag of beams", draw)],
-    fits,
+    trusted="loads are small",
+    beyond="they fall",
+    fits=fits,
 )
 
 

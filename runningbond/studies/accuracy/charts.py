@@ -1,6 +1,7 @@
 """Charts of the study: error against cost, growth with the number of blocks, and the price of stiff blocks."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,16 +31,8 @@ FREE = "homog"
 
 DRIVEN = "driven, steps"
 
-MARKS = {
-    "": "o",
-    "joint rule": "s",
-    "cells": "^",
-    "modes": "D",
-    "mass scaling": "X",
-    "tolerance": "P",
-    "first step": "v",
-    DRIVEN: "*",
-}
+VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
+MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))
 """Marks of the parameters; a model as it is has the first one, filled."""
 
 TITLES = {
@@ -50,21 +43,12 @@ TITLES = {
 }
 
 
-def error_against_seconds(figure: Figure, rows: Rows) -> None:
-    """Error against processor seconds, on the second axis in those of the limit program on the same wall."""
-    _errors(figure, rows, "processor seconds", "cpu_s", _draw_seconds)
-
-
-def error_against_freedoms(figure: Figure, rows: Rows) -> None:
-    """Error against degrees of freedom; models with the same number of them stand side by side."""
-    _errors(figure, rows, "degrees of freedom", "dofs", _draw_freedoms)
-
-
-def _errors(figure: Figure, rows: Rows, what: str, cost: str, draw: Callable[[Axes, Sequence[Row]], None]) -> None:
-    judged = [
-        row for row in rows["accuracy"] if row.get("error") is not None and row["model"] != FREE and row.get(cost)
-    ]
+def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
+    """Error against a cost, wall by wall."""
     figure.set_size_inches(11, 9.4)
+    judged = [
+        row for row in rows["accuracy"] if row.get("error") is not None and row.get(cost) and row["model"] != FREE
+    ]
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
         if own:
@@ -75,7 +59,8 @@ def _errors(figure: Figure, rows: Rows, what: str, cost: str, draw: Callable[[Ax
     _legend(figure, judged)
 
 
-def _draw_seconds(axes: Axes, rows: Sequence[Row]) -> None:
+def _against_seconds(axes: Axes, rows: Sequence[Row]) -> None:
+    """On the second axis in those of the limit program on the same wall."""
     seconds = [row["cpu_s"] for row in rows]
     _draw_errors(axes, rows, seconds, seconds)
     unit = next((row["cpu_s"] for row in rows if row["model"] == REFERENCE), None)
@@ -84,7 +69,8 @@ def _draw_seconds(axes: Axes, rows: Sequence[Row]) -> None:
         ratio.set_xlabel(f"times the {REFERENCE} program on the same wall", fontsize=9, color="0.35")
 
 
-def _draw_freedoms(axes: Axes, rows: Sequence[Row]) -> None:
+def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> None:
+    """Models with the same number of them stand side by side."""
     freedoms = [float(row["dofs"]) for row in rows]
     place = {model: i - (len(RIGID) - 1) / 2 for i, model in enumerate(RIGID)}
     aside = [x * ASIDE ** place.get(row["model"], 0.0) for x, row in zip(freedoms, rows, strict=True)]
@@ -103,26 +89,15 @@ def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequ
     right = 3 * max(x)
     axes.set(xscale="log", yscale="log", xlim=(min(x) / 2, right), ylim=(FLOOR / 1.8, TOP))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
-    within: dict[str, Any] = {
-        "transform": axes.get_yaxis_transform(),
-        "ha": "right",
-        "va": "center",
-        "fontsize": 8,
-        "color": "0.35",
-    }
-    axes.text(0.99, FLOOR / 1.35, "0.01 % or less", **within)
+    beside: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8, "color": "0.35"}
+    axes.annotate("0.01 % or less", (0.99, FLOOR / 1.35), xycoords=("axes fraction", "data"), **beside)
     front = pareto_front(cost, y)
     ends = [x[front[0]], *(x[i] for i in front), right], [TOP, *(y[i] for i in front), y[front[-1]]]
     axes.step(*ends, where="post", color="0.55", lw=1.4, zorder=1)
     for at, error, row in zip(x, y, rows, strict=True):
         colour = MODEL_LOOKS[row["model"]][0]
-        hollow: dict[str, Any] = {
-            "color": "none",
-            "mec": colour,
-            "mew": 1.5,
-            "ms": 9 if row["parameter"] == DRIVEN else 7,
-            "zorder": 2,
-        }
+        driven = row["parameter"] == DRIVEN
+        hollow: dict[str, Any] = {"color": "none", "mec": colour, "mew": 1.5, "ms": 9 if driven else 7, "zorder": 2}
         filled: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.8, "ms": 11, "zorder": 3}
         axes.plot(at, error, MARKS[row["parameter"]], **(hollow if row["parameter"] else filled))
     axes.grid(which="major", color="0.9", lw=0.7)
@@ -220,17 +195,11 @@ def draw_stiffness(figure: Figure, rows: Rows) -> None:
     axes.legend(frameon=False, fontsize=10, loc="upper left")
 
 
+SECONDS = "Error against processor seconds; homog, which costs nothing, is left out"
+FREEDOMS = "Error against degrees of freedom; models with as many stand side by side"
 CHARTS = (
-    Chart(
-        "accuracy-seconds",
-        "Error against processor seconds; homog, which costs nothing, is left out",
-        error_against_seconds,
-    ),
-    Chart(
-        "accuracy-freedoms",
-        "Error against degrees of freedom; models with as many stand side by side",
-        error_against_freedoms,
-    ),
+    Chart("accuracy-seconds", SECONDS, partial(draw_errors, _against_seconds, "cpu_s", "processor seconds")),
+    Chart("accuracy-freedoms", FREEDOMS, partial(draw_errors, _against_freedoms, "dofs", "degrees of freedom")),
     Chart("accuracy-growth", "Growth of cost with the number of blocks", draw_growth),
     Chart("accuracy-stiffness", "What a physical second costs where blocks are ever stiffer", draw_stiffness),
 )

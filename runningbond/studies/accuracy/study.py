@@ -86,8 +86,6 @@ GROWTH = [(name, model, "", "") for name in growth_walls() for model in COLLAPSE
 STUDY = Study(
     "study",
     "Speed against accuracy",
-    trusted="within the errors of the tables",
-    beyond="the cost of the next smaller error",
     parts={
         "accuracy": Part(COLUMNS, [*_accuracy()], measure),
         "stiffness": Part(COLUMNS, [*_stiffness()], measure),

@@ -182,18 +182,11 @@ def cheapest_table(rows: Rows) -> Sheet:
 
 def others_table(rows: Rows) -> Sheet:
     """Elastic cells and the block that has turned far."""
-    body = [
-        [
-            row["wall"],
-            row["question"],
-            label(setting_of(row)),
-            f"{row['value']:.6g}",
-            f"{row['answer_low']:.6g}",
-            percent(row["error"]),
-        ]
-        for row in rows["accuracy"]
-        if row.get("question") not in ("collapse", None) and row.get("error") is not None
-    ]
+    body = []
+    for row in rows["accuracy"]:
+        if row.get("question") not in ("collapse", None) and row.get("error") is not None:
+            numbers = f"{row['value']:.6g}", f"{row['answer_low']:.6g}", percent(row["error"])
+            body.append([row["wall"], row["question"], label(setting_of(row)), *numbers])
     heads = ["scene", "question", "model", "value", "exact", "error"]
     return Sheet("Other known answers: moduli of a periodic cell [Pa], and λ of a block turned by 0.1", heads, body)
 
@@ -221,12 +214,8 @@ def growth_table(rows: Rows) -> Sheet:
         power, memory = exponent(timed), timed[-1]["memory_mb"]
         cells = [_seconds(own.get(wall, {})) for wall in walls]
         body.append([model, *cells, "" if power is None else f"{power:.2f}", f"{memory:.1f}"])
-    heads = [
-        "model",
-        *(f"{all_walls()[wall].blocks} blocks" for wall in walls),
-        "exponent",
-        "memory of the largest [MB]",
-    ]
+    sizes = [f"{all_walls()[wall].blocks} blocks" for wall in walls]
+    heads = ["model", *sizes, "exponent", "memory of the largest [MB]"]
     return Sheet("Processor seconds against the number of blocks: median (least – most)", heads, body)
 
 
