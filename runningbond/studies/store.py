@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache
 from pathlib import Path
 from threading import Event
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from runningbond.compare.fingerprint import code_digest
 from runningbond.results import write_atomically
@@ -74,8 +74,8 @@ def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
         rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    found = {where: rows.get(_key(study, where)) for where in study.cases}
-    return {where: _case(study, where) | row for where, row in found.items() if row is not None and FAILURE not in row}
+    result = {where: rows.get(_key(study, where)) for where in study.cases}
+    return {where: _case(study, where) | row for where, row in result.items() if row is not None and FAILURE not in row}
 
 
 def csv_text(study: Study, rows: dict[Where, Row]) -> str:
@@ -106,7 +106,7 @@ def _text(value: object) -> str:
     """An entry as a cell: words as they are unless they read as something else, all else as JSON."""
     if value is None:
         return ""
-    return value if isinstance(value, str) and value and value == _value(value) else json.dumps(value)
+    return value if isinstance(value, str) and value and value == _value(value) else json.dumps(value, default=_plain)
 
 
 def _value(cell: str) -> object:
@@ -114,6 +114,11 @@ def _value(cell: str) -> object:
         return json.loads(cell)
     except ValueError:
         return cell
+
+
+def _plain(number: Any) -> object:
+    """A number of NumPy as one of Python."""
+    return number.item()
 
 
 def _seal(cells: Sequence[str]) -> str:

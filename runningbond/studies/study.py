@@ -144,10 +144,10 @@ class Study:
 
     def edges(self, rows: Rows) -> list[Edge]:
         """Every edge: rows that are one, and those that are read off several rows."""
-        found = []
+        edges = []
         for name, part in self.parts.items():
             for row in rows[name]:
                 if row.get("measured") is not None:
                     what = ", ".join(str(row[column]) for column in part.columns)
-                    found.append(Edge(f"{name}: {what}", row["measured"], row.get("theory"), row.get("allowed")))
-        return [*found, *self.fits(rows)]
+                    edges.append(Edge(f"{name}: {what}", row["measured"], row.get("theory"), row.get("allowed")))
+        return [*edges, *self.fits(rows)]

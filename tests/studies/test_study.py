@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from signal import SIGXCPU
 
+import numpy as np
 import psutil
 import pytest
 from hypothesis import given, settings
@@ -72,6 +73,13 @@ def test_a_table_gives_its_rows_back_to_the_last_bit(one: object, other: object,
     found = list(read_csv(csv_text(BEAMS, {("Beams", CASES[0]): row})).values())
     assert found == [{head: entry for head, entry in row.items() if entry is not None}]
     assert repr(found[0]["many"]) == repr(many)
+
+
+def test_numbers_of_numpy_are_kept_as_numbers() -> None:
+    row = {"load [N]": 1, "int": np.int64(3), "float": np.float64(0.5), "single": np.float32(0.25)}
+    (kept,) = read_csv(csv_text(BEAMS, {("Beams", CASES[0]): row})).values()
+    assert kept == {"load [N]": 1, "int": 3, "float": 0.5, "single": 0.25}
+    assert {type(entry) for entry in kept.values()} == {int, float}
 
 
 def test_a_study_measures_nothing_twice(tmp_path: Path) -> None:

@@ -46,9 +46,8 @@ TITLES = {
 def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
     """Error against a cost, wall by wall."""
     figure.set_size_inches(11, 9.4)
-    judged = [
-        row for row in rows["accuracy"] if row.get("error") is not None and row.get(cost) and row["model"] != FREE
-    ]
+    judged = [row for row in rows["accuracy"] if row.get("error") is not None and row.get(cost)]
+    judged = [row for row in judged if row["model"] != FREE]
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
         if own:
@@ -150,8 +149,8 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
     """Processor seconds against the number of blocks, with fitted slopes."""
     figure.set_size_inches(8, 6.4)
     axes = figure.add_subplot(xscale="log", yscale="log")
-    found = growth(rows)
-    for model, own in found.items():
+    result = growth(rows)
+    for model, own in result.items():
         (colour, marker), power = MODEL_LOOKS[model], exponent(own)
         blocks, least, middle, most = (
             [row[name] for row in own] for name in ("blocks", "cpu_s_min", "cpu_s", "cpu_s_max")
@@ -159,14 +158,14 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
         name = model if power is None else f"{model}: blocks to the power {power:.2f}"
         axes.plot(blocks, middle, marker=marker, color=colour, ms=8, lw=2, label=name)
         axes.vlines(blocks, least, most, color=colour)
-    sizes = sorted({row["blocks"] for own in found.values() for row in own})
+    sizes = sorted({row["blocks"] for own in result.values() for row in own})
     axes.set_xticks(sizes, [str(size) for size in sizes])
     axes.minorticks_off()
     axes.set(xlabel="blocks of a square panel, b/a = 2", ylabel="processor seconds to the collapse load")
     axes.grid(color="0.9", lw=0.7)
     figure.legend(frameon=False, fontsize=10, loc="outside lower center", ncols=2)
-    if REFERENCE in found:
-        ratio = axes.secondary_yaxis("right", functions=_in_units(found[REFERENCE][0]["cpu_s"]))
+    if REFERENCE in result:
+        ratio = axes.secondary_yaxis("right", functions=_in_units(result[REFERENCE][0]["cpu_s"]))
         ratio.set_ylabel(f"times the {REFERENCE} program on {sizes[0]} blocks", color="0.35")
 
 
@@ -192,7 +191,7 @@ def draw_stiffness(figure: Figure, rows: Rows) -> None:
     axes.set_xticks([E / 1e9 for E in scaled], [f"{E / 1e9:g}" for E in scaled])
     axes.minorticks_off()
     axes.grid(color="0.9", lw=0.7)
-    axes.legend(frameon=False, fontsize=10, loc="upper left")
+    figure.legend(frameon=False, fontsize=10, loc="outside lower center", ncols=3)
 
 
 SECONDS = "Error against processor seconds; homog, which costs nothing, is left out"

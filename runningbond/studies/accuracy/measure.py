@@ -73,8 +73,8 @@ def measure(name: str, model: str, parameter: str, setting: str) -> Row:
 def _timed(run: Callable[[], Answer]) -> tuple[Answer, float, float]:
     """An answer, and its seconds by the clock and of the processor."""
     clock, processor = time.perf_counter(), time.process_time()
-    found = run()
-    return found, time.perf_counter() - clock, time.process_time() - processor
+    result = run()
+    return result, time.perf_counter() - clock, time.process_time() - processor
 
 
 def _spread(name: str, values: Sequence[float]) -> Row:

@@ -67,7 +67,7 @@ def settings_of(model: str, parameter: str, setting: str) -> dict[str, Any]:
     """Arguments of a model by which a parameter has a setting; none where no parameter is named."""
     if not parameter:
         return {}
-    for found in PARAMETERS:
-        if found.name == parameter and model in found.models and setting in found.settings:
-            return found.settings[setting]
+    for result in PARAMETERS:
+        if result.name == parameter and model in result.models and setting in result.settings:
+            return result.settings[setting]
     raise KeyError(f"{model} has no parameter {parameter!r} with {setting!r}")

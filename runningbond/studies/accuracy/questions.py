@@ -78,16 +78,16 @@ def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) 
 def _collapse(model: str, scene: Scene, **settings: Any) -> Answer:
     if "drive" in settings:
         return _driven(model, scene, settings["drive"])
-    found = MODELS[model](scene, **settings)
-    return Answer(found.status, found.multiplier, found.lower, found.upper, found.dofs, found.steps, found.message)
+    said = MODELS[model](scene, **settings)
+    return Answer(said.status, said.multiplier, said.lower, said.upper, said.dofs, said.steps, said.message)
 
 
 def _driven(model: str, scene: Scene, steps: int) -> Answer:
     """The peak of the curve under work-conjugate displacement control, at a speed that some steps give."""
     system = _system(model, scene)
-    found = _drive(system, scene, DRIVEN * scene.block_size, steps)
+    result = _drive(system, scene, DRIVEN * scene.block_size, steps)
     speed = f"largest λ while driven {1e3 * DRIVEN * scene.block_size:.3g} mm"
-    return Answer("collapse", found.peak, None, None, system.freedoms, found.state.steps, speed)
+    return Answer("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
 
 
 def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:
@@ -134,8 +134,8 @@ def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCo
         springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
         moduli = elastic_moduli(scene.bond.width, scene.bond.height, **springs)
         return Answer("elastic", (moduli.a2222, moduli.a1212)[which - 1])
-    found, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
-    return Answer("elastic", float(found[which, which]) / (1, 1, 4)[which], dofs=dofs)
+    result, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
+    return Answer("elastic", float(result[which, which]) / (1, 1, 4)[which], dofs=dofs)
 
 
 def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:

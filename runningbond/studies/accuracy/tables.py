@@ -100,18 +100,18 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Rec
         wanted = all_walls()[row["wall"]].question == "collapse" and row.get("status") != "not applicable"
         if wanted and (walls is None or row["wall"] in walls):
             of_setting.setdefault(setting_of(row), []).append(row)
-    found = {}
+    result = {}
     for setting, own in of_setting.items():
         certified = [row for row in own if row.get("known") == "certified" and row["model"] == "limit-nonassociated"]
         judged = [row for row in own if row not in certified and row.get("error") is not None and row.get("ratio")]
         if judged:
             silent = [row["wall"] for row in own if row.get("value") is None]
-            found[setting] = Record(judged, silent, [row["wall"] for row in certified])
-    return found
+            result[setting] = Record(judged, silent, [row["wall"] for row in certified])
+    return result
 
 
 def cheapest(
-    found: dict[Setting, Record], tolerance: float, walls: Sequence[str], models: Sequence[str]
+    result: dict[Setting, Record], tolerance: float, walls: Sequence[str], models: Sequence[str]
 ) -> Setting | None:
     """The cheapest setting of some models whose error on every one of some walls is within a tolerance.
 
@@ -119,7 +119,7 @@ def cheapest(
     """
     good = [
         (record.ratio, setting)
-        for setting, record in found.items()
+        for setting, record in result.items()
         if setting[0] in models and set(walls) <= {*record.all("wall"), *record.own} and record.error <= tolerance
     ]
     return min(good)[1] if good else None
@@ -127,9 +127,9 @@ def cheapest(
 
 def models_table(rows: Rows) -> Sheet:
     """Every model as it is, on the walls whose answer is known."""
-    body, found = [], records(rows)
+    body, result = [], records(rows)
     for model in MODEL_LOOKS:
-        if (record := found.get((model, "", ""))) is None:
+        if (record := result.get((model, "", ""))) is None:
             continue
         errors, ratios = record.all("error"), record.all("ratio")
         worst = record.all("wall")[errors.index(max(errors))]
@@ -168,13 +168,13 @@ def _effect(change: float, dearer: float) -> str:
 
 def cheapest_table(rows: Rows) -> Sheet:
     """What is cheapest within a tolerance on all walls on which parameters are varied."""
-    body, found = [], records(rows, VARIED)
-    for tolerance in TOLERANCES if found else ():
+    body, result = [], records(rows, VARIED)
+    for tolerance in TOLERANCES if result else ():
         for kind, models in KINDS.items():
-            setting = cheapest(found, tolerance, VARIED, models)
+            setting = cheapest(result, tolerance, VARIED, models)
             cells = ["none", "", ""]
             if setting is not None:
-                cells = [label(setting), times(found[setting].ratio), percent(found[setting].error)]
+                cells = [label(setting), times(result[setting].ratio), percent(result[setting].error)]
             body.append([f"{100 * tolerance:g} %", kind, *cells])
     heads = ["within", "kind", "cheapest", f"times {REFERENCE}", "largest error"]
     return Sheet(f"Cheapest setting within a tolerance on each of {', '.join(VARIED)}", heads, body)
@@ -229,14 +229,14 @@ def _seconds(row: Row) -> str:
 
 def stiffness(rows: Rows) -> tuple[dict[float, float], dict[float, float], float | None]:
     """Processor seconds a physical second by Young's modulus [Pa], masses scaled and not, and of rigid blocks."""
-    found: tuple[dict[float, float], dict[float, float]] = {}, {}
+    result: tuple[dict[float, float], dict[float, float]] = {}, {}
     rigid = None
     for row in rows["stiffness"]:
         if row["model"] == "dem-dynamic":
             rigid = row.get("value")
         elif row.get("value") is not None:
-            found[row["parameter"] != ""][float(row["wall"].removeprefix("stiff-"))] = row["value"]
-    return *found, rigid
+            result[row["parameter"] != ""][float(row["wall"].removeprefix("stiff-"))] = row["value"]
+    return *result, rigid
 
 
 def stiffness_table(rows: Rows) -> Sheet:
@@ -258,11 +258,11 @@ def tables(rows: Rows) -> list[Sheet]:
 
 def fits(rows: Rows) -> list[Edge]:
     """Rigid blocks are too stiff under compression by k_n a / E."""
-    found = []
+    edges = []
     for row in rows["accuracy"]:
         if row["model"] == "homog" and row.get("question") == "compression" and row.get("error") is not None:
             scene = all_walls()[row["wall"]].scene
             assert scene.bond is not None
             theory = joint_stiffness(scene.joint).normal * scene.bond.height / (scene.block.young or 0.0)
-            found.append(Edge(f"rigid blocks too stiff by, {row['wall']}", row["error"], theory, 1e-6))
-    return found
+            edges.append(Edge(f"rigid blocks too stiff by, {row['wall']}", row["error"], theory, 1e-6))
+    return edges

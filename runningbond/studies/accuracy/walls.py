@@ -55,10 +55,10 @@ class Wall:
         """The answer, certified by limit analysis with true friction where it is to be; None where there is none."""
         if self.known != "certified":
             return self.answer
-        found = limit_nonassociated(self.scene)
-        if found.status != "collapse" or found.lower is None or found.upper is None:
+        result = limit_nonassociated(self.scene)
+        if result.status != "collapse" or result.lower is None or result.upper is None:
             return None
-        return found.lower, found.upper
+        return result.lower, result.upper
 
 
 def error(value: float, interval: Interval) -> float:

@@ -22,7 +22,7 @@ from runningbond.studies.charts import bracket, level, looks_of, series
 from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row, vibrations
 
 YOUNG = (1e9, 1e10, 1e11, 1e12, 1e13)
-DEAR = 1e11
+EXPENSIVE = 1e11
 """Young's modulus [Pa] beyond which the wall is not brought down without mass scaling: it would take minutes."""
 
 NONE, EACH, UNIFORM = SCALINGS = ("none", "each mode by its own", "all modes by one factor")
@@ -35,29 +35,29 @@ def wall(young: float) -> Scene:
     return replace(scene, block=replace(scene.block, young=young))
 
 
-def uniformly_scaled(found: ModalWall, system: BlockSystem, target: float) -> BlockSystem:
+def uniformly_scaled(result: ModalWall, system: BlockSystem, target: float) -> BlockSystem:
     """The system with all deformable modes heavier by the factor that brings its largest ω² to a target [1/s²]."""
     factor = max(1.0, system.block_frequency_squared / target)
-    mass = np.where(found.stiffness > 0, factor * found.mass, found.mass)
+    mass = np.where(result.stiffness > 0, factor * result.mass, result.mass)
     return replace(system, mass=mass, block_frequency_squared=min(target, system.block_frequency_squared))
 
 
 def measure(young: float, scaling: str) -> Row:
     """Step, frequencies and λ of the wall with one way of scaling."""
-    found, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
-    plain = system = system_of(found, mass_scaling=False)
+    result, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
+    plain = system = system_of(result, mass_scaling=False)
     if scaling != NONE:
-        uniform = uniformly_scaled(found, plain, rigid.block_frequency_squared)
-        system = uniform if scaling == UNIFORM else system_of(found)
+        uniform = uniformly_scaled(result, plain, rigid.block_frequency_squared)
+        system = uniform if scaling == UNIFORM else system_of(result)
     (frequencies, _), (exact, _), (of_rigid, _) = map(vibrations, (system, plain, rigid))
     row: Row = {
-        "largest factor": largest_scaling(found, system.mass),
+        "largest factor": largest_scaling(result, system.mass),
         STEP: 1e6 * Run(system).dt,
         "of rigid blocks [µs]": 1e6 * Run(rigid).dt,
         SHIFT: 100 * float(np.abs(frequencies[:LOWEST] / exact[:LOWEST] - 1).max()),
         "modes in the band of rigid blocks": int((frequencies <= of_rigid[-1] * (1 + 1e-9)).sum()),
     }
-    if scaling == EACH or (scaling == NONE and young <= DEAR):
+    if scaling == EACH or (scaling == NONE and young <= EXPENSIVE):
         row |= {"theory": known_wall(W1).multiplier, "allowed": 0.01}
         row |= outcome_row(fem(wall(young), mass_scaling=scaling == EACH))
         row["measured"] = row["λ"]

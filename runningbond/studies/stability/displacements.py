@@ -108,14 +108,14 @@ def measure(name: str, speed: float) -> Row:
 def fits(rows: Rows) -> list[Edge]:
     """Displacements at which λ is lost: of the block beside (1), of walls as measured, and how far (1) is off there."""
     slow = [row for row in rows[PART] if row["speed [m/s]"] == min(SPEEDS)]
-    found = []
+    edges = []
     for row in slow:
         for loss, head, theory in zip(LOSSES, MOVED, THEORY, strict=True):
             known = (row[theory], 2e-3) if row["what"] == "block" else ()
-            found.append(Edge(f"u/b at which {row['what']} has lost {100 * loss:.0f} % of λ", row[head], *known))
+            edges.append(Edge(f"u/b at which {row['what']} has lost {100 * loss:.0f} % of λ", row[head], *known))
     pairs = zip(MOVED, THEORY, strict=True)
     apart = max(abs(row[head] / row[theory] - 1) for head, theory in pairs for row in slow if row["what"] != "block")
-    return [*found, Edge("walls beside one block of their λ and height, off by at most [%]", 100 * apart)]
+    return [*edges, Edge("walls beside one block of their λ and height, off by at most [%]", 100 * apart)]
 
 
 def draw(figure: Figure, rows: Rows) -> None:

@@ -88,17 +88,17 @@ def fits(rows: Rows) -> list[Edge]:
     rest = [row for row in rows[REST] if row[OVERLAP] < COLLAPSE]
     deepest = max(rest, key=lambda row: abs(row[OVERLAP] / row[THEORY] - 1))
     worse, exact = rows[REST][-1][CONDITION] / rows[REST][0][CONDITION], known_wall(W1).multiplier
-    found = [
+    edges = [
         Edge(f"overlap at {deepest[K_N]:.0e} Pa/m, farthest from theory", deepest[OVERLAP], deepest[THEORY], 0.01),
         Edge("condition number at the last stiffness by that at the first", worse, 1.0, 0.01),
     ]
     for model in SOLVE:
         loads = [row["λ"] for row in rows[COLLAPSES] if row["model"] == model and row.get("λ")]
         farthest = max(loads, key=lambda load: abs(load - exact))
-        found.append(Edge(f"λ, {model}, of all collapses farthest from the certified", farthest, exact, TOLERANCE))
+        edges.append(Edge(f"λ, {model}, of all collapses farthest from the certified", farthest, exact, TOLERANCE))
     silent = silent_range(rows[COLLAPSES])
     ends = (("smallest", silent[0]), ("largest", silent[-1]))
-    return found + [Edge(f"{which} k_n at which all models collapse and say nothing [Pa/m]", k) for which, k in ends]
+    return edges + [Edge(f"{which} k_n at which all models collapse and say nothing [Pa/m]", k) for which, k in ends]
 
 
 def silent_range(rows: Sequence[Row]) -> list[float]:

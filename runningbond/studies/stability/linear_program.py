@@ -85,8 +85,8 @@ def glued(quantity: str = "", factor: float = 1.0) -> tuple[Scene, float]:
 def degenerate_row(wall: str, model: str) -> Row:
     """λ of a degenerate wall, beside the exact one: min of tan φ and width / height, whatever else happens."""
     build, exact = DEGENERATE[wall]
-    found = SOLVE[model](build())
-    return {"measured": float("nan") if found is None else found, "theory": exact, "allowed": 1e-6}
+    result = SOLVE[model](build())
+    return {"measured": float("nan") if result is None else result, "theory": exact, "allowed": 1e-6}
 
 
 def scale_row(model: str, quantity: str) -> Row:
@@ -95,8 +95,8 @@ def scale_row(model: str, quantity: str) -> Row:
     assert reference is not None
     for power in POWERS:
         scene, change = glued(quantity, 10.0**power)
-        found = SOLVE[model](scene)
-        errors.append(float("inf") if found is None else abs(found / (reference * change) - 1))
+        result = SOLVE[model](scene)
+        errors.append(float("inf") if result is None else abs(result / (reference * change) - 1))
     return {"measured": 1 + max(errors), "theory": 1.0, "allowed": 1e-6, "largest error": max(errors), "errors": errors}
 
 

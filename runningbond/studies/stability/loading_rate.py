@@ -65,8 +65,8 @@ def ramp_row(name: str, rate: float, local: float = LOCAL) -> Row:
     while moved_by(run.system, state, rest.motion) < wall.far:
         run.hold(state, multiplier + step / 2, LOOK)
         multiplier += step
-    found = multiplier - step / 2
-    return {"λ": found, "λ, theory": wall.multiplier + excess(name, rate, local), OFF: off(name, found)}
+    result = multiplier - step / 2
+    return {"λ": result, "λ, theory": wall.multiplier + excess(name, rate, local), OFF: off(name, result)}
 
 
 def order(name: str, rate: Array, multiplier: Array) -> float:
@@ -111,10 +111,10 @@ def step_row(name: str, loading: float) -> Row:
     """Bracket of λ by load steps, the load growing by its first one in so many times to rest."""
     system, far = system_of(name)
     first = FIRST_STEP / system.measure(system.live)
-    found = load_steps(Run(system), first, BRACKET, Criteria(collapse=far), loading=loading)
-    assert found.lower is not None
-    assert found.upper is not None
-    return {"λ lower": found.lower, "λ upper": found.upper, "λ": (found.lower + found.upper) / 2}
+    result = load_steps(Run(system), first, BRACKET, Criteria(collapse=far), loading=loading)
+    assert result.lower is not None
+    assert result.upper is not None
+    return {"λ lower": result.lower, "λ upper": result.upper, "λ": (result.lower + result.upper) / 2}
 
 
 def own_row(name: str) -> Row:
@@ -144,7 +144,7 @@ def default_loading(name: str) -> float:
 
 def fits(rows: Rows) -> list[Edge]:
     """Orders and limits of ramps, peaks under displacement control, and load steps in haste."""
-    found = []
+    edges = []
     for name in WALLS:
         known, loose = known_wall(name).multiplier, not known_wall(name).is_block
         own = [row for row in rows[RAMPS] if row["wall"] == name]
@@ -153,7 +153,7 @@ def fits(rows: Rows) -> list[Edge]:
         slow, pushed = own[-1], [row for row in rows[DRIVEN] if row["wall"] == name]
         tolerances = (0.05, 0.01, None, 0.01) if loose else (0.005, 0.001, 0.01, 1e-6)
         ramped = (float(multiplier[-1]) - known, slow["λ, theory"] - known)
-        found += [
+        edges += [
             Edge(f"order of a ramp's error in its rate, {name}", order(name, rate, multiplier), ORDER, tolerances[0]),
             Edge(f"λ of a ramp without speed, {name}", limit, known, tolerances[1]),
             Edge(f"its standard error, {name}", error),
@@ -162,16 +162,16 @@ def fits(rows: Rows) -> list[Edge]:
             Edge(f"fastest speed within 1 % [mm/s], {name}", fastest_within(pushed, 1.0)),
         ]
     steps = {(row["wall"], row[LOADED]): row["λ"] for row in rows[STEPPED]}
-    found.append(Edge(f"λ by the suite's load steps, {W1}", steps[W1, LOADING], known_wall(W1).multiplier, BRACKET))
+    edges.append(Edge(f"λ by the suite's load steps, {W1}", steps[W1, LOADING], known_wall(W1).multiplier, BRACKET))
     for name in DRY:
         own_speed, slowest = default_loading(name), LOADINGS[-1]
         what = f"λ by the suite's load steps, of that {slowest / own_speed:g} times as slow, {name}"
-        found.append(Edge(what, steps[name, own_speed] / steps[name, slowest]))
+        edges.append(Edge(what, steps[name, own_speed] / steps[name, slowest]))
         hasty = max(
             (steps[name, at] / steps[name, slowest] for at in LOADINGS if at < own_speed), key=lambda x: abs(x - 1)
         )
-        found.append(Edge(f"λ in haste, of that of the slowest loading, {name}", hasty))
-    return found
+        edges.append(Edge(f"λ in haste, of that of the slowest loading, {name}", hasty))
+    return edges
 
 
 def draw(figure: Figure, rows: Rows) -> None:

@@ -193,16 +193,16 @@ def widest_gap(what: str) -> Row:
 
 def fits(rows: Rows) -> list[Edge]:
     """One λ at every size, and what the answers are worth."""
-    found = []
+    edges = []
     for model in MODELS:
         loads = {row["wall"]: row.get("λ") for row in rows[PART] if row["model"] == model}
         usual = loads[f"{SIZES[1]:g} m wall, similar"]
         for size in (SIZES[0], SIZES[2]):
             load = loads[f"{size:g} m wall, similar"]
             if load is not None and usual is not None:
-                found.append(Edge(f"λ of a wall of {size:g} m, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
+                edges.append(Edge(f"λ of a wall of {size:g} m, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
     count = Counter(row["worth"] for row in rows[PART])
-    return found + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
+    return edges + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
 
 
 def draw(figure: Figure, rows: Rows) -> None:

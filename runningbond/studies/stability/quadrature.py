@@ -59,15 +59,15 @@ def measure(name: str, rule: str, cells: int) -> Row:
     scene, reference = scene_of(name), with_points_at_the_ends(name)
     tolerance = TIGHT if name == "block" else USUAL
     lower, upper = _bracket(fem(scene, tolerance, cells=cells, modes=3, rule=RULES[rule]))
-    found = (lower + upper) / 2
-    row: Row = {"λ lower": lower, "λ upper": upper, ENDS: reference, EARLY: found / reference}
+    result = (lower + upper) / 2
+    row: Row = {"λ lower": lower, "λ upper": upper, ENDS: reference, EARLY: result / reference}
     if name == "block":
         theory = reference * (1 - float(1 + RULES[rule].nodes[0]) / cells)
-        row |= {"measured": found, "theory": theory, "allowed": 1e-3}
+        row |= {"measured": result, "theory": theory, "allowed": 1e-3}
     elif name == "W1":
         inset = inset_of(scene, RULES[rule], cells)
         theory = sum(_bracket(dem_static(replace(scene, joint=replace(scene.joint, inset=inset))))) / 2
-        row |= {"measured": found, "theory": theory, "allowed": USUAL}
+        row |= {"measured": result, "theory": theory, "allowed": USUAL}
     return row
 
 

@@ -60,9 +60,9 @@ ENDED, BORNE, EXCESS = "ended", "borne [collapse load]", "largest excess over Eq
 def block_row(what: str) -> Row:
     """What a single block bears, in its collapse load."""
     size, exact, arm, theory = BLOCKS[what]
-    found = stiffness_update(one_block(*size, 0.6, 1e11), exact / FINE, 2.5 * exact, arm)
-    assert found.multiplier is not None
-    return {"measured": found.multiplier / exact, "theory": theory, "allowed": 1e-3}
+    result = stiffness_update(one_block(*size, 0.6, 1e11), exact / FINE, 2.5 * exact, arm)
+    assert result.multiplier is not None
+    return {"measured": result.multiplier / exact, "theory": theory, "allowed": 1e-3}
 
 
 @cache

@@ -66,13 +66,13 @@ def search(name: str, criterion: str, value: float) -> Row:
     run = Run(rigid_system(scene))
     first = FIRST_STEP / run.system.measure(run.system.live)
     criteria = Criteria(chosen[FAR] * scene.block_size, chosen[REST], BUDGET, int(chosen[INTERVAL]))
-    found = load_steps(run, first, WIDTH, criteria)
-    lower, upper, borne = found.lower, found.upper, found.borne
-    if lower is None or upper is None or borne is None or found.verdict == "undecided":
-        infeasible = lower is None and found.verdict == "collapse"
+    result = load_steps(run, first, WIDTH, criteria)
+    lower, upper, borne = result.lower, result.upper, result.borne
+    if lower is None or upper is None or borne is None or result.verdict == "undecided":
+        infeasible = lower is None and result.verdict == "collapse"
         return {"answer": "infeasible" if infeasible else "undecided", "λ lower": lower, "λ upper": upper}
     # The suite leaves its bracket as wide as a loose threshold of rest makes it uncertain; here its edge is looked for.
-    settling = RAMP * found.rests[0][1].steps
+    settling = RAMP * result.rests[0][1].steps
     while upper - lower > WIDTH * upper:
         middle, state = (lower + upper) / 2, borne.copy()
         ramp(run, state, lower, middle, settling)
@@ -115,11 +115,11 @@ def sweep(rows: Rows, name: str, criterion: str) -> list[Row]:
 
 def fits(rows: Rows) -> list[Edge]:
     """Ranges of every criterion in which λ is the suite's."""
-    found = []
+    edges = []
     for name, criterion in SWEEPS:
         ends = zip(("smallest", "largest"), plateau(sweep(rows, name, criterion)), strict=True)
-        found += [Edge(f"{which} {criterion} that finds the suite's λ, {name}", value) for which, value in ends]
-    return found
+        edges += [Edge(f"{which} {criterion} that finds the suite's λ, {name}", value) for which, value in ends]
+    return edges
 
 
 def draw(figure: Figure, rows: Rows) -> None:
