@@ -74,19 +74,25 @@ def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
         rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    result = {where: rows.get(_key(study, where)) for where in study.cases}
-    return {where: _case(study, where) | row for where, row in result.items() if row is not None and FAILURE not in row}
+    kept = {}
+    for where in study.cases:
+        row, case = rows.get(_key(study, where)), _case(study, where)
+        if row is not None and FAILURE not in row:
+            kept[where] = case | row | case
+    return kept
 
 
 def csv_text(study: Study, rows: dict[Where, Row]) -> str:
-    """The table as CSV, in the order of the study; `read_csv` gives the same rows back, to the last bit."""
+    """The table as CSV, in the order of the study; `kept_rows` has the same rows again, to the last bit."""
     columns = list(dict.fromkeys(column for row in rows.values() for column in row))
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow(["part", *columns, "key", "seal"])
     for where in study.cases:
         if where in rows:
-            cells = [where[0], *(_text(rows[where].get(column)) for column in columns), _key(study, where)]
+            case = study.parts[where[0]].columns
+            entries = [_text(rows[where].get(column), plain=column in case) for column in columns]
+            cells = [where[0], *entries, _key(study, where)]
             writer.writerow([*cells, _seal(cells)])
     return buffer.getvalue()
 
@@ -102,11 +108,13 @@ def read_csv(text: str) -> dict[str, Row]:
     return rows
 
 
-def _text(value: object) -> str:
-    """An entry as a cell: words as they are unless they read as something else, all else as JSON."""
-    if value is None:
+def _text(value: object, *, plain: bool) -> str:
+    """An entry as a cell: words as they are if they are known anyway or read as what they are, all else as JSON."""
+    if value is None or value == "":
         return ""
-    return value if isinstance(value, str) and value and value == _value(value) else json.dumps(value, default=_plain)
+    if isinstance(value, str) and (plain or value == _value(value)):
+        return value
+    return json.dumps(value, default=_plain)
 
 
 def _value(cell: str) -> object:

@@ -69,10 +69,19 @@ words = st.text(st.characters(codec="utf-8", exclude_characters="\r\0"))
 @settings(deadline=None)  # the first digest reads all code
 @given(entries | words, entries | words, st.lists(entries))
 def test_a_table_gives_its_rows_back_to_the_last_bit(one: object, other: object, many: list[object]) -> None:
-    row = {"load [N]": 1, "beam": "short", "one": one, "other": other, "many": many}
-    found = list(read_csv(csv_text(BEAMS, {("Beams", CASES[0]): row})).values())
-    assert found == [{head: entry for head, entry in row.items() if entry is not None}]
-    assert repr(found[0]["many"]) == repr(many)
+    row = {"load [N]": 1, "one": one, "other": other, "many": many}
+    kept = list(read_csv(csv_text(BEAMS, {("Beams", CASES[0]): row})).values())
+    assert kept == [{head: entry for head, entry in row.items() if entry is not None and entry != ""}]
+    assert repr(kept[0]["many"]) == repr(many)
+
+
+def test_words_of_cases_are_plain_in_the_table_and_words_again_when_read(tmp_path: Path) -> None:
+    cases = [("2", ""), ("all", "off")]
+    study = replace(BEAMS, parts={"Beams": Part(("modes", "scaling"), cases, lambda *case: {"answer": "3"})})
+    rows = run_study(study, tmp_path)["Beams"]
+    assert run_study(study, tmp_path)["Beams"] == rows
+    assert rows == [{"modes": modes, "scaling": scaling, "answer": "3"} for modes, scaling in cases]
+    assert table_path(study, tmp_path).read_text().splitlines()[1].startswith('Beams,2,,"""3""",')
 
 
 def test_numbers_of_numpy_are_kept_as_numbers() -> None:
