@@ -24,7 +24,7 @@ from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError
 from runningbond.studies.walls import elastic_stiffness as of_modes
 from runningbond.studies.walls import vibrations
-from tests.test_dem import rectangle
+from tests.limit.test_limit import rectangle
 from tests.walls import panel
 
 from .nodal_steps import NodalSteps

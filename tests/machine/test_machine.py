@@ -21,11 +21,12 @@ from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.pictures.time_series import frame_files
 from runningbond.results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
-from tests.machine.commands import COMMANDS, COMPARE, MESH, RENDER, TITLE, WALL, Command
-from tests.machine.disk import disk_trials_apart
-from tests.machine.faults import at_once, damage, interrupt
-from tests.machine.trial import LOST, NOT_TRIED, REDONE, REFUSED, Scratch, call
 from tests.walls import courses
+
+from .commands import COMMANDS, COMPARE, MESH, RENDER, TITLE, WALL, Command
+from .disk import disk_trials_apart
+from .faults import at_once, damage, interrupt
+from .trial import LOST, NOT_TRIED, REDONE, REFUSED, Scratch, call
 
 
 def what_commands_need(home: Path) -> dict[str, Path]:

@@ -12,15 +12,7 @@ from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING
 from runningbond.dynamics.run import LOCAL
 from runningbond.scene import Array
-from runningbond.studies.stability.loading_rate import (
-    BRACKET,
-    at_no_speed,
-    excess,
-    order,
-    push_row,
-    ramp_row,
-    step_row,
-)
+from runningbond.studies.stability.loading_rate import BRACKET, at_no_speed, excess, order, push_row, ramp_row, step_row
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 
 
