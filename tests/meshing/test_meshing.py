@@ -451,7 +451,7 @@ def test_a_file_is_whole_or_as_it_was(suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"wall{suffix}"
     path.write_text("before")
     lines = (
-        "import resource, sys; from compare.command import main;"
+        "import resource, sys; from runningbond.commands.command_line import main;"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192));"
         f"main(['mesh', 'panel-01', '-o', {str(path)!r}])"
     )
