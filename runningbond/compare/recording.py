@@ -32,11 +32,20 @@ STEPS_OF_MECHANISM = 8
 """Moments in which a mechanism, where there is nothing else, grows to a size that is seen."""
 
 
-def recorder(scene: Scene, model: str, folder: Path) -> "MotionRecorder | StaticRecorder | None":
-    """The observer that writes what a model passes through into a folder; None for models without observers."""
+def recorder(scene: Scene, model: str, folder: Path | None) -> "MotionRecorder | StaticRecorder | None":
+    """The observer that writes what a model passes through into a folder; None for models without observers.
+
+    Without a folder it keeps the moments in `Recorder.moments`.
+    """
     if model == "dem-static":
         return StaticRecorder(scene, folder)
     return MotionRecorder(scene, model, folder) if model in IN_MOTION else None
+
+
+class Moments(list[Frame]):
+    """Moments in memory, in the order in which they come."""
+
+    add = list[Frame].append
 
 
 class Recorder:
@@ -47,12 +56,13 @@ class Recorder:
     stage
         The wall.
     folder
-        Where the series is written.
+        Where the series is written; None keeps it in `moments`.
     """
 
-    def __init__(self, stage: Stage, folder: Path) -> None:
+    def __init__(self, stage: Stage, folder: Path | None) -> None:
         self.stage = stage
-        self._series = Series(stage, folder)
+        self.moments = Moments()
+        self._series = self.moments if folder is None else Series(stage, folder)
         self._folder = folder
         self._broken: OSError | VtkError | None = None
 
@@ -60,7 +70,7 @@ class Recorder:
         """Write a moment."""
         if self._broken is None:
             try:
-                if not len(self._series):  # an outcome that is there is of another run
+                if self._folder and not len(self._series):  # an outcome that is there is of another run
                     (self._folder / RECORD).unlink(missing_ok=True)
                 self._series.add(frame)
             except (OSError, VtkError) as error:
@@ -83,7 +93,7 @@ class Recorder:
 class StaticRecorder(Recorder):
     """Writes every state of rest that `dem.static` finds."""
 
-    def __init__(self, scene: Scene, folder: Path) -> None:
+    def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(Stage.of_rigid_blocks(scene), folder)
 
     def __call__(self, system: StaticSystem, state: StaticState) -> None:
@@ -109,10 +119,10 @@ class MotionRecorder(Recorder):
     model
         ``dem-dynamic``, or ``fem`` with the parameters that it has by default.
     folder
-        Where the series is written.
+        Where the series is written; None keeps it in `moments`.
     """
 
-    def __init__(self, scene: Scene, model: str, folder: Path) -> None:
+    def __init__(self, scene: Scene, model: str, folder: Path | None) -> None:
         wall = modal_wall(scene) if model == "fem" else None
         points = contact_points(scene) if wall is None else wall.interface.points
         super().__init__(Stage(scene, points, None if wall is None else _triangles(wall)), folder)
