@@ -82,7 +82,7 @@ class Wall:
             lateral unless given.
         """
         size = {"length": length, "height": height}
-        return cls._built({**size, **_block(block_width, block_height, thickness)}, keys)
+        return cls._built("running bond", {**size, **_block(block_width, block_height, thickness)}, keys)
 
     @classmethod
     def courses(
@@ -105,13 +105,13 @@ class Wall:
         keys
             As of `running_bond`.
         """
-        return cls._built({"courses": courses, **_block(block_width, block_height, thickness)}, keys)
+        return cls._built("courses", {"courses": courses, **_block(block_width, block_height, thickness)}, keys)
 
     @classmethod
-    def _built(cls, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
+    def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
         table_of = {key: table for table, known in TABLES.items() for key in known}
         table_of |= dict.fromkeys(("first_course", "ends"), "wall")
-        description = {"wall": wall, **DEFAULTS}
+        description = {"title": title, "wall": wall, **DEFAULTS}
         for key, value in keys.items():
             if isinstance(value, (int, float)) and key not in table_of:
                 likely = get_close_matches(key, table_of, n=1)
