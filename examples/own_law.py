@@ -3,6 +3,8 @@
 import math
 from typing import Any
 
+import numpy as np
+
 import runningbond as rb
 from runningbond.joints import Law, joint_stiffness
 from runningbond.joints.compiled import kernel
@@ -45,7 +47,7 @@ def polish(
 
 def stored(points: Any, opening: Array, normal: Array, shear: Array) -> Array:
     """Energy of the springs, ``(np,)`` [J/m²]."""
-    return normal**2 / (2 * points.normal_stiffness) + shear**2 / (2 * points.shear_stiffness)
+    return np.asarray(normal**2 / (2 * points.normal_stiffness) + shear**2 / (2 * points.shear_stiffness))
 
 
 ROWS = ("friction_work", "damped_work", "opening_before", "slip_before", "plastic_slip", "polish")

@@ -51,6 +51,9 @@ def sweep(
         describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
     """
     check_model(model, "model")
+    for key, values in changes.items():
+        if not isinstance(values, Iterable) or isinstance(values, (str, Mapping)):
+            raise SceneError(key, "must be a list of the values that it is to take", values)
     cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
     built = [_scene(wall, case) for case in cases]
     # Named after what they are computed from, outcomes are found again when keys or values are added.

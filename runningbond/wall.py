@@ -234,9 +234,9 @@ def _block(width: float, height: float, thickness: float) -> dict[str, float]:
 
 
 def _as_in_a_file(value: Any) -> Any:
-    """A copy of nested values in the types of a TOML file; objects of other types as they are."""
+    """A copy of nested values in the types of a TOML file, which has no None; objects of other types as they are."""
     if isinstance(value, Mapping):
-        return {str(key): _as_in_a_file(inner) for key, inner in value.items()}
+        return {str(key): _as_in_a_file(inner) for key, inner in value.items() if inner is not None}
     if isinstance(value, (list, tuple)):
         return [_as_in_a_file(inner) for inner in value]
     if isinstance(value, (np.ndarray, np.generic)):

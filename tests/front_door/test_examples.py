@@ -19,13 +19,19 @@ def example(name: str, run: bool = False) -> dict[str, Any]:
     return runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__" if run else name)
 
 
+def bracket(result: rb.Result) -> tuple[float, float]:
+    """Lower and upper end, infinite where there is none."""
+    lower, upper = result.lower, result.upper
+    return -np.inf if lower is None else lower, np.inf if upper is None else upper
+
+
 @pytest.mark.skipif(not hasattr(joints, "Law"), reason="until laws are objects")
 def test_joints_that_are_polished_bear_less_than_rough_ones() -> None:
-    """Blocks that slide and rock before they fall lose friction on the way: panel-03 falls earlier than with Coulomb's."""
+    """Blocks that slide and rock before they fall lose friction on the way: panel-03 falls earlier."""
     wall, law = rb.read("panel-03"), example("own_law")["LAW"]
     rough, polished = (wall.with_({"joint.law": each}).run("dem-dynamic") for each in (None, law))
     assert polished.status == rough.status == "collapse"
-    assert polished.upper < rough.lower
+    assert bracket(polished)[1] < bracket(rough)[0]
 
 
 @pytest.mark.skipif(not hasattr(joints, "Law"), reason="until laws are objects")
@@ -35,8 +41,8 @@ def test_a_wall_that_slides_at_once_does_so_before_it_is_polished() -> None:
     mortar = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
     size = {"block_width": 0.4, "block_height": 0.1, "thickness": 0.2}
     block = rb.Wall.courses([[2]], **size, density=1800.0, friction=0.4, mortar=mortar, law=law)
-    result = block.run("dem-dynamic")
-    assert result.lower * 0.99 < 0.4 < result.upper * 1.01
+    lower, upper = bracket(block.run("dem-dynamic"))
+    assert lower * 0.99 < 0.4 < upper * 1.01
 
 
 @pytest.mark.skipif(not hasattr(loads, "Action"), reason="until loads are objects")
@@ -66,7 +72,7 @@ def test_a_wall_in_one_block_is_never_weaker_than_one_of_many() -> None:
         wall = rb.read(name)
         whole = wall.run(model)
         assert whole.model == "monolith"
-        assert wall.run("limit").upper <= whole.upper * (1 + 1e-6)
+        assert bracket(wall.run("limit"))[1] <= bracket(whole)[1] * (1 + 1e-6)
     with pytest.raises(rb.SceneError, match="dry joints"):
         rb.read("panel-01").with_({"joint.cohesion": 10.0}).run(model)
 

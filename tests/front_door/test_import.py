@@ -12,25 +12,15 @@ from setuptools import find_packages
 import runningbond as rb
 
 ROOT = Path(__file__).parents[2]
-HEAVY = {
-    "numpy",
-    "scipy",
-    "numba",
-    "gmsh",
-    "pyvista",
-    "vtkmodules",
-    "matplotlib",
-    "joblib",
-    "shapely",
-    "ezdxf",
-    "pandas",
-}
+DRAWING = {"matplotlib", "pyvista", "vtkmodules"}
+HEAVY = {"numpy", "scipy", "numba", "gmsh", "joblib", "shapely", "ezdxf", "pandas"} | DRAWING
 METHODS = {"dem", "fem_interface", "homog", "meshing"}
 
 FIVE_LINES = """
 import runningbond as rb
 mortar = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
-wall = rb.Wall.courses([[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0, friction=0.4, mortar=mortar)
+wall = rb.Wall.courses([[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2,
+                       density=1800.0, friction=0.4, mortar=mortar)
 result = wall.run("dem-static")
 print(result.status, result.lower)
 from dem import limit
@@ -56,7 +46,7 @@ def test_import_loads_no_library_and_no_room() -> None:
 def test_a_wall_is_built_without_models_compilers_and_pictures() -> None:
     lines = FIVE_LINES.split("result =")[0]
     loaded = python("-c", f"{lines}\nimport sys; print(*sys.modules)").split()
-    assert not {"numba", "gmsh", "pyvista", "vtkmodules", "matplotlib", "joblib"} & set(loaded)
+    assert not (DRAWING | {"numba", "gmsh", "joblib"}) & set(loaded)
 
 
 def test_every_name_is_listed_and_there() -> None:
@@ -72,18 +62,8 @@ def test_a_name_that_is_not_there_is_refused() -> None:
 @pytest.fixture
 def strangers(tmp_path: Path) -> Path:
     """A folder of files of a user's own, named like rooms, which nothing of the package may import."""
-    for name in (
-        "scene",
-        "results",
-        "joints",
-        "compare",
-        "dynamics",
-        "limit",
-        "pictures",
-        "wall",
-        "sweeps",
-        "dem_test",
-    ):
+    rooms = ("scene", "results", "joints", "compare", "dynamics", "limit", "pictures", "studies", "commands")
+    for name in (*rooms, "wall", "sweeps", "tables", "dem_test"):
         (tmp_path / f"{name}.py").write_text(f"raise ImportError('{name}.py of the user was imported')\n")
     return tmp_path
 
@@ -114,9 +94,8 @@ def _block(language: str) -> str:
 def _commands() -> list[str]:
     """Commands of the README that need no screen and take no minute."""
     start = ".venv/bin/runningbond "
-    lines = [
-        line.removeprefix(start) for line in (ROOT / "README.md").read_text().splitlines() if line.startswith(start)
-    ]
+    readme = (ROOT / "README.md").read_text().splitlines()
+    lines = [line.removeprefix(start) for line in readme if line.startswith(start)]
     return [line for line in lines if line.split()[0] in ("advise", "mesh") or line.endswith("--model limit")]
 
 

@@ -43,10 +43,8 @@ def test_loop_around_a_changed_law_is_compiled_anew(tmp_path: Path, changed: dic
     """Exact: 10 (factor · helper · 1 + shift), before and after one of them changes."""
     (tmp_path / "loop.py").write_text(LOOP)
     surroundings = {**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
-    for numbers in (
-        {"factor": 1.0, "helper": 1.0, "shift": 0.0},
-        {"factor": 1.0, "helper": 1.0, "shift": 0.0} | changed,
-    ):
+    before = {"factor": 1.0, "helper": 1.0, "shift": 0.0}
+    for numbers in (before, before | changed):
         (tmp_path / "law.py").write_text(LAW.format(**numbers))
         answer = subprocess.run(
             [sys.executable, "loop.py"], cwd=tmp_path, env=surroundings, capture_output=True, text=True, check=True

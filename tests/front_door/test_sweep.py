@@ -2,12 +2,14 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import runningbond as rb
-from runningbond.compare import campaign
+from runningbond.compare import campaign, models
+from runningbond.results import Outcome
 
 WALL = rb.Wall.courses(
     [[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0, friction=0.4
@@ -45,8 +47,6 @@ def test_refusals_are_rows() -> None:
 
 
 def test_a_model_that_breaks_is_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    from runningbond.results import Outcome
-
     broken = Outcome("", "limit", "failed", message="ZeroDivisionError: by zero")
     monkeypatch.setattr(campaign, "run_model", lambda *_: broken)
     table = rb.sweep(WALL, {"joint.friction": [0.3]}, "limit", jobs=1)
@@ -57,11 +57,11 @@ def test_a_model_that_breaks_is_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_sweep_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Answers in the folder are not computed again, whatever stands before or after them now."""
     rb.sweep(WALL, {"joint.friction": [0.3, 0.2]}, "limit", folder=tmp_path, jobs=1)
-    run_model, computed = campaign.run_model, []
+    run_model, computed = models.run_model, []
 
-    def counted(*arguments: object) -> object:
+    def counted(*arguments: Any) -> Outcome:
         computed.append(arguments)
-        return run_model(*arguments)  # type: ignore[arg-type]
+        return run_model(*arguments)
 
     monkeypatch.setattr(campaign, "run_model", counted)
     table = rb.sweep(WALL, {"joint.friction": [0.1, 0.2, 0.3]}, "limit", folder=tmp_path, jobs=1)
@@ -85,6 +85,12 @@ def test_tables_may_vary_as_well() -> None:
 def test_an_unknown_model_is_refused_at_once() -> None:
     with pytest.raises(rb.SceneError, match='did you mean "limit"?'):
         rb.sweep(WALL, {"joint.friction": [0.3]}, "limt")
+
+
+@pytest.mark.parametrize("value", [0.4, "base", {"kind": "base"}])
+def test_values_are_a_list(value: Any) -> None:
+    with pytest.raises(rb.SceneError, match="must be a list of the values"):
+        rb.sweep(WALL, {"support.kind": value}, "limit")
 
 
 def test_an_interrupted_sweep_is_an_interruption(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -63,7 +63,8 @@ def test_keywords_make_the_wall_that_tables_make() -> None:
 def test_tuples_and_arrays_count_as_lists() -> None:
     size = {key: PANEL[key] for key in ("block_width", "block_height", "thickness", "density", "friction")}
     by_lists = rb.Wall.courses([[1, 1], [0.5, 1, 0.5]], **size)
-    assert same(rb.Wall.courses(((1, 1), np.array([0.5, 1, 0.5])), **size).scene, by_lists.scene)
+    mixed: Any = ((1, 1), np.array([0.5, 1, 0.5]))
+    assert same(rb.Wall.courses(mixed, **size).scene, by_lists.scene)
     assert by_lists.with_({"joint.friction": np.float32(0.5)}).scene.joint.friction == 0.5
 
 
@@ -81,6 +82,8 @@ def test_a_copy_is_changed_and_the_wall_is_not() -> None:
 def test_none_takes_a_key_out() -> None:
     wall = rb.Wall.running_bond(**PANEL).with_({"joint.friction": None, "joint.friction_angle": 45.0})
     assert wall.scene.joint.friction == pytest.approx(1.0)
+    assert "mortar" not in rb.Wall.running_bond(**PANEL, mortar=None).description["joint"]
+    assert "title" not in rb.Wall.from_dict({**wall.description, "title": None}).description
 
 
 def test_a_table_of_another_kind_takes_the_place_of_the_old_one() -> None:
