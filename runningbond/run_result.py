@@ -135,8 +135,8 @@ class Result:
 
     def __repr__(self) -> str:
         names = {"λ": self.multiplier, "lower": self.lower, "upper": self.upper}
-        known = ", ".join(f"{name} {number(value)}" for name, value in names.items() if value is not None)
-        return f"<Result of {self.model} on {self.outcome.scene!r}: {self.status}{': ' + known if known else ''}>"
+        bracket = ", ".join(f"{name} {number(value)}" for name, value in names.items() if value is not None)
+        return f"<Result of {self.model} on {self.outcome.scene!r}: {self.status}{': ' + bracket if bracket else ''}>"
 
     def _repr_svg_(self) -> str:
         from .pictures.flat import figure_of, to_svg

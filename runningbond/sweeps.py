@@ -55,27 +55,24 @@ def sweep(
         if not isinstance(values, Iterable) or isinstance(values, (str, Mapping)):
             raise SceneError(key, "must be a list of the values that it is to take", values)
     cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
-    built = [_scene(wall, case) for case in cases]
-    # Named after what they are computed from, outcomes are found again when keys or values are added.
-    names = [fingerprint(found, model, tolerance)[:16] if isinstance(found, Scene) else "" for found in built]
-    scenes = {name: found for name, found in zip(names, built, strict=True) if isinstance(found, Scene)}
+    scenes: dict[str, Scene] = {}
+    names: list[str] = []
+    refusals: dict[tuple[str, str], str] = {}
+    for number, case in enumerate(cases):
+        try:
+            scene = wall.with_(case).scene
+        except SceneError as refusal:
+            names.append(f"case {number}")
+            refusals[names[-1], model] = str(refusal)
+        else:  # named after what it is computed from, an outcome is used again when keys or values are added
+            names.append(fingerprint(scene, model, tolerance)[:16])
+            scenes[names[-1]] = scene
     campaign = _campaign(scenes, model, tolerance, folder, jobs)
-    columns: dict[str, list[Any]] = {name: [] for name in (*changes, *ANSWER)}
-    for case, name, found in zip(cases, names, built, strict=True):
-        refusal = str(found) if isinstance(found, SceneError) else campaign.inapplicable.get((name, model))
-        answer = {"status": "refused", "message": refusal}
-        row = {**case, **(answer if refusal is not None else campaign.outcomes[name, model].summary())}
-        for key, column in columns.items():
-            column.append(row.get(key))
-    return table(columns)
-
-
-def _scene(wall: Wall, case: Mapping[str, Any]) -> Scene | SceneError:
-    """The scene of a changed wall, or why there is none."""
-    try:
-        return wall.with_(case).scene
-    except SceneError as refusal:
-        return refusal
+    answers = {cell: outcome.summary() for cell, outcome in campaign.outcomes.items()}
+    for cell, message in (refusals | campaign.inapplicable).items():
+        answers[cell] = {"status": "refused", "message": message}
+    rows = [{**answers[name, model], **case} for name, case in zip(names, cases, strict=True)]
+    return table({key: [row.get(key) for row in rows] for key in (*changes, *ANSWER)})
 
 
 def _campaign(scenes: dict[str, Scene], model: str, tolerance: float, folder: str | Path | None, jobs: int) -> Campaign:

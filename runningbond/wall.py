@@ -32,7 +32,7 @@ DEFAULTS: dict[str, Any] = {
     "support": {"kind": "base"},
     "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
 }
-"""What a wall built in Python stands on and bears unless it is told otherwise."""
+"""Support and loads of a wall built in Python unless others are given."""
 
 
 class Wall:
@@ -81,8 +81,8 @@ class Wall:
             more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load
             lateral unless given.
         """
-        size = {"length": length, "height": height}
-        return cls._built("running bond", {**size, **_block(block_width, block_height, thickness)}, keys)
+        block = {"block_width": block_width, "block_height": block_height, "thickness": thickness}
+        return cls._built("running bond", {"length": length, "height": height, **block}, keys)
 
     @classmethod
     def courses(
@@ -94,22 +94,21 @@ class Wall:
         thickness: float,
         **keys: Any,
     ) -> "Wall":
-        """A wall given course by course.
+        """A wall given course by course, with the other parameters of `running_bond`.
 
         Parameters
         ----------
         courses
             Bottom to top; each a list of widths in blocks, left to right, negative for an opening.
-        block_width, block_height, thickness
-            Size of a block [m].
-        keys
+        block_width, block_height, thickness, keys
             As of `running_bond`.
         """
-        return cls._built("courses", {"courses": courses, **_block(block_width, block_height, thickness)}, keys)
+        block = {"block_width": block_width, "block_height": block_height, "thickness": thickness}
+        return cls._built("courses", {"courses": courses, **block}, keys)
 
     @classmethod
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
-        table_of = {key: table for table, known in TABLES.items() for key in known}
+        table_of = {key: table for table, its_keys in TABLES.items() for key in its_keys}
         table_of |= dict.fromkeys(("first_course", "ends"), "wall")
         description = {"title": title, "wall": wall, **DEFAULTS}
         for key, value in keys.items():
@@ -229,10 +228,6 @@ def read(wall: str | Path) -> Wall:
     return Wall({"title": path.stem, **read_description(path)}, path.parent)
 
 
-def _block(width: float, height: float, thickness: float) -> dict[str, float]:
-    return {"block_width": width, "block_height": height, "thickness": thickness}
-
-
 def _as_in_a_file(value: Any) -> Any:
     """A copy of nested values in the types of a TOML file, which has no None; objects of other types as they are."""
     if isinstance(value, Mapping):
@@ -248,11 +243,11 @@ def _merged(old: Mapping[str, Any], new: Mapping[str, Any], name: str = "") -> d
     """A table with the keys of another one put in or, where they are None, taken out."""
     merged = dict(old)
     for key, value in new.items():
-        there, full = merged.get(key), f"{name}{key}"
+        before, full_name = merged.get(key), f"{name}{key}"
         if isinstance(value, Mapping) and "kind" not in value:
-            if isinstance(there, (list, tuple)):
-                raise SceneError(full, "is a list, which is changed as a whole", there)
-            merged[key] = _merged(there if isinstance(there, Mapping) else {}, value, f"{full}.")
+            if isinstance(before, list):
+                raise SceneError(full_name, "is a list, which is changed as a whole", before)
+            merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, f"{full_name}.")
         elif value is None:
             merged.pop(key, None)
         else:

@@ -55,15 +55,15 @@ def module(root: Path, file: Path) -> str:
 def needs(root: Path, file: Path, modules: set[str]) -> set[str]:
     """Modules that one imports as soon as it is imported itself, without those of its functions."""
     package = module(root, file).split(".") if file.name == "__init__.py" else module(root, file).split(".")[:-1]
-    found: set[str] = set()
+    imported: set[str] = set()
     for node in ast.parse(text(file)).body:
         if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
+            imported |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
             base = package[: len(package) - node.level + 1] if node.level else []
             target = ".".join([*base, *([node.module] if node.module else [])])
-            found |= {target, *(f"{target}.{alias.name}" for alias in node.names)}
-    return found & modules - {module(root, file)}
+            imported |= {target, *(f"{target}.{alias.name}" for alias in node.names)}
+    return imported & modules - {module(root, file)}
 
 
 def cycles(graph: dict[str, set[str]]) -> list[list[str]]:
@@ -87,11 +87,6 @@ def cycles(graph: dict[str, set[str]]) -> list[list[str]]:
                 yield sorted(group)
 
     return [group for name in sorted(graph) if name not in number for group in visit(name)]
-
-
-def naming(files: list[Path], names: Callable[[str], bool]) -> list[Path]:
-    """Files in whose text something is named."""
-    return [file for file in files if names(text(file))]
 
 
 def names_a_model(content: str) -> bool:
@@ -122,8 +117,8 @@ def report(root: Path) -> list[tuple[str, object]]:
         "load": lambda content: bool(LOADS.search(content)),
         "model": names_a_model,
     }
-    for kind, known in kinds.items():
-        rows.append((f"files that name a {kind} there is", len(naming(files, known))))
+    for kind, names_one in kinds.items():
+        rows.append((f"files that name a {kind} there is", sum(names_one(text(file)) for file in files)))
         example = root / "examples" / f"own_{kind}.py"
         rows.append((f"files of the package that {example.name} touches", 0 if example.exists() else "no such example"))
     return rows
