@@ -5,8 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import runningbond as rb
-from runningbond.scene import Scene
-from runningbond.scene.loads import Action, Forces
+from runningbond.scene import Action, Forces, Scene
 
 
 @dataclass(frozen=True)

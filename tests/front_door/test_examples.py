@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import runningbond as rb
-from runningbond import joints
+from runningbond import joints, scene
 from runningbond.compare import models
-from runningbond.scene import loads
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -45,7 +44,7 @@ def test_a_wall_that_slides_at_once_does_so_before_it_is_polished() -> None:
     assert lower * 0.99 < 0.4 < upper * 1.01
 
 
-@pytest.mark.skipif(not hasattr(loads, "Action"), reason="until loads are objects")
+@pytest.mark.skipif(not hasattr(scene, "Action"), reason="until loads are objects")
 def test_a_dam_slides_under_water_as_the_square_of_its_depth() -> None:
     """Exact: λ = tan φ ρ L H / (ρ_w h² / 2), which for this dam is 3 / h² (it would topple at twice that)."""
     found = example("own_load")
@@ -54,7 +53,7 @@ def test_a_dam_slides_under_water_as_the_square_of_its_depth() -> None:
         assert wall.run("limit").multiplier == pytest.approx(3 / level**2, rel=1e-6)
 
 
-@pytest.mark.skipif(not hasattr(loads, "Action"), reason="until loads are objects")
+@pytest.mark.skipif(not hasattr(scene, "Action"), reason="until loads are objects")
 def test_water_presses_with_its_weight_at_a_third_of_its_depth() -> None:
     """Exact, on blocks of the face above and below the level: F = ρ_w g t h² / 2 at h / 3."""
     found = example("own_load")
@@ -81,7 +80,7 @@ def test_a_wall_in_one_block_is_never_weaker_than_one_of_many() -> None:
 def test_examples_run_as_they_are(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    ready = {"own_law": hasattr(joints, "Law"), "own_load": hasattr(loads, "Action")}
+    ready = {"own_law": hasattr(joints, "Law"), "own_load": hasattr(scene, "Action")}
     if not (ready | {"own_model": isinstance(models.Model, type)}).get(name, True):
         pytest.skip("until the tracks are merged")
     monkeypatch.chdir(tmp_path)
