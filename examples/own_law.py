@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 import numpy as np
+from runningbond.joints.law import COMMON_ROWS
 
 import runningbond as rb
 from runningbond.joints import Law, joint_stiffness
@@ -11,7 +12,7 @@ from runningbond.joints.compiled import kernel
 from runningbond.scene import Array, JointMaterial
 
 POLISHED, DISTANCE = 0.5, 1e-4  # share of friction that is left, and slip [m] over which it goes
-WORK, DAMPED, OPENING, SLIP, PLASTIC, POLISH = range(6)  # rows of the history
+WORK, VISCOUS_WORK, OPENING, SLIP, PLASTIC, POLISH = range(6)  # rows of the history
 
 
 def constants(material: JointMaterial) -> tuple[float, ...]:
@@ -39,7 +40,7 @@ def polish(
             shear[i] = min(max(held + viscosity * k_t * d_t, -most), most)
             slid = (trial - held) / k_t
             history[WORK, i] += held * slid
-            history[DAMPED, i] += (normal[i] - pressed) * d_n + (shear[i] - held) * d_t
+            history[VISCOUS_WORK, i] += (normal[i] - pressed) * d_n + (shear[i] - held) * d_t
             history[OPENING, i], history[SLIP, i] = opening[i], slip[i]
             history[PLASTIC, i] += slid
             history[POLISH, i] += abs(slid)
@@ -50,8 +51,7 @@ def stored(points: Any, opening: Array, normal: Array, shear: Array) -> Array:
     return np.asarray(normal**2 / (2 * points.normal_stiffness) + shear**2 / (2 * points.shear_stiffness))
 
 
-ROWS = ("friction_work", "damped_work", "opening_before", "slip_before", "plastic_slip", "polish")
-LAW = Law("polished friction", constants, polish, ROWS, stored)
+LAW = Law("polished friction", constants, polish, (*COMMON_ROWS, "plastic slip", "polish"), stored)
 
 if __name__ == "__main__":
     wall = rb.read("panel-03")

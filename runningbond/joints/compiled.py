@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import numba
-import numpy as np
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
@@ -67,19 +66,10 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
 
 
 def _identity(function: Any) -> tuple[Any, ...]:
-    """What a function is called in its source, what it does, and what it is closed over or finds in its module.
-
-    The folder of the cache knows the sources of the package's own kernels, but not a law of a user's own, which may
-    change while the loop that it is compiled into does not.
-    """
-    code = function.__code__
+    """What a function is called in its source, and what it is closed over."""
     closed_over = [cell.cell_contents for cell in function.__closure__ or ()]
-    global_values = [function.__globals__[name] for name in code.co_names if name in function.__globals__]
-    used = [value for value in global_values if isinstance(value, (Dispatcher, bool, int, float, tuple, np.ndarray))]
-    known_by = (
-        _identity(value.py_func) if isinstance(value, Dispatcher) else dumps(value) for value in (*closed_over, *used)
-    )
-    return function.__module__, function.__qualname__, code.co_code, repr(code.co_consts), *known_by
+    known_by = (_identity(value.py_func) if isinstance(value, Dispatcher) else dumps(value) for value in closed_over)
+    return function.__module__, function.__qualname__, *known_by
 
 
 def kernel(function: Callable[..., Any]) -> Any:
