@@ -55,5 +55,5 @@ LAW = Law("polished friction", constants, polish, (*COMMON_ROWS, "plastic slip",
 
 if __name__ == "__main__":
     wall = rb.read("panel-03")
-    for law in (None, LAW):
-        print(wall.with_({"joint.law": law}).run("dem-dynamic"))
+    rough, polished = (wall.with_({"joint.law": law}).run("dem-dynamic") for law in (None, LAW))
+    print(rough, polished, sep="\n")
