@@ -139,12 +139,14 @@ class Result:
         return f"<Result of {self.model} on {self.outcome.scene!r}: {self.status}{': ' + bracket if bracket else ''}>"
 
     def _repr_svg_(self) -> str:
-        from .pictures.flat import figure_of, to_svg
+        from .pictures.captions import to_svg
+        from .pictures.flat import figure_of
 
-        return to_svg(figure_of(self.wall.scene, self.outcome))
+        return to_svg(figure_of(self.wall.scene, self.outcome)).decode()
 
     def _repr_png_(self) -> bytes:
-        from .pictures.flat import figure_of, to_png
+        from .pictures.captions import to_png
+        from .pictures.flat import figure_of
 
         return to_png(figure_of(self.wall.scene, self.outcome))
 

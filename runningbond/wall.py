@@ -204,12 +204,14 @@ class Wall:
         return f"<Wall {self.scene.title!r}: {self.scene.wall.sum()} blocks, {length:.4g} × {height:.4g} m>"
 
     def _repr_svg_(self) -> str:
-        from .pictures.flat import figure_of, to_svg
+        from .pictures.captions import to_svg
+        from .pictures.flat import figure_of
 
-        return to_svg(figure_of(self.scene))
+        return to_svg(figure_of(self.scene)).decode()
 
     def _repr_png_(self) -> bytes:
-        from .pictures.flat import figure_of, to_png
+        from .pictures.captions import to_png
+        from .pictures.flat import figure_of
 
         return to_png(figure_of(self.scene))
 

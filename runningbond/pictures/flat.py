@@ -1,6 +1,5 @@
 """Stand-in for the flat drawings until theirs is here: outlines of blocks, where they are and where they go."""
 
-import io
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,22 +43,6 @@ def figure_of(scene: Scene, outcome: Outcome | None = None) -> "Figure":
     else:
         draw_mechanism(axes, scene, outcome)
     return figure
-
-
-def to_svg(figure: "Figure") -> str:
-    """A figure as the text of an SVG file."""
-    return _written(figure, "svg").decode()
-
-
-def to_png(figure: "Figure") -> bytes:
-    """A figure as the content of a PNG file."""
-    return _written(figure, "png")
-
-
-def _written(figure: "Figure", kind: str) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format=kind)
-    return buffer.getvalue()
 
 
 def _draw(axes: "Axes", scene: Scene, corners: Array) -> None:
