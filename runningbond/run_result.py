@@ -18,23 +18,6 @@ from .wall import Wall
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-UNITS = {
-    "displacement": "m",
-    "multiplier": "1, or N for a point load of 1 N",
-    "x": "m",
-    "y": "m",
-    "area": "m²",
-    "mass": "kg",
-    "u": "m",
-    "v": "m",
-    "rotation": "rad",
-    "normal_force": "N",
-    "shear_force": "N",
-    "opening": "m",
-    "slip": "m",
-}
-"""Units of the columns of a result's tables; those of a mechanism go with one metre of its fastest corner."""
-
 
 class Result:
     """What a model says of a wall.
@@ -84,7 +67,7 @@ class Result:
     def curve(self) -> Table:
         """Pushover curve: ``displacement`` of the control point along the live load [m] and ``multiplier``."""
         displacement, multiplier = self.outcome.curve.T
-        return table({"displacement": displacement, "multiplier": multiplier}, UNITS)
+        return table({"displacement": displacement, "multiplier": multiplier})
 
     @cached_property
     def blocks(self) -> Table:
@@ -96,7 +79,7 @@ class Result:
         scene = self.wall.scene
         (x, y), (u, v, rotation) = scene.blocks.centroid.T, self._mechanism().T
         size = {"x": x, "y": y, "area": scene.blocks.area, "mass": scene.mass, "fixed": scene.fixed}
-        return table({**size, "u": u, "v": v, "rotation": rotation}, UNITS)
+        return table({**size, "u": u, "v": v, "rotation": rotation})
 
     @cached_property
     def joints(self) -> Table:
@@ -114,7 +97,7 @@ class Result:
         (a, b), (x, y) = points.block.T, points.position.T
         place = {"joint": points.joint, "a": a, "b": b, "x": x, "y": y, "area": points.area}
         forces = {"normal_force": force[:, 0], "shear_force": force[:, 1]}
-        return table({**place, **forces, "opening": opening, "slip": slip}, UNITS)
+        return table({**place, **forces, "opening": opening, "slip": slip})
 
     def plot(self, what: Literal["mechanism", "curve"] | None = None, axes: "Axes | None" = None) -> "Axes":
         """Draw the mechanism, the curve where there is no mechanism, or what is asked for, into axes."""
@@ -125,13 +108,12 @@ class Result:
             draw_mechanism(axes, self.wall.scene, self.outcome)
             return axes
         axes.plot(*self.outcome.curve.T, marker=".")
-        axes.set(
-            xlabel="displacement of the control point [m]", ylabel="λ", title=f"{self.outcome.scene}: {self.model}"
-        )
+        axes.set(xlabel="displacement of the control point [m]", ylabel="λ", title=self.outcome.scene)
         return axes
 
     def _mechanism(self) -> Array:
-        return self.motion if len(self.motion) else np.full((len(self.wall.scene.blocks), 3), np.nan)
+        shape = (len(self.wall.scene.blocks), 3)
+        return self.motion if self.motion.shape == shape else np.full(shape, np.nan)
 
     def __repr__(self) -> str:
         names = {"λ": self.multiplier, "lower": self.lower, "upper": self.upper}

@@ -9,8 +9,8 @@ Table: TypeAlias = Any
 """A ``pandas.DataFrame``, or a structured array whose fields are its columns."""
 
 
-def table(columns: Mapping[str, Any], units: Mapping[str, str] | None = None) -> Table:
-    """Columns of one length as a table; their units are in its ``attrs["units"]`` where it is one of pandas."""
+def table(columns: Mapping[str, Any]) -> Table:
+    """Columns of one length as a table."""
     ready = {name: _column(values) for name, values in columns.items()}
     try:
         from pandas import DataFrame
@@ -20,9 +20,7 @@ def table(columns: Mapping[str, Any], units: Mapping[str, str] | None = None) ->
         for name, values in ready.items():
             records[name] = values
         return records
-    frame = DataFrame(ready)
-    frame.attrs["units"] = dict(units or {})
-    return frame
+    return DataFrame(ready)
 
 
 def _column(values: Sequence[Any]) -> Any:
