@@ -18,7 +18,7 @@ DEMONSTRATION = {"compare", "studies", "commands"}
 """Rooms that compare and demonstrate; before the package was made, all of them in ``compare``."""
 
 LOADS = re.compile(r"\bPointLoad\b")
-LAWS = re.compile(r"\b(softening_\w+|coulomb_(kernel|constants)|fracture_energy_1)\b")
+LAWS = re.compile(r"\b(SOFTENING|COULOMB|softening_\w+|coulomb_(kernel|constants)|fracture_energy_1)\b")
 MODELS = {"limit-nonassociated", "dem-static", "dem-dynamic", "fem"}
 UNTYPED = re.compile(r"tuple\[Any\b")
 
