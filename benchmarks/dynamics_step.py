@@ -53,7 +53,7 @@ def sparse(scene: Scene, steps: int) -> list[float]:
     column = np.argsort(system.rigid.ravel())
     jump = jump_operator(points, scene.blocks.centroid)
     opening, slips = csr_array(jump.opening[:, column]), csr_array(jump.slip[:, column])
-    k_n, k_t, tension, shear, friction, flexibility = (system.law.of_points(row) for row in range(6))
+    k_n, k_t, tension, shear, friction, flexibility = (system.interface.law.of_points(row) for row in range(6))
     mobility, load = 1 / system.mass, system.dead + 0.2 * system.live
     weight = diags_array(points.area)
     opening_t, slip_t = csr_array(opening.T @ weight), csr_array(slips.T @ weight)

@@ -75,11 +75,11 @@ def sparse(wall: ModalWall, steps: int, *, lumped: bool) -> tuple[list[float], f
     M = csr_array(M[free][:, free])
     jump = nodal_jump(wall.interface, len(mesh.points))
     B_n, B_t = (csr_array(B.tocsc()[:, free].tocsr()) for B in (jump.opening, jump.slip))
-    weight = diags_array(system.area)
+    weight = diags_array(system.interface.area)
     B_n_t, B_t_t = csr_array(B_n.T @ weight), csr_array(B_t.T @ weight)
-    k_n, k_t, tension, shear, friction, flexibility = (system.law.of_points(row) for row in range(6))
+    k_n, k_t, tension, shear, friction, flexibility = (system.interface.law.of_points(row) for row in range(6))
     stiff = K + B_n_t @ diags_array(k_n) @ B_n + B_t_t @ diags_array(k_t) @ B_t
-    fastest = system.block_frequency_squared
+    fastest = system.interface.frequency_squared
     if lumped:
         root = diags_array(1 / np.sqrt(M.diagonal()))
         fastest = float(eigsh(root @ stiff @ root, 1, which="LM", tol=1e-3, return_eigenvectors=False)[0])

@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from runningbond.pictures.frame import Frame, Stage, mechanism_frame
-from runningbond.pictures.mechanisms import mechanism_picture, png, show_mechanism
+from runningbond.pictures.captions import to_png
+from runningbond.pictures.flat import figure_of
+from runningbond.pictures.frame import Discretisation, Frame
+from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.offscreen import why_not_drawn
-from runningbond.pictures.painting import Painter
-from runningbond.pictures.series import Series
+from runningbond.pictures.pyvista_figure import mechanism_figure
+from runningbond.pictures.pyvista_painter import Painter
+from runningbond.pictures.time_series import TimeSeries
 from runningbond.results import Outcome, fastest_corner_by_one, write_atomically
 from runningbond.scene import Scene, scene_from_dict
 
@@ -54,6 +57,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         print(f"write a moment of blocks and joints: {timed(lambda: write(scene, frame, folder))}")
+        print(f"draw it flat: {timed(lambda: to_png(figure_of(scene, outcome)))}")
         if why_not_drawn():
             print(why_not_drawn())
             return
@@ -64,14 +68,12 @@ def main() -> None:
 
 def write(scene: Scene, frame: Frame, folder: Path) -> None:
     """Write one moment of a series of its own."""
-    Series(Stage.of_rigid_blocks(scene), folder).add(frame)
+    TimeSeries(Discretisation.of_rigid_blocks(scene), folder).add(frame)
 
 
 def draw(scene: Scene, outcome: Outcome, painter: Painter, path: Path) -> None:
     """Draw and write a picture of a mechanism."""
-    shown = show_mechanism(scene, outcome)
-    assert shown is not None
-    write_atomically(path, png(mechanism_picture(shown, outcome, painter)))
+    write_atomically(path, to_png(mechanism_figure(scene, outcome, painter)))
 
 
 if __name__ == "__main__":

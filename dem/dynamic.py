@@ -11,14 +11,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.dynamics import Observer, Run, collapse_by_steps, finite_curve, nobody
-from runningbond.dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
-from runningbond.limit.associated import locks
-from runningbond.limit.equilibrium import equilibrium
+from runningbond.contacts.outline import Outline
+from runningbond.dynamics import (
+    U_CRIT,
+    Observer,
+    Run,
+    collapse_by_steps,
+    no_observer,
+    pushover_curve,
+)
+from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
+from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 
-from .finite_system import FiniteRun
+from .finite_system import finite_system
 from .rigid_system import contact_points, rigid_system
 
 
@@ -26,10 +33,10 @@ def dem_dynamic(
     scene: Scene,
     tolerance: float = 0.01,
     *,
-    collapse: float = COLLAPSE,
+    collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
-    observe: Observer = nobody,
+    observe: Observer = no_observer,
 ) -> Outcome:
     """Collapse of a scene by the motion of its rigid blocks, at small displacements.
 
@@ -61,7 +68,7 @@ def dem_dynamic(
         Run(rigid_system(scene)),
         tolerance,
         point_order=np.argsort(contact_points(scene).joint, kind="stable"),
-        locks=lambda: locks(equilibrium(scene)),
+        is_self_locking=lambda: is_self_locking(scene),
         collapse=collapse,
         first_step=first_step,
         budget=budget,
@@ -99,12 +106,13 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
     SceneError
         For a scene that is not of this kind.
     """
-    run = FiniteRun(scene, local=local)
+    run = Run(finite_system(scene), local=local)
+    outline = Outline.of(scene)
     block, at, direction = scene.control_point
 
     def measure(motion: Array) -> tuple[float, float]:
-        control = (run.outline.points(block, np.tile(at, (len(block), 1)), motion) - at) @ direction
-        moved = (run.outline.corners(motion) - scene.blocks.vertices) @ direction
+        control = (outline.points(block, np.tile(at, (len(block), 1)), motion) - at) @ direction
+        moved = (outline.corners(motion) - scene.blocks.vertices) @ direction
         return float(control.mean()), float(moved.max())
 
-    return finite_curve(run, scene, distance, speed, measure)
+    return pushover_curve(run, scene, distance, speed, measure)

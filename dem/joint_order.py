@@ -16,7 +16,7 @@ RESOLUTION = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
-class Runs:
+class JointOrder:
     """Blocks and joints in the order of the kernels.
 
     Parameters
@@ -43,7 +43,7 @@ class Runs:
     shape: Array
 
 
-def find_runs(scene: Scene, half: Array) -> Runs:
+def joint_order(scene: Scene, half: Array) -> JointOrder:
     """Number a scene's blocks and joints.
 
     Parameters
@@ -62,7 +62,7 @@ def find_runs(scene: Scene, half: Array) -> Runs:
     goes_on = (np.diff(a) == 1) & (np.diff(b) == 1) & (np.diff(kind) == 0)
     begin = np.flatnonzero(np.append(len(order) > 0, ~goes_on))
     start = np.append(begin, len(order))
-    return Runs(place, order, start, a[begin], b[begin], shape[order][begin])
+    return JointOrder(place, order, start, a[begin], b[begin], shape[order][begin])
 
 
 def _normals(scene: Scene) -> Array:

@@ -62,7 +62,7 @@ StaticObserver: TypeAlias = Callable[[StaticSystem, State], None]
 """Looks at a state of rest as it is found, and changes nothing."""
 
 
-def nobody(system: StaticSystem, state: State) -> None:
+def no_observer(system: StaticSystem, state: State) -> None:
     """Observe nothing."""
 
 
@@ -94,7 +94,7 @@ class Way:
     rests: list[State]
     upper: float | None = None
     fall: Array | None = None
-    observe: StaticObserver = nobody
+    observe: StaticObserver = no_observer
 
     @property
     def lower(self) -> float:

@@ -1,9 +1,11 @@
 """Kinematics of rigid blocks as compiled kernels: two contact points a joint, at ± h along its tangent.
 
 Small displacements: the jumps are linear in the motions, and the same as `jump_operator`'s. Joints come in runs
-(`runs.Runs`), in which blocks follow one another as joints do, so that the loops run in vector registers. Indices
-are unsigned, which need no check for counting from the end.
+(`joint_order.JointOrder`), in which blocks follow one another as joints do, so that the loops run in vector registers.
+Indices are unsigned, which need no check for counting from the end.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +14,31 @@ from runningbond.joints import compiled
 from runningbond.scene import Array
 
 kernel = compiled.kernel
-Geometry = tuple[NDArray[np.uint64], NDArray[np.uint64], NDArray[np.uint64], Array]
+
+
+class RigidJoints(NamedTuple):
+    """Joints in runs.
+
+    Parameters
+    ----------
+    start : (nr + 1,) uint
+        First joint of each run, then the number of joints.
+    first, second : (nr,) uint
+        Place of the blocks a and b of each run's first joint, less the number of that joint; what is negative wraps
+        round, and comes out right in a sum all the same.
+    shape : (nr, 8) float
+        Of each run the normal n_x, n_y, half length [m], lever arms [m] normal_a, normal_b, tangent_a and tangent_b
+        (`JointOrder`) and the area [m²] of a point.
+    """
+
+    start: NDArray[np.uint64]
+    first: NDArray[np.uint64]
+    second: NDArray[np.uint64]
+    shape: Array
 
 
 @kernel
-def gather_rigid(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
+def gather_rigid(motion: Array, geometry: RigidJoints, opening: Array, slip: Array) -> None:
     """Opening and slip ``(2 nj,)`` of all joints' first points, then of their second ones, from motions ``(3 nb,)``.
 
     Motions are those of all blocks along x, then along y, then their rotations.
@@ -42,7 +64,7 @@ def gather_rigid(motion: Array, geometry: Geometry, opening: Array, slip: Array)
 
 
 @kernel
-def scatter_rigid(normal: Array, tangential: Array, geometry: Geometry, force: Array) -> None:
+def scatter_rigid(normal: Array, tangential: Array, geometry: RigidJoints, force: Array) -> None:
     """Subtract from modal forces ``(3 nb,)`` what the joint points' tractions ``(2 nj,)`` do on them."""
     start, first, second, shape = geometry
     n, nb = normal.size // 2, force.size // 3

@@ -1,14 +1,11 @@
 """A scene as a block system of rigid blocks."""
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from runningbond.dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares
+from runningbond.dynamics import BlockSystem, Interface, Restraint, block_frequency_squared, force_unit, joint_shares
 from runningbond.joints import JointPoints, wall_points, wall_strength
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.limit.kinematics import (
     control_row,
     dead_load,
@@ -19,13 +16,13 @@ from runningbond.limit.kinematics import (
 )
 from runningbond.scene import Array, Scene, free_motions
 
-from .joint_order import Runs, find_runs
-from .rigid_kernels import gather_rigid, scatter_rigid
+from .joint_order import JointOrder, joint_order
+from .rigid_kernels import RigidJoints, gather_rigid, scatter_rigid
 
 
 def contact_points(scene: Scene) -> JointPoints:
     """Two contact points a joint in the order of the kernels: all joints' first ones, then all second ones."""
-    return _in_runs(scene)[0]
+    return _in_order(scene)[0]
 
 
 def rigid_system(scene: Scene) -> BlockSystem:
@@ -36,28 +33,25 @@ def rigid_system(scene: Scene) -> BlockSystem:
     SceneError
         If the scene gives its joints no stiffness.
     """
-    points, runs = _in_runs(scene)
+    points, order = _in_order(scene)
     law = kernel_law(scene.joint_materials, scene.material_of_joint[points.joint])
     restraint, mass, dead, live, control = loads_and_masses(scene)
-    rigid = runs.block[:, None] + len(scene.blocks) * np.arange(3)
-    order = np.argsort(rigid.ravel())
+    rigid = order.block[:, None] + len(scene.blocks) * np.arange(3)
+    freedom = np.argsort(rigid.ravel())
     still = np.zeros_like(mass)
+    bound = largest_frequency_squared(scene, points, law)
     return BlockSystem(
-        mass=mass[order],
+        mass=mass[freedom],
         stiffness=still,
         viscosity=still,
-        dead=dead[order],
-        live=live[order],
-        law=law,
-        area=points.area,
-        gather=gather_rigid,
-        scatter=scatter_rigid,
-        geometry=_geometry(runs, points),
+        dead=dead[freedom],
+        live=live[freedom],
+        control=control[freedom],
+        force_unit=force_unit(scene, freedom // 3, mass[freedom], live, wall_strength(scene, points)),
         rigid=rigid,
+        owner=np.arange(len(scene.blocks)),
         restraint=Restraint(rigid.ravel()[restraint.freedom], restraint.basis),
-        block_frequency_squared=largest_frequency_squared(scene, points, law),
-        control=control[order],
-        force_unit=force_unit(scene, order // 3, mass[order], live, wall_strength(scene, points)),
+        interface=Interface(law, points.area, gather_rigid, scatter_rigid, _geometry(order, points), bound),
     )
 
 
@@ -81,19 +75,19 @@ def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw)
     return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0)) or 1.0
 
 
-def _in_runs(scene: Scene) -> tuple[JointPoints, Runs]:
-    """Contact points in the order of the kernels, and the runs that make it."""
+def _in_order(scene: Scene) -> tuple[JointPoints, JointOrder]:
+    """Contact points in the order of the kernels, and that order."""
     points = wall_points(scene)
     reach = points.position[1::2] - points.position[::2]
-    runs = find_runs(scene, np.hypot(reach[:, 0], reach[:, 1]) / 2)
-    return points.part(np.concatenate([2 * runs.joint, 2 * runs.joint + 1])), runs
+    order = joint_order(scene, np.hypot(reach[:, 0], reach[:, 1]) / 2)
+    return points.part(np.concatenate([2 * order.joint, 2 * order.joint + 1])), order
 
 
-def _geometry(runs: Runs, points: JointPoints) -> tuple[NDArray[Any], ...]:
-    start = runs.start[:-1]
-    shape = np.column_stack([runs.shape, points.area[: len(runs.joint)][start]])
-    # From the place of a joint to those of its blocks; unsigned, a negative difference comes out right all the same.
-    return (runs.start.astype(np.uint64), *((x - start).astype(np.uint64) for x in (runs.first, runs.second)), shape)
+def _geometry(order: JointOrder, points: JointPoints) -> RigidJoints:
+    start = order.start[:-1]
+    shape = np.column_stack([order.shape, points.area[: len(order.joint)][start]])
+    first, second = ((place - start).astype(np.uint64) for place in (order.first, order.second))
+    return RigidJoints(order.start.astype(np.uint64), first, second, shape)
 
 
 def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:

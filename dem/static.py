@@ -20,12 +20,12 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.joints import stiffness_note
-from runningbond.limit.associated import FALLS, locks, stands_under_dead_load
+from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
 from runningbond.limit.kinematics import control_row, movable_freedoms
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
-from .pushover import State, StaticObserver, Way, lengthened, nobody, state_of
+from .pushover import State, StaticObserver, Way, lengthened, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system
 
@@ -56,7 +56,7 @@ def dem_static(
     collapse: float = COLLAPSE,
     budget: int = BUDGET,
     past: int = PAST,
-    observe: StaticObserver = nobody,
+    observe: StaticObserver = no_observer,
 ) -> Outcome:
     """Collapse of a scene under growing loads, each held until the wall rests or falls, at small displacements.
 
@@ -184,7 +184,7 @@ def _judged(found: Outcome, way: Way, climb: Climb, tolerance: float) -> Outcome
             "friction remembers, other load steps may differ by more than the bracket"
         )
         return replace(found, status="collapse", multiplier=found.lower, message=message)
-    if way.upper is None and way.budget > 0 and locks(equations):
+    if way.upper is None and way.budget > 0 and is_self_locking(equations.scene):
         message = f"self-locking: {climb.undecided}, and joint forces balance any multiple of it"
         return replace(found, status="unbounded", lower=None, message=message)
     return replace(found, message=f"the wall was given up: {climb.undecided}")
@@ -193,5 +193,5 @@ def _judged(found: Outcome, way: Way, climb: Climb, tolerance: float) -> Outcome
 def _fallen(found: Outcome, system: StaticSystem) -> Outcome:
     """Outcome of a wall that was not brought to rest under its dead load."""
     if not stands_under_dead_load(system.equilibrium):
-        return replace(found, status="infeasible", message=FALLS)
+        return replace(found, status="infeasible", message=NO_EQUILIBRIUM)
     return replace(found, message="no equilibrium was found under the dead load, though forces exist that balance it")

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.sparse import csc_array, csr_array
 
-from runningbond.joints import PointLaw, PointResponse, wall_stiffness
+from runningbond.joints import PointLaw, PointResponse, static_law, wall_stiffness
 from runningbond.limit.equilibrium import Equilibrium, equilibrium
 from runningbond.scene import Array, Indices, Scene
 
@@ -178,7 +178,7 @@ def static_system(scene: Scene) -> StaticSystem:
     Raises
     ------
     SceneError
-        If the scene gives its joints no stiffness.
+        If the scene gives its joints no stiffness, or a law that has no tangent.
     """
     system = equilibrium(scene)
     system = replace(system, reaction=_independent(system.reaction))
@@ -187,4 +187,4 @@ def static_system(scene: Scene) -> StaticSystem:
     stiffest = float(max(normal.max(initial=0.0), shear.max(initial=0.0))) or 1.0
     length = system.force_unit / stiffest
     scale = length / system.force_unit
-    return StaticSystem(system, PointLaw(system.strength, normal * scale, shear * scale), length)
+    return StaticSystem(system, static_law(scene, system.strength, normal * scale, shear * scale), length)

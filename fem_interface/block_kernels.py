@@ -2,24 +2,105 @@
 
 Motions are kept template by template, each a matrix Q of modes by blocks, so that the displacements of all nodes that
 lie on joints are one product U = Φ Q, and the forces on the modes another, F −= Φᵀ S. Where Φ can be folded
-(`folding`) few of its entries are left. Joint elements come in runs (`runs.find_runs`), in which blocks follow one
-another as elements do, so that the loops run in vector registers. Indices are unsigned, which need no check for
+(`mirror_symmetry`) few of its entries are left. Joint elements come in runs (`element_order`), in which blocks follow
+one another as elements do, so that the loops run in vector registers. Indices are unsigned, which need no check for
 counting from the end.
 """
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runningbond.joints import compiled
-from runningbond.scene import Array
+from runningbond.scene import Array, Indices
+
+from .mirror_symmetry import FoldedTables, TableRows
 
 kernel = compiled.kernel
 
 
+class NodalTables(NamedTuple):
+    """Displacements of nodes per modal coordinate, template by template.
+
+    Parameters
+    ----------
+    shapes : (n_templates, 6) int
+        Number of blocks, of modes and of displacements a block; where the template's coordinates, its nodes'
+        displacements and its table start.
+    forward, backward : (n_entries,) float
+        The tables, ``(displacements, modes)`` each, and their transposes, one after the other.
+    still : (1,) int
+        Place of the first displacement that is always zero.
+    nodal, product : float
+        Buffers of the displacements, and of a product.
+    """
+
+    shapes: Indices
+    forward: Array
+    backward: Array
+    still: Indices
+    nodal: Array
+    product: Array
+
+
+class ModalJoints(NamedTuple):
+    """Joint elements in runs, between blocks with modes.
+
+    Parameters
+    ----------
+    tables
+        Displacements of the nodes on joints.
+    folded
+        Tables that are folded.
+    start : (nr + 1,) uint
+        First element of each run, then their number.
+    places : (nr, 8) uint
+        Where the displacements of the nodes of each run's first element stand, side a's two ends before side b's, less
+        the number of that element; what is negative wraps round, and comes out right in a sum all the same.
+    shares, weighted : (nr, n, 2, 4) float
+        What each displacement of a side has in the opening and in the slip of each point, and that times the area [m²].
+    """
+
+    tables: NodalTables
+    folded: FoldedTables
+    start: NDArray[np.uint64]
+    places: NDArray[np.uint64]
+    shares: Array
+    weighted: Array
+
+
+def nodal_tables(
+    templates: Sequence[tuple[tuple[int, int, int, int, int], Array]], still: int, spare: int
+) -> NodalTables:
+    """Join the tables of templates.
+
+    Parameters
+    ----------
+    templates
+        The first five entries of each row of `NodalTables.shapes`, and the table.
+    still
+        Number of displacements of blocks that move.
+    spare
+        How many displacements that are always zero follow.
+    """
+    first = np.cumsum([0, *(table.size for _, table in templates)])
+    shapes = [(*shape, int(entry)) for (shape, _), entry in zip(templates, first, strict=False)]
+    return NodalTables(
+        np.array(shapes, dtype=np.int64).reshape(-1, 6),
+        np.concatenate([np.zeros(0), *(table.ravel() for _, table in templates)]),
+        np.concatenate([np.zeros(0), *(table.T.ravel() for _, table in templates)]),
+        np.array([still]),
+        np.zeros(still + spare),
+        np.zeros(max((shape[0] * shape[1] for shape, _ in templates), default=0)),
+    )
+
+
 @kernel
-def to_nodes(shapes: Any, motion: Array, table: Array, nodal: Array) -> None:
-    """Displacements of the nodes on joints, from modal coordinates ``(nd,)``."""
+def to_nodes(tables: NodalTables, motion: Array) -> None:
+    """Displacements of the nodes, from modal coordinates ``(nd,)``."""
+    shapes, table, nodal = tables.shapes, tables.forward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
         phi = table[entry : entry + width * modes].reshape(width, modes)
@@ -28,8 +109,9 @@ def to_nodes(shapes: Any, motion: Array, table: Array, nodal: Array) -> None:
 
 
 @kernel
-def to_modes(shapes: Any, nodal: Array, table: Array, product: Array, force: Array) -> None:
-    """Subtract from modal forces ``(nd,)`` those of the nodes on joints."""
+def to_modes(tables: NodalTables, force: Array) -> None:
+    """Subtract from modal forces ``(nd,)`` those of the nodes."""
+    shapes, table, nodal, product = tables.shapes, tables.backward, tables.nodal, tables.product
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
         phi = table[entry : entry + width * modes].reshape(modes, width)
@@ -43,7 +125,15 @@ def to_modes(shapes: Any, nodal: Array, table: Array, product: Array, force: Arr
 
 @kernel
 def _combine(
-    entries: Any, first_row: Any, rows: Any, n: Any, source: Array, source_at: Any, into: Array, into_at: Any, add: bool
+    entries: TableRows,
+    first_row: Any,
+    rows: Any,
+    n: Any,
+    source: Array,
+    source_at: Any,
+    into: Array,
+    into_at: Any,
+    add: bool,
 ) -> None:
     """Make rows of `into` what a table's entries make of rows of `source`, or add it to them; rows are n long."""
     start, column, value = entries
@@ -74,12 +164,9 @@ def _sum_and_difference(i: Any, j: Any, n: Any, nodal: Array) -> None:
 
 
 @kernel
-def unfold(folds: Any, motion: Array, nodal: Array) -> None:
-    """Displacements of the nodes on joints of blocks whose tables are folded, from modal coordinates ``(nd,)``.
-
-    `folds` are the arrays of `folding.Folds`.
-    """
-    shapes, pairs, forward, _ = folds
+def unfold(tables: FoldedTables, motion: Array, nodal: Array) -> None:
+    """Displacements of the nodes on joints of blocks whose tables are folded, from modal coordinates ``(nd,)``."""
+    shapes, pairs, forward, _ = tables
     for k in range(shapes.shape[0]):
         n, _, width, first, at, row, _, pair, last = shapes[k]
         _combine(forward, row, width, n, motion, first, nodal, at, False)
@@ -88,9 +175,9 @@ def unfold(folds: Any, motion: Array, nodal: Array) -> None:
 
 
 @kernel
-def fold(folds: Any, nodal: Array, force: Array) -> None:
+def fold(tables: FoldedTables, nodal: Array, force: Array) -> None:
     """Subtract from modal forces ``(nd,)`` those of the nodes on joints of such blocks; writes over the latter."""
-    shapes, pairs, _, backward = folds
+    shapes, pairs, _, backward = tables
     for k in range(shapes.shape[0]):
         n, modes, _, first, at, _, row, pair, last = shapes[k]
         for p in range(last - pair):
@@ -100,14 +187,15 @@ def fold(folds: Any, nodal: Array, force: Array) -> None:
 
 
 @kernel
-def gather_modes(motion: Array, geometry: Any, opening: Array, slip: Array) -> None:
+def gather_modes(motion: Array, geometry: ModalJoints, opening: Array, slip: Array) -> None:
     """Opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``."""
-    shapes, table, _, folds, start, places, shares, _, still, nodal, _ = geometry
-    to_nodes(shapes, motion, table, nodal)
-    if folds[0].size:  # a small wall has none, and would pay for the call
-        unfold(folds, motion, nodal)
+    tables, folded, start, places, shares, _ = geometry
+    nodal = tables.nodal
+    to_nodes(tables, motion)
+    if folded.shapes.size:  # a small wall has none, and would pay for the call
+        unfold(folded, motion, nodal)
     # What does not move shares the last entries, which scatter has written to.
-    nodal[still[0] :] = 0.0
+    nodal[tables.still[0] :] = 0.0
     points = shares.shape[1]
     ne = opening.size // points
     for run in range(places.shape[0]):
@@ -129,9 +217,10 @@ def gather_modes(motion: Array, geometry: Any, opening: Array, slip: Array) -> N
 
 
 @kernel
-def scatter_modes(normal: Array, tangential: Array, geometry: Any, force: Array) -> None:
+def scatter_modes(normal: Array, tangential: Array, geometry: ModalJoints, force: Array) -> None:
     """Subtract from modal forces ``(nd,)`` what the tractions at the points ``(np,)`` [Pa] do on the modes."""
-    shapes, _, table, folds, start, places, _, shares, _, nodal, product = geometry
+    tables, folded, start, places, _, shares = geometry
+    nodal = tables.nodal
     points = shares.shape[1]
     ne = normal.size // points
     nodal[:] = 0.0
@@ -149,6 +238,6 @@ def scatter_modes(normal: Array, tangential: Array, geometry: Any, force: Array)
                             nodal[a + e] -= share * traction[e]
                         for e in range(low, high):
                             nodal[b + e] += share * traction[e]
-    to_modes(shapes, nodal, table, product, force)
-    if folds[0].size:
-        fold(folds, nodal, force)
+    to_modes(tables, force)
+    if folded.shapes.size:
+        fold(folded, nodal, force)

@@ -6,12 +6,14 @@ become joints too, of the same material. The paper puts such interfaces between 
 """
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal, TypeAlias
 
 import numpy as np
+from scipy.sparse import coo_array, csr_array
 
 from meshing import WallMesh
-from runningbond.scene import Array, Blocks, Indices, Joints, Mask, Pins, Scene, SceneError
+from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Load, Mask, Pins, Scene, SceneError
 
 Cracks: TypeAlias = Literal["joints", "blocks"]
 """Where a wall may crack: at its joints, or between all triangles of its blocks too."""
@@ -41,6 +43,56 @@ class Pieces:
     mesh: WallMesh
     owner: Indices
     node: Indices
+
+    @property
+    def whole(self) -> bool:
+        """Whether each piece is a block."""
+        return bool((np.diff(self.owner) > 0).all())
+
+
+def motion_of_blocks(wall: Pieces) -> csr_array:
+    """Rigid motion of blocks per rigid motion of their pieces, ``(3 nb, 3 np)``.
+
+    A block's motion is the rigid one with the linear and the angular momentum of its pieces.
+    """
+    blocks, owner = wall.scene.blocks, wall.owner
+    count = int(owner[-1]) + 1
+    area = np.bincount(owner, blocks.area, minlength=count)
+    centre = np.column_stack([np.bincount(owner, blocks.area * x, minlength=count) for x in blocks.centroid.T])
+    x, y = (blocks.centroid - (centre / area[:, None])[owner]).T
+    moment = np.bincount(owner, blocks.polar_moment + blocks.area * (x**2 + y**2), minlength=count)
+    part, spin = blocks.area / area[owner], blocks.area / moment[owner]
+    own = blocks.polar_moment / moment[owner]
+    entries = [(0, 0, part), (1, 1, part), (2, 0, -y * spin), (2, 1, x * spin), (2, 2, own)]
+    rows = np.concatenate([3 * owner + i for i, _, _ in entries])
+    columns = np.concatenate([3 * np.arange(len(owner)) + j for _, j, _ in entries])
+    values = np.concatenate([value for _, _, value in entries])
+    return csr_array(coo_array((values, (rows, columns)), shape=(3 * count, 3 * len(owner))))
+
+
+@dataclass(frozen=True, eq=False)
+class PassedOn(Action):
+    """A load on a wall's blocks, passed on to their pieces: those that touch a point share its force equally."""
+
+    load: Action
+    wall: Scene
+    owner: Indices
+
+    def forces(self, scene: Scene) -> Forces:
+        """Forces on the pieces."""
+        whole = self.load.forces(self.wall)
+        share = scene.blocks.area / self.wall.blocks.area[self.owner]
+        touching = [scene.blocks.containing(at) for at in whole.at]
+        of_block = [near[self.owner[near] == block] for near, block in zip(touching, whole.block, strict=True)]
+        count = np.array([len(near) for near in of_block], dtype=np.int64)
+        return Forces.on(
+            scene,
+            whole.acceleration[self.owner],
+            share * whole.moment[self.owner],
+            block=np.concatenate([np.zeros(0, dtype=np.int64), *of_block]),
+            at=np.repeat(whole.at, count, axis=0),
+            force=np.repeat(whole.force / np.maximum(count, 1)[:, None], count, axis=0),
+        )
 
 
 def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
@@ -79,9 +131,11 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     joint = np.concatenate([mesh.joint, len(scene.joints) + np.arange(len(inside[0]))])
     first = np.searchsorted(joint, np.arange(joint[-1] + 1))
     outlines = [scene.blocks.polygon(owner[k]) if held[k] else points[first_node[k] :][:3] for k in range(len(owner))]
+    passed_on = partial(PassedOn, wall=scene, owner=owner)
     parted = replace(
         scene,
         blocks=Blocks.from_polygons(outlines),
+        load=Load(scene.load.gravity, *(tuple(map(passed_on, loads)) for loads in (scene.load.live, scene.load.dead))),
         fixed=held,
         wall=scene.wall[owner],
         pins=_pins(scene, mesh, block, node),

@@ -23,7 +23,7 @@ RESOLUTION = 1e-9
 """Relative difference below which two elements are of one kind."""
 
 
-def find_runs(wall: ModalWall) -> tuple[Indices, Indices]:
+def element_runs(wall: ModalWall) -> tuple[Indices, Indices]:
     """Find the runs of a wall.
 
     Returns
@@ -66,5 +66,5 @@ def modal_wall(
     if modes is None:
         modes = BENDING if cracks == "joints" else "all"
     wall = ModalWall(found, templates(found.mesh, found.scene, modes), joints)
-    order, _ = find_runs(wall)
+    order, _ = element_runs(wall)
     return replace(wall, interface=joints.arranged(order))

@@ -6,112 +6,166 @@ They strain a block by the square of its corners' speed over that of sound in it
 its inertia by its strain.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import TypeAlias
 
 import numpy as np
 
-from runningbond import dynamics
-from runningbond.contacts.contacts import Contacts
-from runningbond.dynamics import BlockSystem, Restraint, block_frequency_squared, force_unit, joint_shares, stable_step
+from runningbond.contacts.search import Contacts, facing_sides, find_contacts, overlaps, resting
+from runningbond.dynamics import (
+    BlockSystem,
+    Interface,
+    Restraint,
+    block_frequency_squared,
+    force_unit,
+    joint_shares,
+    stable_step,
+)
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.laws import kernel_law
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Array, Indices, JointMaterial
 
-from .finite_kernels import gather_deformable, scatter_deformable
-from .finite_wall import FiniteWall
-from .mass_scaling import CLOSE, scaled_modes
+from .deformable_sides import DeformableSides, PlacedNodes, gather_deformable, scatter_deformable
+from .mass_scaling import CLOSE, ScaledModes, scaled_modes
+from .node_outline import NodeOutline
 from .system import DAMPING
 
 
-def finite_system(blocks: FiniteWall, *, damping: float = DAMPING, mass_scaling: bool = True) -> BlockSystem:
-    """Set up the deformable blocks of a wall on its undeformed contacts; see `fem_system` for the arguments."""
-    wall, contacts = blocks.wall, blocks.undeformed
+def finite_system(blocks: NodeOutline, *, damping: float = DAMPING, mass_scaling: bool = True) -> BlockSystem:
+    """Set up the deformable blocks of a wall to move far; see `fem_system` for the arguments."""
+    wall, contacts = blocks.wall, DeformableContacts(blocks)
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    dead, live = wall.body_force(wall.scene.load.gravity), wall.live_load()
-    law = contact_law(wall.scene.joint, contacts)
-    system = BlockSystem(
+    dead, live = wall.load(wall.scene.dead_forces), wall.load(wall.scene.live_forces)
+    strength = wall_strength(wall.scene, wall.interface.points)
+    return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,
         viscosity=scaled.viscosity,
         dead=dead,
         live=live,
-        law=law,
-        area=contacts.area,
-        gather=gather_deformable,
-        scatter=scatter_deformable,
-        geometry=blocks.geometry(contacts),
-        rigid=wall.rigid,
-        restraint=Restraint(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3))),
-        block_frequency_squared=scaled.frequency_squared,
         control=wall.control_row(),
-        force_unit=force_unit(
-            wall.scene, wall.block, wall.mass, live, wall_strength(wall.scene, wall.interface.points)
-        ),
-    )
-    return replace(
-        system, block_frequency_squared=_frequency_squared(blocks, system, contacts, scaled.frequency_squared)
+        force_unit=force_unit(wall.scene, wall.block, wall.mass, live, strength),
+        rigid=wall.rigid,
+        owner=np.arange(len(wall.rigid)),
+        restraint=Restraint.none(),
+        interface=contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared),
+        contacts=contacts,
     )
 
 
-class FiniteRun(dynamics.FiniteRun):
-    """Deformable blocks in motion at finite displacements.
+class DeformableContacts:
+    """Contacts of deformable blocks; see `runningbond.dynamics.ContactSearch`.
 
     Parameters
     ----------
     blocks
         The blocks.
-    system
-        Their `finite_system`, with other masses or loads if need be.
-    local, viscous
-        Damping, as in `Run`.
-    part
-        Part of the stable time step, which follows the contacts, that is taken.
     """
 
-    def __init__(
-        self,
-        blocks: FiniteWall,
-        system: BlockSystem | None = None,
-        *,
-        local: float = LOCAL,
-        viscous: float = VISCOUS,
-        part: float = 1.0,
-    ) -> None:
-        system = system or finite_system(blocks)
-        super().__init__(system, blocks.outline, blocks.undeformed, local=local, viscous=viscous, part=part)
-        self.blocks = blocks
+    def __init__(self, blocks: NodeOutline) -> None:
+        self.blocks, self.outline = blocks, blocks.outline
+        self._thickness = blocks.scene.thickness
+        undeformed = self.find(np.zeros(len(blocks.wall.mass)), self.outline.margin)
+        e, f = undeformed.ends[:, 4:].astype(np.int64).T
+        self.undeformed = replace(undeformed, glued=overlaps(self.outline, e, f) > 0)
 
-    def _geometry(self, contacts: Contacts) -> tuple[Any, ...]:
-        return self.blocks.geometry(contacts)
+    def find(self, motion: Array, margin: float) -> Contacts:
+        """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then nodes inside them."""
+        rigid = self.blocks.rigid(motion)
+        ends = find_contacts(self.outline, rigid, margin)
+        corner, _ = resting(self.outline, ends, rigid)
+        v, _, _, _, e, f = ends.ends.astype(np.int64).T
+        side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
+        # The corner inwards is the last of side e and the first of f at the low end, and the other way at the high.
+        facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
+        area = np.minimum(ends.area, self._thickness * self.blocks.length[facet] / 2)
+        inner = self._inner(rigid, margin)
+        return Contacts(
+            ends.motion,
+            margin,
+            np.concatenate([ends.ends, inner.ends]),
+            np.concatenate([ends.inwards, inner.inwards]),
+            np.concatenate([ends.tilt, inner.tilt]),
+            np.concatenate([area, inner.area]),
+            np.concatenate([ends.glued, inner.glued]),
+        )
 
-    def _find(self, motion: Array, margin: float) -> Contacts:
-        return self.blocks.find(motion, margin)
+    def _inner(self, rigid: Array, margin: float) -> Contacts:
+        """Nodes inside one of two facing sides that are near the other: of block b's, unless that one is held."""
+        outline, first, length_of, inset = self.outline, self.blocks.first, self.blocks.length, self.blocks.inset
+        owner, after = outline.blocks.owner, outline.blocks.successor
+        e, f = facing_sides(outline, rigid, margin)
+        of_a = outline.held[owner[e]]
+        own, other = np.where(of_a, f, e), np.where(of_a, e, f)
+        count = np.diff(first)[own] - 1
+        pair = np.repeat(np.arange(len(own)), count)
+        node = first[own][pair] + 1 + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+        arcs = outline.placed(rigid).arcs
+        at = outline.points(self.blocks.owner[node], self.blocks.wall.mesh.points[self.blocks.node[node]], rigid)
+        corners = outline.corners(rigid)
+        on = other[pair]
+        run = corners[after[on]] - corners[on]
+        length = np.hypot(*run.T)
+        away = ((at - corners[on]) * arcs[on, 2:]).sum(axis=1)
+        along = ((at - corners[on]) * run).sum(axis=1) / length
+        opposed = -(arcs[own, 2:] * arcs[other, 2:]).sum(axis=1)[pair] > np.cos(np.pi / 4)
+        # Those that are still to come farther from the corners before they bear are near them only.
+        inside = np.minimum(along - inset[on], length - inset[after[on]] - along)
+        beyond = np.minimum(length_of[node], length_of[node - 1]) / 2 - inside
+        near = opposed & (np.abs(away) < margin) & (beyond < margin)
+        node, pair, on = node[near], pair[near], on[near]
+        rows = (len(outline.radius) + node, on, of_a[pair], after[on], e[pair], f[pair])
+        area = self._thickness * (length_of[node] + length_of[node - 1]) / 2
+        still = np.zeros(len(node))
+        return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, still > 0)
 
-    def _deformation(self, motion: Array) -> float:
-        return self.blocks.deformation(motion)
+    def geometry(self, contacts: Contacts) -> DeformableSides:
+        """The arrays that `gather_deformable` and `scatter_deformable` share, with buffers of their own."""
+        blocks, n = self.blocks, len(contacts)
+        placed = PlacedNodes(
+            np.zeros((len(self.outline.blocks), 4)),
+            np.zeros((len(blocks.node), 5)),
+            np.zeros((len(blocks.first) - 1, 4)),
+        )
+        return DeformableSides(
+            blocks.new_tables(),
+            blocks.nodes,
+            blocks.sides,
+            contacts.ends.astype(np.int64),
+            contacts.inwards.copy(),
+            contacts.area.copy(),
+            placed,
+            np.zeros((n, 7)),
+            np.zeros((n, 3), dtype=np.int64),
+        )
 
-    def _resting(self, contacts: Contacts, motion: Array) -> Indices:
-        geometry = self.blocks.geometry(contacts)
+    def interface_on(self, contacts: Contacts, system: BlockSystem) -> Interface:
+        """The interface of a system's blocks on contacts."""
+        # From the same guess each time: the bound must not depend on the contacts that came before.
+        return self.interface(contacts, system, system.interface.frequency_squared)
+
+    def interface(self, contacts: Contacts, scaled: ScaledModes | BlockSystem, guess: float) -> Interface:
+        """The interface on contacts of blocks with some masses and viscosities, whose ω² [1/s²] is near a guess."""
+        law, geometry = contact_law(self.blocks.scene.joint, contacts), self.geometry(contacts)
+        bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
+        return Interface(law, contacts.area, gather_deformable, scatter_deformable, geometry, bound)
+
+    def resting(self, contacts: Contacts, motion: Array) -> Indices:
+        """A number of the corner or node that rests and the side it rests on, for each contact."""
+        geometry = self.geometry(contacts)
         gather_deformable(motion, geometry, *np.zeros((2, len(contacts))))
-        of_a = geometry[9][:, 2] == 1
+        of_a = geometry.touched[:, 2] == 1
         v, w, _, _, e, f = contacts.ends.astype(np.int64).T
         inner = contacts.inwards == 0
         corner, side = np.where(of_a & ~inner, w, v), np.where(of_a, e, f)
         return np.asarray(corner * 2**32 + side)
 
-    def _system_on(self, contacts: Contacts) -> BlockSystem:
-        system = replace(
-            self.system,
-            law=contact_law(self.blocks.scene.joint, contacts),
-            area=contacts.area,
-            geometry=self._geometry(contacts),
-        )
-        # From the same guess each time: the bound must not depend on the contacts that came before.
-        bound = _frequency_squared(self.blocks, system, contacts, self._undeformed_bound)
-        return replace(system, block_frequency_squared=bound)
+    def deformation(self, motion: Array) -> float:
+        """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
+        return self.blocks.deformation(motion)
 
 
 def contact_law(joint: JointMaterial, contacts: Contacts) -> KernelLaw:
@@ -122,41 +176,46 @@ def contact_law(joint: JointMaterial, contacts: Contacts) -> KernelLaw:
     return kernel_law((dry, joint), contacts.glued.astype(np.int64))
 
 
-def _frequency_squared(blocks: FiniteWall, system: BlockSystem, contacts: Contacts, guess: float) -> float:
+Blocks: TypeAlias = tuple[Array, Array, Array, Array]
+"""Blocks of one template: their shares of contacts ``(n, m, m)``, masses, stiffness and viscosity ``(n, m)``."""
+
+
+def _frequency_squared(templates: list[Blocks], guess: float) -> float:
     """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
 
-    The viscosity of the deformations counts as in `stable`.
+    The viscosity of the deformations counts as in `stable_step`.
     """
-    own = _contact_stiffness(blocks, system, contacts)
     square = guess
     while True:
-        slowing = 2 / stable_step(square, VISCOUS, LOCAL)
-        found = 0.0
-        for stiffness, mass, k, c in own:
-            with_own = stiffness + np.einsum("ij,jk->ijk", k + slowing * c, np.eye(k.shape[1]))
-            found = max(found, float(block_frequency_squared(with_own, mass).max()))
-        if found <= square:
-            return found
-        square = found * (1 + CLOSE)
+        viscous = 2 / stable_step(square, VISCOUS, LOCAL)
+        bound = 0.0
+        for stiffness, mass, k, c in templates:
+            with_own = stiffness + np.einsum("ij,jk->ijk", k + viscous * c, np.eye(k.shape[1]))
+            bound = max(bound, float(block_frequency_squared(with_own, mass).max()))
+        if bound <= square:
+            return bound
+        square = bound * (1 + CLOSE)
 
 
-def _contact_stiffness(
-    blocks: FiniteWall, system: BlockSystem, contacts: Contacts
-) -> list[tuple[Array, Array, Array, Array]]:
-    """Of each template, its blocks' shares of contacts ``(n, m, m)``, masses, stiffness and viscosity ``(n, m)``."""
+def _blocks_on(
+    blocks: NodeOutline,
+    scaled: ScaledModes | BlockSystem,
+    contacts: Contacts,
+    geometry: DeformableSides,
+    law: KernelLaw,
+) -> Iterator[Blocks]:
+    """The blocks of each template, on contacts."""
     wall = blocks.wall
-    geometry, law = system.geometry, system.law
-    motion = np.zeros(len(system.mass))
+    motion = np.zeros(len(scaled.mass))
     motion[wall.rigid] = contacts.motion.reshape(-1, 3)
     gather_deformable(motion, geometry, *np.zeros((2, len(contacts))))
-    turned, contact, touched = geometry[6][0], geometry[8], geometry[9]
+    turned, contact = geometry.placed.blocks, geometry.contact
     n = contact[:, 2:4]
     directions = ((n, law.normal_stiffness), (np.column_stack([-n[:, 1], n[:, 0]]), law.shear_stiffness))
-    split = [wall.split(values) for values in (system.mass, system.stiffness, system.viscosity)]
-    mass = system.mass[wall.rigid[:, 0]]
-    facets = touched[:, :2]
+    split = [wall.split(values) for values in (scaled.mass, wall.stiffness, scaled.viscosity)]
+    mass = scaled.mass[wall.rigid[:, 0]]
+    facets = geometry.touched[:, :2]
     owner = blocks.owner[facets]
-    found = []
     for number, template in enumerate(wall.templates):
         shape = template.modes.shape.reshape(-1, 2, len(template.modes.mass))
         own = np.zeros((len(template.blocks), shape.shape[2], shape.shape[2]))
@@ -178,5 +237,4 @@ def _contact_stiffness(
                 weight = part * stiffness[here] * contacts.area[here]
                 np.add.at(own, wall.place[block, 1], weight[:, None, None] * row[:, :, None] * row[:, None, :])
         mass_k, k, c = (values[number].T for values in split)
-        found.append((own, mass_k, k, c))
-    return found
+        yield own, mass_k, k, c

@@ -41,7 +41,7 @@ def elastic_stiffness(wall: ModalWall) -> csr_array:
     return csr_array(found[moving][:, moving])
 
 
-class Slowing:
+class FrequencyShift:
     """The lowest frequencies of a wall, and how much of them is lost with other masses.
 
     Parameters

@@ -20,7 +20,7 @@ from runningbond.joints.wall_points import wall_stiffness
 from runningbond.scene import Array
 
 from .element_order import RESOLUTION
-from .frequency_shift import Slowing
+from .frequency_shift import FrequencyShift
 from .modal_wall import ModalWall
 
 ROOM = 1.1
@@ -121,8 +121,8 @@ def _unslowed(wall: ModalWall, square: float) -> float:
     lowest = min(LOWEST, 2 * rigid // 3)
     if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE:
         return square
-    slowing = Slowing(wall, lowest, square)
-    while (lost := slowing.of(_scaled(wall.mass, wall.stiffness, square)) / LOST) > 1:
+    shift = FrequencyShift(wall, lowest, square)
+    while (lost := shift.of(_scaled(wall.mass, wall.stiffness, square)) / LOST) > 1:
         square *= lost * (1 + CLOSE)
     return square
 

@@ -9,9 +9,10 @@ which the kernels make use of where there are enough blocks to outweigh its long
 """
 
 from dataclasses import dataclass
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runningbond.scene import Array, Indices
 
@@ -93,8 +94,44 @@ def facing(points: Array, axis: int) -> Indices:
     return np.array([lower, other[lower]])
 
 
-class Folds:
-    """Folded tables of many templates, as the kernels take them."""
+class TableRows(NamedTuple):
+    """Entries of tables, row by row, `TERMS` at once.
+
+    Parameters
+    ----------
+    start : (n_rows + 1,) uint64
+        First term of each row, then the number of terms.
+    column, value : (n_terms, TERMS)
+        Columns and values of each term.
+    """
+
+    start: NDArray[np.uint64]
+    column: NDArray[np.uint64]
+    value: Array
+
+
+class FoldedTables(NamedTuple):
+    """Folded tables of many templates, as the kernels take them.
+
+    Parameters
+    ----------
+    shapes : (n_templates, 9) uint64
+        Number of blocks, modes and displacements a block; where the blocks' coordinates and displacements start; the
+        first rows of the table forward and backward, its first pair and the one after its last.
+    pairs : (n_pairs, 2) uint64
+        Rows that give way to their sum and their difference, in the order in which that unfolds.
+    forward, backward
+        Entries of the tables and of their negative transposes.
+    """
+
+    shapes: NDArray[np.uint64]
+    pairs: NDArray[np.uint64]
+    forward: TableRows
+    backward: TableRows
+
+
+class TableFolder:
+    """Folds the tables of many templates."""
 
     def __init__(self) -> None:
         self._shapes: list[tuple[int, ...]] = []
@@ -113,34 +150,24 @@ class Folds:
         """
         if shape[0] < FEWEST:
             return False
-        found = folded(points, table)
-        if not found.worth_it:
+        fold = folded(points, table)
+        if not fold.worth_it:
             return False
         pair = sum(map(len, self._pairs))
-        rows = self._forward.add(found.table), self._backward.add(-found.table.T)
-        self._shapes.append((*shape, *rows, pair, pair + len(found.pairs)))
-        self._pairs.append(found.pairs)
+        rows = self._forward.add(fold.table), self._backward.add(-fold.table.T)
+        self._shapes.append((*shape, *rows, pair, pair + len(fold.pairs)))
+        self._pairs.append(fold.pairs)
         return True
 
-    def arrays(self) -> tuple[Any, ...]:
-        """Arrays of the kernels.
-
-        Returns
-        -------
-        shapes : (n_templates, 9) uint64
-            What `take` was told, the first rows of each table forward and backward, its first pair and its last.
-        pairs : (n_pairs, 2) uint64
-            Rows that give way to their sum and their difference, in the order in which that unfolds.
-        forward, backward
-            Entries of the tables and of their negative transposes: the first term of each row and the number of terms
-            ``(n_rows + 1,)``, and of each term the columns and the values ``(n_terms, TERMS)``.
-        """
+    def tables(self) -> FoldedTables:
+        """What was taken over."""
         shapes = np.array(self._shapes, dtype=np.uint64).reshape(-1, 9)
-        return shapes, np.concatenate(self._pairs).astype(np.uint64), self._forward.arrays(), self._backward.arrays()
+        pairs = np.concatenate(self._pairs).astype(np.uint64)
+        return FoldedTables(shapes, pairs, self._forward.rows(), self._backward.rows())
 
 
 class _Rows:
-    """Entries of tables, row by row, `TERMS` at once."""
+    """Collects `TableRows`."""
 
     def __init__(self) -> None:
         self._start = [0]
@@ -159,6 +186,6 @@ class _Rows:
             self._start.append(self._start[-1] + len(filled) // TERMS)
         return first
 
-    def arrays(self) -> tuple[Any, ...]:
+    def rows(self) -> TableRows:
         start = np.array(self._start, dtype=np.uint64)
-        return start, np.concatenate(self._column).astype(np.uint64), np.concatenate(self._value)
+        return TableRows(start, np.concatenate(self._column).astype(np.uint64), np.concatenate(self._value))

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from meshing import WallMesh
-from runningbond.scene import Array, Indices, PointLoad, Scene
+from runningbond.scene import Array, Forces, Indices, Scene
 
 from .cracks import Pieces
 from .loads import Loads, inner_mass
@@ -114,6 +114,26 @@ class ModalWall:
         pieces = np.split(motion, self.first[1:])[:-1]
         return [piece.reshape(-1, len(t.blocks)) for piece, t in zip(pieces, self.templates, strict=True)]
 
+    def places(self, local: list[Indices]) -> tuple[Indices, Indices]:
+        """Places for the displacements of some nodes of each template's blocks, given in numbers of their own nodes.
+
+        Returns
+        -------
+        (nn, 2) int
+            Place of each node's displacements along x and y, those of a template's blocks side by side; after the
+            last of all where there are none.
+        (n_templates + 1,) int
+            First place of each template, then the number of places.
+        """
+        counts = [2 * len(own) * len(template.blocks) for own, template in zip(local, self.templates, strict=True)]
+        first = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
+        place = np.full((len(self.mesh.points), 2), first[-1])
+        for template, own, at in zip(self.templates, local, first, strict=False):
+            n = len(template.blocks)
+            rows = at + n * np.arange(2 * len(own)).reshape(-1, 2)
+            place[self.mesh.first_node[template.blocks][:, None] + own] = rows + np.arange(n)[:, None, None]
+        return place, first
+
     def nodal_force(self, force: Array) -> Array:
         """Modal forces of forces on the nodes ``(nn, 2)`` [N], ``(nd,)`` [N]; the transpose of `displacement`."""
         found = np.zeros(self.first[-1] + 1)
@@ -123,11 +143,17 @@ class ModalWall:
             into += shape.T @ force[nodes].transpose(0, 2, 1).reshape(len(shape), -1)
         return found
 
-    def body_force(self, acceleration: tuple[float, float], loads: Loads = "consistent") -> Array:
-        """Modal forces of an acceleration [m/s²] of all blocks, ``(nd,)`` [N]."""
+    def load(self, forces: Forces, loads: Loads = "consistent") -> Array:
+        """Modal forces of forces on the blocks, ``(nd,)`` [N]; a moment acts on a block's rotation alone."""
         if loads == "consistent":
-            return self._of_modes([template.modes.inert @ acceleration for template in self.templates])
-        return self.nodal_force(inner_mass(self.pieces)[:, None] * acceleration)
+            each = [t.modes.inert @ forces.acceleration[t.blocks].T for t in self.templates]
+            found = np.concatenate([*(force.ravel() for force in each), [0.0]])
+        else:
+            found = self.nodal_force(inner_mass(self.pieces)[:, None] * forces.acceleration[self.mesh.block])
+        np.add.at(found, self.rigid[:, 2], forces.moment)
+        for block, at, force in zip(forces.block.tolist(), forces.at, forces.force, strict=True):
+            found += self.displacement_row(block, at, force)
+        return found
 
     def displacement_row(self, block: int, at: Array, direction: Array) -> Array:
         """Displacement of a point ``(2,)`` of a movable block along a direction, per coordinate, ``(nd,)``.
@@ -144,25 +170,13 @@ class ModalWall:
         self.split(found)[template][:, row] = np.einsum("c,x,cxm->m", shares[best], direction, shape)
         return found
 
-    def live_load(self, loads: Loads = "consistent") -> Array:
-        """Load that λ multiplies, ``(nd,)`` [N]; a point load is shared equally by the blocks it touches."""
-        live = self.scene.load.live
-        if isinstance(live, PointLoad):
-            return self._at_load(np.array(live.at), np.array(live.force))
-        gravity = float(np.hypot(*self.scene.load.gravity))
-        return self.body_force((gravity * live.direction[0], gravity * live.direction[1]), loads)
-
     def control_row(self) -> Array:
-        """Displacement of the control point along the live load, ``(nd,)``; see `runningbond.results.Outcome`."""
-        blocks, at, direction = self.scene.control_point
-        if isinstance(self.scene.load.live, PointLoad):
-            return self._at_load(at, direction)
-        return np.asarray(sum(self.displacement_row(int(b), at, direction) for b in blocks)) / len(blocks)
+        """Displacement of the control point along the live load, ``(nd,)``; see `runningbond.results.Outcome`.
 
-    def _at_load(self, at: Array, direction: Array) -> Array:
-        """Mean displacement where a point load acts, of the blocks it touches and in each of its pieces there."""
-        touched = self.scene.loaded_blocks
-        owner, times = self.pieces.owner[touched], np.bincount(self.pieces.owner[touched])
+        The mean of the blocks that have the point, and of each one's pieces there.
+        """
+        held, at, direction = self.scene.control_point
+        owner, times = self.pieces.owner[held], np.bincount(self.pieces.owner[held])
         share = 1 / (times[owner] * np.count_nonzero(times))
-        rows = [s * self.displacement_row(int(b), at, direction) for s, b in zip(share, touched, strict=True)]
+        rows = [s * self.displacement_row(int(b), at, direction) for s, b in zip(share, held, strict=True)]
         return np.asarray(sum(rows))

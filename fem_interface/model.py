@@ -6,12 +6,12 @@ lost and stiff deformations can be slowed down one by one.
 """
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
 
-from runningbond.dynamics import Observer, Run, collapse_by_steps, nobody
-from runningbond.dynamics.verdict import BUDGET, COLLAPSE, FIRST_STEP
+from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer
+from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.joints import Rule
+from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
@@ -22,7 +22,6 @@ from .loads import Loads
 from .mass_scaling import largest_scaling
 from .modes import ModeCount
 from .operators import PointsOn
-from .piece_run import PieceRun
 from .system import system_of
 
 
@@ -38,11 +37,10 @@ def fem(
     loads: Loads = "consistent",
     mass_scaling: bool = True,
     energies: Energies = "given",
-    collapse: float = COLLAPSE,
+    collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
-    observe: Observer = nobody,
-    locks: Callable[[], bool] = lambda: False,
+    observe: Observer = no_observer,
 ) -> Outcome:
     """Collapse of a scene by the motion of its deformable blocks, at small displacements.
 
@@ -76,9 +74,6 @@ def fem(
         Time steps after which a load is left undecided.
     observe
         Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
-    locks
-        Whether the wall is known to bear any multiple of the live load; asked where no load brought it down, which
-        is undecided without such a proof.
 
     Returns
     -------
@@ -90,15 +85,14 @@ def fem(
     start = time.perf_counter()
     wall = modal_wall(scene, cells, modes, rule, points, cracks)
     system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
-    run = Run(system) if cracks == "joints" else PieceRun(system, wall)
     factor = largest_scaling(wall, system.mass)
     outcome = collapse_by_steps(
         scene,
         "fem",
-        run,
+        Run(system),
         tolerance,
         point_order=wall.interface.listing,
-        locks=locks,
+        is_self_locking=lambda: is_self_locking(scene),
         note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",
         collapse=collapse,
         first_step=first_step,

@@ -1,22 +1,22 @@
 """A scene as a block system of deformable blocks."""
 
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
-from runningbond.dynamics import BlockSystem, Restraint, force_unit
+from runningbond.dynamics import BlockSystem, Interface, Restraint, force_unit
 from runningbond.joints import Rule
-from runningbond.joints.laws import kernel_law
+from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
-from runningbond.scene import Scene
+from runningbond.scene import Array, Indices, Scene
 
-from .block_kernels import gather_modes, scatter_modes
-from .cracks import Cracks
-from .element_order import find_runs, modal_wall
+from .block_kernels import ModalJoints, gather_modes, nodal_tables, scatter_modes
+from .cracks import Cracks, motion_of_blocks
+from .element_order import element_runs, modal_wall
 from .fracture import Energies, fractured
 from .loads import Loads
 from .mass_scaling import scaled_modes
-from .mirror_symmetry import Folds
+from .mirror_symmetry import TableFolder
 from .modal_wall import ModalWall
 from .modes import ModeCount
 from .operators import PointsOn
@@ -84,26 +84,26 @@ def system_of(
     energies: Energies = "given",
 ) -> BlockSystem:
     """Block system of a wall in modal coordinates; see `fem_system`."""
-    scene, points = wall.scene, wall.interface.points
+    scene, points, pieces = wall.scene, wall.interface.points, wall.pieces
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     materials, of_joint = fractured(scene, energies)
-    dead, live = wall.body_force(scene.load.gravity, loads), wall.live_load(loads)
+    dead, live = wall.load(scene.dead_forces, loads), wall.load(scene.live_forces, loads)
+    law = kernel_law(materials, of_joint[points.joint])
+    geometry = _geometry(wall)
     return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,
         viscosity=scaled.viscosity,
         dead=dead,
         live=live,
-        area=points.area,
-        law=kernel_law(materials, of_joint[points.joint]),
-        gather=gather_modes,
-        scatter=scatter_modes,
-        geometry=_geometry(wall),
-        rigid=wall.rigid,
-        restraint=_restraint(wall),
-        block_frequency_squared=scaled.frequency_squared,
         control=wall.control_row(),
         force_unit=force_unit(scene, wall.block, wall.mass, live, wall_strength(scene, points)),
+        rigid=wall.rigid,
+        owner=pieces.owner,
+        restraint=_restraint(wall),
+        interface=Interface(law, points.area, gather_modes, scatter_modes, geometry, scaled.frequency_squared),
+        block_motion=None if pieces.whole else motion_of_blocks(pieces),
+        source=wall,
     )
 
 
@@ -113,58 +113,39 @@ def _restraint(wall: ModalWall) -> Restraint:
     return Restraint(wall.rigid[pinned], np.reshape(free, (-1, 3, 3)))
 
 
-def _geometry(wall: ModalWall) -> tuple[Any, ...]:
-    """Arrays of the kernels: shapes and tables of the templates, runs of joint elements, and buffers.
-
-    A template's row of `shapes` is its number of blocks, of modes and of displacements of joint nodes a block, and
-    where its coordinates, its joint nodes' displacements and its table start; where the table can be folded, the
-    template is in the arrays of `Folds` after the tables instead. A run's row of `places` is where the displacements of
-    its nodes stand, side a's two ends before side b's, less the number of its first element; its `shares` are what
-    each displacement has in the opening and in the slip of each point.
-    """
+def _geometry(wall: ModalWall) -> ModalJoints:
     mesh, joint = wall.mesh, wall.interface
     n, ne, _ = joint.weights.shape
-    _, start = find_runs(wall)
-    on_joint = np.unique(joint.nodes)
-    of_node = wall.place[mesh.block[on_joint], 0]
-    place = np.full((len(mesh.points), 2), -1)
-    shapes, forward, backward, folds = [], [np.zeros(0)], [np.zeros(0)], Folds()
-    at = entry = 0
-    for k, template in enumerate(wall.templates):
-        blocks, modes = len(template.blocks), template.modes
-        own = on_joint[of_node == k]
-        local = np.unique(own - mesh.first_node[mesh.block[own]])
-        shape = np.hstack([modes.rigid, modes.shape[:, 3:]]).reshape(-1, 2, len(modes.mass))[local]
-        table = shape.reshape(2 * len(local), len(modes.mass))
-        shape_of_table = (blocks, table.shape[1], len(table), wall.first[k], at)
-        nodes = mesh.points[mesh.first_node[template.blocks[0]] + local]
-        if not folds.take(shape_of_table, nodes, table):
-            shapes.append((*shape_of_table, entry))
-            forward.append(table.ravel())
-            backward.append(table.T.ravel())
-            entry += table.size
-        rows = at + blocks * np.arange(len(table)).reshape(-1, 2)
-        place[mesh.first_node[template.blocks][:, None] + local] = rows + np.arange(blocks)[:, None, None]
-        at += table.shape[0] * blocks
+    _, start = element_runs(wall)
+    local, tables = zip(*_tables(wall), strict=True) if wall.templates else ((), ())
+    place, first = wall.places(list(local))
+    rows, folder = [], TableFolder()
+    for template, own, table, coordinate, at in zip(wall.templates, local, tables, wall.first, first, strict=False):
+        shape = (len(template.blocks), table.shape[1], len(table), int(coordinate), int(at))
+        if not folder.take(shape, mesh.points[mesh.first_node[template.blocks[0]] + own], table):
+            rows.append((shape, table))
     begin = start[:-1]
-    places = place[joint.nodes[begin]].reshape(-1, 8)
-    places = np.where(places < 0, at, places) - begin[:, None]
     tangent = np.column_stack([-joint.normal[:, 1], joint.normal[:, 0]])
     frame = np.stack([joint.normal, tangent], axis=1)[begin]
     shares = np.einsum("pre,rdx->rpdex", joint.weights[:, begin], frame).reshape(len(begin), n, 2, 4)
     shares[np.abs(shares) < ROUNDING] = 0.0
     area = joint.points.area.reshape(n, ne)[:, begin].T[:, :, None, None]
-    longest = int(np.diff(start).max(initial=0))
-    return (
-        np.array(shapes, dtype=np.int64).reshape(-1, 6),
-        np.concatenate(forward),
-        np.concatenate(backward),
-        folds.arrays(),
+    return ModalJoints(
+        nodal_tables(rows, int(first[-1]), int(np.diff(start).max(initial=0))),
+        folder.tables(),
         start.astype(np.uint64),
-        places.astype(np.uint64),  # negative differences wrap round and come out right all the same
+        (place[joint.nodes[begin]].reshape(-1, 8) - begin[:, None]).astype(np.uint64),
         shares,
         shares * area,
-        np.array([at]),
-        np.zeros(at + longest),
-        np.zeros(max((row[0] * row[1] for row in shapes), default=0)),
     )
+
+
+def _tables(wall: ModalWall) -> Iterator[tuple[Indices, Array]]:
+    """Of each template the nodes that lie on joints, and their displacements per rigid motion and deformation."""
+    mesh, on_joint = wall.mesh, np.unique(wall.interface.nodes)
+    of_node = wall.place[mesh.block[on_joint], 0]
+    for k, template in enumerate(wall.templates):
+        own, modes = on_joint[of_node == k], template.modes
+        local = np.unique(own - mesh.first_node[mesh.block[own]])
+        shape = np.hstack([modes.rigid, modes.shape[:, 3:]]).reshape(-1, 2, len(modes.mass))[local]
+        yield local, shape.reshape(2 * len(local), len(modes.mass))

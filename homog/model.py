@@ -5,7 +5,7 @@ import time
 import numpy as np
 
 from runningbond.results import Outcome
-from runningbond.scene import Bond, Lateral, Scene, SceneError
+from runningbond.scene import Bond, Scene, SceneError
 
 from .collapse import crack_slope, lateral_multiplier
 
@@ -58,8 +58,8 @@ def _bond(scene: Scene) -> Bond:
 
 def _why_not(scene: Scene, bond: Bond) -> str:
     """The first assumption of the closed form that a scene breaks, or nothing."""
-    if not isinstance(scene.load.live, Lateral):
-        return 'it needs load.live.kind = "lateral"'
+    if not _is_lateral(scene):
+        return 'it needs load.live.kind = "lateral", to the right or the left, and no dead load but the weight'
     if len(scene.pins):
         return 'it needs support.kind = "base" or "fixed-first-course"'
     if scene.joint.cohesion > 0:
@@ -78,6 +78,18 @@ def _why_not(scene: Scene, bond: Bond) -> str:
     return ""
 
 
+def _is_lateral(scene: Scene) -> bool:
+    """Whether each block is pulled down by its weight, and pushed sideways by as much."""
+    live, dead, weight = scene.live_forces, scene.dead_forces, float(np.hypot(*scene.load.gravity))
+    aside = float(np.copysign(weight, live.acceleration[0, 0]))
+    return (
+        live.on_mass_alone
+        and dead.on_mass_alone
+        and np.allclose(dead.acceleration, [0.0, -weight])
+        and np.allclose(live.acceleration, [aside, 0.0])
+    )
+
+
 def _is_running_bond(scene: Scene, bond: Bond) -> bool:
     """Whether the head joints are those of running bond: one at every second half block, shifted course by course."""
     movable = ~scene.fixed
@@ -89,8 +101,8 @@ def _is_running_bond(scene: Scene, bond: Bond) -> bool:
     if not np.allclose(column, middle[:, 0], rtol=0, atol=1e-3):
         return False
     columns, courses = np.rint((high - low) / [bond.width / 2, bond.height]).astype(int)
-    found = set(zip(column.tolist(), course.tolist(), strict=True))
+    heads = set(zip(column.tolist(), course.tolist(), strict=True))
     return any(
-        found == {(x, y) for y in range(courses) for x in range(1, columns) if (x + y) % 2 == parity}
+        heads == {(x, y) for y in range(courses) for x in range(1, columns) if (x + y) % 2 == parity}
         for parity in (0, 1)
     )

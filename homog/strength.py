@@ -62,7 +62,7 @@ class StrengthDomain:
         power = np.concatenate([[direction[0], direction[1], 2 * direction[2], 0.0], np.zeros(2 * n)])
         dilate = np.hstack([-opening, resistance.friction * np.eye(n), resistance.friction * np.eye(n)])
         scale = float(np.abs(cost).max()) or 1.0
-        found = linprog(
+        result = linprog(
             cost / scale,
             A_ub=dilate,
             b_ub=np.zeros(n),
@@ -71,8 +71,8 @@ class StrengthDomain:
             bounds=[(None, None)] * 4 + [(0, None)] * (2 * n),
             method="highs",
         )
-        if found.status == 2:
+        if result.status == 2:
             return float("inf")
-        if found.status != 0 or found.fun is None:
-            raise ArithmeticError(f"strength in direction {direction}: {found.message}")
-        return float(found.fun * scale)
+        if result.status != 0 or result.fun is None:
+            raise ArithmeticError(f"strength in direction {direction}: {result.message}")
+        return float(result.fun * scale)

@@ -9,7 +9,7 @@ from .joints import JointPoints
 from .scene import Array
 
 if TYPE_CHECKING:
-    from .compare.recording import Recorder
+    from .compare.model import Recorder
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +51,7 @@ class PathState:
 
 def collected(recorder: "Recorder") -> list[PathState]:
     """The states that a recorder without a folder has seen, in the order in which they came."""
-    points = recorder.stage.points
+    points = recorder.discretisation.points
     order = np.lexsort(((points.position * points.tangent).sum(axis=1), points.joint))
     ordered = points.part(order)
     return [
@@ -65,5 +65,5 @@ def collected(recorder: "Recorder") -> list[PathState]:
             frame.damage[order],
             ordered,
         )
-        for frame in recorder.moments
+        for frame in recorder.frames
     ]

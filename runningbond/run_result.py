@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from .compare.models import run_model
+from .compare.model import Model
+from .compare.models import find_model, run_model
 from .joints import wall_points
 from .path_states import PathState, collected
 from .results import Outcome, Status
@@ -133,18 +134,15 @@ class Result:
         return to_png(figure_of(self.wall.scene, self.outcome))
 
 
-def run_wall(wall: Wall, model: str, tolerance: float, states: bool, parameters: dict[str, Any]) -> Result:
+def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, parameters: dict[str, Any]) -> Result:
     """Run a model on a wall, as `Wall.run` says."""
-    if not states:
-        return Result(wall, run_model(model, wall.scene, tolerance, **parameters))
-    from .compare.recording import recorder
-
-    observe = recorder(wall.scene, model, None)
-    outcome = run_model(model, wall.scene, tolerance, observe, **parameters)
-    if observe is None:
-        return Result(wall, outcome, [])
-    observe.finish(outcome)
-    return Result(wall, outcome, collected(observe))
+    model = find_model(model)
+    recorder = model.observer(wall.scene, None) if states and model.observer else None
+    outcome = run_model(model, wall.scene, tolerance, recorder, **parameters)
+    if recorder is None:
+        return Result(wall, outcome, [] if states else None)
+    recorder.finish(outcome)
+    return Result(wall, outcome, collected(recorder))
 
 
 def new_axes() -> "Axes":

@@ -9,7 +9,8 @@ from typing import Any
 
 from .compare.campaign import Campaign, Interrupted, run_campaign
 from .compare.fingerprint import fingerprint
-from .compare.models import TOLERANCE, check_model
+from .compare.model import Model
+from .compare.models import TOLERANCE, find_model
 from .scene import Scene, SceneError
 from .tables import Table, table
 from .wall import Wall
@@ -21,7 +22,7 @@ ANSWER = ("multiplier", "lower", "upper", "status", "seconds", "message")
 def sweep(
     wall: Wall,
     changes: Mapping[str, Iterable[Any]],
-    model: str,
+    model: str | Model,
     *,
     tolerance: float = TOLERANCE,
     folder: str | Path | None = None,
@@ -36,7 +37,7 @@ def sweep(
     changes
         Values of each key that varies, by its full name: ``{"joint.friction": [0.4, 0.6]}``.
     model
-        Name of the model.
+        Name of a model, or a `Model` of one's own.
     tolerance
         Relative width of the brackets asked for.
     folder
@@ -50,7 +51,7 @@ def sweep(
         A row a combination, the last key varying fastest: the values of the keys, then `ANSWER`. Combinations that
         describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
     """
-    check_model(model, "model")
+    model = find_model(model)
     for key, values in changes.items():
         if not isinstance(values, Iterable) or isinstance(values, (str, Mapping)):
             raise SceneError(key, "must be a list of the values that it is to take", values)
@@ -63,7 +64,7 @@ def sweep(
             scene = wall.with_(case).scene
         except SceneError as refusal:
             names.append(f"case {number}")
-            refusals[names[-1], model] = str(refusal)
+            refusals[names[-1], model.name] = str(refusal)
         else:  # named after what it is computed from, an outcome is used again when keys or values are added
             names.append(fingerprint(scene, model, tolerance)[:16])
             scenes[names[-1]] = scene
@@ -71,11 +72,13 @@ def sweep(
     answers = {cell: outcome.summary() for cell, outcome in campaign.outcomes.items()}
     for cell, message in (refusals | campaign.inapplicable).items():
         answers[cell] = {"status": "refused", "message": message}
-    rows = [{**answers[name, model], **case} for name, case in zip(names, cases, strict=True)]
+    rows = [{**answers[name, model.name], **case} for name, case in zip(names, cases, strict=True)]
     return table({key: [row.get(key) for row in rows] for key in (*changes, *ANSWER)})
 
 
-def _campaign(scenes: dict[str, Scene], model: str, tolerance: float, folder: str | Path | None, jobs: int) -> Campaign:
+def _campaign(
+    scenes: dict[str, Scene], model: Model, tolerance: float, folder: str | Path | None, jobs: int
+) -> Campaign:
     with ExitStack() as stack:
         where = Path(folder if folder is not None else stack.enter_context(TemporaryDirectory()))
         try:

@@ -14,6 +14,7 @@ from .scene import Scene, SceneError, read_description, scene_from_dict
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .compare.model import Model
     from .run_result import Result
 
 TABLES = {
@@ -150,7 +151,9 @@ class Wall:
         """The wall as models see it: blocks, joints, materials, support and loads."""
         return scene_from_dict(self.description, folder=self.folder)
 
-    def run(self, model: Any, *, tolerance: float = 0.01, states: bool = False, **parameters: Any) -> "Result":
+    def run(
+        self, model: "str | Model", *, tolerance: float = 0.01, states: bool = False, **parameters: Any
+    ) -> "Result":
         """Find the collapse of the wall.
 
         Parameters

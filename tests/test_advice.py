@@ -11,11 +11,11 @@ from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.model import fem
 from runningbond.commands.command_line import command
-from runningbond.compare import PUBLISHED, published_scene
+from runningbond.compare import MODELS, PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, Advice, advise
-from runningbond.compare.advice.costs import LAWS, estimate, pace
-from runningbond.compare.advice.needs import needs_of, pliancy, sliding_dilates
-from runningbond.compare.advice.next_rung import WORTH
+from runningbond.compare.advice.costs import estimate, pace
+from runningbond.compare.advice.needs import block_compliance, needs_of, sliding_dilates
+from runningbond.compare.advice.steps import WORTH
 from runningbond.limit import limit
 from runningbond.results import Outcome
 from runningbond.scene import BlockMaterial, Scene
@@ -109,8 +109,8 @@ def test_a_certificate_much_dearer_than_a_history_is_not_bought() -> None:
     prices, so that the choice is the same on every machine."""
     large = panel(wall__length=8.64, wall__height=4.32, **STIFF)
     for scene, dear in ((published_scene("panel-11"), False), (large, True)):
-        paths = min(estimate(model, scene, TOLERANCE).seconds for model in ("dem-static", "dem-dynamic"))
-        assert (estimate("limit-nonassociated", scene, TOLERANCE).seconds > WORTH * paths) == dear
+        paths = min(estimate(MODELS[model], scene, TOLERANCE).seconds for model in ("dem-static", "dem-dynamic"))
+        assert (estimate(MODELS["limit-nonassociated"], scene, TOLERANCE).seconds > WORTH * paths) == dear
 
 
 # --- reasons to stop early ------------------------------------------------------------------------------------
@@ -145,14 +145,14 @@ def test_deformability_is_of_no_account_where_the_certificates_suffice() -> None
     """Admissible forces and rigid mechanisms do not know E: blocks of rubber leave the interval as it is."""
     scene = published_scene("wall-w1")
     soft = replace(scene, block=BlockMaterial(scene.block.density, 2e9, 0.0))
-    assert pliancy(soft) > TOLERANCE
+    assert block_compliance(soft) > TOLERANCE
     assert climbed(advise(soft))[-1] == "limit-nonassociated"
 
 
 def test_rigid_enough_blocks_lose_their_modes_and_keep_the_answer() -> None:
     """W3 of 1000 GPa, where `advise` leaves fem out: no deformable mode moves the bracket by more than a trial."""
     scene = published_scene("wall-w3")
-    assert needs_of(scene).pliancy < TOLERANCE
+    assert needs_of(scene).compliance < TOLERANCE
     rigid, all_modes = dem_dynamic(scene, TOLERANCE), fem(scene, TOLERANCE, modes="all")
     none = fem(scene, TOLERANCE, modes=3)
     for outcome in (all_modes, none):
@@ -191,7 +191,7 @@ def test_give_of_a_column_is_that_of_its_joints_and_blocks() -> None:
     """A column of n blocks of height h under unit stress shortens by n (1 / k_n + h / E)."""
     scene = panel(block__young=3e9, joint__normal_stiffness=1e10, joint__shear_stiffness=1e10)
     joint, block = 1 / 1e10, 0.06 / 3e9
-    assert pliancy(scene) == pytest.approx(block / (joint + block), rel=1e-12)
+    assert block_compliance(scene) == pytest.approx(block / (joint + block), rel=1e-12)
 
 
 def glued(**changes: Any) -> Scene:
@@ -244,10 +244,10 @@ def test_a_wall_that_leans_before_it_falls_is_followed_at_finite_displacements()
 def test_estimates_follow_the_pace_of_the_rungs_climbed() -> None:
     """A machine that took three times as long for a rung will take three times as long for the next."""
     scene = panel(**STIFF)
-    seconds = estimate("limit", scene, TOLERANCE).seconds
+    seconds = estimate(MODELS["limit"], scene, TOLERANCE).seconds
     found = pace(scene, TOLERANCE, [Outcome("", "limit", "undecided", seconds=3 * seconds)])
     assert found == pytest.approx(3)
-    for model in LAWS:
+    for model in MODELS.values():
         slow, usual = estimate(model, scene, TOLERANCE, found), estimate(model, scene, TOLERANCE)
         assert slow.seconds == pytest.approx(3 * usual.seconds)
         assert slow.spread >= 1

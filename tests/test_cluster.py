@@ -12,8 +12,8 @@ import pytest
 
 from runningbond.commands.command_line import command
 from runningbond.compare import Campaign, published_scene, run_campaign, run_model
-from runningbond.compare.campaign import Cell
-from runningbond.compare.models import MODELS
+from runningbond.compare.model import Model
+from runningbond.compare.tasks import Cell
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
@@ -77,11 +77,11 @@ def restore() -> None:
     SPOILT.clear()
 
 
-def deadly(name: str, scene: Scene, tolerance: float) -> Outcome:
+def deadly(model: Model, scene: Scene, tolerance: float) -> Outcome:
     """A model that takes all the memory of one wall's worker, and the kernel ends that."""
     if scene.title == "too large":
         os.kill(os.getpid(), signal.SIGKILL)
-    return MODELS[name](scene, tolerance)
+    return model.solve(scene, tolerance)
 
 
 def other_sources() -> str:
@@ -103,7 +103,7 @@ def test_a_worker_with_other_sources_is_noticed(
     assert not list(tmp_path.glob("*/*"))
 
 
-def dies_once(name: str, scene: Scene, tolerance: float, *, note: str) -> Outcome:
+def dies_once(model: Model, scene: Scene, tolerance: float, *, note: str) -> Outcome:
     """`run_model` in a process that is killed when the first wall in motion bears some of its load."""
 
     def die(run: object, state: object, multiplier: float) -> None:
@@ -111,7 +111,7 @@ def dies_once(name: str, scene: Scene, tolerance: float, *, note: str) -> Outcom
             Path(note).write_text("killed")
             os.kill(os.getpid(), signal.SIGKILL)
 
-    return run_model(name, scene, tolerance, die if name == "dem-dynamic" else None)
+    return run_model(model, scene, tolerance, die if model.name == "dem-dynamic" else None)
 
 
 def test_a_killed_worker_changes_nothing(client: Any, tmp_path: Path) -> None:
@@ -131,7 +131,7 @@ def test_a_killed_worker_changes_nothing(client: Any, tmp_path: Path) -> None:
         done.append(cell)
         assert (there.joinpath(*cell) / "outcome.json").exists() == (cell in kept), "is kept as soon as it is there"
 
-    client.run(spoil, {"runningbond.compare.campaign:run_model": partial(dies_once, note=str(note))})
+    client.run(spoil, {"runningbond.compare.tasks:run_model": partial(dies_once, note=str(note))})
     found = run_campaign(scenes, models, folder=there, cluster=scheduler(client), progress=look)
     assert note.exists()
     assert sorted(done) == sorted(expected)
@@ -144,7 +144,7 @@ def test_a_wall_that_kills_its_workers_is_given_up_and_no_other(
     client: Any, local_cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(local_cluster.scheduler, "allowed_failures", 0)
-    client.run(spoil, {"runningbond.compare.campaign:run_model": deadly})
+    client.run(spoil, {"runningbond.compare.tasks:run_model": deadly})
     scenes = {"large": panel(title="too large"), "small": panel()}
     campaign = run_campaign(scenes, ["limit"], folder=tmp_path, cluster=scheduler(client))
     assert campaign.outcomes["small", "limit"].status == "collapse"

@@ -1,29 +1,39 @@
 """Campaigns resume, tables say what was found, and the command line keeps its contract."""
 
 import csv
+import inspect
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import psutil
 import pytest
 
+from dem.dynamic import dem_dynamic
+from dem.static import dem_static
+from fem_interface.model import fem
 from runningbond.commands.command_line import command
 from runningbond.compare import MODELS, PUBLISHED, published_scene, run_campaign, run_model
 from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
 from runningbond.compare.fingerprint import fingerprint
+from runningbond.compare.model import Model
 from runningbond.compare.table import corrected_homo
-from runningbond.results import load_outcome
-from runningbond.scene import SceneError
+from runningbond.results import Outcome, load_outcome
+from runningbond.scene import Scene, SceneError
 
-from .walls import panel
+from .walls import content, courses, panel, write_toml
 
 FAST = ["panel-04", "panel-08", "wall-w3", "point-load-quarter"]
+SCRIPT = str(Path(sys.executable).parent / "runningbond")
 CONTRACT = ["scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message"]
 
 
@@ -42,7 +52,7 @@ def test_json_is_one_object_with_the_keys_of_the_contract(model: str, capsys: py
 
 
 def test_an_undecided_run_leaves_with_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("runningbond.limit.nonassociated.MOST_PROGRAMS", 1)
+    monkeypatch.setattr("runningbond.limit.nonassociated.PROGRAM_BUDGET", 1)
     assert command(["run", "panel-04", "--model", "limit-nonassociated"]) == 3
 
 
@@ -70,8 +80,84 @@ def test_the_five_lines_of_the_readme() -> None:
 
 
 def test_unknown_models_are_refused_in_python_too() -> None:
-    with pytest.raises(SceneError, match="--model"):
+    with pytest.raises(SceneError, match=r"^model = 'limt': .* did you mean \"limit\"\?"):
         run_model("limt", panel())
+
+
+def test_a_tolerance_is_refused_by_the_name_that_it_has_in_python() -> None:
+    for run in (run_model, lambda *arguments: run_campaign({}, folder=Path(), tolerance=arguments[2])):
+        with pytest.raises(SceneError, match=r"^tolerance = 2: must be"):
+            run("limit", panel(), 2)
+
+
+# --- models --------------------------------------------------------------------------------------------------
+
+
+def rigid_block(scene: Scene, tolerance: float) -> Outcome:
+    """A model of one's own: a single block slides at tan φ or turns over at b / h."""
+    width, height = np.ptp(scene.blocks.vertices[scene.blocks.owner == 0], axis=0)
+    multiplier = min(scene.joint.friction, float(width / height))
+    return Outcome(scene.title, "toppling", "collapse", multiplier, message="closed form")
+
+
+READS = frozenset({"block.density", "joint.friction"})
+TOPPLING = Model("toppling", "one rigid block in closed form", rigid_block, READS)
+
+
+@pytest.mark.parametrize(("friction", "exact"), [(0.3, 0.3), (3.0, 0.5)])
+def test_a_model_of_ones_own_is_run_as_it_is(friction: float, exact: float) -> None:
+    scene = courses([[1]], width=0.2, height=0.4, joint__friction=friction)
+    outcome = run_model(TOPPLING, scene)
+    assert outcome.multiplier == pytest.approx(exact, rel=1e-12)
+    assert outcome.multiplier == pytest.approx(run_model("limit", scene).multiplier, rel=1e-6)
+
+
+def test_a_model_of_ones_own_stands_in_a_comparison(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Put into `MODELS`, it is in the tables beside the others, also of processes that have never heard of it."""
+    monkeypatch.setitem(MODELS, "toppling", TOPPLING)
+    tall = content(wall__length=None, wall__height=None, wall__courses=[[1]], wall__block_width=0.2)
+    tall["wall"]["block_height"] = 0.4
+    path = write_toml(tall, tmp_path / "block.toml")
+    line = ["compare", str(path), "--models", "limit,toppling", "--out", str(tmp_path / "out"), "--jobs", "2"]
+    assert command(line) == 0
+    assert "| block | panel | 0.5000 | 0.5000 |" in (tmp_path / "out" / "table.md").read_text()
+    assert "toppling" in (tmp_path / "out" / "report.html").read_text()
+    assert command(line) == 0
+    assert "2 of them already in" in capsys.readouterr().out
+
+
+def test_changed_code_of_a_model_of_ones_own_is_another_key() -> None:
+    namespace: dict[str, Any] = {"__name__": "notebook"}
+    exec("def solve(scene, tolerance):\n    return 1\ndef changed(scene, tolerance):\n    return 2", namespace)
+    solvers = (rigid_block, namespace["solve"], namespace["changed"])
+    keys = [fingerprint(panel(), replace(TOPPLING, solve=solve), 0.01) for solve in solvers]
+    assert len(set(keys)) == 3
+    assert fingerprint(panel(), MODELS["limit"], 0.01) == fingerprint(panel(), "limit", 0.01)
+
+
+def test_the_parameters_of_a_model_are_those_that_it_takes() -> None:
+    solvers: dict[str, Callable[..., Outcome]] = {"dem-static": dem_static, "dem-dynamic": dem_dynamic, "fem": fem}
+    for name, model in MODELS.items():
+        taken = inspect.signature(solvers.get(name, model.solve)).parameters.values()
+        own = {parameter.name for parameter in taken if parameter.kind == parameter.KEYWORD_ONLY}
+        assert set(model.parameters) == own - {"observe", "locks"}
+    with pytest.raises(SceneError, match="model limit: modes = 3: is no parameter"):
+        run_model("limit", panel(), modes=3)
+
+
+def test_an_outcome_names_the_keys_that_its_model_does_not_know() -> None:
+    glued = {"cohesion": 1e4, "fracture_energy_1": 5.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    scene = panel(block__young=1e10, joint__friction=0.6, **{f"joint__{key}": value for key, value in glued.items()})
+    stiffness, energy = ["joint.normal_stiffness", "joint.shear_stiffness"], ["joint.fracture_energy_1"]
+    unread = {name: model.unread(scene) for name, model in MODELS.items()}
+    assert unread["limit"] == unread["limit-nonassociated"] == ["block.young", *stiffness, *energy]
+    assert unread["dem-static"] == ["block.young", *energy]
+    assert unread["dem-dynamic"] == ["block.young"]
+    assert unread["fem"] == []
+    assert run_model("limit", scene).message.endswith("not taken into account: " + ", ".join(unread["limit"]))
+    assert "taken into account" not in run_model("limit", panel()).message
 
 
 # --- campaigns -----------------------------------------------------------------------------------------------
@@ -114,14 +200,14 @@ def test_a_damaged_result_is_computed_again(tmp_path: Path) -> None:
 def test_a_model_that_breaks_on_one_scene_does_not_lose_the_others(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sound = MODELS["limit"]
+    limit = MODELS["limit"]
 
-    def fragile(scene: object, tolerance: float) -> object:
-        if getattr(scene, "title", "") == "broken":
+    def fragile(scene: Scene, tolerance: float) -> Outcome:
+        if scene.title == "broken":
             raise ZeroDivisionError("division by zero")
-        return sound(scene, tolerance)
+        return limit.solve(scene, tolerance)
 
-    monkeypatch.setitem(MODELS, "limit", fragile)
+    monkeypatch.setitem(MODELS, "limit", replace(limit, solve=fragile))
     scenes = {"good": panel(), "bad": panel(title="broken")}
     campaign = run_campaign(scenes, ["limit"], folder=tmp_path, jobs=1)
     assert campaign.outcomes["good", "limit"].status == "collapse"
@@ -132,7 +218,7 @@ def test_a_model_that_breaks_on_one_scene_does_not_lose_the_others(
 
 def start(out: Path, *arguments: str) -> "subprocess.Popen[str]":
     return subprocess.Popen(
-        [Path(sys.executable).parent / "runningbond", "compare", *arguments, "--out", out],
+        [SCRIPT, "compare", *arguments, "--out", str(out)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -166,11 +252,27 @@ def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_p
     assert {Path(*cell) for cell in campaign.reused} == {path for path in kept if path.parts[0] in scenes}
 
 
+def test_ctrl_c_with_tasks_waiting_says_one_thing(tmp_path: Path) -> None:
+    """More tasks than the workers' queue takes, and each worker at one: nothing is heard of them but the hint."""
+    process = start(tmp_path, "--models", "fem", "--jobs", "2", "--fresh")
+    deadline, workers = time.monotonic() + 60, psutil.Process(process.pid)
+    while time.monotonic() < deadline:
+        busy = [child for child in workers.children() if "LokyProcess" in " ".join(child.cmdline())]
+        if len(busy) > 1 and all(sum(child.cpu_times()[:2]) > 4 for child in busy):
+            break
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1].endswith("the same command without --fresh goes on.")
+    assert "Traceback" not in errors
+    assert "KeyError" not in errors
+
+
 def test_a_run_stopped_by_ctrl_c_leaves_what_it_had_found(tmp_path: Path) -> None:
     """Exit 130, one JSON object, and a readable result that no comparison takes for the answer."""
-    script = Path(sys.executable).parent / "runningbond"
     folder = tmp_path / "panel-12" / "dem-dynamic"
-    line = [str(script), "run", "panel-12", "--model", "dem-dynamic", "--json", "--tolerance", "1e-6"]
+    line = [SCRIPT, "run", "panel-12", "--model", "dem-dynamic", "--json", "--tolerance", "1e-6"]
     line += ["--out", str(folder)]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
     # At rest under its dead load, and far from its end.
@@ -291,8 +393,44 @@ def test_a_killed_process_loses_one_case_and_no_more(tmp_path: Path) -> None:
     assert "Traceback" not in errors
 
 
+def test_a_scene_file_whose_name_is_no_text_is_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tables = content(wall__length=0.48, wall__height=0.24)
+    del tables["title"]
+    os.rename(write_toml(tables, tmp_path / "wall.toml"), os.fsencode(tmp_path) + b"/w\xe9nd.toml")
+    path = os.fsdecode(os.fsencode(tmp_path) + b"/w\xe9nd.toml")
+    assert command(["compare", path, "--models", "limit", "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    for name in ("table.csv", "table.md", "report.html"):
+        assert "w\ufffdnd" in (tmp_path / "out" / name).read_text(encoding="utf-8")
+    assert command(["run", path, "--model", "limit", "--out", str(tmp_path / "run")]) == 0
+
+
+def no_file_may_grow() -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+
+
+@pytest.mark.parametrize("line", ["compare panel-04 --models limit --out", "run panel-04 --model limit --out"])
+def test_where_no_file_may_grow_that_is_one_line(line: str, tmp_path: Path) -> None:
+    """`ulimit -f 0`: found out before anything is computed; and the exit code is right if nothing can be said."""
+    words = [SCRIPT, *line.split(), str(tmp_path)]
+    said = subprocess.run(words, capture_output=True, text=True, check=False, preexec_fn=no_file_may_grow)
+    assert said.returncode == 2
+    assert said.stderr == f"runningbond: {tmp_path}: File too large\n"
+    assert said.stdout == ""
+    with (tmp_path / "silent").open("wb") as silent:
+        done = subprocess.run(words, stdout=silent, stderr=silent, check=False, preexec_fn=no_file_may_grow)
+    assert done.returncode == 2
+
+
+def test_a_backend_that_is_none_is_bad_input() -> None:
+    wrong = os.environ | {"MPLBACKEND": "nonsense"}
+    line = [SCRIPT, "compare", "panel-04", "--models", "limit"]
+    said = subprocess.run(line, capture_output=True, text=True, check=False, env=wrong)
+    assert said.returncode == 2
+    assert said.stderr.startswith("runningbond: MPLBACKEND = 'nonsense': is no backend of matplotlib")
+    assert said.stderr.count("\n") == 1
+
+
 def test_a_broken_pipe_is_no_complaint() -> None:
-    script = Path(sys.executable).parent / "runningbond"
-    line = f"{script} run panel-04 --model limit | true; exit ${{PIPESTATUS[0]}}"
+    line = f"{SCRIPT} run panel-04 --model limit | true; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")

@@ -111,3 +111,45 @@ def test_where_nothing_can_be_kept_kernels_are_compiled_all_the_same(
         "numba.core.caching._CacheLocator.ensure_cache_path", lambda self: (_ for _ in ()).throw(OSError)
     )
     assert plus_one(doubled)(5.0) == 11.0
+
+
+def test_a_law_of_a_users_own_that_has_changed_is_compiled_anew(tmp_path: Path) -> None:
+    """The loop over it stands in another file, which has not; nor has the law's, where a number beside it has."""
+    program = "from mine import law\nfrom tests.test_compiled import plus_one\nprint(plus_one(law)(5.0))"
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": f"{ROOT}:{tmp_path}"}
+    text = "from runningbond.joints.compiled import kernel\nK = {}\n@kernel\ndef law(x):\n    return {} * x\n"
+    printed = []
+    for k, code in ((1.0, "2.0"), (1.0, "3.0"), (4.0, "K"), (5.0, "K")):
+        (tmp_path / "mine.py").write_text(text.format(k, code))
+        line = [sys.executable, "-B", "-c", program]
+        printed.append(subprocess.run(line, env=environment, capture_output=True, text=True).stdout)
+    assert printed == ["11.0\n", "16.0\n", "21.0\n", "26.0\n"]
+
+
+def test_a_user_without_a_home_has_kernels_and_scenes_and_no_drawing(tmp_path: Path) -> None:
+    """No HOME and no entry in the password file: whatever wants a folder of the user's says so or does without."""
+    program = """
+import pwd
+pwd.getpwuid = lambda uid: {}[uid]
+from pathlib import Path
+from runningbond.scene import SceneError, scene_from_dict
+from tests.test_compiled import doubled
+from tests.walls import content
+scene_from_dict(content())
+Path("wall.dxf").write_text("")
+try:
+    scene_from_dict(content(wall={"drawing": "wall.dxf", "units": "mm", "thickness": 0.1}))
+except SceneError as error:
+    print(doubled(2.0), str(error).splitlines()[0])
+"""
+    variables = {"HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "NUMBA_CACHE_DIR"}
+    environment = {name: value for name, value in os.environ.items() if name not in variables}
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env=environment | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert done.stdout.startswith("4.0 wall.drawing = 'wall.dxf': "), done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["wall.dxf"]

@@ -21,7 +21,7 @@ from dem import (
     pin_operator,
 )
 from runningbond.joints import joint_points
-from runningbond.limit import equilibrium, limit
+from runningbond.limit import equilibrium, is_self_locking, limit
 from runningbond.limit.associated import GLUED
 from runningbond.limit.force_program import ForceSolution
 from runningbond.limit.nonassociated import Certificate, certified_loads
@@ -62,7 +62,7 @@ def pile(blocks: list[Array], friction: float, live: Lateral | PointLoad | None 
         thickness=0.1,
         block=BlockMaterial(2000.0),
         joint=JointMaterial(friction),
-        load=Load(live=live or Lateral()),
+        load=Load(live=(live or Lateral(),)),
     )
 
 
@@ -247,7 +247,7 @@ def mapped(scene: Scene, change: Callable[[Array], Array], *, turn: Callable[[Ar
         thickness=scene.thickness,
         block=scene.block,
         joint=scene.joint,
-        load=Load((float(gravity[0]), float(gravity[1])), Lateral((float(push[0]), float(push[1])))),
+        load=Load((float(gravity[0]), float(gravity[1])), (Lateral((float(push[0]), float(push[1]))),)),
         ground=outlines[-1],
     )
 
@@ -438,6 +438,27 @@ def test_the_associated_bound_can_lock_where_true_friction_gives_way() -> None:
     )
     assert limit(scene).status == "unbounded"
     assert limit_nonassociated(scene).status == "collapse"
+
+
+@pytest.mark.parametrize(("length", "force", "friction"), [(0.48, [0, -1], 0.6), (0.24, [-0.7, -1], 1.0)])
+def test_a_wall_that_locks_by_friction_says_what_is_proved_of_it(
+    length: float, force: list[float], friction: float
+) -> None:
+    """Both corners held: Coulomb forces balance any multiple of the load, and normal forces alone do not.
+
+    True friction allows rest at every multiple, then; that no other forces drive a mechanism is not said.
+    """
+    live = {"kind": "point", "at": [0.12, 0.12], "force": force}
+    size = {"wall__length": length, "wall__height": 0.12, "wall__first_course": "half"}
+    scene = panel(
+        **size, joint__friction=friction, support__kind="pinned-corners", load={"gravity": 9.81, "live": live}
+    )
+    assert limit(scene).status == "unbounded"
+    assert is_self_locking(scene)
+    assert not is_self_locking(replace(scene, joint=JointMaterial(0.0)))
+    outcome = limit_nonassociated(scene)
+    assert outcome.status == "unbounded", outcome.message
+    assert "no collapse certified in 40 programs, which does not exclude one" in outcome.message
 
 
 def test_no_friction_and_no_strength_hold_nothing_sideways() -> None:

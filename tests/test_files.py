@@ -17,9 +17,11 @@ from runningbond.compare.models import run_model
 from runningbond.compare.recording import MotionRecorder, StaticRecorder, record_mechanism, stresses
 from runningbond.joints import wall_points
 from runningbond.limit import limit
-from runningbond.pictures.frame import Frame, Stage, State, mechanism_frame, states_of_points
-from runningbond.pictures.series import MOST, Series, moments, read_grid
-from runningbond.pictures.vtk_messages import VtkError, vtk_errors_raised
+from runningbond.pictures.frame import Discretisation, Frame
+from runningbond.pictures.joint_state import JointState, states_under_load
+from runningbond.pictures.mechanism import mechanism_frame
+from runningbond.pictures.time_series import MAX_FRAMES, TimeSeries, frame_files, read_grid
+from runningbond.pictures.vtk_safety import VtkError, vtk_errors_raised
 from runningbond.results import Outcome, StoreError, load_scene, save_outcome, write_atomically
 from runningbond.results.mechanism import carried, rigid_jumps
 from runningbond.scene import Scene
@@ -92,8 +94,8 @@ def test_blocks_come_back_from_paraview_files(tmp_path: Path) -> None:
     """Corners, their displacement and velocity by the motion of a rigid body, and the numbers of the blocks."""
     scene = panel()
     frame = moved(scene)
-    Series(Stage.of_rigid_blocks(scene), tmp_path).add(frame)
-    grid = read_grid(moments(tmp_path, "blocks")[0])
+    TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path).add(frame)
+    grid = read_grid(frame_files(tmp_path, "blocks")[0])
     blocks = scene.blocks
     place = points_of(grid)
     assert np.array_equal(place[:, :2], blocks.vertices)
@@ -115,10 +117,10 @@ def test_blocks_come_back_from_paraview_files(tmp_path: Path) -> None:
 
 def test_courses_and_templates_are_counted() -> None:
     """Twelve courses from below; full blocks, left and right half blocks alike, and the ground."""
-    from runningbond.pictures.grids import Grids
+    from runningbond.pictures.vtk_grids import GridBuilder
 
     scene = panel()
-    grid = Grids(Stage.of_rigid_blocks(scene)).blocks(moved(scene))
+    grid = GridBuilder(Discretisation.of_rigid_blocks(scene)).blocks(moved(scene))
     found = arrays(grid.GetCellData())
     assert np.array_equal(np.unique(found["course"]), np.arange(-1, 12))
     assert found["course"][~scene.wall] == -1
@@ -133,8 +135,8 @@ def test_joints_come_back_from_paraview_files(tmp_path: Path) -> None:
     """Each piece lies on its joint; its two faces move with their blocks, and so come apart by opening and slip."""
     scene = panel()
     frame, points = moved(scene), wall_points(scene)
-    Series(Stage.of_rigid_blocks(scene), tmp_path).add(frame)
-    grid = read_grid(moments(tmp_path, "joints")[0])
+    TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path).add(frame)
+    grid = read_grid(frame_files(tmp_path, "joints")[0])
     n = len(scene.joints)
     assert grid.GetNumberOfCells() == 2 * n
     place, of_points, of_cells = points_of(grid)[:, :2], arrays(grid.GetPointData()), arrays(grid.GetCellData())
@@ -172,16 +174,16 @@ def test_joints_come_back_from_paraview_files(tmp_path: Path) -> None:
 
 def test_a_joint_is_shown_as_what_it_does_most_tellingly() -> None:
     """Open before sliding, sliding before a spent bond, that before sticking."""
-    from runningbond.pictures.grids import Grids
+    from runningbond.pictures.vtk_grids import GridBuilder
 
     scene = courses([[1], [1]])
     frame = moved(scene)
-    order = [State.STICK, State.FAILED, State.SLIDE, State.OPEN]
+    order = [JointState.STICK, JointState.DEBONDED, JointState.SLIDE, JointState.OPEN]
     for one in order:
         for other in order:
             state = np.array([one, other] * len(scene.joints))
             shown = Frame(0, frame.motion, frame.opening, frame.slip, frame.normal, frame.tangential, state)
-            found = arrays(Grids(Stage.of_rigid_blocks(scene)).joints(shown).GetCellData())["state"]
+            found = arrays(GridBuilder(Discretisation.of_rigid_blocks(scene)).joints(shown).GetCellData())["state"]
             assert (found == max(one, other, key=order.index)).all()
 
 
@@ -189,8 +191,8 @@ def test_another_reader_finds_the_same(tmp_path: Path) -> None:
     """meshio, which shares nothing with VTK, reads points, cells and data."""
     scene = panel()
     frame = moved(scene)
-    Series(Stage.of_rigid_blocks(scene), tmp_path).add(frame)
-    mesh = meshio.read(moments(tmp_path, "joints")[0])
+    TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path).add(frame)
+    mesh = meshio.read(frame_files(tmp_path, "joints")[0])
     assert {block.type: len(block.data) for block in mesh.cells} == {
         "line": len(scene.joints),
         "quad": len(scene.joints),
@@ -204,7 +206,7 @@ def test_a_series_is_whole_whenever_it_is_broken_off(
 ) -> None:
     """Each moment is two VTU files and then two PVD files; the third moment is broken off at each of them."""
     scene = panel()
-    series = Series(Stage.of_rigid_blocks(scene), tmp_path)
+    series = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path)
     written: list[str] = []
 
     def killed(path: Path, content: bytes) -> None:
@@ -213,22 +215,22 @@ def test_a_series_is_whole_whenever_it_is_broken_off(
         written.append(path.name)
         write_atomically(path, content)
 
-    monkeypatch.setattr("runningbond.pictures.series.write_atomically", killed)
+    monkeypatch.setattr("runningbond.pictures.time_series.write_atomically", killed)
     series.add(moved(scene, 0))
     series.add(moved(scene, 1))
     with pytest.raises(KeyboardInterrupt):
         series.add(moved(scene, 2))
     for kind in ("blocks", "joints"):
-        found = moments(tmp_path, kind)
+        found = frame_files(tmp_path, kind)
         assert len(found) == written.count(f"{kind}.pvd")
         for path in found:
             assert read_grid(path).GetNumberOfCells() > 0
 
 
-def test_a_reader_of_time_series_finds_all_moments(tmp_path: Path) -> None:
+def test_a_reader_of_time_series_finds_all_frame_files(tmp_path: Path) -> None:
     """PyVista reads the PVD file as ParaView does, and steps through its times."""
     scene = panel()
-    series = Series(Stage.of_rigid_blocks(scene), tmp_path)
+    series = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path)
     frames = [moved(scene, seed) for seed in range(3)]
     for frame in frames:
         series.add(frame)
@@ -243,16 +245,16 @@ def test_a_reader_of_time_series_finds_all_moments(tmp_path: Path) -> None:
 
 def test_a_series_stays_short_and_keeps_its_ends(tmp_path: Path) -> None:
     scene = courses([[1]])
-    series = Series(Stage.of_rigid_blocks(scene), tmp_path)
+    series = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path)
     frame = moved(scene)
-    for k in range(3 * MOST):
+    for k in range(3 * MAX_FRAMES):
         series.add(Frame(k, frame.motion, frame.opening, frame.slip, frame.normal, frame.tangential, frame.state))
-        assert len(series) <= MOST
-    loads = [float(arrays(read_grid(path).GetFieldData())["multiplier"][0]) for path in moments(tmp_path, "blocks")]
-    assert (loads[0], loads[-1]) == (0, 3 * MOST - 1)
+        assert len(series) <= MAX_FRAMES
+    loads = [float(arrays(read_grid(path).GetFieldData())["multiplier"][0]) for path in frame_files(tmp_path, "blocks")]
+    assert (loads[0], loads[-1]) == (0, 3 * MAX_FRAMES - 1)
     assert loads == sorted(loads)
     on_disk = {path.name for path in (tmp_path / "frames").iterdir()}
-    assert on_disk == {path.name for kind in ("blocks", "joints") for path in moments(tmp_path, kind)}
+    assert on_disk == {path.name for kind in ("blocks", "joints") for path in frame_files(tmp_path, kind)}
     times = [float(entry.attrib["timestep"]) for entry in ET.parse(tmp_path / "blocks.pvd").iter("DataSet")]
     assert times == sorted(set(times))
 
@@ -263,7 +265,7 @@ def test_names_and_kinds_do_not_change_over_time(tmp_path: Path) -> None:
     record_mechanism(scene, outcome, tmp_path)
     for kind in ("blocks", "joints"):
         layouts = set()
-        for path in moments(tmp_path, kind):
+        for path in frame_files(tmp_path, kind):
             grid = read_grid(path)
             data = (grid.GetPointData(), grid.GetCellData(), grid.GetFieldData())
             layouts.add(tuple((n, a.dtype.str, a.shape) for part in data for n, a in sorted(arrays(part).items())))
@@ -287,9 +289,9 @@ def test_a_block_that_topples_opens_its_base_up_to_the_edge_it_turns_about() -> 
     frame = mechanism_frame(scene, outcome)
     assert frame is not None
     assert outcome.multiplier == pytest.approx(0.5, rel=1e-9)
-    assert sorted(frame.state) == [State.STICK, State.OPEN]
+    assert sorted(frame.state) == [JointState.STICK, JointState.OPEN]
     left = np.argmin(wall_points(scene).position[:, 0])
-    assert frame.state[left] == State.OPEN
+    assert frame.state[left] == JointState.OPEN
     # All of its weight stands on the edge, 0.6 of it at most along the base.
     assert frame.normal[1 - left] * wall_points(scene).area[1 - left] == pytest.approx(-scene.mass[0] * 9.81, rel=1e-6)
 
@@ -300,7 +302,7 @@ def test_a_block_that_slides_is_said_to_slide_also_where_it_dilates() -> None:
     frame = mechanism_frame(scene, limit(scene))
     assert frame is not None
     assert (frame.opening > 0.1).all()
-    assert (frame.state == State.SLIDE).all()
+    assert (frame.state == JointState.SLIDE).all()
 
 
 def test_states_under_load_follow_the_law() -> None:
@@ -309,33 +311,33 @@ def test_states_under_load_follow_the_law() -> None:
     points = wall_points(scene)
     n = len(points)
 
-    def state(opening: float, normal: float, tangential: float, damage: float) -> State:
+    def state(opening: float, normal: float, tangential: float, damage: float) -> JointState:
         each = (np.full(n, x) for x in (opening, normal, tangential, damage))
-        found = states_of_points(scene, points, *each)
+        found = states_under_load(scene, points, *each)
         assert (found == found[0]).all()
-        return State(found[0])
+        return JointState(found[0])
 
-    assert state(0.9e-5, 0.9e5, 0.0, 0.0) == State.STICK
-    assert state(1.1e-5, 1.0e5, 0.0, 0.0) == State.OPEN
-    assert state(-1e-6, -1e5, 3.5e5, 0.0) == State.STICK
-    assert state(-1e-6, -1e5, 3.6e5, 0.0) == State.SLIDE
-    assert state(-1e-6, -1e5, 0.5e5, 1.0) == State.FAILED
-    assert state(-1e-6, -1e5, 0.6e5, 1.0) == State.SLIDE
-    assert state(1e-7, 0.0, 0.0, 1.0) == State.OPEN
+    assert state(0.9e-5, 0.9e5, 0.0, 0.0) == JointState.STICK
+    assert state(1.1e-5, 1.0e5, 0.0, 0.0) == JointState.OPEN
+    assert state(-1e-6, -1e5, 3.5e5, 0.0) == JointState.STICK
+    assert state(-1e-6, -1e5, 3.6e5, 0.0) == JointState.SLIDE
+    assert state(-1e-6, -1e5, 0.5e5, 1.0) == JointState.DEBONDED
+    assert state(-1e-6, -1e5, 0.6e5, 1.0) == JointState.SLIDE
+    assert state(1e-7, 0.0, 0.0, 1.0) == JointState.OPEN
 
 
 def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
     """The loads of the series are those of the curve; at the end the wall falls, its base open at the back."""
     scene = courses([[1], [1]], width=0.2, height=0.2, **STIFF)
-    recorder = MotionRecorder(scene, "dem-dynamic", tmp_path)
+    recorder = MotionRecorder(scene, tmp_path)
     outcome = run_model("dem-dynamic", scene, 0.02, recorder)
     recorder.finish(outcome)
     assert outcome.status == "collapse"
     silent = run_model("dem-dynamic", scene, 0.02)
     assert (silent.lower, silent.upper, silent.steps) == (outcome.lower, outcome.upper, outcome.steps)
-    grids = [read_grid(path) for path in moments(tmp_path, "blocks")]
+    grids = [read_grid(path) for path in frame_files(tmp_path, "blocks")]
     loads = np.array([arrays(grid.GetFieldData())["multiplier"][0] for grid in grids])
-    assert len(grids) <= MOST
+    assert len(grids) <= MAX_FRAMES
     assert (np.diff(loads) >= 0).all()
     rests, fall = outcome.curve[:-1], loads[loads == outcome.upper]
     assert set(loads) == {*rests[:, 1], outcome.upper}
@@ -347,8 +349,8 @@ def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
         if multiplier != outcome.upper:
             shown = arrays(grid.GetPointData())["displacement"][corner, :2] @ direction
             assert shown == pytest.approx(rests[rests[:, 1] == multiplier][0, 0], rel=1e-9, abs=1e-15)
-    joints = arrays(read_grid(moments(tmp_path, "joints")[-1]).GetPointData())
-    assert State.OPEN in joints["state"]
+    joints = arrays(read_grid(frame_files(tmp_path, "joints")[-1]).GetPointData())
+    assert JointState.OPEN in joints["state"]
     assert np.abs(arrays(grids[-1].GetPointData())["velocity"]).max() > 1e-4
 
 
@@ -364,8 +366,8 @@ def test_states_of_rest_are_recorded_as_they_are_found(tmp_path: Path) -> None:
     assert outcome.status == "collapse"
     silent = run_model("dem-static", scene, 0.02)
     assert np.array_equal(silent.curve, outcome.curve)
-    blocks = [read_grid(path) for path in moments(tmp_path, "blocks")]
-    joints = [read_grid(path) for path in moments(tmp_path, "joints")]
+    blocks = [read_grid(path) for path in frame_files(tmp_path, "blocks")]
+    joints = [read_grid(path) for path in frame_files(tmp_path, "joints")]
     block, at, direction = scene.control_point
     corner = np.flatnonzero((scene.blocks.vertices == at).all(axis=1) & (scene.blocks.owner == block[0]))[0]
     shown = [
@@ -407,13 +409,33 @@ def test_stress_of_a_uniform_strain_is_hookes(modes: ModeCount) -> None:
     assert not found[~moved].any()
 
 
+@pytest.mark.parametrize("settings", [{"cells": 2, "modes": "all"}, {"cracks": "blocks"}])
+def test_a_run_is_recorded_on_its_own_mesh(settings: dict[str, Any], tmp_path: Path) -> None:
+    """Of other settings than the default ones; at rest, its mean vertical stress is that at half its height."""
+    inner = {"friction": 0.6, "cohesion": 1e6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
+    crack = {"inner_joint": inner} if "cracks" in settings else {}
+    scene = panel(wall__length=0.48, wall__height=0.12, block__young=1e9, **STIFF, **crack)
+    recorder = MotionRecorder(scene, tmp_path)
+    outcome = run_model("fem", scene, 0.3, recorder, **settings)
+    recorder.finish(outcome)
+    wall = modal_wall(scene, settings.get("cells", 1), settings.get("modes"), cracks=settings.get("cracks", "joints"))
+    grids = [read_grid(path) for path in frame_files(tmp_path, "blocks")]
+    assert {grid.GetNumberOfCells() for grid in grids} == {len(wall.mesh.triangles)}
+    corners = wall.mesh.points[wall.mesh.triangles]
+    (x1, y1), (x2, y2) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    area = np.where(wall.scene.fixed[wall.mesh.triangle_block], 0.0, np.abs(x1 * y2 - x2 * y1))
+    stress = arrays(grids[0].GetCellData())["stress"]
+    assert arrays(grids[0].GetFieldData())["multiplier"] == 0
+    assert area @ stress[:, 1] / area.sum() == pytest.approx(-1800 * 9.81 * 0.12 / 2, rel=1e-4)
+
+
 def test_deformable_blocks_come_in_triangles_with_their_stress(tmp_path: Path) -> None:
     """A wall at rest under its weight: the mean vertical stress of a course is the weight above its middle."""
     scene = panel(wall__length=0.48, wall__height=0.18, block__young=1e9, **STIFF)
-    recorder = MotionRecorder(scene, "fem", tmp_path)
+    recorder = MotionRecorder(scene, tmp_path)
     outcome = run_model("fem", scene, 0.1, recorder)
     recorder.finish(outcome)
-    grids = [read_grid(path) for path in moments(tmp_path, "blocks")]
+    grids = [read_grid(path) for path in frame_files(tmp_path, "blocks")]
     assert {grids[0].GetCellType(i) for i in range(grids[0].GetNumberOfCells())} == {5}
     cells = arrays(grids[0].GetCellData())
     assert len(cells["block"]) == len(modal_wall(scene).mesh.triangles)
@@ -422,7 +444,7 @@ def test_deformable_blocks_come_in_triangles_with_their_stress(tmp_path: Path) -
         assert vertical == pytest.approx(-1800 * 9.81 * above, rel=1e-4)
     assert arrays(grids[-1].GetFieldData())["multiplier"] == outcome.upper
     # The faces of joints lie on the triangles' sides to within the deformation of a block.
-    joints = read_grid(moments(tmp_path, "joints")[-1])
+    joints = read_grid(frame_files(tmp_path, "joints")[-1])
     quads = 6 * np.arange(joints.GetNumberOfPoints() // 6)[:, None] + np.arange(2, 6)
     faces = (points_of(joints) + arrays(joints.GetPointData())["displacement"])[quads.ravel(), :2]
     nodes = (points_of(grids[-1]) + arrays(grids[-1].GetPointData())["displacement"])[:, :2]

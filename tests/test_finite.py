@@ -12,13 +12,14 @@ from scipy.integrate import solve_ivp
 
 from dem import jump_operator, mass_matrix_diagonal
 from dem.dynamic import finite_pushover
-from dem.finite_system import FiniteRun, finite_system
-from dem.rigid_system import contact_points
-from runningbond import dynamics
+from dem.finite_system import finite_system
+from dem.rigid_system import contact_points, rigid_system
 from runningbond.compare import published_scene
-from runningbond.contacts.contacts import Outline, find_contacts, jumps
-from runningbond.contacts.side_kernels import sharp_opening
-from runningbond.dynamics import BlockSystem, Criteria, FiniteState, State, settle
+from runningbond.contacts.outline import Outline
+from runningbond.contacts.rigid_sides import gather_sides, scatter_sides, sharp_opening
+from runningbond.contacts.search import find_contacts, jumps
+from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics.contact_update import contacts_of
 from runningbond.joints import joint_stiffness
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
 
@@ -42,9 +43,11 @@ def place(state: State, block: int) -> Array:
     return state.motion[3 * block : 3 * block + 3]
 
 
-def pressure(run: FiniteRun, state: FiniteState, upper: int, lower: int) -> float:
+def pressure(run: Run, state: State, upper: int, lower: int) -> float:
     """Compression [N] between two blocks."""
-    owner = run.scene.blocks.owner[state.contacts.ends[:, :2].astype(np.int64)]
+    search = run.system.contacts
+    assert search is not None
+    owner = search.outline.blocks.owner[contacts_of(state).ends[:, :2].astype(np.int64)]
     between = (np.sort(owner, axis=1) == sorted((upper, lower))).all(axis=1)
     return float(-run.forces(state)[0][between].sum())
 
@@ -80,12 +83,12 @@ def test_undeformed_wall_has_the_stiffness_of_its_joints(changes: dict[str, Any]
         for sign in (1, -1):
             motion = np.zeros(len(system.mass))
             motion[freedom] = sign * step
-            opening, slip = np.zeros((2, len(system.area)))
-            system.gather(motion, system.geometry, opening, slip)
+            opening, slip = np.zeros((2, len(system.interface.area)))
+            system.interface.gather(motion, system.interface.geometry, opening, slip)
             jumps.append([opening, slip])
         rows.append((np.array(jumps[0]) - jumps[1]) / (2 * step))
     b = np.array(rows)
-    k = np.array([stiffness.normal, stiffness.shear])[:, None] * system.area
+    k = np.array([stiffness.normal, stiffness.shear])[:, None] * system.interface.area
     found = np.einsum("ijk,jk,ljk->il", b, k, b)
     assert found == pytest.approx(exact, abs=1e-6 * np.abs(exact).max())
 
@@ -94,9 +97,9 @@ def test_a_corner_on_a_straight_line_is_no_corner() -> None:
     """A block whose base is given as two collinear sides stands on four ends, and its weight arrives."""
     block = np.array([[0, 0], [0.3, 0], [1, 0], [1, 0.5], [0, 0.5]])
     scene = dry([block], inset=0.02)
-    run = FiniteRun(scene)
-    state = run.at_rest()
-    assert len(state.contacts) == 2 * len(scene.joints) == 4
+    run = Run(finite_system(scene))
+    state = State.at_rest(run.system)
+    assert len(contacts_of(state)) == 2 * len(scene.joints) == 4
     assert settle(run, state, 0.0, Criteria(collapse=0.01)) == "stable"
     assert pressure(run, state, 0, 1) == pytest.approx(weight(scene, 0), rel=1e-4)
 
@@ -164,21 +167,21 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
     outline = Outline.of(scene)
     motion = _turned(scene, seed)
     contacts = find_contacts(outline, motion, outline.margin)
-    system = replace(finite_system(scene), geometry=contacts.geometry(outline))
+    geometry = contacts.geometry(outline)
     rng = np.random.default_rng(seed)
 
     def jumps(at: Array) -> Array:
         opening, slip = np.zeros((2, len(contacts)))
-        system.gather(at, system.geometry, opening, slip)
+        gather_sides(at, geometry, opening, slip)
         return np.array([opening, slip])
 
     jumps(motion)
-    arcs, normal = system.geometry[7][1], system.geometry[8][:, 2:]
+    arcs, normal = geometry.placed.arcs, geometry.contact[:, 2:]
     e, f = contacts.ends[:, 4], contacts.ends[:, 5]
     on_side = (normal == arcs[f, 2:]).all(axis=1) | (normal == -arcs[e, 2:]).all(axis=1)
     tractions = rng.normal(size=(2, len(contacts))) * on_side
     force = np.zeros_like(motion)
-    system.scatter(*tractions, system.geometry, force)
+    scatter_sides(*tractions, geometry, force)
     direction = rng.normal(size=len(motion))
     step = 1e-7 * direction
     rate = (jumps(motion + step) - jumps(motion - step)) / 2e-7
@@ -194,8 +197,8 @@ def test_momentum_of_a_free_pile_is_kept_while_contacts_are_found_anew() -> None
     system = finite_system(scene)
     mass = mass_matrix_diagonal(scene)
     free = replace(system, mass=mass, dead=np.zeros_like(mass), live=np.zeros_like(mass))
-    run = FiniteRun(scene, free, local=0.0)
-    state = run.at_rest()
+    run = Run(free, local=0.0)
+    state = State.at_rest(run.system)
     state.velocity[:] = np.random.default_rng(2).normal(size=len(mass))
     centroid = scene.blocks.centroid
 
@@ -217,8 +220,8 @@ def test_momentum_of_a_free_pile_is_kept_while_contacts_are_found_anew() -> None
 
 def test_a_state_goes_its_own_way_with_its_contacts() -> None:
     """Going back to a copy gives the same again, to the last bit, whatever the run has done in between."""
-    run = FiniteRun(panel(wall__height=0.24, wall__length=0.72, joint__mortar=STIFF))
-    state = run.at_rest()
+    run = Run(finite_system(panel(wall__height=0.24, wall__length=0.72, joint__mortar=STIFF)))
+    state = State.at_rest(run.system)
     run.hold(state, 0.8, 3000)
     kept = state.copy()
     run.hold(state, 0.8, 4000)
@@ -229,9 +232,10 @@ def test_a_state_goes_its_own_way_with_its_contacts() -> None:
 
 
 def test_a_state_without_contacts_is_refused() -> None:
-    run = FiniteRun(panel(joint__mortar=STIFF))
+    scene = panel(joint__mortar=STIFF)
+    run = Run(finite_system(scene))
     with pytest.raises(TypeError, match="at_rest"):
-        run.hold(State.at_rest(run.system), 0.0, 1)
+        run.hold(State.at_rest(rigid_system(scene)), 0.0, 1)
 
 
 @pytest.mark.parametrize(
@@ -277,13 +281,13 @@ def test_rocking_block_has_its_period(share: float, period: float) -> None:
 
 def _period(theta: float, stiffness: float) -> float:
     """Four times what a block on a joint of a stiffness takes from θ to upright [s]."""
-    run = FiniteRun(block_on_base(0.5, 2.0, 10.0, mass=1.0, stiffness=stiffness), local=0.0, viscous=0.1)
+    run = Run(finite_system(block_on_base(0.5, 2.0, 10.0, mass=1.0, stiffness=stiffness)), local=0.0)
     c, s = math.cos(theta), math.sin(theta)
     corner = np.array([0.25, -1.0])  # turned clockwise about its lower right corner
     motion = np.zeros(6)
     motion[:3] = *(corner - np.array([[c, s], [-s, c]]) @ corner), -theta
     motion[1] -= GRAVITY / (stiffness * 0.25)
-    state = run.moved_to(motion)
+    state = State.at_rest(run.system, motion)
     turned, time = state.motion[2], state.time
     while state.motion[2] < 0:
         turned, time = state.motion[2], state.time
@@ -299,8 +303,8 @@ def test_a_toppling_block_loses_resistance_as_the_tangent(inset: float) -> None:
     """
     half_width, half_height = 0.125 - inset, 0.5 - inset
     scene = block_on_base(0.25, 1.0, 2.0, stiffness=1e10)
-    run = FiniteRun(replace(scene, joint=replace(scene.joint, inset=inset)), local=0.05, viscous=0.5)
-    state = run.at_rest()
+    run = Run(finite_system(replace(scene, joint=replace(scene.joint, inset=inset))), local=0.05, viscous=0.5)
+    state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=0.1))
     speed = GRAVITY * 0.12 / (600_000 * run.dt)
     found = []
@@ -325,8 +329,8 @@ def test_a_hexagon_rolls_from_one_side_onto_the_next(inset: float) -> None:
     circle = np.radians(60 * np.arange(6))
     hexagon = 0.5 * np.column_stack([np.cos(circle), np.sin(circle)]) + [0, 0.5 * math.cos(math.pi / 6)]
     scene = dry([hexagon], 2.0, 1e9, inset)
-    run = FiniteRun(scene, local=0.05, viscous=0.5)
-    state = run.at_rest()
+    run = Run(finite_system(scene), local=0.05, viscous=0.5)
+    state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=0.1))
     found = []
     for piece in range(400):
@@ -348,8 +352,8 @@ def test_a_hexagon_rolls_from_one_side_onto_the_next(inset: float) -> None:
 def test_a_corner_keeps_its_friction_when_it_goes_over_from_one_side_to_the_other(inset: float) -> None:
     """A block twice as wide as high rolls over its corner: held by λ(θ) W of friction, past 45° as before it."""
     scene = dry([rectangle(0, 0, 0.2, 0.1)], 2.0, 1e8, inset)
-    run = FiniteRun(scene, local=0.05, viscous=0.5)
-    state = run.at_rest()
+    run = Run(finite_system(scene), local=0.05, viscous=0.5)
+    state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=0.1))
     found, sides = [], set()
     while -state.motion[2] < math.radians(47):
@@ -358,7 +362,7 @@ def test_a_corner_keeps_its_friction_when_it_goes_over_from_one_side_to_the_othe
         if turning:
             normal, tangential = run.forces(state)
             assert np.count_nonzero(normal) == 1  # on either side, never on both at once
-            sides |= set(state.contacts.ends[np.flatnonzero(normal), 4:].ravel().tolist())
+            sides |= set(contacts_of(state).ends[np.flatnonzero(normal), 4:].ravel().tolist())
             found.append((-state.motion[2], abs(tangential.sum()) / weight(scene, 0)))
     theta, friction = np.array(found).T
     width, height = 0.1 - inset, 0.05 - inset
@@ -402,8 +406,8 @@ def test_a_block_slides_from_one_block_onto_the_next_of_the_course(inset: float)
     scene = dry([rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2), rectangle(0.3, 0.2, width, 0.2)], mu, 1e8, inset)
     system = finite_system(scene)
     alone = np.where(np.arange(len(system.live)) == 6, system.live, 0.0)
-    run = FiniteRun(scene, replace(system, live=alone))
-    state = run.at_rest()
+    run = Run(replace(system, live=alone))
+    state = State.at_rest(run.system)
     assert settle(run, state, 0.0, Criteria(collapse=0.01)) == "stable"
     rest, mass = place(state, 2).copy(), weight(scene, 2)
     sunk = 2 * mass / (1e8 * 0.12 * width)  # the most that a joint's ends give way, one of them bearing all
@@ -437,8 +441,9 @@ def test_a_block_pushed_over_the_edge_falls_to_the_ground_and_its_work_is_accoun
     sides count as near while they rest.
     """
     scene = dry([rectangle(0, 0, 1, 0.8), rectangle(0.75, 0.8, 0.3, 0.15)], 0.4, 1e9, inset)
-    run = FiniteRun(scene, local=0.1, part=1 / 8)
-    state = run.at_rest()
+    system = finite_system(scene)
+    run = Run(system, local=0.1, dt=Run(system, local=0.1).safe_step / 8)
+    state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=0.01))
     state.velocity[3] = speed
     kick = 0.5 * scene.mass[1] * speed**2
@@ -462,8 +467,8 @@ def test_a_head_joint_that_opened_bears_where_it_closes_anew(inset: float) -> No
     """Drawn away, lifted by a quarter of its height and pushed back, a weightless block meets its neighbour there."""
     push = 100.0
     scene = dry([rectangle(0, 0, 0.4, 0.4), rectangle(0.4, 0, 0.4, 0.4)], 0.5, 1e8, inset)
-    run = FiniteRun(scene, weightless(scene, (-push, 0.0), 1), local=0.8)
-    state = run.at_rest()
+    run = Run(weightless(scene, (-push, 0.0), 1), local=0.8)
+    state = State.at_rest(run.system)
     for velocity in ((1.0, 0.0), (0.0, 1.0)):
         state.velocity[3:5] = velocity
         start = place(state, 1)[:2].copy()
@@ -479,9 +484,9 @@ def test_a_head_joint_that_opened_bears_where_it_closes_anew(inset: float) -> No
     assert pressure(run, state, 0, 1) == pytest.approx(push, rel=1e-4)
 
 
-def check_energy_of_a_fall(run: dynamics.FiniteRun) -> None:
+def check_energy_of_a_fall(run: Run) -> None:
     """Bring a wall down, over many a search for contacts: its ledger closes to 1 % of the work of the loads."""
-    state = run.at_rest()
+    state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=0.006))
     found = {id(state.contacts): state.contacts}
     while np.abs(state.motion).max() < 0.4:
@@ -501,7 +506,7 @@ def test_energy_is_accounted_for_while_a_wall_falls_to_pieces(inset: float) -> N
     scene = panel(
         wall__height=0.48, wall__length=0.24, wall__block_width=0.12, joint__mortar=mortar, joint__inset=inset
     )
-    run = FiniteRun(scene)
+    run = Run(finite_system(scene))
     check_energy_of_a_fall(run)
 
 

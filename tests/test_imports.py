@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from setuptools import find_packages
 
+from runningbond.compare import MODELS
 from runningbond.compare.fingerprint import COMPUTING_ROOMS
 
 ROOT = Path(__file__).parent.parent
@@ -99,6 +100,34 @@ def test_there_is_no_cycle_between_modules() -> None:
         ready = {name for name, wanted in needs.items() if name not in done and wanted <= done}
         assert ready, f"these modules import each other: {sorted(set(needs) - done)}"
         done |= ready
+
+
+def test_comparisons_and_commands_are_free_of_late_cycles() -> None:
+    """No module of these rooms reaches itself, by imports inside functions either."""
+    rooms = {"runningbond.compare", "runningbond.commands"}
+    sources = {_module(path).removesuffix(".__init__"): path for path in SOURCES}
+    needs = {}
+    for name, source in sources.items():
+        if _room(name) in rooms:
+            package = name + ".__init__" if source.name == "__init__.py" else name
+            needs[name] = {found for found in _imported(ast.parse(source.read_text()), package) if found in sources}
+    for start in needs:
+        reached: set[str] = set()
+        ahead = set(needs[start])
+        while ahead:
+            reached |= ahead
+            ahead = {after for module in ahead for after in needs.get(module, set())} - reached
+        assert start not in reached
+
+
+def test_names_of_models_stand_in_one_place() -> None:
+    """As words of their own in the source of comparisons and commands; `homog` is also a room."""
+    for room in ("compare", "commands"):
+        for source in (ROOT / "runningbond" / room).rglob("*.py"):
+            if source.name in ("models.py", "fingerprint.py"):
+                continue
+            words = [node.value for node in ast.walk(ast.parse(source.read_text())) if isinstance(node, ast.Constant)]
+            assert not set(MODELS) & {word for word in words if isinstance(word, str)}, source
 
 
 def test_the_tree_has_the_rooms_of_the_design_and_no_others() -> None:

@@ -11,7 +11,7 @@ from dem.static import dem_static
 from homog import homog
 from runningbond.limit import limit
 from runningbond.scene import Scene, SceneError, scene_from_dict
-from runningbond.scene.cracks import halved
+from runningbond.scene.cracks import cut_in_half
 
 from .walls import content, panel
 
@@ -72,7 +72,7 @@ def test_weaker_blocks_never_carry_more() -> None:
 def test_a_drawing_is_cut_through_the_centroids() -> None:
     """A trapezium keeps its area, and both pieces stay convex and counter-clockwise."""
     trapezium = np.array([[0.0, 0.0], [3.0, 0.0], [2.0, 1.0], [0.0, 1.0]])
-    pieces, whole = halved([trapezium], 0.0)
+    pieces, whole = cut_in_half([trapezium], 0.0)
 
     def area(p: np.ndarray[Any, Any]) -> float:
         x, y = p.T

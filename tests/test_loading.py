@@ -3,13 +3,15 @@
 from collections.abc import Callable
 from unittest.mock import patch
 
+import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dem.rigid_system import rigid_system
-from runningbond.dynamics import Criteria, LoadSteps, Run, State, load_steps
-from runningbond.dynamics.loading import RESOLVED, _raise
-from runningbond.dynamics.run import Verdict
+from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
+from runningbond.dynamics.collapse import HeldLoad, Verdict
+from runningbond.dynamics.load_stepping import RESOLVED, _raise
 
 from .fem_interface.walls import MORTAR
 from .walls import panel
@@ -25,14 +27,14 @@ def searched(answer: Callable[[float], Verdict], tolerance: float = 0.005) -> tu
     """Search on a wall that gives an answer to each load, and the loads that were tried."""
     tried: list[float] = []
 
-    def settle(run: Run, state: object, multiplier: float, *_: object, sudden: bool = False) -> Verdict:
-        if sudden:
-            return "stable"
+    def hold_load(run: Run, state: object, multiplier: float, *_: object) -> HeldLoad:
         tried.append(multiplier)
         assert len(tried) < 500, "no end"
-        return answer(multiplier)
+        return HeldLoad(answer(multiplier))
 
-    with patch("runningbond.dynamics.loading.settle", settle), patch("runningbond.dynamics.loading.ramp"):
+    module = "runningbond.dynamics.load_stepping"
+    settle = patch(f"{module}.settle", return_value="stable")
+    with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
         return load_steps(BLOCK, FIRST, tolerance, Criteria(collapse=1.0), most=10.0), tried
 
 
@@ -91,8 +93,8 @@ def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: lis
     answers = iter(pauses)
     state = State.at_rest(WEIGHTLESS.system)
     with (
-        patch("runningbond.dynamics.loading.ramp"),
-        patch("runningbond.dynamics.loading._pauses", lambda *_: next(answers, True)),
+        patch("runningbond.dynamics.load_stepping.ramp"),
+        patch("runningbond.dynamics.load_stepping._pauses", lambda *_: next(answers, True)),
     ):
         reached = _raise(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
     assert reached <= stop
@@ -126,3 +128,22 @@ def test_a_search_ends_whatever_the_answers(data: st.DataObject, tolerance: floa
     if found.verdict != "undecided" and found.upper is not None:
         narrowest = RESOLVED * 1e-5 / BLOCK.system.measure(BLOCK.system.live)
         assert upper - lower <= max(tolerance * upper, narrowest)
+
+
+def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farther() -> None:
+    """Rests move the block by ten times what falls do: the live load does positive work on it all the same."""
+    push = np.sign(BLOCK.system.live)
+
+    def hold_load(run: Run, state: State, multiplier: float, *_: object) -> HeldLoad:
+        if multiplier < 0.3:
+            state.motion += 0.01 * push
+            return HeldLoad("stable")
+        halfway = state.motion + 0.0005 * push
+        state.motion += 0.001 * push
+        return HeldLoad("collapse", halfway)
+
+    scene, module = panel(**SIZE), "runningbond.dynamics.load_stepping"
+    settle = patch(f"{module}.settle", return_value="stable")
+    with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
+        outcome = collapse_by_steps(scene, "", BLOCK, 0.005, point_order=np.arange(2), is_self_locking=lambda: False)
+    assert outcome.motion[0] == pytest.approx([1.0, 0.0, 0.0])

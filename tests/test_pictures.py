@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,21 +19,16 @@ from PIL import Image
 from runningbond.commands.command_line import command
 from runningbond.joints import wall_points
 from runningbond.limit import limit
-from runningbond.pictures.frame import State, mechanism_frame
-from runningbond.pictures.mechanisms import (
-    mechanism_picture,
-    multiplier_text,
-    newtons,
-    png,
-    show_mechanism,
-    show_undeformed,
-)
-from runningbond.pictures.moment import Shown
+from runningbond.pictures.captions import is_force, multiplier_text, to_png
+from runningbond.pictures.deformed_shape import DeformedShape, Extent, outline, undeformed_shape
+from runningbond.pictures.joint_state import JointState, joint_states
+from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape
 from runningbond.pictures.offscreen import PROBE, why_not_drawn
-from runningbond.pictures.painting import FAST, HELD, STATE_COLOURS, STILL, Painter, View, outline
-from runningbond.pictures.render import draw_folder
-from runningbond.pictures.vtk_imports import whole_imports
-from runningbond.pictures.vtk_messages import vtk_errors_raised
+from runningbond.pictures.pyvista_figure import mechanism_figure
+from runningbond.pictures.pyvista_painter import Painter, square_around
+from runningbond.pictures.render import render_folder
+from runningbond.pictures.style import AT_REST, FASTEST, HELD, STATE_COLOURS
+from runningbond.pictures.vtk_safety import uninterrupted_imports, vtk_errors_raised
 from runningbond.results import Outcome, load_outcome, save_outcome
 from runningbond.results.mechanism import carried
 from runningbond.results.outcome import number
@@ -67,15 +63,13 @@ def painter(able_to_draw: None) -> Iterator[Painter]:
     painter.close()
 
 
-def paint(painter: Painter, shown: Shown) -> tuple[Any, View]:
-    view = shown.view(painter.pixels)
-    image = painter.paint(shown.scene, shown.blocks, shown.joints, view, shown.scale, shown.colouring)
-    return image.astype(int), view
+def paint(painter: Painter, shape: DeformedShape) -> tuple[Any, Extent]:
+    return painter.paint(shape, shape.extent).astype(int), square_around(shape.extent)
 
 
-def pixel(view: View, image: Any, at: Any) -> tuple[Any, Any]:
+def pixel(extent: Extent, image: Any, at: Any) -> tuple[Any, Any]:
     """Row and column of points ``(n, 2)`` [m]."""
-    left, right, bottom, top = view.extent
+    left, right, bottom, top = extent
     x, y = np.asarray(at).T
     column = (x - left) / (right - left) * image.shape[1]
     row = (top - y) / (top - bottom) * image.shape[0]
@@ -88,25 +82,25 @@ def of_colour(image: Any, colour: Any, within: int = 12) -> Any:
     return (np.abs(image - np.asarray(wanted)) <= within).all(axis=-1)
 
 
-def mechanism(scene: Scene, outcome: Outcome) -> Shown:
-    shown = show_mechanism(scene, outcome)
-    assert shown is not None
-    return shown
+def mechanism(scene: Scene, outcome: Outcome) -> DeformedShape:
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    return shape
 
 
 @drawing
 def test_an_undeformed_wall_fills_its_outline_and_nothing_else(painter: Painter) -> None:
     """Blocks from edge to edge of the wall to the pixel, white around it, and no joint coloured."""
     scene = panel()
-    image, view = paint(painter, show_undeformed(scene))
+    image, extent = paint(painter, undeformed_shape(scene))
     coloured = (image < 250).any(axis=-1)
     rows, columns = np.flatnonzero(coloured.any(axis=1)), np.flatnonzero(coloured.any(axis=0))
-    corner_rows, corner_columns = pixel(view, image, np.array(scene.blocks.extent(scene.wall)))
+    corner_rows, corner_columns = pixel(extent, image, np.array(scene.blocks.extent(scene.wall)))
     assert [rows.max(), rows.min()] == pytest.approx(corner_rows, abs=2)
     assert [columns.min(), columns.max()] == pytest.approx(corner_columns, abs=2)
     inside = image[rows.min() : rows.max(), columns.min() : columns.max()]
     assert (inside < 250).any(axis=-1).all()
-    assert of_colour(inside, STILL).mean() > 0.7
+    assert of_colour(inside, AT_REST).mean() > 0.7
     for colour in STATE_COLOURS.values():
         assert not of_colour(image, colour, 40).any()
 
@@ -118,26 +112,25 @@ def test_open_and_sliding_joints_are_seen_where_the_arrays_say(painter: Painter)
     outcome = limit(scene)
     frame = mechanism_frame(scene, outcome)
     assert frame is not None
-    shown = mechanism(scene, outcome)
-    image, view = paint(painter, shown)
+    shape = mechanism(scene, outcome)
+    image, extent = paint(painter, shape)
     points = wall_points(scene)
-    order = [State.STICK, State.FAILED, State.SLIDE, State.OPEN]
-    told = np.array([max(map(State, pair), key=order.index) for pair in frame.state.reshape(-1, 2)])
-    assert {State.OPEN, State.SLIDE} & set(told)
-    for state in (State.OPEN, State.SLIDE):
+    drawn = joint_states(frame.state.reshape(-1, 2))
+    assert {JointState.OPEN, JointState.SLIDE} & set(drawn)
+    for state in (JointState.OPEN, JointState.SLIDE):
         there = of_colour(image, STATE_COLOURS[state], 25)
-        assert there.any() == (state in told)
+        assert there.any() == (state in drawn)
         near = np.zeros_like(there)
-        for joint in np.flatnonzero(told == state):
+        for joint in np.flatnonzero(drawn == state):
             for side in scene.joints.block[joint]:
                 ends = scene.joints.ends[joint]
-                face = ends + shown.scale * carried(scene.blocks, np.array([side, side]), ends, frame.motion)
+                face = ends + shape.scale * carried(scene.blocks, np.array([side, side]), ends, frame.motion)
                 along = face[0] + np.linspace(0, 1, 200)[:, None] * (face[1] - face[0])
-                row, column = pixel(view, image, along)
+                row, column = pixel(extent, image, along)
                 middle_row, middle_column = row[100], column[100]
                 window = there[middle_row - 3 : middle_row + 4, middle_column - 3 : middle_column + 4]
                 # An open joint's colour is drawn over a sliding one's, where their faces cross.
-                assert window.any() or state == State.SLIDE
+                assert window.any() or state == JointState.SLIDE
                 for r, c in zip(row, column, strict=True):
                     near[max(r - 4, 0) : r + 5, max(c - 4, 0) : c + 5] = True
         assert not (there & ~near).any()
@@ -151,25 +144,25 @@ def test_blocks_have_the_colour_of_their_motion(painter: Painter) -> None:
     motion = np.zeros((3, 3))
     upper = int(np.argmax(scene.blocks.centroid[:, 1]))
     motion[upper, 0] = 1.0
-    shown = mechanism(scene, Outcome("two blocks", "limit", "collapse", 0.6, motion=motion))
-    image, view = paint(painter, shown)
-    centre = scene.blocks.centroid + shown.scale * motion[:, :2]
+    shape = mechanism(scene, Outcome("two blocks", "limit", "collapse", 0.6, motion=motion))
+    image, extent = paint(painter, shape)
+    centre = scene.blocks.centroid + shape.scale * motion[:, :2]
     lower = int(np.flatnonzero(scene.wall & (np.arange(3) != upper))[0])
-    rows, columns = pixel(view, image, centre[[upper, lower]])
+    rows, columns = pixel(extent, image, centre[[upper, lower]])
     colours = image[rows, columns]
-    assert np.abs(colours - 255 * np.array([FAST, STILL])).max() < 2
-    left_behind = scene.blocks.vertices[scene.blocks.first[upper]] + [0.3 * shown.scale, 0.05]
-    row, column = pixel(view, image, left_behind[None])
+    assert np.abs(colours - 255 * np.array([FASTEST, AT_REST])).max() < 2
+    left_behind = scene.blocks.vertices[scene.blocks.first[upper]] + [0.3 * shape.scale, 0.05]
+    row, column = pixel(extent, image, left_behind[None])
     assert (image[row[0], column[0]] > 250).all()
 
 
 @drawing
 def test_held_blocks_are_grey_and_courses_alternate(painter: Painter) -> None:
     scene = panel(support__kind="fixed-first-course")
-    shown = show_undeformed(scene)
-    image, view = paint(painter, Shown(scene, shown.blocks, shown.joints, shown.scale, "course"))
+    shape = undeformed_shape(scene)
+    image, extent = paint(painter, replace(shape, colouring="course"))
     middle = np.array([[0.6, 0.03], [0.66, 0.09], [0.6, 0.15], [0.66, 0.21]]) + [0.05, 0.01]
-    rows, columns = pixel(view, image, middle)
+    rows, columns = pixel(extent, image, middle)
     first, second, third, fourth = image[rows, columns]
     assert np.abs(first - 255 * np.array(HELD)).max() < 2
     assert (second == fourth).all()
@@ -179,9 +172,9 @@ def test_held_blocks_are_grey_and_courses_alternate(painter: Painter) -> None:
 @drawing
 def test_one_picture_leaves_no_trace_in_the_next(painter: Painter) -> None:
     scene = courses([[1, 1], [0.5, 1, 0.5]])
-    before, _ = paint(painter, show_undeformed(scene))
+    before, _ = paint(painter, undeformed_shape(scene))
     paint(painter, mechanism(scene, limit(scene)))
-    after, _ = paint(painter, show_undeformed(scene))
+    after, _ = paint(painter, undeformed_shape(scene))
     assert np.array_equal(before, after)
 
 
@@ -192,25 +185,24 @@ def test_drawing_changes_nothing_that_is_drawn(painter: Painter) -> None:
         support__kind="corners",
         load__live={"kind": "point", "at": [0.4, 0.35], "force": [0.0, -1.0]},
     )
-    shown = mechanism(scene, Outcome("", "limit", "collapse", 1.0, motion=np.ones((len(scene.blocks), 3))))
-    first, _ = paint(painter, shown)
-    again, _ = paint(painter, shown)
+    shape = mechanism(scene, Outcome("", "limit", "collapse", 1.0, motion=-np.ones((len(scene.blocks), 3))))
+    first, _ = paint(painter, shape)
+    again, _ = paint(painter, shape)
     assert np.array_equal(first, again)
 
 
 def test_the_outline_goes_round_openings() -> None:
     """A wall of 4 × 3 blocks with a hole of one: perimeter 2 (1.6 + 0.6) + 2 (0.4 + 0.2) m."""
     scene = courses([[1, 1, 1, 1], [1, -1, 1, 1], [1, 1, 1, 1]], width=0.4, height=0.2)
-    points, lines = outline(scene)
-    length = np.hypot(*(points[lines[:, 1]] - points[lines[:, 0]]).T).sum()
+    length = sum(np.hypot(*np.diff(ring, axis=0).T).sum() for ring in outline(scene))
     assert length == pytest.approx(5.6, rel=1e-3)
 
 
 def test_brackets_are_told_as_they_are() -> None:
     lateral = panel()
     pushed = panel(load__live={"kind": "point", "at": [0.72, 0.72], "force": [0.0, -1.0]}, support__kind="corners")
-    assert newtons(pushed)
-    assert not newtons(lateral)
+    assert is_force(pushed)
+    assert not is_force(lateral)
     assert multiplier_text(lateral, Outcome("", "", "collapse", 0.27, 0.26, 0.28)) == ("λ = 0.2700", "[0.2600, 0.2800]")
     assert multiplier_text(lateral, Outcome("", "", "collapse", 0.27, 0.27, 0.2700001)) == ("λ = 0.2700", "")
     assert multiplier_text(lateral, Outcome("", "", "undecided", upper=0.28)) == ("undecided", "λ ≤ 0.2800")
@@ -229,8 +221,8 @@ def test_every_support_and_load_has_its_sign(painter: Painter, kind: str) -> Non
         "limit",
         "undecided",
     )
-    figure = mechanism_picture(show_undeformed(scene), outcome, painter)
-    content = png(figure)
+    figure = mechanism_figure(scene, outcome, painter)
+    content = to_png(figure)
     image = np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(int)
     margin = 4
     for edge in (image[:margin], image[-margin:]):
@@ -270,7 +262,7 @@ def test_a_result_folder_is_drawn_from_what_it_holds(tmp_path: Path, capsys: pyt
         first = np.asarray(film.convert("RGB")).astype(int)
         film.seek(7)
         last = np.asarray(film.convert("RGB")).astype(int)
-    assert not of_colour(first, STATE_COLOURS[State.OPEN], 40)[60:-60].any()
+    assert not of_colour(first, STATE_COLOURS[JointState.OPEN], 40)[60:-60].any()
     assert (np.abs(first - last).max(axis=-1) > 50).mean() > 0.01
 
 
@@ -294,7 +286,7 @@ def test_a_series_that_cannot_be_written_costs_no_answer(tmp_path: Path, capsys:
 @drawing
 def test_an_outcome_without_a_mechanism_is_no_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     save_outcome(Outcome("wall", "limit", "unbounded"), tmp_path, scene=panel())
-    assert draw_folder(tmp_path) == []
+    assert render_folder(tmp_path) == []
     assert command(["render", str(tmp_path)]) == 0
     assert "no mechanism" in capsys.readouterr().out
 
@@ -379,7 +371,7 @@ def test_a_signal_waits_until_an_import_is_whole(number: signal.Signals) -> None
     done: list[int] = []
 
     def imports() -> None:
-        with whole_imports():
+        with uninterrupted_imports():
             signal.raise_signal(number)
             done.append(1)
 

@@ -1,11 +1,13 @@
 """The report of a comparison is one page that holds everything, and opens in a browser without a complaint."""
 
 import base64
+import csv
 import io
 import re
 import shutil
 import subprocess
 from collections.abc import Iterator
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -14,13 +16,14 @@ import pytest
 from PIL import Image
 
 from runningbond.commands.command_line import command
-from runningbond.compare import PUBLISHED, Campaign, published_scene
-from runningbond.compare.figures import draw_figures
+from runningbond.compare import MODELS, PUBLISHED, Campaign, published_scene
+from runningbond.compare.figures import draw_figures, table_2
 from runningbond.compare.plates import draw_plates, plates
 from runningbond.compare.report import report_html
-from runningbond.compare.table import Comparison
+from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
+from runningbond.pictures.captions import is_force
 from runningbond.pictures.offscreen import why_not_drawn
-from runningbond.pictures.vtk_messages import vtk_errors_raised
+from runningbond.pictures.vtk_safety import vtk_errors_raised
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.scene import Scene
 
@@ -34,7 +37,7 @@ def no_error_of_vtk() -> Iterator[None]:
         yield
 
 
-MODELS = ("limit", "dem-static", "dem-dynamic", "fem")
+NAMES = ("limit", "dem-static", "dem-dynamic", "fem")
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 
 
@@ -49,17 +52,18 @@ def outcome(scene: Scene, model: str) -> Outcome:
 @pytest.fixture(scope="module")
 def comparison() -> Comparison:
     scenes = {case.name: published_scene(case.name) for case in PUBLISHED}
-    outcomes = {(name, model): outcome(scene, model) for name, scene in scenes.items() for model in MODELS}
+    outcomes = {(name, model): outcome(scene, model) for name, scene in scenes.items() for model in NAMES}
     del outcomes["panel-03", "fem"]
     outcomes["panel-02", "limit"] = Outcome("", "limit", "unbounded")
-    return Comparison(scenes, MODELS, Campaign(outcomes), {case.name: case for case in PUBLISHED})
+    models = [MODELS[name] for name in NAMES]
+    return Comparison(scenes, models, Campaign(outcomes), {case.name: case for case in PUBLISHED})
 
 
 @pytest.fixture(scope="module")
 def drawn(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Charts, and plates where this machine can draw them."""
     folder = tmp_path_factory.mktemp("plates")
-    charts = [path for path in draw_figures(comparison.campaign, folder) if path.suffix == ".png"]
+    charts = [path for path in draw_figures(comparison, folder) if path.suffix == ".png"]
     return charts + ([] if why_not_drawn() else draw_plates(comparison, folder))
 
 
@@ -152,12 +156,13 @@ def test_the_pictures_of_a_report_are_whole(page: Path, drawn: list[Path]) -> No
             assert min(image.size) > 500
 
 
-def test_the_table_has_the_sixteen_published_panels(page: Path, comparison: Comparison) -> None:
+def test_the_tables_have_the_sixteen_published_panels(page: Path, comparison: Comparison) -> None:
     tables = read(page).tables
-    (paper,) = (title for title in tables if title.startswith("Baraldi") and "seconds" not in title)
-    rows = tables[paper][1:]
-    assert [row[0] for row in rows] == [case.name for case in PUBLISHED if not case.name.startswith("wall")]
-    assert len(rows) == 16
+    paper = [title for title in tables if title.startswith("Baraldi") and "seconds" not in title]
+    names = [row[0] for title in paper for row in tables[title][1:]]
+    assert names == [case.name for case in PUBLISHED if not case.name.startswith("wall")]
+    assert len(names) == 16
+    rows = tables[paper[0]][1:]
     row = rows[0]
     assert row[1:5] == [comparison.scenes["panel-01"].title, "0.500", "0.570", "0.537"]
     assert row[-4:] == ["0.4000 – 0.6000"] * 4
@@ -165,6 +170,34 @@ def test_the_table_has_the_sixteen_published_panels(page: Path, comparison: Comp
     assert rows[1][-4] == "unbounded"
     versions = dict(row for row in tables["Versions"][1:])
     assert {"runningbond", "Python", "numpy", "vtk", "pyvista", "tolerance"} <= set(versions)
+
+
+def test_multipliers_and_loads_in_newtons_stand_apart(comparison: Comparison) -> None:
+    """In no table and no row of the CSV file λ and newtons are mixed up, nor among walls of one's own."""
+    scenes = {**comparison.scenes, "mine": published_scene("panel-01"), "yours": published_scene("point-load-1")}
+    mixed = replace(comparison, scenes=scenes)
+    for sheet in (*multiplier_sheets(mixed), *cost_sheets(mixed)):
+        loaded = {is_force(scenes[row[0]]) for row in sheet.rows}
+        assert len(loaded) == 1
+        assert ("[N]" in sheet.title) == loaded.pop()
+    rows = csv.DictReader(io.StringIO(csv_text(mixed)))
+    assert {(row["scene"], row["unit"]) for row in rows} == {
+        (name, "N" if is_force(scene) else "1") for name, scene in scenes.items()
+    }
+
+
+def test_a_model_without_an_answer_is_drawn_hollow(comparison: Comparison) -> None:
+    """In the chart of Table 2: undecided with a bound, and with nothing known at all; decided ones are solid."""
+    outcomes = dict(comparison.campaign.outcomes)
+    outcomes["panel-05", "dem-static"] = Outcome("", "dem-static", "undecided", upper=0.3)
+    figure = table_2(replace(comparison, campaign=Campaign(outcomes)))
+    hollow = [
+        [(line.get_color(), line.get_ydata()) for line in axes.lines if line.get_markerfacecolor() == "white"]
+        for axes in figure.axes
+    ]
+    limit, static = MODELS["limit"].colour, MODELS["dem-static"].colour
+    assert hollow == [[(limit, [0.0])], [(static, [0.3])], []]
+    assert any("hollow" in text.get_text() for text in figure.legends[0].get_texts())
 
 
 def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:

@@ -1,7 +1,12 @@
 """Blocks and joints come out of geometry right, wherever they came from."""
 
 import math
+import os
+import pickle
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import ezdxf
 import numpy as np
@@ -11,10 +16,15 @@ from hypothesis import strategies as st
 
 from runningbond.scene import (
     Array,
+    BlockMaterial,
     Blocks,
     Bond,
+    JointMaterial,
+    Lateral,
+    Mortar,
     PointLoad,
     SceneError,
+    Stiffness,
     course_pattern,
     find_joints,
     read_scene,
@@ -223,9 +233,9 @@ def test_corners_hold_the_first_course_at_its_ends(kind: str, held: int) -> None
 def test_point_load_is_shared_by_the_blocks_it_touches() -> None:
     live = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1]}
     scene = panel(wall__first_course="half", load__live=live)
-    assert isinstance(scene.load.live, PointLoad)
-    assert len(scene.loaded_blocks) == 2
-    assert len(panel(load__live=live).loaded_blocks) == 1
+    assert isinstance(scene.load.live[0], PointLoad)
+    assert scene.live_forces.force.tolist() == [[0, -0.5], [0, -0.5]]
+    assert panel(load__live=live).live_forces.force.tolist() == [[0, -1]]
 
 
 # --- the file ------------------------------------------------------------------------------------------------
@@ -245,8 +255,52 @@ def test_friction_angle_is_in_degrees() -> None:
 
 
 def test_tensile_strength_is_the_apex_unless_given() -> None:
-    assert panel(joint__cohesion=1e5).joint.tensile_strength == pytest.approx(1e5 / 0.6)
-    assert panel(joint__cohesion=1e5, joint__tensile_strength=3e4).joint.tensile_strength == 3e4
+    assert panel(joint__cohesion=1e5).joint.tension == pytest.approx(1e5 / 0.6)
+    assert panel(joint__cohesion=1e5, joint__tensile_strength=3e4).joint.tension == 3e4
+
+
+MATERIALS: list[tuple[Callable[[], Any], str]] = [
+    (lambda: BlockMaterial(-1.0), "block.density = -1.0: must be a number above 0"),
+    (lambda: BlockMaterial(1.0, math.inf), "block.young = inf: must be a number above 0"),
+    (lambda: BlockMaterial(1.0, 1.0, 0.6), "block.poisson = 0.6: must be a number above -1 and at most 0.5"),
+    (lambda: JointMaterial(math.nan), "joint.friction = nan: must be a number at least 0"),
+    (lambda: JointMaterial(1e-9), "joint.friction = 1e-09: must be 0, for joints without friction"),
+    (lambda: JointMaterial(True), "joint.friction = True: must be a number"),
+    (lambda: JointMaterial(0.6, cohesion=-1.0), "joint.cohesion = -1.0"),
+    (lambda: JointMaterial(0.6, 1e5, 2e5), "joint.tensile_strength = 200000.0: must be at most cohesion / friction"),
+    (lambda: JointMaterial(0.0, 1e5), "joint.tensile_strength: is missing; with friction 0"),
+    (lambda: JointMaterial(0.6, fracture_energy_2=1.0), "joint.fracture_energy_1: is missing"),
+    (lambda: JointMaterial(0.6, inset=-1.0), "joint.inset = -1.0"),
+    (lambda: Mortar(1e9, 0.5, 0.01), "joint.mortar.poisson = 0.5: must be a number at least 0 and below 0.5"),
+    (lambda: Stiffness(0.0, 1.0), "joint.normal_stiffness = 0.0: must be a number above 0"),
+    (lambda: replace(panel().joint, friction=-1), "joint.friction = -1"),
+    (lambda: replace(panel(), thickness=0), "wall.thickness = 0: must be a number above 0"),
+    (lambda: Bond(0.24, -0.06), "wall.block_height = -0.06"),
+    (lambda: running_bond(Bond(0.24, 0.06), 1.44, 0.72, ends="open"), "wall.ends = 'open'"),  # type: ignore[arg-type]
+    (lambda: Lateral((math.nan, 0.0)), "load.live.direction = (nan, 0.0): must be a pair of finite numbers"),
+    (lambda: PointLoad((0.0, 0.0), (0.0, 0.0)), "load.live.force = [0.0, 0.0]: must not be zero"),
+]
+
+
+@pytest.mark.parametrize(("made", "said"), MATERIALS)
+def test_python_refuses_what_a_file_may_not_say(made: Callable[[], Any], said: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        made()
+    assert said in str(refused.value)
+    assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
+
+
+def test_the_same_words_are_the_same_joint_in_python_and_in_a_file() -> None:
+    assert JointMaterial(0.6, cohesion=1e5) == panel(joint__cohesion=1e5).joint
+    assert JointMaterial(0.6, cohesion=1e5).tension == pytest.approx(1e5 / 0.6)
+
+
+def test_the_apex_goes_with_the_friction_and_a_strength_that_was_given_stays() -> None:
+    given = JointMaterial(0.6, 1e5, tensile_strength=1e5)
+    assert replace(JointMaterial(0.6, 1e5), friction=0.8).tension == pytest.approx(1e5 / 0.8)
+    assert replace(given, friction=0.8).tension == 1e5
+    with pytest.raises(SceneError, match=r"joint\.tensile_strength = 100000\.0: must be at most"):
+        replace(given, friction=1.2)
 
 
 def test_a_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
@@ -317,3 +371,32 @@ def test_drawings_that_are_no_wall_are_refused(
     wall = {"drawing": "wall.dxf", "units": "mm", "thickness": 0.12}
     with pytest.raises(SceneError, match=fault):
         read_scene(write_toml(content(wall=wall), tmp_path / "wall.toml"))
+
+
+def read_drawn(folder: Path) -> None:
+    wall = {"drawing": "wall.dxf", "units": "mm", "thickness": 0.12}
+    read_scene(write_toml(content(wall=wall), folder / "wall.toml"))
+
+
+@pytest.mark.parametrize("binary", [True, False])
+def test_a_drawing_that_was_cut_off_is_refused(tmp_path: Path, binary: bool) -> None:
+    document = ezdxf.new()  # type: ignore[attr-defined]
+    for outline in (GROUND, [(0.0, 0.0), (200.0, 0.0), (200.0, 100.0), (0.0, 100.0)]):
+        document.modelspace().add_lwpolyline(outline, close=True)
+    document.saveas(tmp_path / "wall.dxf", fmt="bin" if binary else "asc")
+    read_drawn(tmp_path)
+    full = (tmp_path / "wall.dxf").read_bytes()
+    for share in (0.0, 0.001, 0.2, 0.5, 0.9, 0.99):
+        (tmp_path / "wall.dxf").write_bytes(full[: int(share * len(full))])
+        with pytest.raises(SceneError, match=r"wall\.drawing") as refused:
+            read_drawn(tmp_path)
+        assert "\n" not in str(refused.value)
+
+
+def test_a_drawing_that_is_a_pipe_a_device_or_a_folder_is_not_read(tmp_path: Path) -> None:
+    made: list[Callable[[Path], Any]] = [os.mkfifo, Path.mkdir, lambda path: path.symlink_to("/dev/zero")]
+    for make in made:
+        make(tmp_path / "wall.dxf")
+        with pytest.raises(SceneError, match="it is no regular file"):
+            read_drawn(tmp_path)
+        (tmp_path / "wall.dxf").rename(tmp_path / f"was {made.index(make)}")

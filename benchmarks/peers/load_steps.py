@@ -14,8 +14,8 @@ from typing import Literal, Protocol, Self, TypeAlias
 
 import numpy as np
 
-from runningbond.dynamics.run import CALM, Fall
-from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.dynamics.collapse import CALM, U_CRIT, CollapseDetector
+from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.scene import Array, Scene
 
 LOOK = 0.05
@@ -87,7 +87,7 @@ def by_load_steps(motion: Motion, scene: Scene, tolerance: float, budget: float)
     budget
         Processor time [s] after which to stop with what there is.
     """
-    far = COLLAPSE * scene.block_size
+    far = U_CRIT * scene.block_size
     verdict = settle(motion, 0.0, far)
     if verdict == "collapse":
         return Bracket(None, None, "undecided", 1, "falls under its weight")
@@ -120,7 +120,7 @@ def by_load_steps(motion: Motion, scene: Scene, tolerance: float, budget: float)
 def settle(motion: Motion, multiplier: float, far: float) -> str:
     """Hold a load until the wall rests or falls, or patience ends."""
     start = last = motion.position()
-    fall = Fall(springy=True)  # looks are too far apart for less
+    fall = CollapseDetector(elastic=True)  # looks are too far apart for less
     calm = 0
     for look in range(1, PATIENCE + 1):
         motion.hold(multiplier, LOOK)

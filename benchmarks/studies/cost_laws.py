@@ -1,4 +1,4 @@
-"""Laws of what the models cost, fitted to tables of comparisons and printed as `compare.advice.costs` has them.
+"""Laws of what the models cost, fitted to tables of comparisons and printed as the `Cost` of each model.
 
 From the project's directory, after ``runningbond compare --fresh --out fine`` and the same with ``--tolerance 0.05``
 and ``--out coarse``, which gives the powers of the tolerance:
@@ -19,7 +19,7 @@ from runningbond.compare import MODELS, published_scene
 from runningbond.compare.advice import TOLERANCE
 from runningbond.compare.advice.costs import COARSE
 
-BRACKETING = ("dem-static", "dem-dynamic", "fem")
+BRACKETING = [model.name for model in MODELS.values() if model.kind == "history"]
 
 
 def seconds_of(table: str) -> dict[tuple[str, str], tuple[int, float]]:
@@ -42,18 +42,18 @@ def main() -> None:
         found = np.linalg.lstsq(terms, np.log(seconds))[0]
         spread = np.exp(np.std(np.log(seconds) - terms @ found))
         at_100, growth, factor = np.exp(found[0]), found[1], np.exp(found[2])
-        print(f'    "{model}": Law({at_100:.2g}, {growth:.2f}, {factor:.2g}, {spread:.2f}),')
+        print(f"{model}: Cost({at_100:.2g}, {growth:.2f}, {spread:.2f}, weightless={factor:.2g})")
     if len(sys.argv) > 2:
         coarse = seconds_of(sys.argv[2])
         for model in BRACKETING:
             ratios = [math.log(fine[cell][1] / t) for cell, (_, t) in coarse.items() if cell[1] == model]
-            print(f'    "{model}": {np.mean(ratios) / math.log(TOLERANCE / COARSE):.2f},')
+            print(f"{model}: finer={np.mean(ratios) / math.log(TOLERANCE / COARSE):.2f}")
     seconds = []
     for _ in range(2):
         start = time.process_time()
         dem_dynamic(published_scene("wall-w1"))
         seconds.append(time.process_time() - start)
-    print(f"LOADING = {seconds[0] - seconds[1]:.1f}")
+    print(f"KERNELS = {seconds[0] - seconds[1]:.1f}")
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from fem_interface.modes import BENDING, ModeCount
 from runningbond.compare import published_scene
-from runningbond.dynamics.verdict import FIRST_STEP
+from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.joints import Rule, gauss, lobatto
 from runningbond.results import Outcome
 from runningbond.scene import BlockMaterial, Scene

@@ -1,17 +1,19 @@
-"""``runningbond advise``."""
+"""``runningbond advise``: a line a rung, then the answer; or one JSON object."""
 
-from typing import Annotated
+import json as to_json
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from runningbond.compare.advice import TOLERANCE, advice_on
-from runningbond.compare.advice.lines import advice_json, answer_lines, rung_line
+from runningbond.compare.advice import TOLERANCE, Advice, Rung
+from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.models import check_tolerance
 from runningbond.compare.published import find_scene
+from runningbond.compare.table import bracket
 from runningbond.scene import read_scene
 
 from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
-from .interruptions import interruptions
+from .terminal import interruptions
 
 
 def advise(
@@ -35,16 +37,51 @@ def advise(
     json
         Print one JSON object and nothing else.
     """
-    check_tolerance(tolerance)
-    advice = advice_on(read_scene(find_scene(scene)), tolerance, finite=finite)
+    check_tolerance(tolerance, "--tolerance")
+    advice = Advice(Knowledge(read_scene(find_scene(scene)), tolerance, finite))
     if not json:
         print(f"{advice.known.scene.title}: λ to {100 * tolerance:g} %", flush=True)
     stopped: list[int] = []
     for rung in advice.climb():
         if not json:
-            print(rung_line(rung), flush=True)
+            print(_rung_line(rung), flush=True)
         if stopped:
             return STOPPED
-        stopped = interruptions((rung.onward or "").removesuffix(", finite"))
-    print(advice_json(advice) if json else answer_lines(advice), flush=True)
+        if rung.next.model is not None:
+            stopped = interruptions(rung.next.model)
+    print(_as_json(advice) if json else _as_text(advice), flush=True)
     return NO_ANSWER if advice.outcome().status in UNDECIDED else DONE
+
+
+def _rung_line(rung: Rung) -> str:
+    """What a rung found, the cost so far, what follows from it, and the next rung with its cost."""
+    result = "–"
+    if rung.outcome is not None:
+        result = bracket(rung.outcome) if rung.outcome.status == "collapse" else rung.outcome.status
+    line = f"{rung.model:20} {result:19} {rung.seconds:7.2f} s  {rung.reason}"
+    if rung.onward is None:
+        return line
+    return f"{line} → {rung.onward}, {rung.next_cost or 'at a cost that no law gives'}"
+
+
+def _as_text(advice: Advice) -> str:
+    """The answer, by which model, and what its bracket means."""
+    outcome = advice.outcome()
+    result = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
+    return f"{result} by {outcome.model}, {outcome.seconds:.2f} s\n  {outcome.message}"
+
+
+def _as_json(advice: Advice) -> str:
+    """The answer and its rungs as one JSON object."""
+    keys = ("scene", "model", "status", "multiplier", "lower", "upper", "seconds", "message")
+    outcome = advice.outcome()
+    answer = {key: getattr(outcome, key) for key in keys}
+    bounds = {"lowest": advice.known.lowest, "bound": advice.known.bound}
+    return to_json.dumps({**answer, **bounds, "rungs": [_rung_json(rung) for rung in advice.rungs]}, allow_nan=False)
+
+
+def _rung_json(rung: Rung) -> dict[str, Any]:
+    keys = ("status", "multiplier", "lower", "upper", "dofs", "steps")
+    next_seconds = None if rung.next_cost is None else rung.next_cost.seconds
+    said = {"seconds": rung.seconds, "reason": rung.reason, "next": rung.onward, "next_seconds": next_seconds}
+    return {"model": rung.model, **{key: getattr(rung.outcome, key, None) for key in keys}, **said}

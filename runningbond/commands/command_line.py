@@ -5,11 +5,12 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.metadata import version
 
 from cyclopts import App, CycloptsError
 
-from runningbond.pictures.vtk_messages import VtkError
+from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import StoreError
 from runningbond.scene import SceneError
 
@@ -35,17 +36,17 @@ for each in (run, advise, compare, stability, study, mesh, render):
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and leave with its exit code."""
-    heard: list[int] = []
+    signals: list[int] = []
 
     def stop(number: int, frame: object) -> None:
-        heard.append(number)
+        signals.append(number)
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGINT, stop)
     try:
         code = command(arguments)
     except Exception:
-        if not heard:
+        if not signals:
             raise
         code = _stopped()  # within an import or a callback, libraries make another error of it
     sys.exit(code)
@@ -57,12 +58,14 @@ def command(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")
     try:
+        if tokens and not tokens[0].startswith("-"):
+            _check_backend()
         result = app(tokens, exit_on_error=False, print_error=False)
+        sys.stdout.flush()
     except (SceneError, StoreError, CycloptsError) as error:
         return _refuse(str(error))
     except VtkError as error:
-        print(f"runningbond: {error}", file=sys.stderr)
-        return NO_ANSWER
+        return _say(str(error), NO_ANSWER)
     except BrokenPipeError:  # whoever read us has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return DONE
@@ -73,11 +76,28 @@ def command(arguments: Sequence[str] | None = None) -> int:
     return result if isinstance(result, int) else DONE
 
 
+def _check_backend() -> None:
+    """Refuse a backend that matplotlib does not know, before anything is computed that is to be drawn in the end."""
+    backend = os.environ.get("MPLBACKEND")
+    if backend:
+        try:
+            import matplotlib  # noqa: F401
+        except ValueError as error:
+            raise SceneError(
+                "MPLBACKEND", "is no backend of matplotlib; leave it unset, or take agg", backend
+            ) from error
+
+
 def _stopped() -> int:
-    print("runningbond: interrupted; every file is whole, or as it was before", file=sys.stderr)
-    return STOPPED
+    return _say("interrupted; every file is whole, or as it was before", STOPPED)
 
 
 def _refuse(message: str) -> int:
-    print("runningbond: " + " ".join(message.split()), file=sys.stderr)
-    return BAD_INPUT
+    return _say(" ".join(message.split()), BAD_INPUT)
+
+
+def _say(message: str, code: int) -> int:
+    """Say a line on standard error, if that takes any, and give the exit code back."""
+    with suppress(OSError):
+        print(f"runningbond: {message}", file=sys.stderr, flush=True)
+    return code

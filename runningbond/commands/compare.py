@@ -2,7 +2,7 @@
 
 import signal
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
@@ -10,21 +10,22 @@ from typing import Annotated
 from cyclopts import Parameter
 from rich.console import Console
 
-from runningbond.compare.campaign import Campaign, Cell, Interrupted, run_campaign
-from runningbond.compare.models import MODELS, TOLERANCE, check_model, check_tolerance
+from runningbond.compare.campaign import Interrupted, run_campaign
+from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model
 from runningbond.compare.published import PUBLISHED, PublishedCase, find_scene, published_case
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
 from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
+from runningbond.scene.file import plain_stem
 
 from .exits import BAD_INPUT, DONE, NO_ANSWER, STOPPED
-from .progress import progress_bar
+from .terminal import progress_bar
 
 
 def compare(
     *scenes: str,
-    models: str = ",".join(MODELS),
+    models: str | None = None,
     tolerance: float = TOLERANCE,
     out: Path = Path("comparison"),
     jobs: int = -1,
@@ -40,7 +41,7 @@ def compare(
     scenes
         Scene files or names; all published walls where none is given.
     models
-        Names of models, separated by commas.
+        Names of models, separated by commas; all of them where none is given.
     tolerance
         Relative width of the bracket asked for.
     out
@@ -52,41 +53,45 @@ def compare(
     fresh
         Compute again what is already there.
     """
-    chosen = list(dict.fromkeys(model.strip() for model in models.split(",")))
-    for model in chosen:
-        check_model(model, "--models")
-    check_tolerance(tolerance)
+    names = list(MODELS) if models is None else [name.strip() for name in models.split(",")]
+    chosen = [find_model(name, "--models") for name in dict.fromkeys(names)]
+    check_tolerance(tolerance, "--tolerance")
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
-    _check_cluster(cluster, jobs)
+    if cluster is not None and jobs != -1:
+        raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
+    if cluster is not None and find_spec("distributed") is None:
+        raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
     walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
     make_folder(out)
-    console = Console(stderr=True)
+    console = Console(stderr=True, highlight=False)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
     try:
-        campaign = _run_with_progress(walls, chosen, out, tolerance, jobs, cluster, fresh, console)
+        with progress_bar(console) as bar:
+            task = bar.add_task("comparing", total=len(walls) * len(chosen))
+            campaign = run_campaign(
+                walls,
+                chosen,
+                folder=out,
+                tolerance=tolerance,
+                jobs=jobs,
+                cluster=cluster,
+                fresh=fresh,
+                progress=lambda cell: bar.update(task, advance=1, description=", ".join(cell)),
+            )
     except Interrupted as stopped:
         total, again = len(walls) * len(chosen), "the same command without --fresh" if fresh else "the same command"
         kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
         why = f"runningbond: {stopped.reason}" if stopped.reason else "Interrupted"
-        console.print(f"{why}: {kept}", soft_wrap=True, markup=False, highlight=False)
+        console.print(f"{why}: {kept}", soft_wrap=True, markup=False)
         if isinstance(stopped.__cause__, OSError):
             return BAD_INPUT
         return NO_ANSWER if stopped.reason else STOPPED
     _report(Comparison(walls, chosen, campaign, published), out, tolerance)
-    failed = [cell for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
-    for name, model in failed:
-        console.print(f"{name}, {model}: {campaign.outcomes[name, model].message}", markup=False)
+    failed = [(cell, outcome.message) for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
+    for cell, message in failed:
+        console.print(f"{', '.join(cell)}: {message}", markup=False)
     return NO_ANSWER if failed else DONE
-
-
-def _check_cluster(cluster: str | None, jobs: int) -> None:
-    """Refuse a cluster that cannot be used."""
-    if cluster is None:
-        return
-    if jobs != -1:
-        raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
-    if find_spec("distributed") is None:
-        raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
 
 
 def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, PublishedCase]]:
@@ -95,42 +100,14 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
     published: dict[str, PublishedCase] = {}
     for scene in scenes:
         path = find_scene(scene)
-        if path.stem in walls:
-            raise SceneError(scene, f'is the second scene called "{path.stem}"; results are kept by file name')
-        walls[path.stem] = read_scene(path)
+        name = plain_stem(path)
+        if name in walls:
+            raise SceneError(scene, f'is the second scene called "{name}"; results are kept by file name')
+        walls[name] = read_scene(path)
         case = published_case(path)
         if case is not None:
-            published[path.stem] = case
+            published[name] = case
     return walls, published
-
-
-def _run_with_progress(
-    walls: Mapping[str, Scene],
-    models: Sequence[str],
-    out: Path,
-    tolerance: float,
-    jobs: int,
-    cluster: str | None,
-    fresh: bool,
-    console: Console,
-) -> Campaign:
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
-    with progress_bar(console) as bar:
-        task = bar.add_task("comparing", total=len(walls) * len(models))
-
-        def advance(cell: Cell) -> None:
-            bar.update(task, advance=1, description=f"{cell[0]}, {cell[1]}")
-
-        return run_campaign(
-            walls,
-            models,
-            folder=out,
-            tolerance=tolerance,
-            jobs=jobs,
-            cluster=cluster,
-            fresh=fresh,
-            progress=advance,
-        )
 
 
 def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
@@ -146,8 +123,8 @@ def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
     for sheet in sheets:
         console.print(sheet.terminal())
-    console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them found in {out}", soft_wrap=True)
-    published = campaign.only(comparison.published)
+    console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them already in {out}", soft_wrap=True)
+    published = comparison.only_published()
     why_not = why_not_drawn()
     charts = [*draw_figures(published, out), *draw_curves(published, out)]
     charts += [] if why_not else draw_plates(comparison, out)

@@ -10,7 +10,7 @@ from runningbond.compare.published import find_scene
 from runningbond.scene import read_scene
 
 from .exits import DONE
-from .integers import whole
+from .terminal import whole
 
 
 def mesh(

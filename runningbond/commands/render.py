@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from runningbond.pictures.offscreen import why_not_drawn
-from runningbond.pictures.painting import Colouring
+from runningbond.pictures.style import Colouring
 from runningbond.results import load_scene
 from runningbond.scene import SceneError
 
@@ -45,8 +45,8 @@ def render(
     if why_not:
         print(f"runningbond: {why_not}", file=sys.stderr)
         return NO_ANSWER
-    from runningbond.pictures.render import draw_folder
+    from runningbond.pictures.render import render_folder
 
-    written = draw_folder(folder, colour)
+    written = render_folder(folder, colour)
     print("\n".join(map(str, written)) if written else f"{folder}: the outcome has no mechanism to draw")
     return DONE

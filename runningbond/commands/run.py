@@ -3,29 +3,27 @@
 import json as to_json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import Parameter
 
 from runningbond.compare.fingerprint import fingerprint
-from runningbond.compare.models import OBSERVED, TOLERANCE, check_model, check_tolerance, run_model
+from runningbond.compare.model import Recorder
+from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model, run_model
 from runningbond.compare.published import find_scene
 from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.results import Outcome, make_folder, save_outcome
 from runningbond.scene import Scene, read_scene
 
 from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
-from .interruptions import interruptions
-
-if TYPE_CHECKING:
-    from runningbond.compare.recording import Recorder
+from .terminal import interruptions
 
 
 def run(
     scene: str,
     /,
     *,
-    model: str,
+    model: Annotated[str, Parameter(help=f"One of {', '.join(MODELS)}.")],
     tolerance: float = TOLERANCE,
     json: Annotated[bool, Parameter(negative="")] = False,
     out: Path | None = None,
@@ -37,7 +35,7 @@ def run(
     scene
         Scene file, or the name of a published scene such as panel-01.
     model
-        homog, limit, limit-nonassociated, dem-static, dem-dynamic or fem.
+        Name of the model.
     tolerance
         Relative width of the bracket asked for.
     json
@@ -45,22 +43,18 @@ def run(
     out
         Folder in which to keep the result, its time series for ParaView and a picture of its mechanism.
     """
-    check_model(model)
-    check_tolerance(tolerance)
+    chosen = find_model(model, "--model")
+    check_tolerance(tolerance, "--tolerance")
     wall = read_scene(find_scene(scene))
     if out is not None:
         make_folder(out)
-    stopped = interruptions(model)
-    recorder = None
-    if out is not None and model in OBSERVED:
-        from runningbond.compare.recording import recorder as observer
-
-        recorder = observer(wall, model, out)
-    outcome = run_model(model, wall, tolerance, recorder)
+    stopped = interruptions(chosen)
+    recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
+    outcome = run_model(chosen, wall, tolerance, recorder)
     print(_as_json(outcome) if json else _as_text(outcome), flush=True)
     if out is not None:
-        # What was broken off is kept under no fingerprint: no comparison takes it for the answer.
-        save_outcome(outcome, out, "" if stopped else fingerprint(wall, model, tolerance), wall)
+        # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
+        save_outcome(outcome, out, "" if stopped else fingerprint(wall, chosen, tolerance), wall)
         _record(wall, outcome, out, recorder)
         _draw(out)
     if stopped:
@@ -68,7 +62,7 @@ def run(
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
-def _record(scene: Scene, outcome: Outcome, out: Path, recorder: "Recorder | None") -> None:
+def _record(scene: Scene, outcome: Outcome, out: Path, recorder: Recorder | None) -> None:
     """Finish the time series of a run, or write that of a mechanism."""
     if recorder is not None:
         recorder.finish(outcome)
@@ -80,12 +74,12 @@ def _record(scene: Scene, outcome: Outcome, out: Path, recorder: "Recorder | Non
 
 def _draw(out: Path) -> None:
     """Draw the mechanism, or say in a line why there is no picture: the numbers are kept all the same."""
-    from runningbond.pictures.render import draw_mechanism, forget_pictures
+    from runningbond.pictures.render import remove_pictures, render_folder
 
-    forget_pictures(out)
+    remove_pictures(out)
     why_not = why_not_drawn()
     if not why_not:
-        draw_mechanism(out)
+        render_folder(out, moments=False)
     else:
         print(f"runningbond: {why_not}", file=sys.stderr)
 

@@ -11,7 +11,7 @@ from rich.console import Console
 from runningbond.results import make_folder
 
 from .exits import DONE, NO_ANSWER, STOPPED
-from .progress import progress_bar
+from .terminal import progress_bar
 
 if TYPE_CHECKING:
     from runningbond.studies.stability.report import Findings

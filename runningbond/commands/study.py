@@ -10,8 +10,7 @@ from rich.console import Console
 from runningbond.scene import SceneError
 
 from .exits import DONE, NO_ANSWER, STOPPED
-from .integers import whole
-from .progress import progress_bar
+from .terminal import progress_bar, whole
 
 
 def study(*, out: Path = Path("study"), jobs: Annotated[int, Parameter(converter=whole)] = 1) -> int:

@@ -1,6 +1,7 @@
 """The suite: models, published cases, campaigns, tables, charts and the command line."""
 
 from .campaign import Campaign, Interrupted, run_campaign
+from .model import Model
 from .models import MODELS, run_model
 from .published import PUBLISHED, PublishedCase, published_scene
 
@@ -9,6 +10,7 @@ __all__ = [
     "PUBLISHED",
     "Campaign",
     "Interrupted",
+    "Model",
     "PublishedCase",
     "published_scene",
     "run_campaign",

@@ -1,4 +1,4 @@
-"""The cases of a campaign on a Dask cluster, through joblib's backend for it."""
+"""The tasks of a campaign on a Dask cluster, through joblib's backend for it."""
 
 import json
 import logging
@@ -14,26 +14,17 @@ from joblib._dask import DaskDistributedBackend
 
 from runningbond.scene import SceneError
 
-from .campaign import ClusterError
+from .tasks import ClusterError
 
 PATIENCE = 30
 """Seconds in which a scheduler must answer and have a worker."""
 
 
-class CaseBackend(DaskDistributedBackend):  # type: ignore[misc]
+class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
     """joblib's backend, which would wait for ever for what a cluster gives up, and not send to one that has one core.
 
-    Parameters
-    ----------
-    client
-        The connection.
-    given_up
-        What to return for arguments over which one worker after the other was killed.
+    A task over which one worker after the other was killed is answered as lost.
     """
-
-    def __init__(self, client: Client, given_up: Callable[..., Any]) -> None:
-        super().__init__(client=client)
-        self._given_up = given_up
 
     def effective_n_jobs(self, n_jobs: int) -> int:
         """Say how many tasks run at once; where that is one, joblib computes in the process that asks."""
@@ -45,7 +36,7 @@ class CaseBackend(DaskDistributedBackend):  # type: ignore[misc]
         def give_up(done: Any) -> None:
             error = done.exception()
             if isinstance(error, KilledWorker):
-                callback([self._given_up(*arguments, **named) for _, arguments, named in func.items])
+                callback([task.lost() for _, (task,), _ in func.items])
             elif error is not None:
                 callback(error)
 
@@ -63,20 +54,10 @@ class CaseBackend(DaskDistributedBackend):  # type: ignore[misc]
 
 
 @contextmanager
-def on_cluster(where: str, given_up: Callable[..., Any]) -> Iterator[None]:
-    """Send what joblib is given inside to a cluster.
+def on_cluster(where: str) -> Iterator[None]:
+    """Send the tasks that joblib is given inside to a cluster: the address of its scheduler, or its file.
 
-    Parameters
-    ----------
-    where
-        Address of the scheduler, or its file.
-    given_up
-        See `CaseBackend`.
-
-    Raises
-    ------
-    SceneError
-        Where no scheduler with a worker answers.
+    Where no scheduler with a worker answers, that is a `SceneError`.
     """
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what it tells is told here, in a line
     try:
@@ -91,5 +72,5 @@ def on_cluster(where: str, given_up: Callable[..., Any]) -> Iterator[None]:
             raise SceneError(
                 "--cluster", f"has no worker after {PATIENCE} s; start some, one thread each", where
             ) from error
-        with parallel_config(backend=CaseBackend(client, given_up)):
+        with parallel_config(backend=TaskBackend(client=client)):
             yield

@@ -1,121 +1,218 @@
-"""The models that exist, by the names the command line knows them by."""
+"""The models: each one object, and all of them in `MODELS`, by the names the command line knows them by.
+
+A model of one's own is one more `Model`: put into `MODELS`, or handed to `run_model` as it is.
+"""
 
 import difflib
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeAlias
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from dem import limit_nonassociated
 from homog import homog
 from runningbond.limit import limit
 from runningbond.results import Outcome
-from runningbond.scene import Scene, SceneError
+from runningbond.scene import Array, Scene, SceneError
 
-if TYPE_CHECKING:
-    from dem.pushover import StaticObserver
-    from runningbond.dynamics import Observer
+from .model import Cost, Model, Recorder
 
-Model: TypeAlias = Callable[..., Outcome]
-"""From a scene and the relative width of the bracket asked for, and an observer where it has any, to an outcome."""
+DRY = frozenset({"block.density", "joint.friction"})
+STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
+STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
+SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
+ELASTIC = SOFTENING | {"block.young", "block.poisson"}
+
+KERNELS = 3.0
+"""Seconds until the kernels of blocks in motion are loaded."""
 
 
-def _dem_static(scene: Scene, tolerance: float, observe: "StaticObserver | None" = None, **asked: Any) -> Outcome:
-    """`dem.static.dem_static`, imported when it is wanted, as `_dem_dynamic` is."""
-    from dem.pushover import nobody
+def _homog(scene: Scene, tolerance: float) -> Outcome:
+    return homog(scene)
+
+
+# What needs a compiler or VTK, which take a second to load, is imported when it is wanted.
+
+
+def _dem_static(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
     from dem.static import dem_static
 
-    return dem_static(scene, tolerance, observe=observe or nobody, **asked)
+    return dem_static(scene, tolerance, **settings)
 
 
-def _dem_dynamic(scene: Scene, tolerance: float, observe: "Observer | None" = None) -> Outcome:
-    """`dem.dynamic.dem_dynamic`, imported when it is wanted, for its compiler takes a second to load."""
+def _dem_dynamic(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
     from dem.dynamic import dem_dynamic
-    from runningbond.dynamics import nobody
 
-    return dem_dynamic(scene, tolerance, observe=observe or nobody)
+    return dem_dynamic(scene, tolerance, **settings)
 
 
-def _fem(scene: Scene, tolerance: float, observe: "Observer | None" = None, **asked: Any) -> Outcome:
-    """`fem_interface.model.fem`, imported when it is wanted; whether a wall locks is asked of its rigid blocks."""
+def _fem(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
     from fem_interface.model import fem
-    from runningbond.dynamics import nobody
-    from runningbond.limit import equilibrium
-    from runningbond.limit.associated import locks
 
-    return fem(scene, tolerance, locks=lambda: locks(equilibrium(scene)), observe=observe or nobody, **asked)
+    return fem(scene, tolerance, **settings)
 
 
-MODELS: dict[str, Model] = {
-    "homog": lambda scene, tolerance: homog(scene),
-    "limit": limit,
-    "limit-nonassociated": limit_nonassociated,
-    "dem-static": _dem_static,
-    "dem-dynamic": _dem_dynamic,
-    "fem": _fem,
-}
+def _dem_pushover(scene: Scene, distance: float, speed: float) -> Array:
+    from dem.dynamic import finite_pushover
 
-IN_MOTION = ("dem-dynamic", "fem")
-"""Models that bring blocks forward in time, and can be stopped with an answer so far."""
+    return finite_pushover(scene, distance, speed=speed)
 
-OBSERVED = ("dem-static", *IN_MOTION)
-"""Models whose states can be observed as they are found."""
+
+def _fem_pushover(scene: Scene, distance: float, speed: float) -> Array:
+    from fem_interface.finite_pushover import fem_pushover
+
+    return fem_pushover(scene, distance, speed=speed)
+
+
+def _static_recorder(scene: Scene, folder: Path | None) -> Recorder:
+    from .recording import StaticRecorder
+
+    return StaticRecorder(scene, folder)
+
+
+def _motion_recorder(scene: Scene, folder: Path | None) -> Recorder:
+    from .recording import MotionRecorder
+
+    return MotionRecorder(scene, folder)
+
+
+IN_STEPS = ("collapse", "first_step", "budget")
+"""Settings of every model that raises its loads in steps."""
+
+OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")
+"""Settings of deformable blocks and their interfaces."""
+
+_EVERY_MODEL = (
+    Model(
+        *("homog", "homogenised continuum in closed form", _homog, DRY),
+        cost=Cost(0.00029, 0.59, 1.15),
+        colour="black",
+        marker="_",
+        line=(0, (6, 4)),
+    ),
+    Model(
+        *("limit", "limit analysis of the blocks", limit, STRENGTH, "bound"),
+        cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
+        colour="#0b559f",
+        marker="o",
+    ),
+    Model(
+        *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
+        kind="certificate",
+        cost=Cost(0.22, 1.87, 1.48),
+        colour="#c2410c",
+        marker="s",
+    ),
+    Model(
+        *("dem-static", "equilibrium of rigid blocks, load by load", _dem_static, STIFFNESS, "history"),
+        parameters=(*IN_STEPS, "past"),
+        observer=_static_recorder,
+        cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
+        colour="#7c3aed",
+        marker="v",
+    ),
+    Model(
+        *("dem-dynamic", "rigid blocks in motion", _dem_dynamic, SOFTENING, "history"),
+        parameters=IN_STEPS,
+        observer=_motion_recorder,
+        interruptible=True,
+        cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
+        pushover=_dem_pushover,
+        colour="#2a9d8f",
+        marker="^",
+        line=":",
+    ),
+    Model(
+        *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
+        parameters=(*IN_STEPS, *OF_BLOCKS),
+        observer=_motion_recorder,
+        interruptible=True,
+        cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
+        pushover=_fem_pushover,
+        colour="#be185d",
+        marker="D",
+        line=(0, (3, 1, 1, 1)),
+    ),
+)
+
+MODELS: dict[str, Model] = {model.name: model for model in _EVERY_MODEL}
+"""Every model by its name, the cheapest first."""
 
 TOLERANCE = 0.01
+"""Relative width of the bracket where none is asked for."""
 
 
-def check_model(name: str, option: str = "--model") -> None:
-    """Refuse a name that is no model's."""
-    if name not in MODELS:
-        likely = difflib.get_close_matches(name, MODELS, n=1)
+def find_model(model: str | Model, key: str = "model") -> Model:
+    """The model of a name; a model itself is given back as it is.
+
+    Raises
+    ------
+    SceneError
+        For a name that is no model's; it names the key, on the command line an option.
+    """
+    if isinstance(model, Model):
+        return model
+    if model not in MODELS:
+        likely = difflib.get_close_matches(model, MODELS, n=1)
         hint = f'; did you mean "{likely[0]}"?' if likely else ""
-        raise SceneError(option, f"must be one of {', '.join(MODELS)}{hint}", name)
+        raise SceneError(key, f"must be one of {', '.join(MODELS)}{hint}", model)
+    return MODELS[model]
 
 
-def check_tolerance(tolerance: float) -> None:
-    """Refuse a tolerance that is no relative width."""
+def check_tolerance(tolerance: float, key: str = "tolerance") -> None:
+    """Refuse a tolerance that is no relative width, by its key or option."""
     if not (math.isfinite(tolerance) and 0 < tolerance < 1):
-        raise SceneError("--tolerance", "must be a number above 0 and below 1", tolerance)
+        raise SceneError(key, "must be a number above 0 and below 1", tolerance)
 
 
 def run_model(
-    name: str,
+    model: str | Model,
     scene: Scene,
     tolerance: float = TOLERANCE,
-    observe: "Observer | StaticObserver | None" = None,
-    **asked: Any,
+    observe: Callable[..., None] | None = None,
+    **parameters: Any,
 ) -> Outcome:
-    """Run a model by name.
+    """Run a model.
 
     Parameters
     ----------
-    name
-        A key of `MODELS`.
+    model
+        A key of `MODELS`, or a model.
     scene
         The scene.
     tolerance
         Relative width of the bracket asked for.
     observe
-        Looks at the states of a model of `OBSERVED`, of its own kind; others are not observed.
-    asked
-        What else is asked of that model, by its own names.
+        Looks at the states that the model passes through, if it has an observer; others are not observed.
+    parameters
+        Settings of that model, by their names.
 
     Returns
     -------
     Outcome
-        ``failed``, with the error's own words, where the model broke.
+        Its message ends with the keys of the scene that the model does not take into account. ``failed``, with the
+        error's own words, where the model broke.
 
     Raises
     ------
     SceneError
-        For an unknown model, or one that does not apply to the scene.
+        For an unknown model or parameter, or a model that does not apply to the scene.
     """
-    check_model(name)
+    model = find_model(model)
     check_tolerance(tolerance)
+    for name, value in parameters.items():
+        if name not in model.parameters:
+            own = ", ".join(model.parameters) or "none"
+            raise SceneError(f"model {model.name}: {name}", f"is no parameter of it; it has {own}", value)
+    if observe is not None and model.observer is not None:
+        parameters["observe"] = observe
     try:
-        if observe is not None and name in OBSERVED:
-            return MODELS[name](scene, tolerance, observe=observe, **asked)
-        return MODELS[name](scene, tolerance, **asked)
+        outcome = model.solve(scene, tolerance, **parameters)
     except SceneError:
         raise
     except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
-        return Outcome(scene.title, name, "failed", message=f"{type(error).__name__}: {error}")
+        return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
+    unread = model.unread(scene)
+    note = f"not taken into account: {', '.join(unread)}" if unread else ""
+    return replace(outcome, model=model.name, message="; ".join(part for part in (outcome.message, note) if part))

@@ -1,30 +1,36 @@
 """Plates of a campaign: collapse mechanisms, walls by models; the paper's Figures 8 to 10 and 12."""
 
+import textwrap
+from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from runningbond.pictures.frame import State
-from runningbond.pictures.mechanisms import draw_wall, key, multiplier_text, png, show_mechanism, show_undeformed
-from runningbond.pictures.moment import Shown
-from runningbond.pictures.painting import Painter, View
-from runningbond.results import write_atomically
+from runningbond.pictures.captions import colour_key, multiplier_text, to_png
+from runningbond.pictures.deformed_shape import DeformedShape, Extent, undeformed_shape
+from runningbond.pictures.joint_state import JointState
+from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
+from runningbond.pictures.pyvista_figure import draw_painted
+from runningbond.pictures.pyvista_painter import Painter
+from runningbond.results import Outcome, write_atomically
+from runningbond.scene import Scene
 
 from .figures import SLENDERNESS, TEXTURES
-from .published import BARALDI, CONCENTRATED, FERRIS, PUBLISHED
-from .table import OWN, Comparison
+from .model import Model
+from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
+from .table import Comparison
 
 WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250
 """Width of a plate, that of a page, and the least; its largest height [in]; and dots per inch."""
 
+TITLES, LINE, LETTER, GAP = 0.85, 0.11, 0.06, 0.1
+"""Height of its titles and its key, and of a line under a wall; width of a letter and of a gap between walls [in]."""
+
 PIXELS = 640
 """Longer side of the image of one wall."""
 
-SIDE, HEAD, FOOT, CAPTION = 0.62, 0.46, 0.34, 0.3
-"""Room for the names of walls, for those of models, for the key and under each wall [in]."""
-
-MOST_OWN = 12
-"""Walls of one's own that go on a plate."""
+OWN_WALLS = 12
+"""Largest number of walls on the plate of one's own."""
 
 
 @dataclass(frozen=True)
@@ -37,10 +43,10 @@ class Plate:
 
 
 def plates(comparison: Comparison) -> list[Plate]:
-    """Plates that a comparison has anything for."""
-    panels = [case.name for case in PUBLISHED if case.source == BARALDI]
+    """Plates that a comparison has anything for: the paper's, and one of the walls that are nobody's figure."""
     textures = [f"b/a = {label}" for label, _ in TEXTURES]
-    found = [
+    panels = _names(BARALDI)
+    drawn = [
         Plate(
             f"figure-{8 + k}",
             f"Mechanisms under self-weight and lateral load, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})",
@@ -48,18 +54,18 @@ def plates(comparison: Comparison) -> list[Plate]:
         )
         for k, (label, _) in enumerate(SLENDERNESS)
     ]
-    concentrated = [case.name for case in PUBLISHED if case.source == CONCENTRATED]
     title = "Mechanisms under a concentrated load (cf. Baraldi et al., Fig. 12)"
-    found.append(Plate("figure-12", title, dict(zip(concentrated, textures, strict=True))))
-    walls = [case.name for case in PUBLISHED if case.source == FERRIS]
-    labels = [name.removeprefix("wall-").upper() for name in walls]
-    found.append(
-        Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", dict(zip(walls, labels, strict=True)))
-    )
-    own = comparison.by_source().get(OWN, [])[:MOST_OWN]
-    found.append(Plate("mechanisms", "Mechanisms", {name: name for name in own}))
-    present = [Plate(p.name, p.title, {n: w for n, w in p.walls.items() if n in comparison.scenes}) for p in found]
+    drawn.append(Plate("figure-12", title, dict(zip(_names(CONCENTRATED), textures, strict=True))))
+    labels = {name: name.removeprefix("wall-").upper() for name in _names(FERRIS)}
+    drawn.append(Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", labels))
+    present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in drawn]
+    own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
+    present.append(Plate("mechanisms", "Mechanisms", {name: name for name in own}))
     return [plate for plate in present if _models(comparison, plate)]
+
+
+def _names(source: str) -> list[str]:
+    return [case.name for case in cases_of(source)]
 
 
 def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
@@ -72,14 +78,10 @@ def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
     return written
 
 
-def _models(comparison: Comparison, plate: Plate) -> list[str]:
+def _models(comparison: Comparison, plate: Plate) -> list[Model]:
     """Models that have a mechanism of any wall of a plate."""
-    outcomes = comparison.campaign.outcomes
-    return [
-        model
-        for model in comparison.models
-        if any(len(outcomes[name, model].motion) for name in plate.walls if (name, model) in outcomes)
-    ]
+    outcomes = {model: [comparison.outcome(name, model) for name in plate.walls] for model in comparison.models}
+    return [model for model, found in outcomes.items() if any(out is not None and len(out.motion) for out in found)]
 
 
 def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
@@ -87,60 +89,58 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
 
     models = _models(comparison, plate)
     rows = [_row(comparison, name, models) for name in plate.walls]
-    aspect = [(row.view.top - row.view.bottom) / (row.view.right - row.view.left) for row in rows]
-    room = TALLEST - HEAD - FOOT - CAPTION * len(rows)
-    width = min((WIDTH - SIDE) / max(len(models), 3), room / sum(aspect))
-    heights = [width * ratio + CAPTION for ratio in aspect]
-    total_width, total = max(SIDE + width * len(models), NARROWEST), sum(heights) + HEAD + FOOT
-    width = (total_width - SIDE) / len(models)
-    figure = Figure(figsize=(total_width, total), dpi=DPI)
-    figure.text(0.5, 1 - 0.06 / total, plate.title, ha="center", va="top", fontsize=8, fontweight="bold")
-    middles = [(SIDE + (column + 0.5) * width) / total_width for column in range(len(models))]
-    for middle, model in zip(middles, models, strict=True):
-        figure.text(middle, 1 - (HEAD - 0.06) / total, model, ha="center", va="bottom", fontsize=8)
-    top = total - HEAD
-    for row, label, height in zip(rows, plate.walls.values(), heights, strict=True):
-        bottom = top - height + CAPTION
-        figure.text(0.08 / total_width, (top + bottom) / 2 / total, label, va="center", fontsize=7.5)
-        for middle, shown, caption in zip(middles, row.shown, row.captions, strict=True):
-            left = middle - width / 2 / total_width
-            axes = figure.add_axes((left, bottom / total, width / total_width, (top - bottom) / total))
-            draw_wall(axes, shown, painter, row.view, signs=False)
-            figure.text(middle, (bottom - 0.03) / total, caption, ha="center", va="top", fontsize=6.3)
-        top -= height
-    figure.legend(
-        handles=key((State.SLIDE, State.OPEN)),
-        loc="lower center",
-        bbox_to_anchor=(0.5, 0.02 / total),
-        ncols=4,
-        frameon=False,
-        fontsize=7,
-        handlelength=1.6,
-    )
-    return png(figure, DPI)
+    captions = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
+    ratios = [(top - bottom) / (right - left) for left, right, bottom, top in (row.extent for row in rows)]
+    room = TALLEST - TITLES - captions * len(rows)
+    labels = [textwrap.wrap(label, 16) or [""] for label in plate.walls.values()]
+    side = 0.1 + LETTER * max(len(line) for label in labels for line in label)
+    width = min((WIDTH - side) / max(len(models), 3) - GAP, room / sum(ratios))
+    total = max(NARROWEST, side + (width + GAP) * len(models))
+    figure = Figure((total, TALLEST - room + sum(ratios) * width), DPI, layout="constrained")
+    figure.suptitle(plate.title, fontsize=8, fontweight="bold")
+    grid = figure.subplots(len(rows), len(models), squeeze=False, height_ratios=ratios)
+    for axes, model in zip(grid[0], models, strict=True):
+        axes.set_title(model.name, fontsize=8)
+    for line, row, label in zip(grid, rows, labels, strict=True):
+        line[0].text(
+            -0.04,
+            0.5,
+            "\n".join(label),
+            transform=line[0].transAxes,
+            ha="right",
+            va="center",
+            fontsize=7.5,
+            parse_math=False,
+        )
+        for axes, shape, caption in zip(line, row.shapes, row.captions, strict=True):
+            draw_painted(axes, shape, painter, row.extent, annotated=False)
+            axes.text(0.5, -0.02, caption, transform=axes.transAxes, ha="center", va="top", fontsize=6.3)
+    handles = colour_key((JointState.SLIDE, JointState.OPEN))
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
+    return to_png(figure, DPI)
 
 
 @dataclass(frozen=True)
 class Row:
-    """One wall by all models: what is drawn, its captions, and a view that shows all of it."""
+    """One wall by all models: what is drawn, its captions, and an extent that shows all of it."""
 
-    shown: list[Shown]
+    shapes: list[DeformedShape]
     captions: list[str]
-    view: View
+    extent: Extent
 
 
-def _row(comparison: Comparison, name: str, models: list[str]) -> Row:
+def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> Row:
     scene = comparison.scenes[name]
-    outcomes = [comparison.campaign.outcomes.get((name, model)) for model in models]
-    mechanisms = [None if outcome is None else show_mechanism(scene, outcome) for outcome in outcomes]
-    shown = [found or show_undeformed(scene) for found in mechanisms]
-    views = [each.view(PIXELS) for each in shown]
-    view = View(
-        min(view.left for view in views),
-        max(view.right for view in views),
-        min(view.bottom for view in views),
-        max(view.top for view in views),
-        PIXELS,
-    )
-    captions = ["n/a" if outcome is None else "\n".join(multiplier_text(scene, outcome)) for outcome in outcomes]
-    return Row(shown, captions, view)
+    outcomes = [comparison.outcome(name, model) for model in models]
+    mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
+    shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
+    lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
+    extent = min(lefts), max(rights), min(bottoms), max(tops)
+    captions = [comparison.cell(name, model, lambda outcome: _caption(scene, outcome)) for model in models]
+    return Row(shapes, captions, extent)
+
+
+def _caption(scene: Scene, outcome: Outcome) -> str:
+    """The load, its bracket, and what is wrong with the mechanism where something is."""
+    lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 34)]
+    return "\n".join(filter(None, lines))

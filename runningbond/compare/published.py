@@ -14,21 +14,11 @@ FERRIS = "Ferris & Tin-Loi (2001): dry walls under lateral load"
 
 @dataclass(frozen=True)
 class PublishedCase:
-    """A published wall.
+    """A published wall."""
 
-    Parameters
-    ----------
-    name
-        Name of its scene file without the ending.
-    source
-        Where it was published; cases of one source share a table.
-    printed
-        Values printed for it, by what the table calls them.
-    """
-
-    name: str
-    source: str
-    printed: dict[str, float] = field(default_factory=dict)
+    name: str  # that of its scene file without the ending
+    source: str  # where it was published; cases of one source share a table
+    printed: dict[str, float] = field(default_factory=dict)  # values printed for it, by what the table calls them
 
     @property
     def path(self) -> Path:
@@ -69,14 +59,13 @@ PUBLISHED: tuple[PublishedCase, ...] = (
 """The sixteen panels of Baraldi, Reccia & Cecchi and three walls of Ferris & Tin-Loi."""
 
 
-def published_scene(name: str) -> Scene:
-    """Read a published scene.
+def cases_of(source: str) -> tuple[PublishedCase, ...]:
+    """Cases of one source, in the order in which they were published."""
+    return tuple(case for case in PUBLISHED if case.source == source)
 
-    Parameters
-    ----------
-    name
-        Name of a case, for example ``panel-01``.
-    """
+
+def published_scene(name: str) -> Scene:
+    """Read a published scene by its name, for example ``panel-01``."""
     return read_scene(find_scene(name))
 
 
@@ -95,5 +84,5 @@ def find_scene(scene: str) -> Path:
             return case.path
     names = f"{PUBLISHED[0].name} … {PUBLISHED[-1].name}"
     if path.exists():
-        raise SceneError(scene, "cannot be read: it is a folder")
+        raise SceneError(scene, f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
     raise SceneError(scene, f"there is no such file, nor a published scene of that name ({names})")

@@ -1,4 +1,4 @@
-"""What is kept of a run for ParaView: every load that was borne, then what came after, as they come."""
+"""Observers that keep a run for ParaView: every load that was borne, then the fall, each moment as it comes."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,177 +8,150 @@ import numpy as np
 from dem.pushover import State as StaticState
 from dem.rigid_system import contact_points
 from dem.static_system import StaticSystem
-from fem_interface.element_order import modal_wall
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State
-from runningbond.dynamics.run import CALM
-from runningbond.joints.softening_kernel import DAMAGE, softening_kernel
+from runningbond.dynamics.collapse import CALM
 from runningbond.limit.kinematics import movable_freedoms
-from runningbond.pictures.frame import Frame, Stage, Triangles, mechanism_frame, states_of_points
-from runningbond.pictures.painting import DRAWN, wall_size
-from runningbond.pictures.series import Series
-from runningbond.pictures.vtk_messages import VtkError
+from runningbond.pictures.deformed_shape import wall_size
+from runningbond.pictures.frame import Discretisation, Frame, Triangles
+from runningbond.pictures.joint_state import states_under_load
+from runningbond.pictures.mechanism import mechanism_frame
+from runningbond.pictures.style import DRAWN
+from runningbond.pictures.time_series import TimeSeries
+from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import Outcome
 from runningbond.results.mechanism import rigid_jumps
 from runningbond.results.store import RECORD
 from runningbond.scene import Array, Scene
 
-from .models import IN_MOTION
+FALL_FRAMES = 12
+"""Largest number of moments of a fall that are kept."""
 
-FALL = 12
-"""Most moments of a fall that are kept."""
-
-STEPS_OF_MECHANISM = 8
+MECHANISM_FRAMES = 8
 """Moments in which a mechanism, where there is nothing else, grows to a size that is seen."""
 
 
-def recorder(scene: Scene, model: str, folder: Path | None) -> "MotionRecorder | StaticRecorder | None":
-    """The observer that writes what a model passes through into a folder; None for models without observers.
-
-    Without a folder it keeps the moments in `Recorder.moments`.
-    """
-    if model == "dem-static":
-        return StaticRecorder(scene, folder)
-    return MotionRecorder(scene, model, folder) if model in IN_MOTION else None
-
-
-class Moments(list[Frame]):
-    """Moments in memory, in the order in which they come."""
+class FrameList(list[Frame]):
+    """A time series in memory."""
 
     add = list[Frame].append
 
 
-class Recorder:
-    """Writes moments. Where one cannot be written that is no reason to give a run up; `finish` says so.
+class SeriesRecorder:
+    """Writes moments of a wall into a folder, or keeps them in `frames` where there is none.
 
-    Parameters
-    ----------
-    stage
-        The wall.
-    folder
-        Where the series is written; None keeps it in `moments`.
+    One that cannot be written does not end the run; see `finish`.
     """
 
-    def __init__(self, stage: Stage, folder: Path | None) -> None:
-        self.stage = stage
-        self.moments = Moments()
-        self._series = self.moments if folder is None else Series(stage, folder)
+    def __init__(self, discretisation: Discretisation, folder: Path | None) -> None:
         self._folder = folder
-        self._broken: OSError | VtkError | None = None
+        self._error: OSError | VtkError | None = None
+        self._begin(discretisation)
+
+    def _begin(self, discretisation: Discretisation) -> None:
+        """Begin a series of a wall."""
+        self.discretisation = discretisation
+        self.frames = FrameList()
+        self._series = self.frames if self._folder is None else TimeSeries(discretisation, self._folder)
 
     def keep(self, frame: Frame) -> None:
         """Write a moment."""
-        if self._broken is None:
+        if self._error is None:
             try:
                 if self._folder and not len(self._series):  # an outcome that is there is of another run
                     (self._folder / RECORD).unlink(missing_ok=True)
                 self._series.add(frame)
             except (OSError, VtkError) as error:
-                self._broken = error
+                self._error = error
 
     def finish(self, outcome: Outcome) -> None:
-        """End the series, once the outcome is known.
-
-        Raises
-        ------
-        OSError, VtkError
-            If a moment could not be written.
-        """
-        if self._broken is not None:
-            raise self._broken
+        """End the series, once the outcome is known; raises the error of a moment that could not be written."""
+        if self._error is not None:
+            raise self._error
         if not len(self._series):
             self._series.clear()
 
 
-class StaticRecorder(Recorder):
-    """Writes every state of rest that `dem.static` finds."""
+class StaticRecorder(SeriesRecorder):
+    """Writes every equilibrium that `dem.static` finds."""
 
     def __init__(self, scene: Scene, folder: Path | None) -> None:
-        super().__init__(Stage.of_rigid_blocks(scene), folder)
+        super().__init__(Discretisation.of_rigid_blocks(scene), folder)
 
     def __call__(self, system: StaticSystem, state: StaticState) -> None:
         """Write a state."""
-        scene, points, equations = self.stage.scene, self.stage.points, system.equilibrium
+        scene, points, equations = self.discretisation.scene, self.discretisation.points, system.equilibrium
         motion = np.zeros(3 * len(scene.blocks))
         motion[movable_freedoms(scene)] = state.x[: system.freedoms] * equations.scale * system.length_unit
         opening, slip = rigid_jumps(scene.blocks, points, motion.reshape(-1, 3))
         normal, tangential = (equations.force_unit * state.force / points.area[:, None]).T
-        undamaged = np.zeros(len(points))
-        shown = states_of_points(scene, points, opening, normal, tangential, undamaged)
+        kinds = states_under_load(scene, points, opening, normal, tangential, np.zeros(len(points)))
         load = equations.live_unit * state.multiplier
-        self.keep(Frame(load, motion.reshape(-1, 3), opening, slip, normal, tangential, shown))
+        self.keep(Frame(load, motion.reshape(-1, 3), opening, slip, normal, tangential, kinds))
 
 
-class MotionRecorder(Recorder):
+class MotionRecorder(SeriesRecorder):
     """Writes every state at rest of blocks in motion, and in the end the fall.
 
-    Parameters
-    ----------
-    scene
-        The wall.
-    model
-        ``dem-dynamic``, or ``fem`` with the parameters that it has by default.
-    folder
-        Where the series is written; None keeps it in `moments`.
+    Blocks and joint points are those of the run that is observed, whatever its mesh.
     """
 
-    def __init__(self, scene: Scene, model: str, folder: Path | None) -> None:
-        wall = modal_wall(scene) if model == "fem" else None
-        points = contact_points(scene) if wall is None else wall.interface.points
-        super().__init__(Stage(scene, points, None if wall is None else _triangles(wall)), folder)
-        self._wall = wall
+    def __init__(self, scene: Scene, folder: Path | None) -> None:
+        super().__init__(Discretisation(scene, contact_points(scene)), folder)
+        self._wall: ModalWall | None = None
         self._multiplier = np.nan
         self._calm = 0
-        self._looks: list[tuple[int, Frame]] = []
+        self._moments: list[tuple[int, Frame]] = []
         self._stride = 1
         self._fall: tuple[float, list[tuple[int, Frame]]] = (np.nan, [])
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Look at a run: keep the state if it is at rest, or else remember it for a while."""
+        if isinstance(run.system.source, ModalWall) and run.system.source is not self._wall:
+            self._observe(run.system.source)
         if multiplier != self._multiplier:
             self._next_load(multiplier)
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
         if self._calm == CALM:
-            self.keep(self.frame(run, state, multiplier))
-            self._looks = []
-        elif not self._looks or state.steps >= self._looks[-1][0] + self._stride:
-            self._looks.append((state.steps, self.frame(run, state, multiplier)))
-            if len(self._looks) > FALL:
-                self._looks = self._looks[::2]
-                self._stride = 2 * (self._looks[1][0] - self._looks[0][0])
+            self.keep(self._frame(run, state, multiplier))
+            self._moments = []
+        elif not self._moments or state.steps >= self._moments[-1][0] + self._stride:
+            self._moments.append((state.steps, self._frame(run, state, multiplier)))
+            if len(self._moments) > FALL_FRAMES:
+                self._moments = self._moments[::2]
+                self._stride = 2 * (self._moments[1][0] - self._moments[0][0])
+
+    def _observe(self, wall: ModalWall) -> None:
+        """Turn to the mesh of a run; the pieces of blocks that may crack are blocks of their own there."""
+        self._wall = wall
+        triangles = Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
+        self._begin(Discretisation(wall.scene, wall.interface.points, triangles))
 
     def _next_load(self, multiplier: float) -> None:
         if multiplier == 0.0 and len(self._series):  # the search begins anew, more slowly
             self._series.clear()
-        if self._looks:
-            self._fall = (self._multiplier, self._looks)
-        self._multiplier, self._calm, self._looks, self._stride = multiplier, 0, [], 1
+        if self._moments:
+            self._fall = (self._multiplier, self._moments)
+        self._multiplier, self._calm, self._moments, self._stride = multiplier, 0, [], 1
 
     def finish(self, outcome: Outcome) -> None:
         """Write the fall under the load that brought the wall down, and end the series."""
-        if self._looks:
-            self._fall = (self._multiplier, self._looks)
+        if self._moments:
+            self._fall = (self._multiplier, self._moments)
         if self._fall[0] == outcome.upper:
             for _, frame in self._fall[1]:
                 self.keep(frame)
         super().finish(outcome)
 
-    def frame(self, run: Run, state: State, multiplier: float) -> Frame:
+    def _frame(self, run: Run, state: State, multiplier: float) -> Frame:
         """The moment of a run."""
-        stage = self.stage
+        wall = self.discretisation
         opening, slip, normal, tangential = run.tractions(state)
-        damage = state.history[DAMAGE].copy() if run.system.law.kernel is softening_kernel else np.zeros(len(opening))
-        frame = Frame(
-            multiplier,
-            run.motion_of_blocks(state),
-            opening,
-            slip,
-            normal,
-            tangential,
-            states_of_points(stage.scene, stage.points, opening, normal, tangential, damage),
-            run.velocity_of_blocks(state),
-            damage,
-        )
+        damage = run.interface.law.damage(state.history)
+        kinds = states_under_load(wall.scene, wall.points, opening, normal, tangential, damage)
+        # Where blocks may crack, the motion of whole blocks is one thing; here each piece is a block.
+        motion, velocity = run.system.motion_of_bodies(state.motion), run.system.motion_of_bodies(state.velocity)
+        frame = Frame(multiplier, motion, opening, slip, normal, tangential, kinds, velocity, damage)
         if self._wall is None:
             return frame
         displacement = self._wall.displacement(state.motion)
@@ -188,16 +161,12 @@ class MotionRecorder(Recorder):
 def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
     """Write the mechanism of an outcome as it grows; nothing where it has none."""
     frame = mechanism_frame(scene, outcome)
-    series = Series(Stage.of_rigid_blocks(scene), folder)
+    series = TimeSeries(Discretisation.of_rigid_blocks(scene), folder)
     series.clear()
     if frame is not None:
         series.add(replace(frame.scaled(0.0), state=np.zeros_like(frame.state)))
-        for share in np.linspace(0, 1, STEPS_OF_MECHANISM)[1:]:
+        for share in np.linspace(0, 1, MECHANISM_FRAMES)[1:]:
             series.add(frame.scaled(float(share) * DRAWN * wall_size(scene)))
-
-
-def _triangles(wall: ModalWall) -> Triangles:
-    return Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
 
 
 def stresses(wall: ModalWall, motion: Array) -> Array:
@@ -205,10 +174,5 @@ def stresses(wall: ModalWall, motion: Array) -> Array:
     young, poisson = wall.scene.block.young or 0.0, wall.scene.block.poisson
     strain_x, strain_y, shear = wall.strain(motion).T
     plane = young / (1 - poisson**2)
-    return np.column_stack(
-        [
-            plane * (strain_x + poisson * strain_y),
-            plane * (strain_y + poisson * strain_x),
-            young / (2 * (1 + poisson)) * shear,
-        ]
-    )
+    normal = (plane * (strain_x + poisson * strain_y), plane * (strain_y + poisson * strain_x))
+    return np.column_stack([*normal, young / (2 * (1 + poisson)) * shear])

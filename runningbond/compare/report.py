@@ -9,7 +9,6 @@ from importlib.metadata import version
 from pathlib import Path
 
 from .fingerprint import LIBRARIES, code_digest
-from .published import BARALDI, CONCENTRATED
 from .table import Comparison, Sheet, cost_sheets, multiplier_sheets
 
 DRAWN_WITH = ("pyvista", "vtk", "matplotlib")
@@ -27,24 +26,12 @@ figure { margin: 1.5rem 0; } img { max-width: 100%; height: auto; } figcaption {
 
 
 def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: float, why_no_plates: str = "") -> str:
-    """Write the page.
-
-    Parameters
-    ----------
-    comparison
-        What was run.
-    pictures
-        PNG files of charts and plates, in the order in which they are to stand.
-    tolerance
-        Relative width of the brackets that was asked for.
-    why_no_plates
-        Why there are no pictures of mechanisms; empty where there are.
-    """
+    """Write the page, with the PNG files of charts and plates in their order, or why there are no plates."""
     parts = [
         "<h1>Masonry walls from their description to their collapse</h1>",
         f"<p>{len(comparison.campaign)} cases: {len(comparison.scenes)} walls by {len(comparison.models)} models.</p>",
         "<h2>Collapse multipliers</h2>",
-        *map(table_html, _paper_in_one(multiplier_sheets(comparison))),
+        *map(table_html, multiplier_sheets(comparison)),
         "<h2>Charts and mechanisms</h2>",
         *([f"<p>{html.escape(why_no_plates)}</p>"] if why_no_plates else []),
         *map(figure_html, pictures),
@@ -70,27 +57,11 @@ def page_html(subject: str, parts: Sequence[str]) -> str:
     )
 
 
-def _paper_in_one(sheets: Sequence[Sheet]) -> list[Sheet]:
-    """The paper's two tables as one, its sixteen panels in a row; what only one of them prints is left blank."""
-    paper = [sheet for sheet in sheets if sheet.title in (BARALDI, CONCENTRATED)]
-    if len(paper) < 2:
-        return list(sheets)
-    heads = list(dict.fromkeys(head for sheet in paper for head in sheet.heads))
-    rows = [
-        [dict(zip(sheet.heads, row, strict=True)).get(head, "") for head in heads]
-        for sheet in paper
-        for row in sheet.rows
-    ]
-    others = [sheet for sheet in sheets if sheet not in paper]
-    return [Sheet("; ".join(sheet.title for sheet in paper), heads, rows), *others]
-
-
 def _provenance(comparison: Comparison, tolerance: float) -> Sheet:
-    written = datetime.now(UTC).isoformat(timespec="seconds")
     rows = [
-        ("models", ", ".join(comparison.models)),
+        ("models", ", ".join(comparison.names)),
         ("tolerance", f"{tolerance:g}"),
-        ("written", written),
+        ("written", datetime.now(UTC).isoformat(timespec="seconds")),
         ("runningbond", f"{version('runningbond')}, sources {code_digest()[:16]}"),
         ("Python", f"{platform.python_version()} on {platform.system()} {platform.machine()}"),
         *((name, version(name)) for name in (*LIBRARIES, *DRAWN_WITH)),

@@ -3,19 +3,22 @@
 import csv
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from rich.table import Table as RichTable
 from rich.text import Text
 
 from homog import homog
+from runningbond.pictures.captions import is_force
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
-from runningbond.scene import Scene, SceneError
+from runningbond.scene import Scene
 
 from .campaign import Campaign
+from .model import Model
 from .published import BARALDI, PublishedCase
+from .tasks import Cell
 
 OWN = "Your scenes"
 CORRECTED = "HOMO corrected, tan 30°"
@@ -46,34 +49,42 @@ class Sheet:
         return table
 
 
+def _line(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
 @dataclass(frozen=True)
 class Comparison:
-    """Scenes, the models run on them, what came out, and which of the scenes are published ones.
-
-    Parameters
-    ----------
-    scenes
-        Scenes by name.
-    models
-        Names of the models.
-    campaign
-        Their outcomes.
-    published
-        Published cases by the names of their scenes.
-    """
+    """Scenes by name, the models run on them, what came out, and the published cases by the names of their scenes."""
 
     scenes: Mapping[str, Scene]
-    models: Sequence[str]
+    models: Sequence[Model]
     campaign: Campaign
     published: Mapping[str, PublishedCase] = field(default_factory=dict)
 
-    def by_source(self) -> dict[str, list[str]]:
-        """Names of scenes by where they were published."""
+    @property
+    def names(self) -> list[str]:
+        """Names of the models."""
+        return [model.name for model in self.models]
+
+    def groups(self) -> dict[str, list[str]]:
+        """Names of scenes by the table they stand in: one a source, and λ and newtons apart."""
         groups: dict[str, list[str]] = {}
-        for name in self.scenes:
-            source = self.published[name].source if name in self.published else OWN
-            groups.setdefault(source, []).append(name)
+        for name, scene in self.scenes.items():
+            own = f"{OWN}: load [N]" if is_force(scene) else OWN
+            groups.setdefault(self.published[name].source if name in self.published else own, []).append(name)
         return groups
+
+    def outcome(self, name: str, model: Model) -> Outcome | None:
+        """What a model found of a scene."""
+        return self.campaign.outcomes.get((name, model.name))
+
+    def cell(self, name: str, model: Model, text: Callable[[Outcome], str]) -> str:
+        """A cell of a table: the text of an outcome, or why there is none."""
+        outcome = self.outcome(name, model)
+        if outcome is not None:
+            return text(outcome)
+        return "n/a" if (name, model.name) in self.campaign.inapplicable else "not run"
 
     def printed(self, name: str) -> dict[str, float]:
         """Values printed for a scene, and the homogenised one as its formula should read."""
@@ -83,71 +94,84 @@ class Comparison:
         corrected = {CORRECTED: corrected_homo(self.scenes[name])} if case.source == BARALDI else {}
         return {**case.printed, **corrected}
 
+    def labels(self, names: Iterable[str]) -> list[str]:
+        """What the values printed for some scenes are called."""
+        return list(dict.fromkeys(label for name in names for label in self.printed(name)))
 
-def _line(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+    def only_published(self) -> "Comparison":
+        """The part of it that is about published scenes."""
+        scenes = {name: scene for name, scene in self.scenes.items() if name in self.published}
+        outcomes = {cell: outcome for cell, outcome in self.campaign.outcomes.items() if cell[0] in scenes}
+        return replace(self, scenes=scenes, campaign=Campaign(outcomes))
 
 
 def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
-    """Printed values and brackets, one table a source."""
-    scenes, models, campaign = comparison.scenes, comparison.models, comparison.campaign
+    """Printed values and brackets, one table a group of scenes."""
     sheets = []
-    for source, names in comparison.by_source().items():
-        labels = _labels(comparison, names)
-        heads = ["scene", "title", *(x if x == CORRECTED else f"printed {x}" for x in labels), *models]
-        rows = []
-        for name in names:
-            values = comparison.printed(name)
-            cells = [_printed_number(label, values) for label in labels]
-            rows.append([name, scenes[name].title, *cells, *(_cell(campaign, name, model) for model in models)])
-        sheets.append(Sheet(source, heads, rows))
+    for title, names in comparison.groups().items():
+        labels = comparison.labels(names)
+        heads = ["title", *(label if label == CORRECTED else f"printed {label}" for label in labels)]
+        cells = {
+            name: [comparison.scenes[name].title, *(_printed_number(x, comparison.printed(name)) for x in labels)]
+            for name in names
+        }
+        sheets.append(_sheet(comparison, title, heads, cells, answer))
     return sheets
 
 
 def cost_sheets(comparison: Comparison) -> list[Sheet]:
-    """Degrees of freedom, steps and seconds, one table a source."""
-    scenes, models, campaign = comparison.scenes, comparison.models, comparison.campaign
+    """Degrees of freedom, steps and seconds, one table a group of scenes."""
+    blocks = {name: [str(int(scene.wall.sum()))] for name, scene in comparison.scenes.items()}
     return [
-        Sheet(
-            f"{source}: degrees of freedom / steps / seconds",
-            ["scene", "blocks", *models],
-            [
-                [name, str(int(scenes[name].wall.sum())), *(_cost(campaign, name, model) for model in models)]
-                for name in names
-            ],
+        _sheet(
+            comparison,
+            f"{title}: degrees of freedom / steps / seconds",
+            ["blocks"],
+            {name: blocks[name] for name in names},
+            _cost,
         )
-        for source, names in comparison.by_source().items()
+        for title, names in comparison.groups().items()
     ]
 
 
+def _sheet(
+    comparison: Comparison,
+    title: str,
+    heads: list[str],
+    cells: Mapping[str, list[str]],
+    text: Callable[[Outcome], str],
+) -> Sheet:
+    """A row a scene: its name, the cells that are its own, and the text of each model's outcome."""
+    models = comparison.models
+    rows = [[name, *own, *(comparison.cell(name, model, text) for model in models)] for name, own in cells.items()]
+    return Sheet(title, ["scene", *heads, *comparison.names], rows)
+
+
 def csv_text(comparison: Comparison) -> str:
-    """One row a scene and model, with the printed values of the scene."""
-    scenes, models, campaign = comparison.scenes, comparison.models, comparison.campaign
-    labels = _labels(comparison, list(scenes))
+    """One row a scene and model, with the unit of its multiplier and the printed values of the scene."""
+    labels = comparison.labels(comparison.scenes)
     scalars = [key for key in Outcome("", "", "undecided").summary() if key not in ("scene", "model")]
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(["scene", "title", "source", "blocks", "model", *scalars, *(f"printed {x}" for x in labels)])
-    for source, names in comparison.by_source().items():
+    heads = ["scene", "title", "source", "blocks", "model", "unit"]
+    writer.writerow([*heads, *scalars, *(f"printed {label}" for label in labels)])
+    for source, names in comparison.groups().items():
         for name in names:
-            scene, printed = scenes[name], comparison.printed(name)
-            for model in models:
-                outcome = campaign.outcomes.get((name, model))
-                found = outcome.summary() if outcome else _nothing(campaign, name, model)
+            scene, printed = comparison.scenes[name], comparison.printed(name)
+            for model in comparison.models:
+                outcome = comparison.outcome(name, model)
+                values = outcome.summary() if outcome else _no_outcome(comparison.campaign, (name, model.name))
+                unit = "N" if is_force(scene) else "1"
                 writer.writerow(
-                    [name, scene.title, source, int(scene.wall.sum()), model]
-                    + [found.get(key) for key in scalars]
+                    [name, scene.title, source, int(scene.wall.sum()), model.name, unit]
+                    + [values.get(key) for key in scalars]
                     + [printed.get(label) for label in labels]
                 )
     return buffer.getvalue()
 
 
-def _labels(comparison: Comparison, names: Sequence[str]) -> list[str]:
-    return list(dict.fromkeys(label for name in names for label in comparison.printed(name)))
-
-
-def _nothing(campaign: Campaign, name: str, model: str) -> dict[str, str]:
-    reason = campaign.inapplicable.get((name, model))
+def _no_outcome(campaign: Campaign, cell: Cell) -> dict[str, str]:
+    reason = campaign.inapplicable.get(cell)
     return {"status": "not run"} if reason is None else {"status": "not applicable", "message": reason}
 
 
@@ -155,8 +179,7 @@ def corrected_homo(scene: Scene) -> float:
     """Homogenised multiplier by the corrected Eq. (6), with the tan 30° the paper's column was computed with."""
     friction = math.tan(math.radians(30))
     multiplier = homog(replace(scene, joint=replace(scene.joint, friction=friction))).multiplier
-    if multiplier is None:  # pragma: no cover - homog answers or refuses
-        raise SceneError("model homog", "found no multiplier")
+    assert multiplier is not None  # it answers or refuses
     return multiplier
 
 
@@ -167,19 +190,10 @@ def _printed_number(label: str, values: Mapping[str, float]) -> str:
     return number(values[label]) if label == CORRECTED else f"{values[label]:.3f}"
 
 
-def _cell(campaign: Campaign, name: str, model: str) -> str:
-    if (name, model) in campaign.inapplicable:
-        return "n/a"
-    outcome = campaign.outcomes.get((name, model))
-    if outcome is None:
-        return "not run"
-    return answer(outcome)
-
-
 def answer(outcome: Outcome) -> str:
     """Answer of an outcome as tables print it: the bracket of a collapse, any other status before what is known."""
-    found = bracket(outcome)
-    return found if outcome.status == "collapse" else f"{outcome.status} {found}".strip()
+    known = bracket(outcome)
+    return known if outcome.status == "collapse" else f"{outcome.status} {known}".strip()
 
 
 def bracket(outcome: Outcome) -> str:
@@ -194,10 +208,7 @@ def bracket(outcome: Outcome) -> str:
     return "" if lower is None else f"≥ {number(lower)}"
 
 
-def _cost(campaign: Campaign, name: str, model: str) -> str:
-    outcome = campaign.outcomes.get((name, model))
-    if outcome is None:
-        return "n/a" if (name, model) in campaign.inapplicable else "not run"
+def _cost(outcome: Outcome) -> str:
     dofs = "–" if outcome.dofs is None else str(outcome.dofs)
     steps = "–" if outcome.steps is None else str(outcome.steps)
     return f"{dofs} / {steps} / {float(f'{outcome.seconds:.2g}'):g}"

@@ -1,19 +1,22 @@
-"""Blocks in motion: the system, its integration, its load controls and its verdict."""
+"""Bodies in motion: their system and its integration, load controls, rest and collapse."""
 
-from .controls import Drive, drive, ramp, settled_drive
-from .finite_run import FiniteRun, FiniteState, finite_curve
-from .loading import LoadSteps, load_steps
-from .run import Criteria, Ledger, Observer, Run, Unstable, Verdict, moved_by, nobody, settle
-from .system import BlockSystem, Restraint, State, force_unit
+from .collapse import U_CRIT, CollapseDetector, Criteria, Verdict, settle
+from .collapse_load import collapse_by_steps
+from .controls import Drive, drive, pushover_curve, ramp, settled_drive
+from .load_stepping import LoadSteps, load_steps
+from .run import Ledger, Observer, Run, Unstable, no_observer
+from .state import State
+from .system import BlockSystem, ContactSearch, Interface, Restraint, force_unit
 from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
-from .verdict import collapse_by_steps
 
 __all__ = [
+    "U_CRIT",
     "BlockSystem",
+    "CollapseDetector",
+    "ContactSearch",
     "Criteria",
     "Drive",
-    "FiniteRun",
-    "FiniteState",
+    "Interface",
     "Ledger",
     "LoadSteps",
     "Observer",
@@ -25,13 +28,12 @@ __all__ = [
     "block_frequency_squared",
     "collapse_by_steps",
     "drive",
-    "finite_curve",
     "force_unit",
     "joint_shares",
     "load_steps",
     "mass_factor",
-    "moved_by",
-    "nobody",
+    "no_observer",
+    "pushover_curve",
     "ramp",
     "settle",
     "settled_drive",

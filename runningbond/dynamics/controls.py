@@ -1,14 +1,19 @@
-"""Load controls: a ramp, and work-conjugate displacement control; steps of constant load are in `loading`."""
+"""Load controls: a ramp, and work-conjugate displacement control; steps of constant load are in `load_stepping`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
-from runningbond.scene import Array
+from runningbond.scene import Array, Scene
 
+from .collapse import U_CRIT, Criteria, settle
 from .run import Run
-from .system import State
+from .state import State
+
+CURVE_ROWS, START_ROWS = 4000, 20
+"""Rows of a pushover curve if all bodies move as far as the control point, and those in which they gather speed."""
 
 
 def ramp(run: Run, state: State, start: float, stop: float, steps: int, interval: int = 20) -> None:
@@ -46,16 +51,61 @@ def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200
     The work-conjugate displacement, live load times motion, grows at a constant rate after a soft start; the
     multiplier follows. It takes `steps` if everything moves as far as the control point, and fewer as a rule.
     """
-    system = run.system
-    state = start.copy()
-    speed = _work_displacement(run, distance) / (steps * run.dt)
+    system, state = run.system, start.copy()
+    power = float(distance * np.abs(system.live).sum()) / (steps * run.dt)
     soft = max(1, pieces // 20)
     pace = (pieces, soft, steps // pieces)
-    found = push(run, state, distance, speed, pace, lambda motion: (float(system.control @ motion),))
-    return Drive(found, float(found[soft:, 1].max(initial=found[0, 1])), float("inf"), state)
+    curve = _push(run, state, distance, power, pace, lambda motion: (float(system.control @ motion),))
+    return Drive(curve, float(curve[soft:, 1].max(initial=curve[0, 1])), float("inf"), state)
 
 
-def push(
+def settled_drive(
+    run: Run, start: State, distance: float, tolerance: float, steps: int = 20_000, halvings: int = 8
+) -> Drive:
+    """Halve the speed until the peak of the curve changes by less than a relative tolerance."""
+    slow = drive(run, start, distance, steps)
+    for _ in range(halvings):
+        fast, steps = slow, 2 * steps
+        slow = drive(run, start, distance, steps)
+        error = abs(fast.peak - slow.peak)
+        slow = Drive(slow.curve, slow.peak, error, slow.state)
+        if error <= tolerance * abs(slow.peak):
+            break
+    return slow
+
+
+def pushover_curve(
+    run: Run, scene: Scene, distance: float, speed: float, measure: Callable[[Array], tuple[float, float]]
+) -> Array:
+    """Pushover curve of a wall from its rest under its weight, at a constant power of the live load.
+
+    Parameters
+    ----------
+    run
+        The blocks.
+    scene
+        Their wall.
+    distance
+        Displacement of the control point at which to stop [m].
+    speed
+        Mean speed of the blocks along the live load [m/s].
+    measure
+        Displacement of the control point, and of the corner that has moved farthest, in a motion ``(nd,)`` [m].
+
+    Returns
+    -------
+    (n, 3) float
+        What `measure` says, and the mean multiplier since the last row.
+    """
+    state = State.at_rest(run.system)
+    settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
+    steps = max(1, round(distance / (speed * CURVE_ROWS * run.dt)))
+    power = speed * float(np.abs(run.system.live).sum())
+    with threadpool_limits(limits=1, user_api="blas"):  # as in `collapse_by_steps`
+        return _push(run, state, distance, power, (CURVE_ROWS, START_ROWS, steps), measure)
+
+
+def _push(
     run: Run,
     state: State,
     distance: float,
@@ -81,33 +131,12 @@ def push(
     (n, m + 1) float
         The measures, and the mean multiplier since the last row.
     """
-    pieces, soft, steps = pace
+    rows, soft, steps = pace
     curve: list[tuple[float, ...]] = []
     given = run.given(state)
-    for piece in range(pieces):
-        multiplier = run.drive(state, power * min(1.0, (piece + 1) / soft), steps, given=given)
+    for row in range(rows):
+        multiplier = run.drive(state, power * min(1.0, (row + 1) / soft), steps, given=given)
         curve.append((*measure(state.motion), multiplier))
         if curve[-1][0] >= distance:
             break
     return np.array(curve)
-
-
-def settled_drive(
-    run: Run, start: State, distance: float, tolerance: float, steps: int = 20_000, halvings: int = 8
-) -> Drive:
-    """Halve the speed until the peak of the curve changes by less than a relative tolerance."""
-    slow = drive(run, start, distance, steps)
-    for _ in range(halvings):
-        fast, steps = slow, 2 * steps
-        slow = drive(run, start, distance, steps)
-        error = abs(fast.peak - slow.peak)
-        slow = Drive(slow.curve, slow.peak, error, slow.state)
-        if error <= tolerance * abs(slow.peak):
-            break
-    return slow
-
-
-def _work_displacement(run: Run, distance: float) -> float:
-    """Work of the live load at λ = 1 when every freedom it acts on moves as far as the control point."""
-    system = run.system
-    return float(distance * np.abs(system.live).sum())

@@ -1,52 +1,53 @@
-"""The block system: modes and their masses, joint points and their law, loads, and how modes move joints.
+"""Bodies and the interface between them: masses, loads and restraint, joint points and how modes move them.
 
 A model is a choice of modes and a pair of kernels, `gather` from motions to jumps and `scatter` back from joint
-forces to motions; the integrator sees vectors only and the law jumps only.
+forces to motions; the integrator sees vectors only and the law jumps only. At small displacements the interface is
+one for ever; at finite ones a `ContactSearch` finds the contacts anew as bodies move, and an interface for them.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
+from scipy.sparse import csr_array
 
+from runningbond.contacts.outline import Outline
+from runningbond.contacts.search import Contacts
 from runningbond.joints import PointStrength
-from runningbond.joints.point_kernel import KernelLaw
+from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
 
 Kernel: TypeAlias = Callable[..., Any]
 
 
-@dataclass(frozen=True, eq=False)
-class Restraint:
-    """Blocks whose motion is restrained at points, in coordinates that leave the restraint satisfied.
+class Restraint(NamedTuple):
+    """Bodies whose motion is restrained at points, in coordinates that leave the restraint satisfied.
 
     Parameters
     ----------
     freedom : (nr, 3) int
-        Freedoms of each such block.
+        Freedoms of each such body.
     basis : (nr, 3, 3) float
-        Motion of the block per coordinate, mass-orthogonal; columns that are not needed are zero.
+        Motion of the body per coordinate, mass-orthogonal; columns that are not needed are zero.
     """
 
     freedom: Indices
     basis: Array
 
+    @classmethod
+    def none(cls) -> "Restraint":
+        """No body is restrained."""
+        return cls(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3)))
+
 
 @dataclass(frozen=True, eq=False)
-class BlockSystem:
-    """Blocks in motion.
+class Interface:
+    """Joint points between bodies.
 
     Parameters
     ----------
-    mass : (nd,) float
-        Modal masses; inf where a mode is held.
-    stiffness : (nd,) float
-        Modal stiffness of the blocks themselves [N/m]; zero for rigid modes.
-    viscosity : (nd,) float
-        Modal viscous damping coefficient [N s/m].
-    dead, live : (nd,) float
-        Modal loads [N], the live one for λ = 1.
     law
         Law of the joint points.
     area : (np,) float
@@ -55,17 +56,79 @@ class BlockSystem:
         Compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry,
         force)``; the latter subtracts the forces of the joints' tractions from `force`.
     geometry
-        Arrays, and groups of them, that the two kernels share.
-    rigid : (nb, 3) int
-        Where in the motion each block's translations along x and y [m] and its rotation [rad] stand.
-    restraint
-        Blocks held at points.
-    block_frequency_squared : float
-        Largest ω² [1/s²] of any block against its share of its joints: an upper bound of the system's.
+        The arrays that the two kernels share: a named tuple of the kernels' module.
+    frequency_squared : float
+        Largest ω² [1/s²] of any body against its share of its joints: an upper bound of the system's.
+    """
+
+    law: KernelLaw
+    area: Array
+    gather: Kernel
+    scatter: Kernel
+    geometry: NamedTuple
+    frequency_squared: float
+
+    def jumps(self, motion: Array) -> tuple[Array, Array]:
+        """Opening and slip of the points after a motion ``(nd,)``, ``(np,)`` each [m]."""
+        opening, slip = np.zeros((2, self.law.points))
+        self.gather(motion, self.geometry, opening, slip)
+        return opening, slip
+
+
+class ContactSearch(Protocol):
+    """How a model finds the contacts of its bodies at finite displacements, and the interface on them."""
+
+    outline: Outline
+    """Outlines of the undeformed bodies."""
+
+    undeformed: Contacts
+    """Contacts of the undeformed wall."""
+
+    def find(self, motion: Array, margin: float) -> Contacts:
+        """Contacts nearer than a margin [m] after a motion ``(nd,)``."""
+
+    def interface_on(self, contacts: Contacts, system: "BlockSystem") -> Interface:
+        """The interface of a system's bodies on other contacts than the undeformed ones."""
+
+    def resting(self, contacts: Contacts, motion: Array) -> Indices:
+        """A number, for each contact, of the corner that rests and the side it rests on after a motion ``(nd,)``."""
+
+    def deformation(self, motion: Array) -> float:
+        """At most how far a point of a body is from where a rigid one would have it [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class BlockSystem:
+    """Bodies in motion, with an interface between them: blocks, or the pieces of blocks that may crack.
+
+    Parameters
+    ----------
+    mass : (nd,) float
+        Modal masses; inf where a mode is held.
+    stiffness : (nd,) float
+        Modal stiffness of the bodies themselves [N/m]; zero for rigid modes.
+    viscosity : (nd,) float
+        Modal viscous damping coefficient [N s/m].
+    dead, live : (nd,) float
+        Modal loads [N], the live one for λ = 1.
     control : (nd,) float
         Displacement of the control point along the live load, per modal motion.
     force_unit : (nd,) float
         Force of each mode against which its unbalanced one is measured; inf where a mode is held.
+    rigid : (n, 3) int
+        Where in the motion each body's translations along x and y [m] and its rotation [rad] stand.
+    owner : (n,) int
+        Block that each body is part of.
+    restraint
+        Bodies held at points.
+    interface
+        What holds them together: at finite displacements that of the undeformed contacts.
+    contacts
+        How contacts are found anew as bodies move; None at small displacements.
+    block_motion : (3 nb, 3 n) sparse array
+        Rigid motion of the blocks per rigid motion of the bodies; None where each body is a block.
+    source
+        What it was set up from, for observers: the wall in modal coordinates where blocks deform.
     """
 
     mass: Array
@@ -73,16 +136,15 @@ class BlockSystem:
     viscosity: Array
     dead: Array
     live: Array
-    law: KernelLaw
-    area: Array
-    gather: Kernel
-    scatter: Kernel
-    geometry: tuple[Any, ...]
-    rigid: Indices
-    restraint: Restraint
-    block_frequency_squared: float
     control: Array
     force_unit: Array
+    rigid: Indices
+    owner: Indices
+    restraint: Restraint
+    interface: Interface
+    contacts: ContactSearch | None = None
+    block_motion: csr_array | None = None
+    source: object = None
 
     @property
     def freedoms(self) -> int:
@@ -96,7 +158,34 @@ class BlockSystem:
 
     def measure(self, force: Array) -> float:
         """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
-        return float((np.abs(force) / self.force_unit)[np.isfinite(self.mass)].max(initial=0.0))
+        moving, unit = self._moving
+        return float((np.abs(force[moving]) / unit).max(initial=0.0))
+
+    @cached_property
+    def _moving(self) -> tuple[Indices, Array]:
+        """The modes that move, and their units of force."""
+        moving = np.flatnonzero(np.isfinite(self.mass))
+        return moving, self.force_unit[moving]
+
+    def unrestrained(self, motion: Array) -> Array:
+        """Motion or velocity with restrained coordinates turned back into those of their bodies, ``(nd,)``."""
+        moved = motion.copy()
+        for freedom, basis in zip(*self.restraint, strict=True):
+            moved[freedom] = basis @ motion[freedom]
+        return moved
+
+    def motion_of_blocks(self, motion: Array) -> Array:
+        """Translation and rotation of each block in a motion or velocity ``(nd,)``, ``(nb, 3)`` [m, m, rad]."""
+        rigid = self.motion_of_bodies(motion)
+        return rigid if self.block_motion is None else np.reshape(self.block_motion @ rigid.ravel(), (-1, 3))
+
+    def motion_of_bodies(self, motion: Array) -> Array:
+        """Translation and rotation of each body in a motion or velocity ``(nd,)``, ``(n, 3)`` [m, m, rad]."""
+        return self.unrestrained(motion)[self.rigid]
+
+    def farthest(self, motion: Array, unit: float | Array = 1.0) -> float:
+        """Largest translation of any body in a motion ``(nd,)``, in a unit [m] or in each body's own ``(n,)``."""
+        return float((np.abs(motion[self.rigid[:, :2]]).max(axis=1) / unit).max())
 
 
 def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength: PointStrength) -> Array:
@@ -123,55 +212,3 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
     each = np.full(len(scene.blocks), strength.strongest or float(np.abs(live).max()) or 1.0)
     force = gravity * scene.mass if gravity > 0 else each
     return np.asarray(force[block] * np.sqrt(mass / scene.mass[block]))
-
-
-@dataclass(eq=False)
-class State:
-    """Where a system is: brought forward in place by the integrator.
-
-    Parameters
-    ----------
-    motion, velocity : (nd,) float
-        Modal displacement, and velocity half a step behind.
-    history : (rows, np) float
-        History of the joint points, as their law keeps it.
-    damped : (nd,) float
-        Work done against damping [J], mode by mode.
-    external : float
-        Work of the loads [J].
-    unbalanced : (nd,) float
-        Force of the last step.
-    steps : int
-        Steps taken.
-    supplied : (1,) float
-        Largest energy that was found supplied at any look at it [J].
-    """
-
-    motion: Array
-    velocity: Array
-    history: Array
-    damped: Array
-    unbalanced: Array
-    external: float = 0.0
-    steps: int = 0
-    supplied: Array = field(default_factory=lambda: np.zeros(1))
-
-    @classmethod
-    def at_rest(cls, system: BlockSystem) -> "State":
-        """The undeformed system without velocity."""
-        nd = len(system.mass)
-        history = np.zeros((system.law.rows, system.law.points))
-        return cls(np.zeros(nd), np.zeros(nd), history, np.zeros(nd), np.zeros(nd))
-
-    def copy(self) -> "State":
-        """A state that goes its own way from here."""
-        return State(
-            self.motion.copy(),
-            self.velocity.copy(),
-            self.history.copy(),
-            self.damped.copy(),
-            self.unbalanced.copy(),
-            self.external,
-            self.steps,
-            self.supplied.copy(),
-        )

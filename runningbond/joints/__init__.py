@@ -1,15 +1,18 @@
 """Joint points and the Mohr–Coulomb joint: the one place where its signs are written down."""
 
+from .law import KernelLaw, Law
 from .mohr_coulomb import PointStrength, point_strength
 from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw, resultant_law
 from .stiffness import joint_stiffness
 from .stiffness_range import stiffness_note
-from .wall_points import wall_inset, wall_points, wall_stiffness, wall_strength
+from .wall_points import static_law, wall_inset, wall_points, wall_stiffness, wall_strength
 
 __all__ = [
     "JointPoints",
+    "KernelLaw",
+    "Law",
     "PointLaw",
     "PointResponse",
     "PointStrength",
@@ -21,6 +24,7 @@ __all__ = [
     "lobatto",
     "point_strength",
     "resultant_law",
+    "static_law",
     "stiffness_note",
     "wall_inset",
     "wall_points",

@@ -12,17 +12,18 @@ from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
-from runningbond.scene.folder_lock import alone
+from runningbond.scene.folder_lock import locked
 
-_HOME = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "runningbond"
 _ROOMS = ("runningbond/joints", "runningbond/contacts", "runningbond/dynamics", "dem", "fem_interface")
 
 
 def _digest() -> str:
+    """Digest of all of the package's own kernels."""
     root = Path(__file__).parents[2]
     digest = hashlib.sha256(numba.__version__.encode())
     for room in _ROOMS:
@@ -31,8 +32,17 @@ def _digest() -> str:
     return digest.hexdigest()[:16]
 
 
-if "NUMBA_CACHE_DIR" not in os.environ:
-    numba.config.CACHE_DIR = str(_HOME / _digest())
+def _cache_folder() -> str:
+    """Folder of the kernels; empty for a user who has no home, and whose kernels are not kept."""
+    if "NUMBA_CACHE_DIR" in os.environ:
+        return os.environ["NUMBA_CACHE_DIR"]
+    with suppress(RuntimeError):
+        cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+        return str(Path(cache) / "runningbond" / _digest())
+    return ""
+
+
+numba.config.CACHE_DIR = _cache_folder()
 
 
 class SharedCache(FunctionCache):  # type: ignore[misc]
@@ -41,19 +51,20 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
     - Numba takes the number of a new file from an index that another process may be about to change, so that one
       signature may find the code of another there. Here one process saves at a time.
     - Numba knows a kernel that is closed over other kernels, as the loop over a law is, by names that these have in
-      one process only, and never finds it again. Here it is known by what they are called in their source.
+      one process only, and never finds it again. Here it is known by what they are called in their source; those of
+      a user's own, which the name of the folder does not tell apart, by what they are made of as well.
     - A cache that is damaged, or on a disk that takes no more, costs a compilation and not the answer.
     """
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
-        return sig, codegen.magic_tuple(), _identity(self._py_func)
+        return sig, codegen.magic_tuple(), identity(self._py_func)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Give the compiled kernel for a signature, or None."""
         try:
             return super().load_overload(sig, target_context)
         except Exception:  # whatever unpickling half a file raises
-            with suppress(OSError), alone(Path(self.cache_path)):
+            with suppress(OSError), locked(Path(self.cache_path)):
                 self.flush()
             return None
 
@@ -61,20 +72,36 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
         """Keep a compiled kernel."""
         with suppress(OSError):
             self._impl.locator.ensure_cache_path()
-            with alone(Path(self.cache_path)):
+            with locked(Path(self.cache_path)):
                 super().save_overload(sig, data)
 
 
-def _identity(function: Any) -> tuple[Any, ...]:
-    """What a function is called in its source, and what it is closed over."""
-    closed_over = [cell.cell_contents for cell in function.__closure__ or ()]
-    known_by = (_identity(value.py_func) if isinstance(value, Dispatcher) else dumps(value) for value in closed_over)
-    return function.__module__, function.__qualname__, *known_by
+def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
+    """What a function is called in its source, and what it is closed over; of a foreign one, its code as well.
+
+    The same in every process, as long as the function does the same. `callers` are functions that are being named.
+    """
+    code = function.__code__
+    used = [cell.cell_contents for cell in function.__closure__ or ()]
+    own: tuple[Any, ...] = ()
+    if not f"{function.__module__}.".startswith(tuple(room.replace("/", ".") + "." for room in _ROOMS)):
+        own = code.co_code, [dumps(value) for value in code.co_consts if not hasattr(value, "co_code")]
+        named = (function.__globals__.get(name) for name in code.co_names)
+        used += [value for value in named if isinstance(value, (Dispatcher, bool, int, float, tuple, np.ndarray))]
+    callers = (*callers, function)
+    known_by = (
+        identity(value.py_func, callers) if isinstance(value, Dispatcher) else dumps(value)
+        for value in used
+        if not isinstance(value, Dispatcher) or value.py_func not in callers
+    )
+    return function.__module__, function.__qualname__, repr(own), *known_by
 
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Decorator of every kernel: compiled on first use, serial, exact arithmetic (no fastmath)."""
     dispatcher: Any = numba.njit(error_model="numpy", nogil=True)(function)
     with suppress(RuntimeError):  # where there is no folder to keep it in
+        if not numba.config.CACHE_DIR:
+            return dispatcher
         dispatcher._cache = SharedCache(function)
     return dispatcher

@@ -62,8 +62,8 @@ class PointStrength:
 
 def truncated_cone(material: JointMaterial) -> tuple[float, float, float]:
     """Friction tan φ, tension f_t [Pa] and shear s at that tension [Pa] of a material."""
-    cohesion, friction, tension = material.cohesion, material.friction, material.tensile_strength
-    # No joint pulls beyond the apex of its cone, even where only the friction of a material was changed.
+    cohesion, friction, tension = material.cohesion, material.friction, material.tension
+    # The apex, rounded, may lie a little beyond the cone.
     if friction * tension > cohesion:
         tension = cohesion / friction
     return friction, tension, max(0.0, cohesion - tension * friction)

@@ -2,9 +2,11 @@
 
 import numpy as np
 
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Indices, Scene, SceneError
 
+from .law import Law
 from .mohr_coulomb import PointStrength, truncated_cone
+from .point_law import PointLaw
 from .points import JointPoints, Rule, joint_points
 from .stiffness import joint_stiffness
 
@@ -21,7 +23,12 @@ def wall_inset(scene: Scene) -> Array:
 
 def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:
     """Strength of points on a scene's joints."""
-    cones = np.array([truncated_cone(material) for material in scene.joint_materials])
+    cones = np.array(
+        [
+            material.law.cone(material) if isinstance(material.law, Law) else truncated_cone(material)
+            for material in scene.joint_materials
+        ]
+    )
     friction, tension, shear = cones[scene.material_of_joint[points.joint]].T
     return PointStrength(friction, tension * points.area, shear * points.area)
 
@@ -34,6 +41,24 @@ def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
     SceneError
         If the scene gives its joints no stiffness.
     """
-    of_material = np.array([(found.normal, found.shear) for found in map(joint_stiffness, scene.joint_materials)])
+    of_material = np.array([(each.normal, each.shear) for each in map(joint_stiffness, scene.joint_materials)])
     normal, shear = of_material[scene.material_of_joint[joint]].T
     return normal, shear
+
+
+def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Array) -> PointLaw:
+    """Law of a scene's joint points with a tangent, of points with a strength and stiffnesses ``(np,)`` [N/m].
+
+    Raises
+    ------
+    SceneError
+        For a law that has no tangent.
+    """
+    if all(material.law is None for material in scene.joint_materials):
+        return PointLaw(strength, normal, shear)
+    from .wall_law import common_law
+
+    law = common_law(scene.joint_materials)
+    if law.response is None:
+        raise SceneError("joint.law", f'"{law.name}" has no response with a tangent, which dem-static needs')
+    return law.response(strength, normal, shear)

@@ -17,7 +17,7 @@ from runningbond.scene import Array, Scene
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 
-FALLS = "falls under its dead load: no admissible forces balance it"
+NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
 ZERO = 1e-6
 """Multiplier, in units of the live load, below which a bracket need not be relatively narrow: zero is an answer."""
 
@@ -27,7 +27,7 @@ SOUND = 1e-6
 GLUED = 1e6
 """Strength of a joint point, in weights of the heaviest block, above which the program is first tried with this one.
 
-Forces that such a point never comes to need not be in the program, where they would drown those that it does.
+Forces that such a point never reaches need not be in the program, where the others would be lost beside them.
 """
 
 
@@ -141,7 +141,7 @@ def limit_state(system: Equilibrium) -> LimitState:
     if (
         state.forces.status == "optimal"
         and state.sound
-        and not breaks(system, weaker, state.forces.motion, dilatancy=system.strength.friction)
+        and not spends_cut_strength(system, weaker, state.forces.motion, dilatancy=system.strength.friction)
     ):
         return state
     return limit_state(system.in_forces_of(GLUED))
@@ -152,21 +152,21 @@ def _cut(system: Equilibrium) -> Equilibrium:
     strength = system.strength
     if strength.strongest <= GLUED:
         return system
-    # The cone is cut off farther down, where it is wider: whoever only slips has as much to overcome as before.
+    # The cone is cut off farther down, where it is wider: a point that only slips resists as much as before.
     tension = strength.tension.clip(max=GLUED)
     shear = (strength.cohesion - strength.friction * tension).clip(max=GLUED)
     return replace(system, strength=PointStrength(strength.friction, tension, shear))
 
 
-def breaks(whole: Equilibrium, weaker: Equilibrium, motion: Array, *, dilatancy: Array | float) -> bool:
-    """Whether a mechanism ``(nd,)`` spends, beyond rounding, of a strength that a weaker system has less of.
+def spends_cut_strength(system: Equilibrium, weaker: Equilibrium, motion: Array, *, dilatancy: Array | float) -> bool:
+    """Whether a mechanism ``(nd,)`` dissipates, beyond rounding, strength of which a weaker system has less.
 
-    What opens by `dilatancy` times its slip, as the mechanism's flow rule has it, spends of its cohesion only.
+    A point that opens by `dilatancy` times its slip, as its flow rule says, dissipates cohesion only.
     """
-    unit = weaker.force_unit / whole.force_unit * (1 + SOUND)
-    slip = np.abs(whole.slip.T @ motion)
-    jumps = np.array([np.abs(whole.opening.T @ motion - dilatancy * slip), slip])
-    pairs = [(each.strength.tension, each.strength.cohesion) for each in (weaker, whole)]
+    unit = weaker.force_unit / system.force_unit * (1 + SOUND)
+    slip = np.abs(system.slip.T @ motion)
+    jumps = np.array([np.abs(system.opening.T @ motion - dilatancy * slip), slip])
+    pairs = [(each.strength.tension, each.strength.cohesion) for each in (weaker, system)]
     cut = np.array([unit * less < strength for less, strength in zip(*pairs, strict=True)])
     return float(jumps[cut].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))
 
@@ -196,8 +196,13 @@ def stands_under_dead_load(system: Equilibrium) -> bool | None:
     return None
 
 
-def locks(system: Equilibrium) -> bool:
-    """Whether forces that no strength limits balance the live load alone, so that every λ is carried."""
+def is_self_locking(scene: Scene) -> bool:
+    """Whether admissible joint forces balance any multiple of a scene's live load."""
+    return _balances_any_multiple(equilibrium(scene))
+
+
+def _balances_any_multiple(system: Equilibrium) -> bool:
+    """Whether forces of dry joints balance the live load alone; they may then be added any number of times."""
     dry = system.without_strength(system.live)
     return solve_forces(dry, coulomb(dry.strength), "zero").status == "optimal"
 
@@ -213,16 +218,16 @@ def judge(state: LimitState) -> tuple[Status, str]:
     if stands is None:
         return "failed", "the solver cannot tell whether the wall stands under its dead load"
     if not stands:
-        return "infeasible", FALLS
+        return "infeasible", NO_EQUILIBRIUM
     if program == "optimal":
         if not state.sound:
             return "failed", f"forces and mechanism disagree: {state.measures}"
         return "collapse", "static and kinematic bound, associated joints; true friction may collapse earlier"
     if program == "budget":
         return "undecided", "the linear program ran out of iterations"
-    if locks(system):
+    if _balances_any_multiple(system):
         return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
-    return "failed", f"the linear program solver gave up: {program}"
+    return "failed", f"the linear program was not solved: {program}"
 
 
 def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
@@ -244,21 +249,21 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     system = equilibrium(scene)
     state = limit_state(system)
     status, message = judge(state)
-    found = Outcome(
+    outcome = Outcome(
         scene.title, "limit", "undecided", dofs=system.freedoms, steps=state.forces.iterations, message=message
     )
-    found = _bracketed(found, state, tolerance) if status == "collapse" else replace(found, status=status)
-    return replace(found, seconds=time.perf_counter() - start)
+    outcome = _bracketed(outcome, state, tolerance) if status == "collapse" else replace(outcome, status=status)
+    return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _bracketed(found: Outcome, state: LimitState, tolerance: float) -> Outcome:
+def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome:
     system, forces = state.system, state.forces
     static, kinematic = (system.live_unit * max(0.0, x) for x in (forces.multiplier, state.kinematic_multiplier))
     lower, upper = min(static, kinematic), max(static, kinematic)
     if upper - lower > tolerance * max(upper, system.live_unit * ZERO):
-        return replace(found, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
+        return replace(outcome, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
     return replace(
-        found,
+        outcome,
         status="collapse",
         multiplier=static,
         lower=lower,

@@ -75,7 +75,7 @@ class LinearProgram:
 
 @dataclass(frozen=True, eq=False)
 class ForceSolution:
-    """What a linear program found, in the units of its `Equilibrium`; arrays are empty without an optimum.
+    """Solution of a linear program, in the units of its `Equilibrium`; arrays are empty without an optimum.
 
     Parameters
     ----------
@@ -122,30 +122,30 @@ def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -
 def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *, method: str = "") -> ForceSolution:
     """Solve `force_program`: by interior point and crossover, or by simplex where nothing is optimised."""
     program = force_program(system, forces, aim)
-    found = linprog(  # type: ignore[call-overload]  # its stubs know no sparse A_eq
+    result = linprog(  # type: ignore[call-overload]  # its stubs know no sparse A_eq
         program.cost,
         A_eq=program.matrix,
         b_eq=program.right,
         bounds=program.bounds,
         method=method or ("highs-ds" if aim == "zero" else "highs-ipm"),
     )
-    status = STATUS[int(found.status)]
-    if found.x is None or status != "optimal":
+    status = STATUS[int(result.status)]
+    if result.x is None or status != "optimal":
         none = np.zeros(0)
-        return ForceSolution(status, np.nan, none, none, none, none, int(found.nit))
+        return ForceSolution(status, np.nan, none, none, none, none, int(result.nit))
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
-    rays = found.x[: n_rays * n].reshape(n_rays, n)
+    rays = result.x[: n_rays * n].reshape(n_rays, n)
     tangential = (np.asarray(forces.slopes) * rays).sum(axis=0)
     if forces.has_shear:
-        tangential = tangential + found.x[n_rays * n : (n_rays + 1) * n]
+        tangential = tangential + result.x[n_rays * n : (n_rays + 1) * n]
     return ForceSolution(
         status,
-        float(found.x[-1]),
+        float(result.x[-1]),
         rays.sum(axis=0),
         tangential,
-        found.x[-1 - n_pins : -1],
-        np.asarray(found.eqlin.marginals) / _mechanism_scale(system),
-        int(found.nit),
+        result.x[-1 - n_pins : -1],
+        np.asarray(result.eqlin.marginals) / _mechanism_scale(system),
+        int(result.nit),
     )
 
 
@@ -153,6 +153,6 @@ def _mechanism_scale(system: Equilibrium) -> float:
     """Power unit that brings a mechanism's motions to order one, far above the solver's dual tolerance.
 
     With unit power the motions of a wall of a thousand blocks are a thousandth each, and its smallest
-    jumps drown in HiGHS's 1e-7.
+    jumps are lost in HiGHS's 1e-7.
     """
     return float(np.abs(system.live).sum())

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Indices, PointLoad, Scene
+from runningbond.scene import Array, Forces, Indices, Scene
 
 
 def _point_rows(direction: Array, arm: Array) -> Array:
@@ -80,27 +80,20 @@ def mass_matrix_diagonal(scene: Scene) -> Array:
 
 
 def dead_load(scene: Scene) -> Array:
-    """Weight of the blocks as forces and moments on their degrees of freedom, ``(3 nb,)`` [N, N, N m]."""
-    return _body_force(scene, scene.load.gravity)
+    """Loads that λ does not multiply, as forces and moments on the blocks' freedoms, ``(3 nb,)`` [N, N, N m]."""
+    return load_vector(scene, scene.dead_forces)
 
 
 def live_load(scene: Scene) -> Array:
-    """Load that λ multiplies, ``(3 nb,)`` [N, N, N m]; a point load is shared equally by the blocks it touches."""
-    live = scene.load.live
-    if isinstance(live, PointLoad):
-        force = np.array(live.force)
-        shared = scene.loaded_blocks
-        at = np.tile(live.at, (len(shared), 1))
-        loaded = point_operator(shared, at, np.tile(force / len(shared), (len(shared), 1)), scene.blocks.centroid)
-        return np.asarray(loaded.T @ np.ones(len(shared)), dtype=np.float64)
-    gravity = float(np.hypot(*scene.load.gravity))
-    return _body_force(scene, (gravity * live.direction[0], gravity * live.direction[1]))
+    """Loads that λ multiplies, ``(3 nb,)`` [N, N, N m]."""
+    return load_vector(scene, scene.live_forces)
 
 
-def _body_force(scene: Scene, acceleration: tuple[float, float]) -> Array:
-    load = np.zeros((len(scene.blocks), 3))
-    load[:, :2] = scene.mass[:, None] * np.array(acceleration)
-    return load.ravel()
+def load_vector(scene: Scene, forces: Forces) -> Array:
+    """Forces on a scene's blocks as forces and moments on their freedoms, ``(3 nb,)`` [N, N, N m]."""
+    load = np.column_stack([scene.mass[:, None] * forces.acceleration, forces.moment]).ravel()
+    at_points = point_operator(forces.block, forces.at, forces.force, scene.blocks.centroid)
+    return np.asarray(load + at_points.T @ np.ones(len(forces.block)), dtype=np.float64)
 
 
 def movable_freedoms(scene: Scene) -> Indices:

@@ -18,17 +18,17 @@ import numpy as np
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 
-from .associated import LimitState, breaks, judge, limit_state
+from .associated import LimitState, judge, limit_state, spends_cut_strength
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSet, ForceSolution, coulomb, frozen_friction, solve_forces
 
-MOST_PROGRAMS = 40
-"""Programs of the sequence after which an uncertified collapse is given up."""
+PROGRAM_BUDGET = 40
+"""Programs of the sequence after which it ends without a certificate."""
 
-ENOUGH = 2
+CERTIFIED_IN_A_ROW = 2
 """Certificates in a row that end the sequence."""
 
-STILL = 1e-7
+NO_JUMP = 1e-7
 """Jump rate, relative to the mechanism's largest motion, that counts as none."""
 
 PENETRATION = 1e-6
@@ -71,7 +71,7 @@ def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
     largest = float(np.abs(motion).max(initial=0.0))
     if largest == 0.0 or opening.min(initial=0.0) < -PENETRATION * largest:
         return None
-    opens, forward, backward = opening > STILL * largest, slip > STILL * largest, slip < -STILL * largest
+    opens, forward, backward = opening > NO_JUMP * largest, slip > NO_JUMP * largest, slip < -NO_JUMP * largest
     cone = coulomb(system.strength)
     up, down = cone.most
     return ForceSet(
@@ -96,7 +96,7 @@ def certify(system: Equilibrium, motion: Array) -> Certificate | None:
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """What the sequence of programs came to.
+    """Result of the sequence of programs.
 
     Parameters
     ----------
@@ -106,11 +106,14 @@ class Search:
         Number of programs solved in the sequence.
     frictionless
         Whether normal forces alone carry any multiple of the live load.
+    growing
+        Whether each program of a full sequence carried more than the one before: friction grew with the load.
     """
 
     certificates: list[Certificate]
     programs: int
     frictionless: bool = False
+    growing: bool = False
 
 
 def search(system: Equilibrium, pressure: Array, high: float = np.inf) -> Search:
@@ -119,23 +122,24 @@ def search(system: Equilibrium, pressure: Array, high: float = np.inf) -> Search
     A certificate whose loads all reach `high` is enough by itself.
     """
     certificates: list[Certificate] = []
-    in_a_row = 0
-    for k in range(MOST_PROGRAMS):
+    in_a_row, multiplier, growing = 0, -np.inf, True
+    for k in range(PROGRAM_BUDGET):
         program = solve_forces(system, frozen_friction(system.strength, pressure))
         if program.status == "unbounded":
             return Search(certificates, k + 1, frictionless=True)
         if program.status != "optimal":
             return Search(certificates, k + 1)
+        growing, multiplier = growing and program.multiplier > multiplier, program.multiplier
         if k % 2:
             certificate = certify(system, program.motion)
             if certificate is not None:
                 certificates.append(certificate)
             in_a_row = in_a_row + 1 if certificate is not None else 0
-            if in_a_row == ENOUGH or (certificate is not None and certificate.least.multiplier >= high):
+            if in_a_row == CERTIFIED_IN_A_ROW or (certificate is not None and certificate.least.multiplier >= high):
                 return Search(certificates, k + 1)
         weight = (k + 1.0) ** -0.5
         pressure = (1 - weight) * pressure + weight * program.pressure
-    return Search(certificates, MOST_PROGRAMS)
+    return Search(certificates, PROGRAM_BUDGET, growing=growing)
 
 
 def certified_loads(certificates: Sequence[Certificate], unit: float) -> list[tuple[float, float]]:
@@ -169,57 +173,74 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
         certified at loads apart from each other the message says at which. `motion` and `force` belong to it.
         Without a certificate the status is ``undecided`` and `upper` the associated load, which no true
         collapse load exceeds.
+
+    Notes
+    -----
+    A wall whose normal forces balance any multiple of the live load is ``unbounded``, which is proved: no mechanism
+    that does not interpenetrate gains power from the load. Where friction is needed for that, Coulomb's law allows
+    rest at every multiple, but it may allow a collapse as well, driven by other forces. Such a wall is ``unbounded``
+    if no collapse was certified and friction grew with the load in every program; the message says what is not
+    proved.
     """
     start = time.perf_counter()
     system = equilibrium(scene)
-    associated = limit_state(system)
-    status, message = judge(associated)
-    found = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=system.freedoms, steps=1, message=message)
+    state = limit_state(system)
+    status, message = judge(state)
+    outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=system.freedoms, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        found = _collapse(found, system, associated, tolerance)
+        outcome = _collapse(outcome, system, state, tolerance)
     else:
-        found = replace(found, status=status)
-    return replace(found, seconds=time.perf_counter() - start)
+        outcome = replace(outcome, status=status)
+    return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _collapse(found: Outcome, whole: Equilibrium, state: LimitState, tolerance: float) -> Outcome:
+def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
-    system, associated = state.system, state.forces
+    cut, associated = state.system, state.forces
     bounded = associated.status == "optimal"
-    first = associated if bounded else solve_forces(system, coulomb(system.strength), "zero")
-    # Between a certificate and the associated bound nothing is left to be found out, if they lie that close.
+    first = associated if bounded else solve_forces(cut, coulomb(cut.strength), "zero")
+    # A certificate within the tolerance of the associated bound leaves nothing to search for.
     high = (1 - tolerance) * associated.multiplier if bounded else np.inf
-    searched = search(system, first.pressure, high)
-    found = replace(found, steps=1 + searched.programs)
+    result = search(cut, first.pressure, high)
+    outcome = replace(outcome, steps=1 + result.programs)
     certificates = [
-        proved for proved in searched.certificates if not breaks(whole, system, proved.motion, dilatancy=0.0)
+        certificate
+        for certificate in result.certificates
+        if not spends_cut_strength(system, cut, certificate.motion, dilatancy=0.0)
     ]
     if not certificates:
-        if searched.frictionless:
-            return replace(
-                found, status="unbounded", message="self-locking: normal forces carry any multiple of the live load"
-            )
-        given_up = f"no collapse certified in {searched.programs} programs; "
-        if not bounded:
-            return replace(found, message=given_up + "with associated joints the wall locks")
-        upper = system.live_unit * associated.multiplier
-        return replace(found, upper=upper, message=given_up + "upper is the associated bound")
-    worst = min(certificates, key=lambda certificate: certificate.least.multiplier)
-    proved = certified_loads(certificates, system.live_unit)
-    lower, upper = proved[0][0], proved[-1][1]
+        return _uncertified(outcome, result, cut.live_unit * associated.multiplier if bounded else None)
+    lowest = min(certificates, key=lambda certificate: certificate.least.multiplier)
+    loads = certified_loads(certificates, cut.live_unit)
+    lower, upper = loads[0][0], loads[-1][1]
     message = "collapse is certified at every load of the interval; smaller ones are not excluded"
-    if len(proved) > 1:
-        loads = ", ".join(f"{low:.6g} … {high:.6g}" for low, high in proved)
-        message = f"collapse is certified at {loads}, and nothing is proved in between or below"
+    if len(loads) > 1:
+        listed = ", ".join(f"{low:.6g} … {high:.6g}" for low, high in loads)
+        message = f"collapse is certified at {listed}, and nothing is proved in between or below"
     elif upper - lower > tolerance * upper:
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
     return replace(
-        found,
+        outcome,
         status="collapse",
         multiplier=lower,
         lower=lower,
         upper=max(lower, upper),
         message=message,
-        motion=system.motion(worst.motion),
-        force=system.point_forces(worst.least.pressure, worst.least.tangential),
+        motion=cut.motion(lowest.motion),
+        force=cut.point_forces(lowest.least.pressure, lowest.least.tangential),
     )
+
+
+def _uncertified(outcome: Outcome, result: Search, bound: float | None) -> Outcome:
+    """Outcome of a wall without a certified collapse, under the associated bound if there is one."""
+    programs = f"no collapse certified in {result.programs} programs"
+    if result.frictionless:
+        message = "self-locking: normal forces carry any multiple of the live load"
+        return replace(outcome, status="unbounded", message=message)
+    if bound is not None:
+        return replace(outcome, upper=bound, message=f"{programs}; upper is the associated bound")
+    message = "forces within Coulomb's law balance any multiple of the live load"
+    if result.growing:
+        message = f"self-locking: {message}; {programs}, which does not exclude one"
+        return replace(outcome, status="unbounded", message=message)
+    return replace(outcome, message=f"{programs}; {message}")

@@ -1,1 +1,9 @@
-"""What people look at: drawings of walls and mechanisms, charts, and files for ParaView."""
+"""Pictures of walls and mechanisms, and files for ParaView.
+
+- `flat`: vector drawings of a wall and of an outcome's mechanism, with matplotlib alone.
+- `render`: pictures and films of a result folder, painted by PyVista (`pyvista_painter`, `pyvista_figure`).
+- `time_series`: VTU and PVD files of a run (`frame`, `vtk_grids`).
+
+All of them draw a `deformed_shape`; `mechanism` checks an outcome's motion before it is drawn, `joint_state` says what
+slides and what opens, `annotations` and `captions` put supports, loads and words around it.
+"""

@@ -1,75 +1,79 @@
-"""The signs that engineers draw around a wall: hatched ground, pins and rollers, arrows of loads."""
+"""What engineers draw around a wall: hatched ground, pins and rollers, arrows of loads."""
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runningbond.scene import Array, PointLoad, Scene
+from runningbond.scene import Array, Arrow, Scene
 
-from .moment import Shown
-from .painting import View, wall_size
+from .captions import load_symbol
+from .deformed_shape import DeformedShape, Extent, wall_size
+from .style import DARK, TYPE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SIZE = 7.5
-"""Size of type [pt]."""
 
-DARK = "0.25"
-
-
-def with_signs(scene: Scene, view: View) -> tuple[float, float, float, float]:
-    """A view with room for the signs of supports and loads: left, right, bottom and top [m]."""
-    low, high = scene.blocks.extent(scene.wall)
+def annotated_extent(scene: Scene, extent: Extent) -> Extent:
+    """An extent with room for supports and loads."""
+    (x0, y0), (x1, y1) = scene.blocks.extent(scene.wall)
     a = _unit(scene)
-    left, right, bottom, top = view.extent
-    bottom = min(bottom, low[1] - 1.2 * a)
+    left, right, bottom, top = extent
+    bottom = min(bottom, y0 - 1.2 * a)
     if len(scene.pins):
         left, right = left - 0.8 * a, right + 0.8 * a
-    if isinstance(scene.load.live, PointLoad):
-        (x, y), (dx, dy) = scene.load.live.at, np.array(scene.load.live.force) / math.hypot(*scene.load.live.force)
-        x, y = x - 2.9 * a * dx, y - 2.9 * a * dy
-        return min(left, x - a), max(right, x + a), min(bottom, y - a), max(top, y + a)
-    dx, dy = scene.load.live.direction
-    return (
-        min(left, low[0] - 2.6 * a) if dx > 0 else left,
-        max(right, high[0] + 2.6 * a) if dx < 0 else right,
-        min(bottom, low[1] - 2.6 * a) if dy > 0 else bottom,
-        max(top, high[1] + 2.6 * a) if dy < 0 else top,
-    )
+    for arrow in _live_arrows(scene):
+        dx, dy = arrow.direction
+        if arrow.at is not None:
+            x, y = arrow.at - 2.9 * a * arrow.direction
+            left, right, bottom, top = min(left, x - a), max(right, x + a), min(bottom, y - a), max(top, y + a)
+            continue
+        left, right = min(left, x0 - 2.6 * a * (dx > 0)), max(right, x1 + 2.6 * a * (dx < 0))
+        bottom, top = min(bottom, y0 - 2.6 * a * (dy > 0)), max(top, y1 + 2.6 * a * (dy < 0))
+    return left, right, bottom, top
+
+
+def annotate(axes: "Axes", shape: DeformedShape) -> None:
+    """Draw the supports of a wall and its live load."""
+    _draw_supports(axes, shape)
+    for arrow in _live_arrows(shape.scene):
+        if arrow.at is None:
+            _draw_push(axes, shape.scene, arrow.direction)
+        else:
+            tip = arrow.at + shape.drawn_displacement(arrow.block, arrow.at)
+            _draw_force(axes, shape.scene, arrow.direction, tip)
+
+
+def _live_arrows(scene: Scene) -> list[Arrow]:
+    """Arrows of all live loads."""
+    return [arrow for load in scene.load.live for arrow in load.arrows(scene)]
 
 
 def _unit(scene: Scene) -> float:
-    """Size of a sign [m]."""
+    """Length [m] in which annotations are measured."""
     return 0.045 * wall_size(scene)
 
 
-def draw_supports(axes: "Axes", shown: Shown) -> None:
+def _draw_supports(axes: "Axes", shape: DeformedShape) -> None:
     """Hatch what does not move, and put triangles under pins, on rollers where these may move aside."""
-    scene = shown.scene
+    from matplotlib.patches import Polygon
+
+    scene, a = shape.scene, _unit(shape.scene)
     ground = np.flatnonzero(~scene.wall)
     base = float(scene.blocks.extent(scene.wall)[0][1])
-    sloping = len(ground) > 0 and scene.blocks.extent(~scene.wall)[1][1] > base + scene.blocks.tolerance
-    if sloping:
-        _draw_ground(axes, scene)
+    if len(ground) and scene.blocks.extent(~scene.wall)[1][1] > base + scene.blocks.tolerance:
+        for block in ground:  # sloping or stepped
+            outline = scene.blocks.polygon(int(block))
+            axes.add_patch(Polygon(outline, facecolor="0.85", edgecolor=DARK, lw=0.6, zorder=2))
     elif len(ground):
-        _hatch(axes, axes.get_xlim(), base, _unit(scene))
+        _hatch(axes, axes.get_xlim(), base, a)
     elif scene.fixed.any():
         low, high = scene.blocks.extent(scene.fixed)
-        _hatch(axes, (float(low[0]), float(high[0])), base, _unit(scene))
+        _hatch(axes, (float(low[0]), float(high[0])), base, a)
     for block in np.unique(scene.pins.block):
         own = scene.pins.block == block
         at = scene.pins.point[own][0]
-        _draw_pin(axes, at + shown.drawn_motion(np.array([block]), at), _unit(scene), roller=own.sum() == 1)
-
-
-def _draw_ground(axes: "Axes", scene: Scene) -> None:
-    from matplotlib.patches import Polygon
-
-    for block in np.flatnonzero(~scene.wall):
-        outline = scene.blocks.polygon(int(block))
-        axes.add_patch(Polygon(outline, facecolor="0.85", edgecolor=DARK, lw=0.6, zorder=2))
+        _draw_pin(axes, at + shape.drawn_displacement(np.array([block]), at), a, roller=own.sum() == 1)
 
 
 def _hatch(axes: "Axes", span: tuple[float, float], level: float, a: float) -> None:
@@ -94,30 +98,32 @@ def _draw_pin(axes: "Axes", tip: Array, a: float, *, roller: bool) -> None:
     axes.plot([x - 0.7 * a, x + 0.7 * a], [foot, foot], color=DARK, lw=0.9)
 
 
-def draw_load(axes: "Axes", shown: Shown, name: str) -> None:
-    """Arrows of the live load, called by a name: one where a point load acts, or a row along the side pushed."""
-    scene = shown.scene
-    live, a = scene.load.live, _unit(scene)
-    if isinstance(live, PointLoad):
-        direction = np.array(live.force) / math.hypot(*live.force)
-        tip = np.array(live.at) + shown.drawn_motion(scene.loaded_blocks, np.array(live.at))
-        _arrow(axes, tip - 2.2 * a * direction, tip)
-        beside = tip - 1.5 * a * direction + 0.5 * a * np.array([-direction[1], direction[0]])
-    else:
-        low, high = scene.blocks.extent(scene.wall)
-        direction = np.array(live.direction)
-        across = np.array([-direction[1], direction[0]])
-        reach, width = float((high - low) @ np.abs(direction)) / 2, float((high - low) @ np.abs(across)) / 2
-        start = (low + high) / 2 - (reach + 2.2 * a) * direction
-        places = width * np.linspace(-0.8, 0.8, int(np.clip(width / a, 2, 5)))
-        for place in places:
-            _arrow(axes, start + place * across, start + place * across + 1.5 * a * direction)
-        between = places[-1] - places[-2] > 2.5 * a
-        aside = (places[-1] + places[-2]) / 2 if between else width + 0.6 * a
-        beside = start + aside * across + 0.7 * a * direction
-    axes.text(beside[0], beside[1], name, ha="center", va="center", fontsize=SIZE, color=DARK)
+def _draw_force(axes: "Axes", scene: Scene, direction: Array, tip: Array) -> None:
+    """An arrow to a point, and its name beside it."""
+    a = _unit(scene)
+    _arrow(axes, tip - 2.2 * a * direction, tip)
+    _name(axes, scene, tip - 1.5 * a * direction + 0.5 * a * np.array([-direction[1], direction[0]]))
+
+
+def _draw_push(axes: "Axes", scene: Scene, direction: Array) -> None:
+    """A row of arrows along the side on which all blocks are pushed, and their name."""
+    a = _unit(scene)
+    low, high = scene.blocks.extent(scene.wall)
+    across = np.array([-direction[1], direction[0]])
+    reach, width = float((high - low) @ np.abs(direction)) / 2, float((high - low) @ np.abs(across)) / 2
+    start = (low + high) / 2 - (reach + 2.2 * a) * direction
+    places = width * np.linspace(-0.8, 0.8, int(np.clip(width / a, 2, 5)))
+    for place in places:
+        _arrow(axes, start + place * across, start + place * across + 1.5 * a * direction)
+    has_room = places[-1] - places[-2] > 2.5 * a
+    aside = (places[-1] + places[-2]) / 2 if has_room else width + 0.6 * a
+    _name(axes, scene, start + aside * across + 0.7 * a * direction)
+
+
+def _name(axes: "Axes", scene: Scene, at: Array) -> None:
+    axes.text(at[0], at[1], load_symbol(scene), ha="center", va="center", fontsize=TYPE, color=DARK)
 
 
 def _arrow(axes: "Axes", tail: Array, tip: Array) -> None:
     style = {"arrowstyle": "-|>,head_width=0.16,head_length=0.32", "color": DARK, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (tip[0], tip[1]), (tail[0], tail[1]), arrowprops=style, zorder=3, annotation_clip=False)
+    axes.annotate("", (tip[0], tip[1]), (tail[0], tail[1]), arrowprops=style, zorder=6, annotation_clip=False)

@@ -1,23 +1,170 @@
-"""Stand-in for what writes figures, until it is here."""
+"""The words around a drawing, and the figure that holds them: title, load and bracket, key to colours, and scale."""
 
 import io
-from typing import TYPE_CHECKING
+import math
+import textwrap
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from runningbond.results.outcome import Outcome, number
+from runningbond.scene import Scene
+
+from .deformed_shape import Extent, wall_size
+from .joint_state import JointState
+from .mechanism import mechanism_warning
+from .style import AT_REST, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+WIDTH, TALLEST, DPI = 3.5, 4.2, 300
+"""Width of a picture, that of a journal's column, largest height of the wall in it [in], and dots per inch."""
+
+LINE, KEY_LINE, NOTE_LINE, AIR = 0.14, 0.135, 0.105, 0.08
+"""Heights of a line of the title, of the key and of a note, and of the air above and below them [in]."""
+
+
+@dataclass(frozen=True)
+class Caption:
+    """The words around a drawing.
+
+    Parameters
+    ----------
+    heading
+        Lines in bold above the drawing.
+    subtitle
+        Line below them; empty for none.
+    notes
+        Lines below the drawing and its key.
+    key
+        What colours and lines stand for: handles of a legend.
+    columns
+        Columns of the key.
+    """
+
+    heading: Sequence[str]
+    subtitle: str
+    notes: Sequence[str]
+    key: Sequence[Any]
+    columns: int = 5
+
+    @property
+    def room(self) -> tuple[float, float]:
+        """Heights above and below the drawing [in]."""
+        above = LINE * (len(self.heading) + bool(self.subtitle))
+        return above + AIR, self._key_height + NOTE_LINE * len(self.notes) + AIR
+
+    @property
+    def _key_height(self) -> float:
+        return KEY_LINE * math.ceil(len(self.key) / self.columns) + 0.04
+
+    def write(self, axes: "Axes") -> None:
+        """Write the words above and below some axes."""
+        level = 0.04
+        for text, weight in ((self.subtitle, "normal"), *((line, "bold") for line in reversed(self.heading))):
+            if text:
+                _write(axes, text, 1.0, level, va="bottom", fontsize=TYPE, fontweight=weight)
+                level += LINE
+        place: dict[str, Any] = {"bbox_to_anchor": (0.5, 0.0), "ncols": self.columns, "borderaxespad": 0.4}
+        spacing = {"handlelength": 1.5, "handletextpad": 0.5, "columnspacing": 1.0, "borderpad": 0.0}
+        legend = place | spacing | {"frameon": False, "fontsize": SMALL_TYPE}
+        axes.legend(handles=self.key, loc="upper center", **legend)
+        _write(axes, "\n".join(self.notes), 0.0, -self._key_height, va="top", fontsize=SMALL_TYPE, color=DARK)
+
+
+def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -> None:
+    """Text in the middle of the width of axes, so far above their bottom (0) or top (1)."""
+    place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False}
+    axes.annotate(text, (0.5, level), (0.0, 72 * inches), ha="center", **place, **style)
+
+
+def figure_with_room(extent: Extent, caption: Caption) -> "tuple[Figure, Axes]":
+    """A figure of one drawing, with room for its caption."""
+    from matplotlib.figure import Figure
+
+    left, right, bottom, top = extent
+    above, below = caption.room
+    height = min(WIDTH * (top - bottom) / (right - left), TALLEST)
+    total = height + above + below
+    figure = Figure(figsize=(WIDTH, total), dpi=DPI)
+    return figure, figure.add_axes((0, below / total, 1, height / total))
+
+
+def show_extent(axes: "Axes", extent: Extent) -> None:
+    """Show a part of the plane in some axes, at one scale both ways and without ticks."""
+    left, right, bottom, top = extent
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    axes.axis("off")
+
+
+def load_symbol(scene: Scene) -> str:
+    """What the multiplier is called: P where it is a force in newtons."""
+    return "P" if is_force(scene) else "λ"
+
+
+def is_force(scene: Scene) -> bool:
+    """Whether λ is a force in newtons: that of a point load of one newton."""
+    live = scene.live_forces
+    return live.at_points_alone and math.isclose(math.hypot(*live.force.sum(axis=0)), 1.0)
+
+
+def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
+    """Load at collapse, or what there is instead, and its bracket; empty where that adds nothing."""
+    name, unit = load_symbol(scene), " N" if is_force(scene) else ""
+    low, high = (None if x is None else number(x) for x in (outcome.lower, outcome.upper))
+    if outcome.status != "collapse" or outcome.multiplier is None:
+        bounds = [f"{name} ≥ {low}{unit}"] * (low is not None) + [f"{name} ≤ {high}{unit}"] * (high is not None)
+        return outcome.status, ", ".join(bounds)
+    bracket = "" if low is None or high is None or low == high else f"[{low}, {high}]{unit}"
+    return f"{name} = {number(outcome.multiplier)}{unit}", bracket
+
+
+def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, drawn: bool) -> Caption:
+    """Title with load and bracket, how large the mechanism is drawn, and what is wrong with it where something is."""
+    title, load = wall_title(outcome.scene), f"{outcome.model}: {'  '.join(multiplier_text(scene, outcome)).strip()}"
+    warning = mechanism_warning(scene, outcome)
+    if not drawn:
+        return Caption(title, load, [warning or "no mechanism"], [])
+    size = f"mechanism; the fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
+    return Caption(title, load, [size, warning] if warning else [size], key)
+
+
+def wall_title(title: str) -> list[str]:
+    """Lines of a wall's name, none longer than a figure is wide."""
+    return textwrap.wrap(title, 60) or [""]
+
+
+def colour_key(
+    states: Sequence[JointState] = tuple(STATE_COLOURS),
+    colouring: Colouring = "displacement",
+    dashes: Mapping[JointState, Any] | None = None,
+) -> list[Any]:
+    """What the colours of a picture stand for, and the dashes of its lines: handles of a legend."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    styles = dashes or dict.fromkeys(STATE_COLOURS, "solid")
+    lines = [Line2D([], [], color=STATE_COLOURS[x], ls=styles[x], lw=1.5, label=STATE_NAMES[x]) for x in states]
+    if colouring == "course":
+        return lines
+    ends = ((AT_REST, "block at rest"), (FASTEST, "fastest block"))
+    return [*lines, *(Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=label) for colour, label in ends)]
+
+
+def to_png(figure: "Figure", dpi: float = DPI) -> bytes:
+    """A figure as the content of a PNG file."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=dpi)
+    return buffer.getvalue()
 
 
 def to_svg(figure: "Figure") -> bytes:
-    """A figure as the content of an SVG file."""
-    return _written(figure, "svg")
+    """A figure as the content of an SVG file, the same for the same figure."""
+    import matplotlib
 
-
-def to_png(figure: "Figure") -> bytes:
-    """A figure as the content of a PNG file."""
-    return _written(figure, "png")
-
-
-def _written(figure: "Figure", kind: str) -> bytes:
     buffer = io.BytesIO()
-    figure.savefig(buffer, format=kind)
+    with matplotlib.rc_context({"svg.hashsalt": "runningbond"}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None})
     return buffer.getvalue()

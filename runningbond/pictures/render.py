@@ -7,45 +7,44 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
-from runningbond.scene import Scene
 
-from .mechanisms import mechanism_picture, moment_picture, png, show_mechanism, show_undeformed
-from .moment import Shown
-from .painting import Colouring, Painter, fill_plotter, look_at
-from .series import moments, read_grid
-from .vtk_imports import import_pyvista
-from .vtk_messages import VtkError
+from .captions import to_png
+from .deformed_shape import DeformedShape, undeformed_shape
+from .mechanism import has_mechanism, mechanism_shape
+from .pyvista_figure import frame_figure, mechanism_figure
+from .pyvista_painter import Painter, fill_plotter, look_at
+from .style import Colouring
+from .time_series import frame_files, read_grid
+from .vtk_grids import shape_of_grids
+from .vtk_safety import VtkError, import_pyvista
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
 FILM_DPI = 150
-PACE, PAUSE = 150, 2000
-"""Milliseconds that a moment of a film lasts, and its last one."""
+FRAME_TIME, LAST_FRAME_TIME = 150, 2000
+"""Milliseconds that a frame of a film is shown, and its last one."""
 
 PICTURES = ("mechanism.png", "last-moment.png", "film.gif")
 
 
-def forget_pictures(folder: Path) -> None:
-    """Take away pictures, which may be of an outcome that is there no more."""
+def remove_pictures(folder: Path) -> None:
+    """Remove pictures, which may be of an outcome that is there no more."""
     for name in PICTURES:
         (folder / name).unlink(missing_ok=True)
 
 
-def draw_mechanism(folder: Path, colouring: Colouring = "displacement") -> list[Path]:
-    """Draw ``mechanism.png`` of a folder's outcome, where it has a mechanism.
+def render_folder(folder: Path, colouring: Colouring = "displacement", *, moments: bool = True) -> list[Path]:
+    """Draw what a folder has to show: its mechanism, and of its time series the last moment and a film.
 
-    Raises
-    ------
-    StoreError
-        If the folder holds no outcome that can be trusted, or not its scene.
-    """
-    with closing(Painter()) as painter:
-        return _draw_mechanism(folder, colouring, painter)
-
-
-def draw_folder(folder: Path, colouring: Colouring = "displacement") -> list[Path]:
-    """Draw what a folder has to show: its mechanism, the last moment of its run, and a film of its time series.
+    Parameters
+    ----------
+    folder
+        Result folder of one outcome.
+    colouring
+        How blocks are coloured.
+    moments
+        Whether the time series is drawn, too.
 
     Returns
     -------
@@ -57,65 +56,55 @@ def draw_folder(folder: Path, colouring: Colouring = "displacement") -> list[Pat
     StoreError
         If the folder holds no outcome that can be trusted, or not its scene, or a damaged time series.
     """
-    with closing(Painter()) as painter:
-        return _draw_mechanism(folder, colouring, painter) + _draw_series(folder, colouring, painter)
-
-
-def _draw_mechanism(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:
     outcome, scene = load_outcome(folder)[0], load_scene(folder)
-    shown = show_mechanism(scene, outcome, colouring)
-    if shown is None:
-        return []
-    write_atomically(folder / "mechanism.png", png(mechanism_picture(shown, outcome, painter)))
-    return [folder / "mechanism.png"]
+    written = []
+    with closing(Painter()) as painter:
+        if has_mechanism(scene, outcome):
+            figure = mechanism_figure(scene, outcome, painter, colouring)
+            write_atomically(folder / "mechanism.png", to_png(figure))
+            written.append(folder / "mechanism.png")
+        return written + (_render_series(folder, colouring, painter) if moments else [])
 
 
-def _draw_series(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:
+def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:
     """Draw the moments of a folder, all from one point of view and to one scale: that of the last."""
-    found = _moments(folder, colouring)
-    if not found:
+    shapes = _shapes(folder, colouring)
+    if not shapes:
         return []
-    outcome, last, written = load_outcome(folder)[0], found[-1], []
-    view = last.view(painter.pixels)
-    if len({shown.multiplier for shown in found}) > 1:  # under one load, it is the mechanism once more
-        write_atomically(folder / "last-moment.png", png(moment_picture(last, outcome, painter)))
+    outcome, last, written = load_outcome(folder)[0], shapes[-1], []
+    if len({shape.multiplier for shape in shapes}) > 1:  # under one load, it is the mechanism once more
+        write_atomically(folder / "last-moment.png", to_png(frame_figure(last, outcome, painter)))
         written.append(folder / "last-moment.png")
-    if len(found) > 1:
-        images = []
-        for shown in found:
-            figure = moment_picture(replace(shown, scale=last.scale), outcome, painter, view, last.states)
-            images.append(_image(png(figure, FILM_DPI)))
-        write_atomically(folder / "film.gif", _film(images))
+    if len(shapes) > 1:
+        shapes = [replace(shape, scale=last.scale) for shape in shapes]
+        figures = (frame_figure(shape, outcome, painter, last.extent, last.states) for shape in shapes)
+        write_atomically(folder / "film.gif", _film([_image(to_png(figure, FILM_DPI)) for figure in figures]))
         written.append(folder / "film.gif")
     return written
 
 
-def _moments(folder: Path, colouring: Colouring) -> list[Shown]:
+def _shapes(folder: Path, colouring: Colouring) -> list[DeformedShape]:
     scene = load_scene(folder)
-    pairs = zip(moments(folder, "blocks"), moments(folder, "joints"), strict=False)
-    return [_shown(scene, blocks, joints, colouring) for blocks, joints in pairs]
-
-
-def _shown(scene: Scene, blocks: Path, joints: Path, colouring: Colouring) -> Shown:
-    try:
-        return Shown.of_grids(scene, read_grid(blocks), read_grid(joints), colouring)
-    except (VtkError, ValueError, KeyError, IndexError, AttributeError) as error:
-        what = "are damaged or of another wall; another run replaces them"
-        raise StoreError(f"{blocks}, {joints.name}: {what}") from error
+    shapes = []
+    for blocks, joints in zip(frame_files(folder, "blocks"), frame_files(folder, "joints"), strict=False):
+        try:
+            shape = shape_of_grids(scene, read_grid(blocks), read_grid(joints))
+        except (VtkError, ValueError, KeyError, IndexError, AttributeError) as error:
+            what = "are damaged or of another wall; another run replaces them"
+            raise StoreError(f"{blocks}, {joints.name}: {what}") from error
+        shapes.append(replace(shape, colouring=colouring))
+    return shapes
 
 
 def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
     """Show a folder's mechanism, its last moment or its undeformed wall in a window, until that is closed."""
-    import_pyvista()
-    import pyvista as pv
-
+    pv = import_pyvista("Plotter")
     outcome, scene = load_outcome(folder)[0], load_scene(folder)
-    found = _moments(folder, colouring)
-    shown = show_mechanism(scene, outcome, colouring) or (found[-1] if found else show_undeformed(scene))
+    shape = mechanism_shape(scene, outcome) or next(reversed(_shapes(folder, colouring)), undeformed_shape(scene))
     plotter: Any = pv.Plotter(title=f"{outcome.scene}: {outcome.model}")
     plotter.set_background("white")
-    fill_plotter(plotter, scene, shown.blocks, shown.joints, shown.scale, colouring, 1.5)
-    look_at(plotter, shown.view(1000))
+    fill_plotter(plotter, replace(shape, colouring=colouring), 1.5)
+    look_at(plotter, shape.extent)
     plotter.enable_image_style()
     plotter.show()
 
@@ -132,7 +121,7 @@ def _film(images: list["Image"]) -> bytes:
 
     palette = images[-1].quantize(128, dither=Image.Dither.NONE)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
-    pace = [PACE] * (len(frames) - 1) + [PAUSE]
+    times = [FRAME_TIME] * (len(frames) - 1) + [LAST_FRAME_TIME]
     buffer = io.BytesIO()
-    frames[0].save(buffer, format="GIF", save_all=True, append_images=frames[1:], duration=pace, loop=0)
+    frames[0].save(buffer, format="GIF", save_all=True, append_images=frames[1:], duration=times, loop=0)
     return buffer.getvalue()

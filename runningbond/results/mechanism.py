@@ -1,9 +1,17 @@
-"""Mechanisms: how blocks move at collapse, brought to one size."""
+"""Mechanisms: how blocks move at collapse, brought to one size, and whether loads can drive such a motion at all."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
-from runningbond.joints import JointPoints
-from runningbond.scene import Array, Blocks, Indices
+from runningbond.joints import JointPoints, wall_points
+from runningbond.scene import Array, Blocks, Indices, Scene
+
+MAX_OVERLAP = 0.02
+"""Overlap of blocks, in motions of the fastest corner, that the elastic joints of some models leave in a mechanism."""
+
+WORK_TOLERANCE = 0.01
+"""Negative work of all loads, relative to that of each of them, that energy stored in elastic joints may pay for."""
 
 
 def fastest_corner_by_one(blocks: Blocks, motion: Array) -> Array:
@@ -24,3 +32,70 @@ def rigid_jumps(blocks: Blocks, points: JointPoints, motion: Array) -> tuple[Arr
     a, b = (carried(blocks, side, points.position, motion) for side in points.block.T)
     jump = b - a
     return (jump * points.normal).sum(axis=1), (jump * points.tangent).sum(axis=1)
+
+
+@dataclass(frozen=True)
+class MechanismCheck:
+    """What shows whether a motion can be a collapse.
+
+    Parameters
+    ----------
+    live
+        Work of the live load [J] at λ = 1, the fastest corner moving by one metre; None where the load exerts no force.
+    total
+        Work of the dead load and λ times the live load [J].
+    scale
+        Sum of the absolute values of those two [J], by which `total` is judged.
+    overlap
+        Largest overlap of two blocks at the ends of a joint, per motion of the fastest corner.
+    """
+
+    live: float | None
+    total: float
+    scale: float
+    overlap: float
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether the loads drive the motion: both the live load and all loads together do work on it."""
+        against_live = self.live is not None and self.live <= 0
+        return not against_live and self.total >= -WORK_TOLERANCE * self.scale
+
+    @property
+    def warning(self) -> str:
+        """What is wrong with the motion, in plain words; empty where nothing is."""
+        if self.live is not None and self.live <= 0:
+            return f"the live load does {'negative' if self.live < 0 else 'no'} work on this motion"
+        if not self.is_driven:
+            return "the loads do negative work on this motion"
+        if self.overlap > MAX_OVERLAP:
+            return f"blocks overlap by up to {self.overlap:.0%} of the largest displacement"
+        return ""
+
+
+def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multiplier: float) -> MechanismCheck:
+    """Check the motion of a mechanism against the loads that are said to drive it.
+
+    A velocity field of collapse satisfies ``f_live · u̇ > 0`` and ``(f_dead + λ f_live) · u̇ ≥ 0``, for the loads do the
+    work that friction dissipates, and no joint closes beyond contact.
+
+    Parameters
+    ----------
+    scene
+        The wall.
+    motion : (nb, 3) float
+        Displacement of each block's centroid [m] and rotation [rad].
+    dead, live : (3 nb,) float
+        Forces and moments of the loads on the blocks [N, N, N m].
+    multiplier
+        λ under which the wall moves; 0 where it falls under its dead load, whatever the live load does then.
+    """
+    motion = fastest_corner_by_one(scene.blocks, motion)
+    by_dead, by_live = float(dead @ motion.ravel()), float(live @ motion.ravel())
+    opening, _ = rigid_jumps(scene.blocks, wall_points(scene), motion)
+    return MechanismCheck(
+        by_live if multiplier and live.any() else None,
+        by_dead + multiplier * by_live,
+        abs(by_dead) + abs(multiplier * by_live),
+        float(max(0.0, -opening.min(initial=0.0))),
+    )

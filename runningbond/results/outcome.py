@@ -18,7 +18,7 @@ def _no_rows(columns: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Outcome:
-    """What a model found.
+    """The answer of one model on one scene.
 
     Parameters
     ----------
@@ -27,9 +27,9 @@ class Outcome:
     model
         Name of the model.
     status
-        ``collapse``: a load was found at which the wall collapses; ``unbounded``: it locks, no multiple of
-        the live load brings it down; ``infeasible``: it falls under its dead load; ``undecided``: the budget
-        ran out or nothing was proved; ``failed``: the numbers cannot be trusted.
+        ``collapse``: a load was found at which the wall collapses; ``unbounded``: the wall is self-locking, no
+        multiple of the live load brings it down; ``infeasible``: it collapses under its dead load; ``undecided``:
+        the budget ran out or nothing was proved; ``failed``: the numbers cannot be trusted.
     multiplier
         λ at collapse; for a point load of 1 N, newtons. None unless there is a collapse.
     lower, upper

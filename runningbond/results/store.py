@@ -1,4 +1,4 @@
-"""Outcomes on disk: written whole or not at all, and never read by halves.
+"""Outcomes on disk: written completely or not at all, and read only if nothing is missing.
 
 A result folder holds ``outcome.json`` and the arrays it names. The arrays are written first, under a name
 that carries their digest; the JSON file is moved into place last, and only what it vouches for is read.
@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runningbond.scene import Scene
-from runningbond.scene.folder_lock import alone
+from runningbond.scene.folder_lock import locked
 
 from .outcome import ARRAYS, Outcome
-from .scene_record import ROOT, scene_from_arrays, scene_to_arrays
+from .scene_arrays import SCENE_KEY, scene_from_arrays, scene_to_arrays
 
 RECORD = "outcome.json"
 
@@ -31,7 +31,7 @@ class StoreError(Exception):
 
 
 def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file so that it is there whole, or as it was before; an OSError names the file."""
+    """Write a file completely, or leave it as it was before; an OSError names the file."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         _write_beside(path, content)
@@ -54,10 +54,11 @@ def _write_beside(path: Path, content: bytes) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder and see that it takes files, before anything is computed for it; an OSError names the folder."""
+    """Make a folder and check that files can be written there, before a long computation; an OSError names it."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=folder).close()
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(b" ")
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(folder)) from error
 
@@ -77,14 +78,14 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
         The wall it is about, given back by `load_scene`.
     """
     buffer = io.BytesIO()
-    kept: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
-    np.savez_compressed(buffer, allow_pickle=False, **kept, **(scene_to_arrays(scene) if scene else {}))
+    columns: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
+    np.savez_compressed(buffer, allow_pickle=False, **columns, **(scene_to_arrays(scene) if scene else {}))
     content = buffer.getvalue()
     arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
     scalars = {"key": key, "arrays": arrays, **outcome.summary()}
     record = {**scalars, "sha256": _seal(scalars, content)}
     make_folder(folder)
-    with alone(folder):  # or another writer would take these arrays for stale ones
+    with locked(folder):  # or another writer would take these arrays for stale ones
         write_atomically(folder / arrays, content)
         write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
         for stale in (*folder.glob("arrays-*.npz"), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{RECORD}.*")):
@@ -93,7 +94,7 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
 
 
 def _seal(scalars: dict[str, object], content: bytes) -> str:
-    """Digest of everything that is kept."""
+    """Digest of everything that is stored."""
     return hashlib.sha256(json.dumps(scalars, sort_keys=True).encode() + content).hexdigest()
 
 
@@ -112,9 +113,9 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
 
 
 def load_scene(folder: Path) -> Scene:
-    """Read back the scene of an outcome; StoreError as of `load_outcome`, or where none was kept."""
+    """Read back the scene of an outcome; StoreError as of `load_outcome`, or where none was stored."""
     with _trusted(folder) as (_, stored):
-        if ROOT not in stored:
+        if SCENE_KEY not in stored:
             raise StoreError(f"{folder}: holds an outcome without its scene")
         return scene_from_arrays(stored)
 
@@ -123,7 +124,7 @@ def load_scene(folder: Path) -> Scene:
 def _trusted(folder: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArray[Any]]]]:
     """Give the record and the arrays of a folder, if they are what was written."""
     try:
-        with alone(folder, reading=True):
+        with locked(folder, reading=True):
             record = json.loads((folder / RECORD).read_bytes())
             content = (folder / record["arrays"]).read_bytes()
         seal = record.pop("sha256")

@@ -5,7 +5,8 @@ from .blocks import Blocks
 from .bond import Bond, course_pattern, running_bond
 from .errors import SceneError
 from .file import read_description, read_scene, scene_from_dict
-from .loads import Lateral, Load, PointLoad
+from .forces import Arrow, Forces
+from .loads import Action, Body, GivenForces, Lateral, Load, PointLoad
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
 from .segments import Joints, find_joints
 from .supports import NO_PINS, Pins, free_motions
@@ -13,10 +14,15 @@ from .wall import Scene, build_scene
 
 __all__ = [
     "NO_PINS",
+    "Action",
     "Array",
+    "Arrow",
     "BlockMaterial",
     "Blocks",
+    "Body",
     "Bond",
+    "Forces",
+    "GivenForces",
     "Indices",
     "JointMaterial",
     "Joints",

@@ -2,17 +2,18 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
 from .arrays import Array
 from .errors import SceneError
+from .ranges import ABOVE_ZERO, one_of
 
 FirstCourse: TypeAlias = Literal["full", "half"]
 Ends: TypeAlias = Literal["flush", "toothed"]
 
-MOST_BLOCKS = 1_000_000
+BLOCK_LIMIT = 1_000_000
 LATTICE_TOLERANCE = 1e-6
 """How far a length may be from a whole number of half blocks, in half blocks."""
 
@@ -23,6 +24,10 @@ class Bond:
 
     width: float
     height: float
+
+    def __post_init__(self) -> None:
+        for name in ("width", "height"):
+            object.__setattr__(self, name, ABOVE_ZERO.take(f"wall.block_{name}", getattr(self, name)))
 
 
 def running_bond(
@@ -47,10 +52,12 @@ def running_bond(
     list of (4, 2) float
         Rectangles [m], counter-clockwise, with the panel's lower left corner at the origin.
     """
-    n_half = _whole(length / (bond.width / 2), "wall.length", length, f"half blocks of {bond.width / 2:g}")
-    n_courses = _whole(height / bond.height, "wall.height", height, f"courses of {bond.height:g}")
-    if n_half * n_courses / 2 > MOST_BLOCKS:
-        raise SceneError("wall.length", f"gives more than {MOST_BLOCKS} blocks; make the wall smaller", length)
+    one_of("wall.first_course", first_course, get_args(FirstCourse))
+    one_of("wall.ends", ends, get_args(Ends))
+    n_half = _whole_number(length / (bond.width / 2), "wall.length", length, f"half blocks of {bond.width / 2:g}")
+    n_courses = _whole_number(height / bond.height, "wall.height", height, f"courses of {bond.height:g}")
+    if n_half * n_courses / 2 > BLOCK_LIMIT:
+        raise SceneError("wall.length", f"gives more than {BLOCK_LIMIT} blocks; make the wall smaller", length)
     if ends == "toothed" and (n_half % 2 or n_half < 4):
         raise SceneError("wall.length", "toothed ends need a whole number of blocks, at least two", length)
     courses = []
@@ -79,8 +86,8 @@ def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array
     list of (4, 2) float
         Rectangles [m], counter-clockwise, course by course, left to right.
     """
-    if sum(len(course) for course in courses) > MOST_BLOCKS:
-        raise SceneError("wall.courses", f"has more than {MOST_BLOCKS} blocks; make the wall smaller")
+    if sum(len(course) for course in courses) > BLOCK_LIMIT:
+        raise SceneError("wall.courses", f"has more than {BLOCK_LIMIT} blocks; make the wall smaller")
     if not courses:
         raise SceneError("wall.courses", "has no course; give at least one, bottom to top", [])
     rows = []
@@ -121,7 +128,7 @@ def _rectangles(courses: Sequence[tuple[int, Array, Array]], bond: Bond) -> list
     return blocks
 
 
-def _whole(ratio: float, key: str, value: float, unit: str) -> int:
+def _whole_number(ratio: float, key: str, value: float, unit: str) -> int:
     nearest = round(ratio) if np.isfinite(ratio) and ratio < 1e9 else 0
     if nearest < 1 or abs(ratio - nearest) > LATTICE_TOLERANCE * max(1.0, nearest):
         raise SceneError(key, f"must be a whole number of {unit} m; this is {ratio:.6g} of them", value)

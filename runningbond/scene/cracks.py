@@ -11,7 +11,7 @@ import shapely
 from .arrays import Array, Indices
 
 
-def halved(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indices]:
+def cut_in_half(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indices]:
     """Cut polygons at the vertical line through their centroids.
 
     Parameters
@@ -19,7 +19,7 @@ def halved(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indic
     polygons : list of (n, 2) float
         Convex blocks [m], counter-clockwise.
     widest : float
-        Width [m] up to which a block is left whole.
+        Width [m] up to which a block is not cut.
 
     Returns
     -------
@@ -29,7 +29,7 @@ def halved(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indic
         Block that each piece was part of.
     """
     pieces: list[Array] = []
-    whole: list[int] = []
+    owner: list[int] = []
     for k, polygon in enumerate(polygons):
         if np.ptp(polygon[:, 0]) <= widest:
             cut = [polygon]
@@ -37,8 +37,8 @@ def halved(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indic
             middle = shapely.Polygon(polygon).centroid.x
             cut = [_side(polygon, middle, -1.0), _side(polygon, middle, 1.0)]
         pieces += cut
-        whole += [k] * len(cut)
-    return pieces, np.array(whole)
+        owner += [k] * len(cut)
+    return pieces, np.array(owner)
 
 
 def _side(polygon: Array, x: float, sense: float) -> Array:

@@ -1,13 +1,10 @@
 """Blocks from a DXF drawing: one closed polyline a block, the lowest is the ground."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import shapely
-from ezdxf.entities.lwpolyline import LWPolyline
-from ezdxf.entities.polyline import Polyline
-from ezdxf.filemanagement import readfile
-from ezdxf.lldxf.const import DXFError
 
 from .arrays import Array
 from .errors import SceneError
@@ -34,15 +31,14 @@ def read_drawing(path: Path, units: str) -> tuple[list[Array], Array]:
         Outlines of the wall's blocks [m], counter-clockwise.
     ground : (n, 2) float
         Outline of the ground, the polyline whose centre lies lowest.
+
+    Raises
+    ------
+    SceneError
+        For what is no DXF file, or no drawing of a wall.
     """
     key = "wall.drawing"
-    try:
-        entities = list(readfile(path).modelspace().query("LWPOLYLINE POLYLINE"))
-    except OSError as error:
-        raise SceneError(key, f"cannot be read as DXF: {error.strerror or error}", str(path)) from error
-    except (DXFError, ValueError) as error:
-        raise SceneError(key, f"is no valid DXF file: {error}", str(path)) from error
-    outlines = [_outline(entity, METRES[units]) for entity in entities]
+    outlines = [_outline(entity, METRES[units]) for entity in _polylines(path, key)]
     if len(outlines) < 2:
         raise SceneError(key, f"holds {len(outlines)} polylines; it needs the ground and at least one block", str(path))
     lowest = min(range(len(outlines)), key=lambda i: outlines[i][:, 1].mean())
@@ -50,17 +46,31 @@ def read_drawing(path: Path, units: str) -> tuple[list[Array], Array]:
     return outlines, ground
 
 
-def _outline(entity: object, scale: float) -> Array:
+def _polylines(path: Path, key: str) -> list[Any]:
+    # A device has no end, and a pipe may have no other one.
+    if path.exists() and not path.is_file():
+        raise SceneError(key, "cannot be read as DXF: it is no regular file", str(path))
+    try:
+        from ezdxf.filemanagement import readfile
+    except Exception as error:  # its import reads settings of the user's, who may have no home
+        raise SceneError(key, f"cannot be read, for ezdxf cannot be imported: {error}", str(path)) from error
+    try:
+        return list(readfile(path).modelspace().query("LWPOLYLINE POLYLINE"))
+    except OSError as error:
+        raise SceneError(key, f"cannot be read as DXF: {error.strerror or error}", str(path)) from error
+    except Exception as error:  # whatever its parsers raise on a file that is damaged
+        raise SceneError(key, f"is no valid DXF file: {error}", str(path)) from error
+
+
+def _outline(entity: Any, scale: float) -> Array:
     # World coordinates: a polyline that was mirrored has axes of its own.
-    if isinstance(entity, LWPolyline):
-        points = list(entity.vertices_in_wcs())
-        curved, closed, handle = entity.has_arc, entity.closed, entity.dxf.handle
-    elif isinstance(entity, Polyline) and (entity.is_2d_polyline or entity.is_3d_polyline):
-        points = list(entity.points_in_wcs())
-        curved, closed, handle = entity.has_arc, entity.is_closed, entity.dxf.handle
+    if entity.dxftype() == "LWPOLYLINE":
+        points, closed = list(entity.vertices_in_wcs()), entity.closed
+    elif entity.is_2d_polyline or entity.is_3d_polyline:
+        points, closed = list(entity.points_in_wcs()), entity.is_closed
     else:
         raise SceneError("wall.drawing", "holds a mesh; each block is one closed polyline")
-    name = f"wall.drawing, polyline {handle}"
+    name = f"wall.drawing, polyline {entity.dxf.handle}"
     corners = np.array([(p.x, p.y) for p in points], dtype=float).reshape(-1, 2) * scale
     if np.ptp([p.z for p in points] or [0.0]) * scale > 1e-6:
         raise SceneError(name, "does not lie in the drawing's plane")
@@ -68,7 +78,7 @@ def _outline(entity: object, scale: float) -> Array:
         corners, closed = corners[:-1], True
     if not closed:
         raise SceneError(name, "is open; each block is one closed polyline")
-    if curved:
+    if entity.has_arc:
         raise SceneError(name, "has an arc; blocks have straight sides")
     if len(corners) < 3 or not np.isfinite(corners).all():
         raise SceneError(name, "must have at least three corners at finite coordinates")

@@ -1,4 +1,7 @@
-"""The one way bad input is turned away: a single line naming the key, its value and what is right."""
+"""How bad input is refused: one line that names the key, its value and what would be right."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 
 class SceneError(ValueError):
@@ -11,12 +14,27 @@ class SceneError(ValueError):
     remedy
         What is wrong and what would be right.
     value
-        The value found, where there is one.
+        The value, where there is one.
     """
 
     def __init__(self, key: str, remedy: str, value: object = None) -> None:
-        found = "" if value is None else f" = {_abbreviated(value)}"
-        super().__init__(f"{key}{found}: {' '.join(remedy.split())}")
+        super().__init__(key, remedy, value)
+        self.key, self.remedy, self.value = key, remedy, value
+
+    def __str__(self) -> str:
+        value = "" if self.value is None else f" = {_abbreviated(self.value)}"
+        return f"{self.key}{value}: {' '.join(self.remedy.split())}"
+
+
+@contextmanager
+def keys_of(table: str, default: str) -> Iterator[None]:
+    """Name keys after the table that they were read from, where an object names them after its usual one."""
+    try:
+        yield
+    except SceneError as error:
+        if not error.key.startswith(f"{default}."):
+            raise
+        raise SceneError(table + error.key.removeprefix(default), error.remedy, error.value) from None
 
 
 def _abbreviated(value: object, limit: int = 60) -> str:

@@ -8,18 +8,18 @@ from pathlib import Path
 
 
 @contextmanager
-def alone(folder: Path, *, reading: bool = False) -> Iterator[None]:
-    """Wait until nobody else is at work in a folder, and keep others waiting.
+def locked(folder: Path, *, reading: bool = False) -> Iterator[None]:
+    """Wait until no other process holds a folder, and hold it.
 
     The lock lies on the folder itself and ends with its holder, however that comes about. A file system that knows
-    no locks gives none, and what is written whole is still written whole.
+    no locks gives none; what is written atomically is so without one.
 
     Parameters
     ----------
     folder
         The folder.
     reading
-        Only writers are kept waiting, and not other readers.
+        Let other readers in, and keep writers waiting.
     """
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:

@@ -77,12 +77,12 @@ def find_joints(blocks: Blocks) -> Joints:
     d_low = np.einsum("ij,ij->i", stop[b] - start[a], outward)
     d_high = np.einsum("ij,ij->i", start[b] - start[a], outward)
     low, high = np.maximum(s_low, 0.0), np.minimum(s_high, length)
-    found = high - low > tolerance
-    a, b, along, low, high = a[found], b[found], along[found], low[found], high[found]
+    overlap = high - low > tolerance
+    a, b, along, low, high = a[overlap], b[overlap], along[overlap], low[overlap], high[overlap]
     # Distance between the two lines at both ends of the overlap.
-    slope = (d_high - d_low)[found] / (s_high - s_low)[found]
-    gap_low = d_low[found] + slope * (low - s_low[found])
-    gap_high = d_low[found] + slope * (high - s_low[found])
+    slope = (d_high - d_low)[overlap] / (s_high - s_low)[overlap]
+    gap_low = d_low[overlap] + slope * (low - s_low[overlap])
+    gap_high = d_low[overlap] + slope * (high - s_low[overlap])
     on_line = np.maximum(np.abs(gap_low), np.abs(gap_high)) <= tolerance
     a, b, along, low, high = a[on_line], b[on_line], along[on_line], low[on_line], high[on_line]
 

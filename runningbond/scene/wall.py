@@ -1,7 +1,7 @@
 """The scene: a wall with its joints, materials, supports and loads, complete and checked."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,12 +11,14 @@ from scipy.sparse.csgraph import connected_components
 from .arrays import Array, Indices, Mask, frozen
 from .blocks import Blocks
 from .bond import Bond
-from .cracks import halved
+from .cracks import cut_in_half
 from .errors import SceneError
-from .loads import Load, PointLoad
+from .forces import Forces
+from .loads import Action, Load
 from .materials import BlockMaterial, JointMaterial
+from .ranges import ABOVE_ZERO, one_of
 from .segments import Joints, find_joints
-from .supports import NO_PINS, Pins, SupportKind, corner_pins, first_course
+from .supports import NO_PINS, SUPPORT_KINDS, Pins, SupportKind, corner_pins, first_course
 
 SAME_COLUMN = 1e-9
 """Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
@@ -68,6 +70,7 @@ class Scene:
     def __post_init__(self) -> None:
         object.__setattr__(self, "fixed", frozen(self.fixed, np.bool_))
         object.__setattr__(self, "wall", frozen(self.wall, np.bool_))
+        object.__setattr__(self, "thickness", ABOVE_ZERO.take("wall.thickness", self.thickness))
 
     @cached_property
     def mass(self) -> Array:
@@ -85,31 +88,24 @@ class Scene:
         return self.joints.inner.astype(np.int64)
 
     @cached_property
-    def loaded_blocks(self) -> Indices:
-        """Movable blocks that share a point load; empty for a lateral load."""
-        live = self.load.live
-        if not isinstance(live, PointLoad):
-            return np.zeros(0, dtype=np.int64)
-        touching = self.blocks.containing(np.array(live.at))
-        return touching[~self.fixed[touching]]
+    def dead_forces(self) -> Forces:
+        """Forces of the blocks' weight and of all dead loads."""
+        return self._sum(Forces.on(self, self.load.gravity), self.load.dead)
+
+    @cached_property
+    def live_forces(self) -> Forces:
+        """Forces of all live loads at λ = 1."""
+        return self._sum(Forces.on(self), self.load.live)
+
+    def _sum(self, forces: Forces, loads: Sequence[Action]) -> Forces:
+        total = sum((load.forces(self) for load in loads), forces)
+        loose = ~self.fixed[total.block]
+        return replace(total, block=total.block[loose], at=total.at[loose], force=total.force[loose])
 
     @cached_property
     def control_point(self) -> tuple[Indices, Array, Array]:
-        """Blocks whose displacement is averaged at the control point ``(n,)``, the point and a direction ``(2,)``.
-
-        The control point is where a point load acts, or the highest corner that lies farthest along a lateral
-        load (the paper's upper corner on the side of the push); its displacement is read along the live load.
-        """
-        live, blocks = self.load.live, self.blocks
-        if isinstance(live, PointLoad):
-            return self.loaded_blocks, np.array(live.at), np.array(live.force) / np.hypot(*live.force)
-        direction = np.array(live.direction)
-        up = -np.array(self.load.gravity) / np.hypot(*self.load.gravity)
-        movable = np.flatnonzero(~self.fixed[blocks.owner])
-        height = blocks.vertices[movable] @ up
-        top = movable[height >= height.max() - blocks.tolerance]
-        corner = top[[np.argmax(blocks.vertices[top] @ direction)]]
-        return blocks.owner[corner], blocks.vertices[corner[0]], direction
+        """Blocks, point and direction at which displacements are read: those of the first live load."""
+        return self.load.live[0].control(self)
 
     @cached_property
     def column_by_column(self) -> Indices:
@@ -180,14 +176,18 @@ def build_scene(
         For blocks that are not convex, overlap or touch nothing that is held, for an inset that
         leaves no joint, and for a load that nothing takes up.
     """
-    support_needs_ground = support == "base"
+    one_of("support.kind", support, SUPPORT_KINDS)
+    if ground is not None and support in ("corners", "pinned-corners"):
+        raise SceneError("support.kind", 'a drawing brings its ground; use "base" or "fixed-first-course"', support)
+    if inner_joint and joint.elasticity and not inner_joint.elasticity:
+        raise SceneError("inner_joint.mortar", "is missing; joint has a stiffness, and models that need it need both")
     wall_blocks = Blocks.from_polygons(polygons)
     wall_blocks.check()
-    whole = np.arange(len(polygons))
+    owner = np.arange(len(polygons))
     if inner_joint is not None:
-        polygons, whole = halved(polygons, 0.75 * bond.width if bond else 0.0)
+        polygons, owner = cut_in_half(polygons, 0.75 * bond.width if bond else 0.0)
         wall_blocks = Blocks.from_polygons(polygons)
-    if ground is None and support_needs_ground:
+    if ground is None and support == "base":
         ground = _strip_below(wall_blocks)
     outlines = [*polygons] if ground is None else [*polygons, ground]
     blocks = Blocks.from_polygons(outlines)
@@ -202,7 +202,7 @@ def build_scene(
         pins = corner_pins(blocks, wall, roller=support == "corners")
 
     joints = find_joints(blocks)
-    part_of = np.append(whole, np.full(len(outlines) - len(polygons), -1))[joints.block]
+    part_of = np.append(owner, np.full(len(outlines) - len(polygons), -1))[joints.block]
     movable = ~fixed[joints.block].all(axis=1)
     inner = (part_of[:, 0] == part_of[:, 1]) & movable
     order = np.concatenate([np.flatnonzero(movable & ~inner), np.flatnonzero(inner)])
@@ -246,18 +246,12 @@ def _check(scene: Scene) -> None:
             raise SceneError(
                 name, f"must be less than half the shortest joint, {length.min():.4g} m long", material.inset
             )
-    live = scene.load.live
-    if isinstance(live, PointLoad):
-        if scene.loaded_blocks.size == 0:
-            low, high = scene.blocks.extent(scene.wall)
-            raise SceneError(
-                "load.live.at",
-                "touches no block that can move; the wall spans "
-                f"x {low[0]:.4g} … {high[0]:.4g} m, y {low[1]:.4g} … {high[1]:.4g} m",
-                list(live.at),
-            )
-    elif not any(scene.load.gravity):
-        raise SceneError("load.gravity", "leaves a lateral load nothing to push with; give the blocks a weight", 0.0)
+    for key, load in scene.load.named():
+        load.check(scene, key)
+        forces = load.forces(scene)
+        size = sum(float(np.abs(part).sum()) for part in (forces.acceleration, forces.moment, forces.force))
+        if not 0 < size < np.inf:
+            raise SceneError(key, "must put finite forces on the blocks, not all of them zero", load)
 
 
 def _refuse_floating_blocks(scene: Scene) -> None:

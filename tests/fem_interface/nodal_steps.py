@@ -17,13 +17,13 @@ class NodalSteps:
         K, M = whole(found.mesh, found.scene)
         free = np.repeat(~found.scene.fixed[found.mesh.block], 2)
         jump = nodal_jump(found.interface, len(found.mesh.points))
-        self.law, self.area, self.free = system.law, system.area, free
+        self.law, self.area, self.free = system.interface.law, system.interface.area, free
         self.K, self.M = K[free][:, free], M[free][:, free].tocsc()
         self.opening, self.slip = jump.opening.tocsc()[:, free].tocsr(), jump.slip.tocsc()[:, free].tocsr()
         gravity = np.tile(found.scene.load.gravity, len(found.mesh.points))[free]
         side = np.tile([np.hypot(*found.scene.load.gravity), 0.0], len(found.mesh.points))[free]
         self.dead, self.live = self.M @ gravity, self.M @ side
-        self.history = np.zeros((system.law.rows, system.law.points))
+        self.history = np.zeros((system.interface.law.rows, system.interface.law.points))
         self.u, self.v = np.zeros(free.sum()), np.zeros(free.sum())
 
     def take(self, steps: int, dt: float, viscosity: float, multiplier: float) -> None:

@@ -13,11 +13,10 @@ from fem_interface.fracture import fractured
 from fem_interface.frequency_shift import elastic_stiffness
 from fem_interface.modal_wall import ModalWall
 from fem_interface.model import fem
-from fem_interface.piece_run import PieceRun
 from fem_interface.system import system_of
 from runningbond.dynamics import Criteria, Run, State, settle
-from runningbond.joints.point_kernel import FRICTION_WORK
-from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.joints.law import FRICTION_WORK
+from runningbond.joints.softening import DAMAGE
 from runningbond.scene import (
     Array,
     BlockMaterial,
@@ -156,7 +155,7 @@ def test_loads_on_pieces_have_the_resultant_of_their_block(make: Any, loads: Any
     scene = make()
     found = modal_wall(scene, 2, cracks="blocks")
     system = system_of(found, loads=loads)
-    run = PieceRun(system, found)
+    run = Run(system)
     state = State.at_rest(system)
     state.motion = np.where(np.isfinite(system.mass), (system.dead + 0.4 * system.live) / system.mass, 0.0)
     accelerated = run.motion_of_blocks(state)[~scene.fixed]
@@ -167,7 +166,7 @@ def test_blocks_move_as_wholes_where_their_pieces_do() -> None:
     """Rigid motions of all blocks, given to their pieces, are read back."""
     scene = drawing()
     found = modal_wall(scene, cracks="blocks")
-    run = PieceRun(system_of(found), found)
+    run = Run(system_of(found))
     rigid = np.random.default_rng(4).normal(size=(len(scene.blocks), 3))
     rigid[scene.fixed] = 0.0
     owner = found.pieces.owner
@@ -266,17 +265,17 @@ def test_a_block_torn_apart_dissipates_the_energy_of_its_crack(direction: int) -
     """G_I × area where its halves are drawn apart, G_II × area where they are sheared; nothing elsewhere."""
     energies = (20.0, 35.0)
     run, state, found = pulled_apart(direction, energies)
-    spent = np.zeros(run.system.law.points)
+    spent = np.zeros(run.system.interface.law.points)
     wanted = 1.2 * 2 * energies[direction] / (1e5 if direction == 0 else 2e5) + 1e-5
     while state.steps * run.dt * SPEED < wanted:
         run.hold(state, 0.0, 500)
-        after = run.system.area * state.history[FRICTION_WORK]
+        after = run.system.interface.area * state.history[FRICTION_WORK]
         assert (after - spent).min() >= -1e-12 * after.max()
         spent = after
     points = found.interface.points
     crack = np.abs(points.position[:, 0] - 0.12) < 1e-9
     crack &= found.scene.joints.inner[points.joint] & (np.abs(points.normal[:, 0]) > 0.99)
-    assert run.system.area[crack].sum() == pytest.approx(0.06 * 0.12, rel=1e-12)
+    assert run.system.interface.area[crack].sum() == pytest.approx(0.06 * 0.12, rel=1e-12)
     assert spent[crack].sum() == pytest.approx(energies[direction] * 0.06 * 0.12, rel=1e-3)
     assert state.history[DAMAGE][crack] == pytest.approx(1.0)
     assert not state.history[DAMAGE][~crack & found.scene.joints.inner[points.joint]].any()
@@ -315,7 +314,7 @@ def test_dissipation_never_falls_where_blocks_crack(energy: float | None) -> Non
 def test_pinned_corners_of_cracked_blocks_do_not_move() -> None:
     scene = corners()
     found = modal_wall(scene, cracks="blocks")
-    run = PieceRun(system_of(found), found)
+    run = Run(system_of(found))
     state = State.at_rest(run.system)
     assert settle(run, state, 1e3, Criteria(collapse=1.0, rest=1e-4)) == "stable"
     u = found.displacement(state.motion)

@@ -11,17 +11,18 @@ from hypothesis import strategies as st
 
 import dem.finite_system
 from dem.dynamic import finite_pushover
-from fem_interface.finite import fem_pushover
-from fem_interface.finite_system import FiniteRun, finite_system
-from fem_interface.finite_wall import FiniteWall, finite_wall
+from fem_interface.finite_pushover import fem_pushover
+from fem_interface.finite_system import DeformableContacts, finite_system
 from fem_interface.modes import ModeCount
+from fem_interface.node_outline import NodeOutline, node_outline
 from fem_interface.system import fem_system
 from fem_interface.templates import nodes_of, triangles_of
 from runningbond.compare import published_scene
-from runningbond.dynamics import BlockSystem, Criteria, FiniteState, Run, State, settle
+from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics.contact_update import contacts_of
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.point_kernel import OPENING_BEFORE
-from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.joints.law import OPENING_BEFORE
+from runningbond.joints.softening import DAMAGE
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
 from tests.test_dem import pile, rectangle
 from tests.test_dynamics import GRAVITY
@@ -49,14 +50,16 @@ def weight(scene: Scene, block: int) -> float:
     return float(scene.mass[block] * GRAVITY)
 
 
-def place(run: FiniteRun, state: FiniteState, block: int) -> Array:
+def place(run: Run, state: State, block: int) -> Array:
     """Motion of a block: translations and rotation."""
     return np.asarray(state.motion[run.system.rigid[block]])
 
 
-def pressure(run: FiniteRun, state: FiniteState, upper: int, lower: int) -> float:
+def pressure(run: Run, state: State, upper: int, lower: int) -> float:
     """Compression [N] between two blocks."""
-    owner = run.blocks.scene.blocks.owner[state.contacts.ends[:, 4:].astype(np.int64)]
+    search = run.system.contacts
+    assert search is not None
+    owner = search.outline.blocks.owner[contacts_of(state).ends[:, 4:].astype(np.int64)]
     between = (np.sort(owner, axis=1) == sorted((upper, lower))).all(axis=1)
     return float(-run.forces(state)[0][between].sum())
 
@@ -65,7 +68,7 @@ def weightless(system: BlockSystem) -> BlockSystem:
     return replace(system, dead=np.zeros_like(system.dead), live=np.zeros_like(system.live))
 
 
-def turned(blocks: FiniteWall, seed: int, turn: float = 0.1, apart: float = 2e-3, deformed: float = 1e-4) -> Array:
+def turned(blocks: NodeOutline, seed: int, turn: float = 0.1, apart: float = 2e-3, deformed: float = 1e-4) -> Array:
     """A motion that turns and moves every block a little and strains it by about 1e-3."""
     rng = np.random.default_rng(seed)
     motion = rng.normal(size=len(blocks.wall.mass)) * deformed
@@ -75,9 +78,14 @@ def turned(blocks: FiniteWall, seed: int, turn: float = 0.1, apart: float = 2e-3
     return motion
 
 
+def bounded(system: BlockSystem, bound: float) -> BlockSystem:
+    """The same blocks with a larger bound of their frequency."""
+    return replace(system, interface=replace(system.interface, frequency_squared=bound))
+
+
 def jumps_on(system: BlockSystem, geometry: Any, motion: Array, n: int) -> Array:
     found = np.zeros((2, n))
-    system.gather(motion, geometry, *found)
+    system.interface.gather(motion, geometry, *found)
     return found
 
 
@@ -91,20 +99,20 @@ def test_blocks_with_three_modes_move_as_rigid_ones(inset: float) -> None:
     Blocks start apart: where corners coincide, rounding decides which of them rests on the other's side.
     """
     scene = wall(joint__inset=inset)
-    blocks = finite_wall(scene, 1, 3)
+    blocks = node_outline(scene, 1, 3)
     ours, rigid = finite_system(blocks), dem.finite_system.finite_system(scene)
-    bound = 4 * max(ours.block_frequency_squared, rigid.block_frequency_squared)
-    run = FiniteRun(blocks, replace(ours, block_frequency_squared=bound))
-    other = dem.finite_system.FiniteRun(scene, replace(rigid, block_frequency_squared=bound))
+    bound = 4 * max(ours.interface.frequency_squared, rigid.interface.frequency_squared)
+    run = Run(bounded(ours, bound))
+    other = Run(bounded(rigid, bound))
     motion = turned(blocks, 1, turn=2e-3, apart=2e-4)
-    state, reference = run.moved_to(motion), other.moved_to(run.rigid(motion))
+    state, reference = State.at_rest(run.system, motion), State.at_rest(other.system, blocks.rigid(motion))
     found = {id(state.contacts): state.contacts}
     for _ in range(15):
         run.hold(state, 0.9, 20)
         other.hold(reference, 0.9, 20)
         assert run.dt == other.dt
-        way = reference.motion - run.rigid(motion)
-        assert run.rigid(state.motion - motion) == pytest.approx(way, abs=1e-9 * np.abs(way).max())
+        way = reference.motion - blocks.rigid(motion)
+        assert blocks.rigid(state.motion - motion) == pytest.approx(way, abs=1e-9 * np.abs(way).max())
         found[id(state.contacts)] = state.contacts
     assert len(found) > 2
     assert np.abs(way).max() > 1e-3
@@ -115,12 +123,11 @@ def test_blocks_with_three_modes_move_as_rigid_ones(inset: float) -> None:
 def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, inset: float) -> None:
     """Modal forces of joints as springs: the difference falls as the square of the amplitude, slope 2 ± 0.1."""
     scene = wall(joint__inset=inset)
-    blocks = finite_wall(scene, cells, modes)
+    blocks = node_outline(scene, cells, modes)
     finite, small = finite_system(blocks), fem_system(scene, cells, modes)
-    n = len(blocks.undeformed)
-    bears = np.abs(jumps_on(finite, finite.geometry, np.zeros_like(finite.mass), n)[0]) < 1e-9
-    assert finite.area[bears].sum() == pytest.approx(small.area.sum(), rel=1e-12)
-    stiffness = np.array([finite.law.normal_stiffness[:1], finite.law.shear_stiffness[:1]])
+    bears = np.abs(finite.interface.jumps(np.zeros_like(finite.mass))[0]) < 1e-9
+    assert finite.interface.area[bears].sum() == pytest.approx(small.interface.area.sum(), rel=1e-12)
+    stiffness = np.array([finite.interface.law.normal_stiffness[:1], finite.interface.law.shear_stiffness[:1]])
     rng = np.random.default_rng(0)
     direction = rng.normal(size=len(finite.mass))
     direction[blocks.wall.rigid[:, 2]] /= 0.1
@@ -130,11 +137,13 @@ def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, 
     for amplitude in amplitudes:
         motion = amplitude * direction
         forces = np.zeros((2, len(motion)))
-        for system, force, mask in ((finite, forces[0], bears), (small, forces[1], np.ones(small.law.points))):
+        for system, force, mask in (
+            (finite, forces[0], bears),
+            (small, forces[1], np.ones(small.interface.law.points)),
+        ):
             # Slip is counted from where the undeformed contact is.
-            start = jumps_on(system, system.geometry, 0 * motion, len(mask))
-            jump = jumps_on(system, system.geometry, motion, len(mask)) - start
-            system.scatter(*(stiffness * jump * mask), system.geometry, force)
+            jump = np.array(system.interface.jumps(motion)) - system.interface.jumps(0 * motion)
+            system.interface.scatter(*(stiffness * jump * mask), system.interface.geometry, force)
         assert np.abs(forces[1]).max() > 0
         difference.append(np.abs(forces[0] - forces[1])[:-1].max())
     slopes = np.diff(np.log10(difference))
@@ -151,14 +160,15 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
     of the far end, it is so to the penetration; both are left out.
     """
     scene = wall(wall__length=0.72, wall__height=0.18, joint__inset=inset)
-    blocks = finite_wall(scene, 2)
+    blocks = node_outline(scene, 2)
     motion = turned(blocks, seed, deformed=1e-4 if inset == 0 else 1e-7)
-    contacts = blocks.find(motion, 0.02)
+    search = DeformableContacts(blocks)
+    contacts = search.find(motion, 0.02)
     system = finite_system(blocks)
-    geometry = blocks.geometry(contacts)
+    geometry = search.geometry(contacts)
     jumps_on(system, geometry, motion, len(contacts))
     rng = np.random.default_rng(seed)
-    facets, contact, touched = geometry[6][1], geometry[8], geometry[9]
+    facets, contact, touched = geometry.placed.facets, geometry.contact, geometry.touched
     opening = jumps_on(system, geometry, motion, len(contacts))[0]
     of_a = touched[:, 2]
     side = np.where(of_a, touched[:, 0], touched[:, 1])
@@ -168,11 +178,11 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
     direction = rng.normal(size=len(motion))
     direction[-1] = 0.0
     step = 1e-7 * direction
-    rate = jumps_on(system, blocks.geometry(contacts), motion + step, len(contacts))
-    rate = (rate - jumps_on(system, blocks.geometry(contacts), motion - step, len(contacts))) / 2e-7
+    rate = jumps_on(system, search.geometry(contacts), motion + step, len(contacts))
+    rate = (rate - jumps_on(system, search.geometry(contacts), motion - step, len(contacts))) / 2e-7
     tractions = rng.normal(size=(2, len(contacts))) * plain
     force = np.zeros_like(motion)
-    system.scatter(*tractions, geometry, force)
+    system.interface.scatter(*tractions, geometry, force)
     work = (tractions * rate * contacts.area).sum()
     scale = np.abs(tractions * rate * contacts.area).sum()
     assert -force[:-1] @ direction[:-1] == pytest.approx(work, abs=1e-5 * scale)
@@ -181,7 +191,7 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
 def test_turning_as_one_body_neither_strains_blocks_nor_opens_joints() -> None:
     """By one radian: no strain of any triangle and no change of any jump between moving blocks, to 1e-12."""
     scene = wall()
-    blocks = finite_wall(scene, 2)
+    blocks = node_outline(scene, 2)
     mesh, turn, centre = blocks.wall.mesh, 1.0, np.array([0.1, 0.2])
     c, s = math.cos(turn), math.sin(turn)
     R = np.array([[c, -s], [s, c]])
@@ -195,12 +205,12 @@ def test_turning_as_one_body_neither_strains_blocks_nor_opens_joints() -> None:
         after = blocks.positions(rotated)
         moves = ~scene.fixed[mesh.block]
         assert after[moves] == pytest.approx((before[moves] - centre) @ R.T + centre, abs=1e-14)
-        contacts = blocks.undeformed
+        contacts = DeformableContacts(blocks).undeformed
         owner = scene.blocks.owner[contacts.ends[:, 4:].astype(np.int64)]
         free = ~scene.fixed[owner].any(axis=1)
         assert free.sum() > 20
         system = finite_system(blocks)
-        jumps = [jumps_on(system, system.geometry, m, len(contacts))[:, free] for m in (motion, rotated)]
+        jumps = [jumps_on(system, system.interface.geometry, m, len(contacts))[:, free] for m in (motion, rotated)]
         assert jumps[1] == pytest.approx(jumps[0], abs=1e-12)
     for block in map(int, np.flatnonzero(~scene.fixed)):
         own, triangles = nodes_of(mesh, block), triangles_of(mesh, block)
@@ -212,11 +222,11 @@ def test_turning_as_one_body_neither_strains_blocks_nor_opens_joints() -> None:
 def test_a_spinning_block_turns_by_a_radian_without_stress() -> None:
     """In free flight, at 10 rad/s: no force on any mode, and the turn is exact."""
     scene = wall()
-    blocks = finite_wall(scene)
-    run = FiniteRun(blocks, weightless(finite_system(blocks)), local=0.0)
+    blocks = node_outline(scene)
+    run = Run(weightless(finite_system(blocks)), local=0.0)
     up = np.zeros_like(run.system.mass)
     up[run.system.rigid[-1, 1]] = 0.5
-    state = run.moved_to(up)
+    state = State.at_rest(run.system, up)
     state.velocity[run.system.rigid[-1, 2]] = 10.0
     steps = round(0.1 / run.dt)
     run.hold(state, 0.0, steps)
@@ -230,12 +240,12 @@ def test_a_spinning_block_turns_by_a_radian_without_stress() -> None:
 def test_momentum_of_a_free_pile_is_kept_while_contacts_are_found_anew() -> None:
     """Linear and angular, to 1e-12, while deformable blocks far above the ground fly apart, strike and slide."""
     scene = wall(wall__length=0.72, joint__inset=0.005)
-    blocks = finite_wall(scene)
-    run = FiniteRun(blocks, weightless(finite_system(blocks)), local=0.0)
+    blocks = node_outline(scene)
+    run = Run(weightless(finite_system(blocks)), local=0.0)
     up = np.zeros_like(run.system.mass)
     moving = run.system.rigid[~scene.fixed]
     up[moving[:, 1]] = 5.0
-    state = run.moved_to(up)
+    state = State.at_rest(run.system, up)
     state.velocity[moving] = np.random.default_rng(2).normal(size=moving.shape)
     mass = run.system.mass[moving]
 
@@ -257,8 +267,8 @@ def test_momentum_of_a_free_pile_is_kept_while_contacts_are_found_anew() -> None
 
 def test_a_state_goes_its_own_way_with_its_contacts() -> None:
     """Going back to a copy gives the same again, to the last bit, whatever the run has done in between."""
-    run = FiniteRun(finite_wall(wall()))
-    state = run.at_rest()
+    run = Run(finite_system(node_outline(wall())))
+    state = State.at_rest(run.system)
     state.velocity[run.system.rigid[-1]] = 1.0, 0.5, 2.0
     run.hold(state, 0.8, 1000)
     kept = state.copy()
@@ -279,15 +289,15 @@ def test_a_state_goes_its_own_way_with_its_contacts() -> None:
 )
 def test_scenes_of_another_kind_are_refused(changes: dict[str, Any], key: str) -> None:
     with pytest.raises(SceneError, match=key):
-        finite_wall(wall(**changes))
+        node_outline(wall(**changes))
 
 
 def test_materials_without_a_stiffness_are_refused() -> None:
     scene = wall()
     with pytest.raises(SceneError, match="block.young"):
-        finite_wall(replace(scene, block=replace(scene.block, young=None)))
+        node_outline(replace(scene, block=replace(scene.block, young=None)))
     with pytest.raises(SceneError, match="joint"):
-        finite_system(finite_wall(replace(scene, joint=replace(scene.joint, elasticity=None))))
+        finite_system(node_outline(replace(scene, joint=replace(scene.joint, elasticity=None))))
 
 
 # --- one block -----------------------------------------------------------------------------------------------
@@ -305,8 +315,8 @@ def test_a_stiff_block_loses_resistance_as_the_tangent(cells: int) -> None:
         block={"density": 4.0, "young": 1e12, "poisson": 0.2},
         joint={"friction": 2.0, "normal_stiffness": 1e10, "shear_stiffness": 1e10},
     )
-    run = FiniteRun(finite_wall(scene, cells), local=0.05, viscous=0.5)
-    state = run.at_rest()
+    run = Run(finite_system(node_outline(scene, cells)), local=0.05, viscous=0.5)
+    state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=0.1))
     speed = GRAVITY * 0.12 / (600_000 * run.dt)
     found = []
@@ -332,12 +342,12 @@ def test_a_block_slides_from_one_block_onto_the_next_of_the_course(cells: int, i
     """
     mu, width = 0.3, 0.4
     scene = dry([rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2), rectangle(0.3, 0.2, width, 0.2)], mu, 1e8, inset)
-    blocks = finite_wall(scene, cells)
+    blocks = node_outline(scene, cells)
     system = finite_system(blocks)
     alone = np.zeros_like(system.live)
     alone[system.rigid[2]] = system.live[system.rigid[2]]
-    run = FiniteRun(blocks, replace(system, live=alone))
-    state = run.at_rest()
+    run = Run(replace(system, live=alone))
+    state = State.at_rest(run.system)
     assert settle(run, state, 0.0, Criteria(collapse=0.01)) == "stable"
     rest, heavy = place(run, state, 2).copy(), weight(scene, 2)
     sunk = 2 * heavy / (1e8 * 0.1 * width)
@@ -370,7 +380,7 @@ def test_energy_is_accounted_for_while_a_wall_falls_to_pieces(inset: float) -> N
         block__young=1e9,
         block__poisson=0.2,
     )
-    run = FiniteRun(finite_wall(scene))
+    run = Run(finite_system(node_outline(scene)))
     check_energy_of_a_fall(run)
 
 
@@ -379,12 +389,12 @@ def test_a_glued_block_slides_once_its_joint_is_broken_and_is_dry_wherever_it_co
     mu, width, energy = 0.3, 0.4, 20.0
     scene = dry([rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2), rectangle(0.55, 0.2, width, 0.2)], mu, 1e9, 0.01)
     glue = replace(scene.joint, cohesion=1e4, tensile_strength=1e4, fracture_energy_1=energy, fracture_energy_2=energy)
-    blocks = finite_wall(replace(scene, joint=glue))
+    blocks = node_outline(replace(scene, joint=glue))
     system = finite_system(blocks)
     alone = np.zeros_like(system.live)
     alone[system.rigid[2]] = system.live[system.rigid[2]]
-    run = FiniteRun(blocks, replace(system, live=alone))
-    state = run.at_rest()
+    run = Run(replace(system, live=alone))
+    state = State.at_rest(run.system)
     assert settle(run, state, 0.0, Criteria(collapse=0.01)) == "stable"
     area, heavy = 0.1 * width, weight(scene, 2)
     resisted: list[tuple[float, float]] = []
@@ -396,12 +406,13 @@ def test_a_glued_block_slides_once_its_joint_is_broken_and_is_dry_wherever_it_co
     assert 0.7 * strongest < multiplier.max() < 1.02 * strongest
     broken = u > 2 * energy / 1e4 + 0.01
     assert multiplier[broken] == pytest.approx(mu, rel=0.02)
-    assert run.system.law.rows == 7
-    assert (state.history[DAMAGE][state.contacts.glued] <= 1).all()
-    lost = ~np.isin(state.contacts.key, blocks.undeformed.key[blocks.undeformed.glued])
+    assert run.system.interface.law.rows == 7
+    contacts, undeformed = contacts_of(state), DeformableContacts(blocks).undeformed
+    assert (state.history[DAMAGE][contacts.glued] <= 1).all()
+    lost = ~np.isin(contacts.key, undeformed.key[undeformed.glued])
     assert lost.any()
-    assert not state.contacts.glued[lost].any()
-    assert state.history.shape[1] == len(state.contacts)
+    assert not contacts.glued[lost].any()
+    assert state.history.shape[1] == len(contacts)
     assert np.isfinite(state.history[OPENING_BEFORE]).all()
     spent = run.ledger(state).friction
     assert spent == pytest.approx(energy * area + mu * heavy * u[-1], rel=0.03)
@@ -414,8 +425,8 @@ def test_a_glued_wall_breaks_as_at_small_displacements() -> None:
     scene = replace(scene, joint=replace(scene.joint, fracture_energy_1=5.0, fracture_energy_2=10.0))
     run: Run
     curves = []
-    for run in (FiniteRun(finite_wall(scene)), Run(fem_system(scene), local=LOCAL, viscous=VISCOUS)):
-        state = run.at_rest() if isinstance(run, FiniteRun) else State.at_rest(run.system)
+    for run in (Run(finite_system(node_outline(scene))), Run(fem_system(scene), local=LOCAL, viscous=VISCOUS)):
+        state = State.at_rest(run.system)
         settle(run, state, 0.0, Criteria(collapse=0.006))
         power = 1e-3 * np.abs(run.system.live).sum()
         curve = [(0.0, 0.0)]

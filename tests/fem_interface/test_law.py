@@ -9,8 +9,8 @@ from fem_interface.fracture import corrected_energies, fractured, printed_energi
 from fem_interface.model import fem
 from fem_interface.system import fem_system
 from runningbond.dynamics import Run
-from runningbond.joints.point_kernel import FRICTION_WORK
-from runningbond.joints.softening_kernel import DAMAGE
+from runningbond.joints.law import FRICTION_WORK
+from runningbond.joints.softening import DAMAGE
 from runningbond.scene import SceneError
 
 from .walls import check_dissipation, wall

@@ -12,7 +12,7 @@ from scipy.sparse.linalg import eigsh, spsolve
 
 from fem_interface.cracks import Cracks
 from fem_interface.element_order import modal_wall
-from fem_interface.frequency_shift import Slowing, elastic_stiffness
+from fem_interface.frequency_shift import FrequencyShift, elastic_stiffness
 from fem_interface.loads import inner_mass
 from fem_interface.mass_scaling import scaled_modes
 from fem_interface.modes import ModeCount
@@ -20,7 +20,7 @@ from fem_interface.system import fem_system, system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.controls import ramp
-from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError
 from runningbond.studies.stability.elastic import elastic_stiffness as of_modes
 from runningbond.studies.stability.elastic import vibrations
@@ -128,7 +128,7 @@ def test_mass_scaling_keeps_the_lowest_frequencies_of_equal_piers(piers: int, co
     assert system.mass == pytest.approx(scaled.mass, rel=1e-12)
     exact, slowed = (vibrations(each)[0][: min(20, 2 * piers * courses)] for each in (bare, system))
     assert (1 - slowed / exact).max() < HELD
-    slowing = Slowing(found, len(exact), scaled.frequency_squared)
+    slowing = FrequencyShift(found, len(exact), scaled.frequency_squared)
     assert slowing.of(scaled.mass) == pytest.approx((1 - slowed / exact).max(), abs=1e-6)
 
 
@@ -162,10 +162,10 @@ def test_stiff_blocks_take_the_step_of_rigid_ones(modes: ModeCount | None, short
     the damping of such a mode costs a little of the step.
     """
     scene = panel(joint__mortar=MORTAR, block__young=1e12)
-    rigid = fem_system(scene, modes=3).block_frequency_squared
-    scaled = fem_system(scene, modes=modes).block_frequency_squared
+    rigid = fem_system(scene, modes=3).interface.frequency_squared
+    scaled = fem_system(scene, modes=modes).interface.frequency_squared
     assert 1 < math.sqrt(scaled / rigid) < 1 + shorter
-    assert math.sqrt(fem_system(scene, mass_scaling=False).block_frequency_squared / rigid) > 15
+    assert math.sqrt(fem_system(scene, mass_scaling=False).interface.frequency_squared / rigid) > 15
 
 
 @pytest.mark.parametrize("young", [1e9, 1e12])

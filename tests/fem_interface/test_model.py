@@ -146,7 +146,7 @@ def test_an_unknown_number_of_modes_is_refused() -> None:
 
 
 def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> None:
-    """The displacements of the sparse solution, to 1e-6 of the largest, and no collapse at any load tried."""
+    """The displacements of the sparse solution, to 1e-6 of the largest, and the wall locks."""
     live = {"kind": "point", "at": [0.0, 0.12], "force": [0, -1]}
     size: dict[str, Any] = {"wall__length": 0.24, "wall__height": 0.12, "support__kind": "pinned-corners"}
     scene = wall(1e10, **size, joint={**GLUE}, load={"gravity": 0.0, "live": live})
@@ -166,9 +166,7 @@ def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> Non
     u = found.displacement(state.motion).ravel()
     assert np.abs(u[free] - exact).max() < 1e-6 * np.abs(exact).max()
     assert np.abs(u[~free]).max() < 1e-12 * np.abs(u).max()
-    outcome = fem(scene, budget=2000)
-    assert outcome.status == "undecided"
-    assert "it bore every load tried" in outcome.message
+    assert fem(scene, budget=2000).status == "unbounded"  # it asks itself whether joint forces balance any load
 
 
 @pytest.mark.parametrize(

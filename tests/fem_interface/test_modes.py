@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem_interface import block_modes, mass_matrix, nodal_jump, stiffness_matrix
-from fem_interface.element_order import find_runs, modal_wall
+from fem_interface.element_order import element_runs, modal_wall
 from fem_interface.modes import ModeCount, degree_of, polynomials
 from fem_interface.operators import nodes_of_degree
 from fem_interface.system import system_of
@@ -107,20 +107,24 @@ def test_kernels_are_the_nodal_jump_operator_and_its_transpose(make: Any, count:
     rng = np.random.default_rng(1)
     motion = rng.normal(size=len(system.mass))
     motion[np.isinf(system.mass)] = 0.0
-    opening, slip, force = np.zeros(system.law.points), np.zeros(system.law.points), np.zeros(len(motion))
-    system.gather(motion, system.geometry, opening, slip)
+    opening, slip, force = (
+        np.zeros(system.interface.law.points),
+        np.zeros(system.interface.law.points),
+        np.zeros(len(motion)),
+    )
+    system.interface.gather(motion, system.interface.geometry, opening, slip)
     u = found.displacement(motion).ravel()
     assert opening == pytest.approx(jump.opening @ u, abs=1e-12)
     assert slip == pytest.approx(jump.slip @ u, abs=1e-12)
     normal, tangential = rng.normal(size=(2, len(opening)))
-    system.scatter(normal.copy(), tangential.copy(), system.geometry, force)
-    virtual = system.area @ (normal * opening + tangential * slip)
+    system.interface.scatter(normal.copy(), tangential.copy(), system.interface.geometry, force)
+    virtual = system.interface.area @ (normal * opening + tangential * slip)
     assert force @ motion == pytest.approx(-virtual, abs=1e-12 * np.abs(force).sum())
 
 
 def test_elements_of_a_wall_of_equal_blocks_come_in_long_runs() -> None:
     found = modal_wall(panel(joint__mortar=MORTAR, block__young=1e12))
-    order, start = find_runs(found)
+    order, start = element_runs(found)
     assert (order == np.arange(len(order))).all()
     assert np.diff(start).sum() == len(found.mesh.joint)
     assert np.diff(start).mean() > 4

@@ -13,7 +13,7 @@ from fem_interface.frequency_shift import elastic_stiffness
 from fem_interface.mass_scaling import scaled_modes
 from fem_interface.system import fem_system, system_of
 from runningbond.dynamics import Run, State
-from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import JointMaterial, Mortar
 from tests.walls import panel
 
@@ -30,7 +30,7 @@ def test_modal_step_is_the_nodal_step(changes: dict[str, Any]) -> None:
     run = Run(system, local=0.0, viscous=0.1)
     state = State.at_rest(system)
     nodal = NodalSteps(found, system)
-    dt, viscosity = run.dt, 2 * 0.1 / math.sqrt(system.block_frequency_squared) / run.dt
+    dt, viscosity = run.dt, 2 * 0.1 / math.sqrt(system.interface.frequency_squared) / run.dt
     run.hold(state, 1.5, 500)
     nodal.take(500, dt, viscosity, 1.5)
     u = found.displacement(state.motion).ravel()[nodal.free]
@@ -58,7 +58,7 @@ def test_three_modes_are_rigid_blocks(
     for name in ("mass", "dead", "live", "control", "force_unit"):
         a, b = (getattr(system, name)[system.rigid][free] for system in (ours, theirs))
         assert np.abs(a - b).max() < 1e-12 * np.abs(b).max()
-    assert ours.block_frequency_squared == pytest.approx(theirs.block_frequency_squared, rel=1e-12)
+    assert ours.interface.frequency_squared == pytest.approx(theirs.interface.frequency_squared, rel=1e-12)
     assert ours.freedoms == theirs.freedoms
     (motion, state), (rigid, its) = pushed(ours), pushed(theirs)
     assert state.history[FRICTION_WORK].max() > 0

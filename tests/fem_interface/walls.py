@@ -11,7 +11,7 @@ from fem_interface.modes import rigid_motions
 from fem_interface.templates import nodes_of, triangles_of
 from meshing import WallMesh
 from runningbond.dynamics import BlockSystem, Run, State
-from runningbond.joints.point_kernel import FRICTION_WORK
+from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
 from tests.walls import panel
 
@@ -71,7 +71,10 @@ def whole(mesh: WallMesh, scene: Scene) -> tuple[csr_array, csr_array]:
 
 
 def joint_stiffness_of(system: BlockSystem, opening: Any, slip: Any) -> csr_array:
-    k_n, k_t = system.law.normal_stiffness * system.area, system.law.shear_stiffness * system.area
+    k_n, k_t = (
+        system.interface.law.normal_stiffness * system.interface.area,
+        system.interface.law.shear_stiffness * system.interface.area,
+    )
     return csr_array(opening.T @ (opening * k_n[:, None]) + slip.T @ (slip * k_t[:, None]))
 
 

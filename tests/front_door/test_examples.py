@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 import runningbond as rb
-from runningbond import joints, scene
-from runningbond.compare import models
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -24,7 +22,6 @@ def bracket(result: rb.Result) -> tuple[float, float]:
     return -np.inf if lower is None else lower, np.inf if upper is None else upper
 
 
-@pytest.mark.skipif(not hasattr(joints, "Law"), reason="until laws are objects")
 def test_joints_that_are_polished_bear_less_than_rough_ones() -> None:
     """Blocks that slide and rock before they fall lose friction on the way: panel-03 falls earlier."""
     names = example("own_law", run=True)
@@ -33,7 +30,6 @@ def test_joints_that_are_polished_bear_less_than_rough_ones() -> None:
     assert bracket(polished)[1] < bracket(rough)[0]
 
 
-@pytest.mark.skipif(not hasattr(joints, "Law"), reason="until laws are objects")
 def test_a_wall_that_slides_at_once_does_so_before_it_is_polished() -> None:
     """Exact: λ = tan φ, for a block that has not slid has all of its friction."""
     law = example("own_law")["LAW"]
@@ -44,7 +40,6 @@ def test_a_wall_that_slides_at_once_does_so_before_it_is_polished() -> None:
     assert lower * 0.99 < 0.4 < upper * 1.01
 
 
-@pytest.mark.skipif(not hasattr(scene, "Action"), reason="until loads are objects")
 def test_a_dam_slides_under_water_as_the_square_of_its_depth() -> None:
     """Exact: λ = tan φ ρ L H / (ρ_w h² / 2), which for this dam is 3 / h² (it would topple at twice that)."""
     found = example("own_load")
@@ -53,7 +48,6 @@ def test_a_dam_slides_under_water_as_the_square_of_its_depth() -> None:
         assert wall.run("limit").multiplier == pytest.approx(3 / level**2, rel=1e-6)
 
 
-@pytest.mark.skipif(not hasattr(scene, "Action"), reason="until loads are objects")
 def test_water_presses_with_its_weight_at_a_third_of_its_depth() -> None:
     """Exact, on blocks of the face above and below the level: F = ρ_w g t h² / 2 at h / 3."""
     found = example("own_load")
@@ -63,7 +57,6 @@ def test_water_presses_with_its_weight_at_a_third_of_its_depth() -> None:
         assert np.average(forces.at[:, 1], weights=forces.force[:, 0]) == pytest.approx(level / 3)
 
 
-@pytest.mark.skipif(not isinstance(models.Model, type), reason="until models are objects")
 def test_a_wall_in_one_block_is_never_weaker_than_one_of_many() -> None:
     """The block's motion is a mechanism of the wall, so limit analysis finds no larger load."""
     model = example("own_model")["MONOLITH"]
@@ -80,9 +73,6 @@ def test_a_wall_in_one_block_is_never_weaker_than_one_of_many() -> None:
 def test_examples_run_as_they_are(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    ready = {"own_load": hasattr(scene, "Action"), "own_model": isinstance(models.Model, type)}
-    if not ready.get(name, True):
-        pytest.skip("until the tracks are merged")
     monkeypatch.chdir(tmp_path)
     example(name, run=True)
     assert capsys.readouterr().out

@@ -1,5 +1,6 @@
 """Sweeps: a row a combination, kept and found again, with refusals among the rows."""
 
+import runpy
 import sys
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 
 import runningbond as rb
-from runningbond.compare import campaign, models
+from runningbond.compare import models, tasks
 from runningbond.results import Outcome
 
 WALL = rb.Wall.courses(
@@ -48,7 +49,7 @@ def test_refusals_are_rows() -> None:
 
 def test_a_model_that_breaks_is_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
     broken = Outcome("", "limit", "failed", message="ZeroDivisionError: by zero")
-    monkeypatch.setattr(campaign, "run_model", lambda *_: broken)
+    monkeypatch.setattr(tasks, "run_model", lambda *_: broken)
     table = rb.sweep(WALL, {"joint.friction": [0.3]}, "limit", jobs=1)
     assert list(table["status"]) == ["failed"]
     assert "ZeroDivisionError" in table["message"][0]
@@ -63,7 +64,7 @@ def test_a_sweep_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.Monkey
         computed.append(arguments)
         return run_model(*arguments)
 
-    monkeypatch.setattr(campaign, "run_model", counted)
+    monkeypatch.setattr(tasks, "run_model", counted)
     table = rb.sweep(WALL, {"joint.friction": [0.1, 0.2, 0.3]}, "limit", folder=tmp_path, jobs=1)
     assert np.asarray(table["multiplier"]) == pytest.approx([0.1, 0.2, 0.3])
     assert len(computed) == 1
@@ -82,6 +83,26 @@ def test_tables_may_vary_as_well() -> None:
     assert table["load.live"][1] == at_top
 
 
+LOAD = """
+from dataclasses import dataclass
+from runningbond.scene import Action, Forces
+
+@dataclass(frozen=True)
+class Push(Action):
+    def forces(self, scene):
+        return Forces.on(scene, (9.81 * {factor}, 0.0))
+"""
+
+
+def test_a_changed_load_of_ones_own_is_computed_anew(tmp_path: Path) -> None:
+    """Exact: λ = tan φ / factor, though the load is called the same and has the same fields."""
+    for factor in (1.0, 2.0, 1.0):
+        (tmp_path / "push.py").write_text(LOAD.format(factor=factor))
+        push = runpy.run_path(str(tmp_path / "push.py"))["Push"]
+        table = rb.sweep(WALL, {"load.live": [push()]}, "limit", folder=tmp_path / "kept", jobs=1)
+        assert np.asarray(table["multiplier"]) == pytest.approx([0.4 / factor])
+
+
 def test_an_unknown_model_is_refused_at_once() -> None:
     with pytest.raises(rb.SceneError, match='did you mean "limit"?'):
         rb.sweep(WALL, {"joint.friction": [0.3]}, "limt")
@@ -97,6 +118,6 @@ def test_an_interrupted_sweep_is_an_interruption(monkeypatch: pytest.MonkeyPatch
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(campaign, "run_model", interrupted)
+    monkeypatch.setattr(tasks, "run_model", interrupted)
     with pytest.raises(KeyboardInterrupt):
         rb.sweep(WALL, {"joint.friction": [0.3]}, "limit", jobs=1)

@@ -19,10 +19,10 @@ def test_one_factor_for_all_modes_reaches_the_step_and_spoils_the_band(young: fl
     """Each mode scaled by its own need leaves the lowest frequencies; all by one factor shifts them by a quarter."""
     found, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
     none, each = (system_of(found, mass_scaling=on) for on in (False, True))
-    uniform = uniformly_scaled(found, none, rigid.block_frequency_squared)
+    uniform = uniformly_scaled(found, none, rigid.interface.frequency_squared)
     exact, own, all_alike = (vibrations(system)[0] for system in (none, each, uniform))
     band = vibrations(rigid)[0][-1] * (1 + 1e-9)
-    assert all_alike[-1] ** 2 <= rigid.block_frequency_squared < none.block_frequency_squared / 5
+    assert all_alike[-1] ** 2 <= rigid.interface.frequency_squared < none.interface.frequency_squared / 5
     assert np.abs(own / exact - 1)[:LOWEST].max() < LOST * (1 + 1e-6)
     assert np.abs(all_alike / exact - 1)[:LOWEST].max() > 0.25
     assert (exact <= band).sum() < 0.5 * (all_alike <= band).sum()
@@ -33,9 +33,11 @@ def test_one_factor_for_all_modes_reaches_the_step_and_spoils_the_band(young: fl
 
 def test_the_step_of_unscaled_blocks_falls_with_the_root_of_their_stiffness() -> None:
     """To 1 %, for joints still stiffen the softer ones a little. Of scaled blocks it comes to that of rigid ones."""
-    steps = [system_of(modal_wall(wall(E)), mass_scaling=False).block_frequency_squared ** -0.5 for E in (1e12, 1e13)]
+    steps = [
+        system_of(modal_wall(wall(E)), mass_scaling=False).interface.frequency_squared ** -0.5 for E in (1e12, 1e13)
+    ]
     assert steps[0] / steps[1] == pytest.approx(10**0.5, rel=0.01)
-    scaled, rigid = (system_of(modal_wall(wall(1e13), 1, modes)).block_frequency_squared for modes in ("all", 3))
+    scaled, rigid = (system_of(modal_wall(wall(1e13), 1, modes)).interface.frequency_squared for modes in ("all", 3))
     assert scaled == pytest.approx(rigid, rel=0.005)
 
 

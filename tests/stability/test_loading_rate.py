@@ -8,8 +8,9 @@ from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, State, drive, load_steps, settle
-from runningbond.dynamics.loading import LOADING
-from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics.collapse_load import FIRST_STEP
+from runningbond.dynamics.load_stepping import LOADING
 from runningbond.studies.stability.literature import KnownWall, rounded_wall, sliding_block, toppling_block
 from runningbond.studies.stability.loading_rate import BRACKET, bracket, excess, experiment, pushed, ramped
 
@@ -76,7 +77,7 @@ def test_load_steps_do_not_mind_how_fast_the_load_comes_where_it_is_unique(loadi
 def test_a_slender_dry_wall_bears_another_load_in_haste() -> None:
     """Panel-12, loaded four times as fast: more than 5 % more."""
     scene = published_scene("panel-12")
-    system, far = rigid_system(scene), COLLAPSE * scene.block_sizes
+    system, far = rigid_system(scene), U_CRIT * scene.block_sizes
     hasty, slow = bracket(system, far, LOADING / 4), bracket(system, far)
     assert hasty[0] > 1.05 * slow[1]
 
@@ -87,7 +88,7 @@ def test_a_slender_dry_wall_loaded_slower_still_bears_one_load(first_step: float
     """Panel-12 at a quarter of the suite's speed, in any load steps: 0.077 to 2 %."""
     scene = published_scene("panel-12")
     run = Run(rigid_system(scene))
-    first, criteria = first_step / run.system.measure(run.system.live), Criteria(COLLAPSE * scene.block_sizes)
+    first, criteria = first_step / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
     found = load_steps(run, first, BRACKET, criteria, loading=4 * LOADING)
     assert found.lower == pytest.approx(0.077, rel=0.02)
 

@@ -18,9 +18,9 @@ from matplotlib.figure import Figure
 from runningbond.commands.command_line import command, main
 from runningbond.compare.recording import StaticRecorder
 from runningbond.limit import limit
-from runningbond.pictures.frame import mechanism_frame
+from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.offscreen import why_not_drawn
-from runningbond.pictures.series import moments
+from runningbond.pictures.time_series import frame_files
 from runningbond.results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
 from runningbond.studies.stability import find_out
 from runningbond.studies.stability.machine.campaign import MISHAPS, draw, what_commands_need
@@ -147,7 +147,7 @@ def test_a_new_series_does_not_stand_beside_the_outcome_of_another_run(tmp_path:
     frame = mechanism_frame(scene, found)
     assert frame is not None
     StaticRecorder(scene, tmp_path).keep(frame)
-    assert len(moments(tmp_path, "blocks")) == 1
+    assert len(frame_files(tmp_path, "blocks")) == 1
     with pytest.raises(StoreError, match="holds no outcome"):
         load_outcome(tmp_path)
 
@@ -160,14 +160,14 @@ def _halve(path: Path) -> None:
 def test_a_damaged_list_of_moments_is_named(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "blocks.pvd").write_bytes(content)
     with pytest.raises(StoreError, match="blocks.pvd: is damaged"):
-        moments(tmp_path, "blocks")
+        frame_files(tmp_path, "blocks")
 
 
 @pytest.fixture
 def shown(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     if why_not_drawn():
         pytest.skip("nothing can be drawn here")
-    monkeypatch.setattr("runningbond.pictures.render._draw_mechanism", lambda *_: [])
+    monkeypatch.setattr("runningbond.pictures.render.has_mechanism", lambda *_: False)
     return Scratch(RENDER, home).fresh(tmp_path / "shown")
 
 

@@ -12,7 +12,7 @@ from fem_interface.modes import ModeCount
 from fem_interface.system import fem_system
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
-from runningbond.dynamics.stepping import LOOK
+from runningbond.dynamics.central_differences import LOOK
 from runningbond.scene import Scene
 from runningbond.studies.stability import time_step
 from runningbond.studies.stability.elastic import bonded, elastic_stiffness, vibrations
@@ -35,7 +35,7 @@ def test_the_assembled_stiffness_is_that_of_the_sparse_operators() -> None:
     scene = small()
     system, points = rigid_system(scene), contact_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)
-    k_n, k_t = system.law.normal_stiffness * points.area, system.law.shear_stiffness * points.area
+    k_n, k_t = system.interface.law.normal_stiffness * points.area, system.interface.law.shear_stiffness * points.area
     expected = jump.opening.T @ (k_n[:, None] * jump.opening.toarray())
     expected += jump.slip.T @ (k_t[:, None] * jump.slip.toarray())
     column = np.argsort(system.rigid.ravel())[np.isfinite(system.mass)]
@@ -116,7 +116,7 @@ def test_a_run_with_too_long_a_step_that_comes_to_rest_says_so() -> None:
 
     def found(times: float) -> tuple[float | None, str]:
         run = Run(system, dt=times * Run(system).dt)
-        outcome = collapse_by_steps(scene, "", run, 0.01, point_order=order, locks=lambda: False)
+        outcome = collapse_by_steps(scene, "", run, 0.01, point_order=order, is_self_locking=lambda: False)
         return outcome.multiplier, outcome.message
 
     safe, long = found(1.0), found(1.05)

@@ -8,8 +8,9 @@ from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, load_steps
-from runningbond.dynamics.loading import LOADING_WEIGHTLESS
-from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics.collapse_load import FIRST_STEP
+from runningbond.dynamics.load_stepping import LOADING_WEIGHTLESS
 from runningbond.studies.stability.literature import KnownWall, rounded_wall, sliding_block, toppling_block
 from runningbond.studies.stability.verdict import (
     INTERVAL,
@@ -33,7 +34,7 @@ def test_the_suites_criteria_stand_on_a_plateau(wall: KnownWall) -> None:
     """Half and twice each of them find the same λ, which is the one known."""
     for sweep in (
         rest_sweep(wall, (REST / 2, REST, 2 * REST)),
-        far_sweep(wall, (COLLAPSE / 2, COLLAPSE, 2 * COLLAPSE)),
+        far_sweep(wall, (U_CRIT / 2, U_CRIT, 2 * U_CRIT)),
         interval_sweep(wall, (INTERVAL // 2, INTERVAL, 2 * INTERVAL)),
     ):
         assert sweep.plateau == (sweep.default / 2, 2 * sweep.default), sweep.criterion
@@ -54,7 +55,7 @@ def test_a_threshold_of_rest_too_loose_takes_walls_for_standing_up_to_the_load_t
 
 
 def test_a_threshold_of_rest_below_rounding_is_never_met() -> None:
-    assert trial(sliding_block().scene, COLLAPSE, rest=1e-16).answer == "undecided"
+    assert trial(sliding_block().scene, U_CRIT, rest=1e-16).answer == "undecided"
 
 
 def test_a_displacement_too_small_takes_settlement_for_a_fall() -> None:
@@ -73,7 +74,7 @@ def test_a_wall_without_weight_pauses_and_bears_the_same_at_any_speed() -> None:
     """A quarter of the time to come to each load, and four times it, find one λ to 1 %."""
     scene = published_scene(WEIGHTLESS)
     run = Run(rigid_system(scene))
-    first, criteria = FIRST_STEP / run.system.measure(run.system.live), Criteria(COLLAPSE * scene.block_sizes)
+    first, criteria = FIRST_STEP / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
     loadings = (LOADING_WEIGHTLESS / 4, LOADING_WEIGHTLESS, 4 * LOADING_WEIGHTLESS)
     found = [load_steps(run, first, WIDTH, criteria, loading=loading) for loading in loadings]
     assert found[0].lower == pytest.approx(found[1].lower, rel=0.01)
@@ -83,9 +84,9 @@ def test_a_wall_without_weight_pauses_and_bears_the_same_at_any_speed() -> None:
 @pytest.mark.long
 def test_without_weight_the_suite_follows_it_far_enough() -> None:
     """Twice as far finds the same λ, inside the interval that is certified."""
-    sweep = weightless_sweep((COLLAPSE, 2 * COLLAPSE))
+    sweep = weightless_sweep((U_CRIT, 2 * U_CRIT))
     certified = limit_nonassociated(published_scene(WEIGHTLESS))
-    assert sweep.plateau == (COLLAPSE, 2 * COLLAPSE)
+    assert sweep.plateau == (U_CRIT, 2 * U_CRIT)
     assert (certified.lower or np.inf) <= sweep.unit <= (certified.upper or 0.0)
 
 

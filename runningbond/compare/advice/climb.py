@@ -1,11 +1,9 @@
 """Which model a scene needs: the ladder of models, climbed until the answer is as narrow as asked.
 
-    homog → limit → limit-nonassociated → dem-static → dem-dynamic → fem
-
-Each rung is climbed for a reason, and left out for one. `homog` has no bracket and shows the trend alone. `limit`
-is a proof from above: no wall of Coulomb joints stands above it. `limit-nonassociated` certifies loads at which the
-wall can collapse. A model that follows the wall brackets the collapse of one history. docs/advise.md says what ends
-the climb, and what its bracket means.
+Each rung is climbed for a reason, and left out for one. An estimate has no bracket and shows the trend alone. The
+bound is a proof from above: no wall of Coulomb joints stands above it. Certificates are loads at which the wall can
+collapse. A model that follows the wall brackets the collapse of one history. docs/advise.md says what ends the climb,
+and what its bracket means.
 """
 
 from collections.abc import Iterator
@@ -16,10 +14,10 @@ from runningbond.compare.models import check_tolerance, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 
-from .costs import LAWS, Estimate
-from .finite import FINITE, finite_peak
+from .costs import Estimate
+from .finite import finite_peak
 from .knowledge import Knowledge
-from .next_rung import after_refusal, next_rung
+from .steps import Step, after_refusal, first_step, next_step
 
 TOLERANCE = 0.05
 """Relative width of the bracket that is asked for where nothing else is."""
@@ -27,91 +25,79 @@ TOLERANCE = 0.05
 
 @dataclass(frozen=True)
 class Rung:
-    """One rung: what a model found, and what follows from it.
+    """One rung: what a model found, and what follows from it."""
 
-    Parameters
-    ----------
-    model
-        The model.
-    outcome
-        What it found; None where it says nothing of such a scene.
-    reason
-        What follows: why to go on, or why this is enough.
-    onward
-        The next model; None on the last rung.
-    next_cost
-        What that model is going to cost; None where no law says.
-    seconds
-        Seconds since the foot of the ladder.
-    """
+    step: Step
+    outcome: Outcome | None  # None where the model does not apply to such a scene
+    next: Step  # which model follows, and why; or why this is enough
+    next_cost: Estimate | None  # None on the last rung, and where no law says
+    seconds: float  # since the foot of the ladder
 
-    model: str
-    outcome: Outcome | None
-    reason: str
-    onward: str | None
-    next_cost: Estimate | None
-    seconds: float
+    @property
+    def model(self) -> str:
+        """Name of the model."""
+        return self.step.name or ""
+
+    @property
+    def onward(self) -> str | None:
+        """Name of the next model; None on the last rung."""
+        return self.next.name
+
+    @property
+    def reason(self) -> str:
+        """Why to go on, or why this is enough."""
+        return self.next.reason
 
 
 @dataclass
 class Advice:
-    """A climb.
-
-    Parameters
-    ----------
-    known
-        What the scene is, what is asked of it, and what the rungs so far have shown.
-    rungs
-        Rungs climbed.
-    """
+    """A climb: what is asked of a scene, what is known of it, and the rungs so far."""
 
     known: Knowledge
     rungs: list[Rung] = field(default_factory=list)
 
     def climb(self) -> Iterator[Rung]:
         """Climb rung by rung; each is given when it is done, before the next is begun."""
-        model: str | None = "homog"
-        while model is not None:
+        step = first_step()
+        while step.model is not None:
             outcome: Outcome | None = None
             try:
-                outcome = self._run(model)
+                outcome = self._run(step)
             except SceneError as refusal:
-                step = after_refusal(model, str(refusal))
+                following = after_refusal(step, str(refusal))
             else:
-                self.known.learn(outcome)
-                step = next_rung(self.known, model, outcome)
-            cost = self.known.estimate(step.model) if step.model in LAWS else None
-            self.rungs.append(Rung(model, outcome, step.reason, step.model, cost, self.known.seconds))
+                self.known.learn(step.model, outcome, finite=step.finite)
+                following = next_step(self.known, step, outcome)
+            cost = self.known.estimate(following.model) if following.model and not following.finite else None
+            self.rungs.append(Rung(step, outcome, following, cost, self.known.seconds))
             yield self.rungs[-1]
-            model = step.model
+            step = following
 
     def outcome(self) -> Outcome:
         """The answer: the bracket of the last rung that gave one, and in the message what it means."""
         known, last = self.known, self.rungs[-1]
-        found = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
+        answer = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
         message = known.meaning() or last.reason
         if last.outcome is None and known.answer is not None:
             message += "; at small displacements, though they are not small"
         elif last.outcome is not None and last.outcome.status != "collapse" and known.answer is not None:
             message += f"; {last.model}: {last.reason}"
-        return replace(found, seconds=known.seconds, message=message)
+        return replace(answer, seconds=known.seconds, message=message)
 
-    def _run(self, model: str) -> Outcome:
-        known = self.known
-        if model in FINITE:
-            way = max(known.way or 0.0, known.tolerance)
-            return finite_peak(known.scene, FINITE[model], known.tolerance, way, known.bound)
-        return run_model(model, known.scene, known.tolerance, **self._asked(model))
-
-    def _asked(self, model: str) -> dict[str, Any]:
-        """What is asked of a model besides: no more than is wanted."""
-        if model == "dem-static":
-            return {"past": 0}
-        return {"cracks": "blocks"} if model == "fem" and self.known.needs.cracks else {}
+    def _run(self, step: Step) -> Outcome:
+        known, model = self.known, step.model
+        assert model is not None
+        if step.finite:
+            displacement = max(known.displacement or 0.0, known.tolerance)
+            return finite_peak(known.scene, model, known.tolerance, displacement, known.bound)
+        # No curve past the peak, which is no part of the bracket; and cracks in blocks where they may crack.
+        wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.needs.cracks else "joints"}
+        settings = {name: value for name, value in wanted.items() if name in model.parameters}
+        return run_model(model, known.scene, known.tolerance, **settings)
 
 
-def advice_on(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
-    """Stand at the foot of the ladder.
+def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
+    """Climb the ladder as far as a scene needs.
 
     Parameters
     ----------
@@ -123,12 +109,7 @@ def advice_on(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = Fals
         Whether to end at finite displacements, however small they may be.
     """
     check_tolerance(tolerance)
-    return Advice(Knowledge(scene, tolerance, finite))
-
-
-def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
-    """Climb the ladder as far as a scene needs; see `advice_on`."""
-    advice = advice_on(scene, tolerance, finite=finite)
+    advice = Advice(Knowledge(scene, tolerance, finite))
     for _ in advice.climb():
         pass
     return advice

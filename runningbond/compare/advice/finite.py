@@ -1,31 +1,28 @@
-"""The largest load of a wall at finite displacements, for walls that sway before they fall."""
+"""The largest load of a wall at finite displacements, for walls that move far before they collapse."""
 
 import time
-from typing import Literal, TypeAlias
+from dataclasses import replace
 
 import numpy as np
 
+from runningbond.compare.model import Model
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
-
-Finite: TypeAlias = Literal["dem-dynamic, finite", "fem, finite"]
-FINITE: dict[str, Finite] = {"dem-dynamic, finite": "dem-dynamic, finite", "fem, finite": "fem, finite"}
-"""Models that follow blocks at finite displacements, by name."""
 
 SPEED = 0.02
 """Speed of the first push, in block sizes a second."""
 
 FARTHER = 3.0
-"""Way to push, in times that to the collapse at small displacements."""
+"""Displacement up to which to push, relative to that of the collapse at small displacements."""
 
-SLOWINGS = 3
+HALVINGS = 3
 """How often the speed is halved until the peak settles."""
 
 SMOOTH = 9
 """Rows of the curve over which λ is averaged."""
 
 
-def finite_peak(scene: Scene, model: Finite, tolerance: float, way: float, bound: float | None) -> Outcome:
+def finite_peak(scene: Scene, model: Model, tolerance: float, displacement: float, bound: float | None) -> Outcome:
     """Peak of the pushover curve at finite displacements, pushed ever slower until it settles.
 
     Parameters
@@ -33,11 +30,11 @@ def finite_peak(scene: Scene, model: Finite, tolerance: float, way: float, bound
     scene
         The scene.
     model
-        Rigid or deformable blocks.
+        A model that has a `pushover`.
     tolerance
         Relative change of the peak at half the speed with which it counts as settled.
-    way
-        How far the wall sways before it falls, in block sizes.
+    displacement
+        How far the wall moves before it collapses at small displacements, in block sizes.
     bound
         Load above which nothing stands at small displacements. A peak far above it is one of inertia.
 
@@ -46,29 +43,27 @@ def finite_peak(scene: Scene, model: Finite, tolerance: float, way: float, bound
     Outcome
         The bracket is of the peaks at the last two speeds.
     """
+    assert model.pushover is not None
     start = time.perf_counter()
-    distance, speed = FARTHER * way * scene.block_size, SPEED * scene.block_size
-    curve = _push(scene, model, distance, speed)
-    outcome = Outcome(scene.title, model, "undecided", message="the peak did not settle as the push was slowed")
-    for _ in range(SLOWINGS):
+    distance, speed = FARTHER * displacement * scene.block_size, SPEED * scene.block_size
+    curve = model.pushover(scene, distance, speed=speed)
+    message = "the peak did not settle as the push was slowed"
+    outcome = Outcome(scene.title, finite_name(model), "undecided", message=message)
+    for _ in range(HALVINGS):
         fast, speed = _peak(curve), speed / 2
-        curve = _push(scene, model, distance, speed)
+        curve = model.pushover(scene, distance, speed=speed)
         low, high = sorted((fast, _peak(curve)))
         if high - low <= tolerance * high and (bound is None or low <= (1 + tolerance) * bound):
             message = "peaks of two pushes at finite displacements, one at half the speed of the other"
-            outcome = Outcome(scene.title, model, "collapse", low, low, high, message=message, curve=curve[:, [0, 2]])
+            outcome = replace(outcome, status="collapse", multiplier=low, lower=low, upper=high, message=message)
+            outcome = replace(outcome, curve=curve[:, [0, 2]])
             break
-    return Outcome(**{**vars(outcome), "seconds": time.perf_counter() - start})
+    return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _push(scene: Scene, model: Finite, distance: float, speed: float) -> Array:
-    if model == "fem, finite":
-        from fem_interface.finite import fem_pushover
-
-        return fem_pushover(scene, distance, speed=speed)
-    from dem.dynamic import finite_pushover
-
-    return finite_pushover(scene, distance, speed=speed)
+def finite_name(model: Model) -> str:
+    """What a model is called where it follows blocks at finite displacements."""
+    return f"{model.name}, finite"
 
 
 def _peak(curve: Array) -> float:

@@ -1,79 +1,70 @@
-"""What is known of a wall part of the way up the ladder, and what it is worth."""
+"""What the models run so far have shown of a wall, and what that is worth."""
 
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
+from runningbond.compare.model import Kind, Model
+from runningbond.compare.models import MODELS
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene
 
 from .costs import Estimate, estimate, pace
-from .finite import FINITE
-from .needs import Needs, needs_of, sliding_dilates, sway
+from .needs import Needs, collapse_displacement, needs_of, sliding_dilates
 
-Kind: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]
-"""What a bracket rests on; nothing so far, to begin with."""
+Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]
+"""What a bracket rests on; nothing, to begin with."""
+
+
+def ladder(kind: Kind) -> list[Model]:
+    """Models of a kind whose cost is known, the cheapest first."""
+    return [model for model in MODELS.values() if model.kind == kind and model.cost is not None]
+
+
+def deforms(model: Model) -> bool:
+    """Whether the blocks of a model deform."""
+    return "block.young" in model.reads
 
 
 @dataclass
 class Knowledge:
-    """What the rungs so far have shown.
-
-    Parameters
-    ----------
-    scene
-        The scene.
-    tolerance
-        Relative width of the bracket asked for.
-    finite
-        Whether finite displacements are asked for, however small they may be.
-    outcomes
-        What the models found, rung by rung.
-    bound
-        Associated load, above which nothing stands at small displacements; None where there is none.
-    kind
-        What the answer rests on.
-    answer
-        The outcome whose bracket it is.
-    fallen
-        Loads at which a proof, a certificate or a model brought the wall down.
-    """
+    """What is asked of a scene, and what the models run so far have shown."""
 
     scene: Scene
-    tolerance: float
-    finite: bool = False
+    tolerance: float  # relative width of the bracket asked for
+    finite: bool = False  # whether finite displacements are asked for, however small they may be
     outcomes: list[Outcome] = field(default_factory=list)
-    bound: float | None = None
-    kind: Kind = ""
-    answer: Outcome | None = None
-    fallen: list[float] = field(default_factory=list)
+    bound: float | None = None  # associated load, above which nothing stands at small displacements
+    evidence: Evidence = ""  # what the answer rests on
+    answer: Outcome | None = None  # the outcome whose bracket it is
+    collapses: list[float] = field(default_factory=list)  # loads at which a proof, a certificate or a model found it
 
     def __post_init__(self) -> None:
         self.needs: Needs = needs_of(self.scene)
 
-    def learn(self, outcome: Outcome) -> None:
-        """Take in what a model found."""
+    def learn(self, model: Model, outcome: Outcome, *, finite: bool = False) -> None:
+        """Take in what a model found, at `finite` displacements or at small ones."""
         self.outcomes.append(outcome)
         if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
             return
-        if outcome.model == "limit":
+        if model.kind == "bound":
             self.bound = outcome.upper
-            whole = not (self.needs.softens or self.needs.cracks)
-            if whole and not sliding_dilates(self.scene, outcome.motion):
+            perfect = not (self.needs.softens or self.needs.cracks)
+            if perfect and not sliding_dilates(self.scene, outcome.motion):
                 self._answer("proof", outcome, outcome.lower)
-        elif outcome.model == "limit-nonassociated":
+        elif model.kind == "certificate":
             certified = outcome
             if self.bound is not None and self.bound - outcome.lower <= self.tolerance * self.bound:
                 certified = replace(outcome, upper=max(outcome.upper, self.bound))
             self._answer("certificate", certified, outcome.lower)
-        elif outcome.model in FINITE:
+        elif finite:
             self._answer("finite", outcome, outcome.lower)
         else:
             self._answer("history", self._below_the_bound(outcome), outcome.upper)
 
-    def _answer(self, kind: Kind, outcome: Outcome, fallen: float) -> None:
-        self.kind, self.answer = kind, outcome
-        self.fallen.append(fallen)
+    def _answer(self, evidence: Evidence, outcome: Outcome, collapse: float) -> None:
+        self.evidence, self.answer = evidence, outcome
+        self.collapses.append(collapse)
 
     def _below_the_bound(self, outcome: Outcome) -> Outcome:
         """The outcome of a history, which cannot have stood above the associated bound."""
@@ -90,33 +81,32 @@ class Knowledge:
     @property
     def lowest(self) -> float | None:
         """Smallest load at which a proof, a certificate or a model brought the wall down."""
-        return min(self.fallen, default=None)
+        return min(self.collapses, default=None)
 
     @property
     def soft(self) -> bool:
-        """Whether blocks give so much that they must deform."""
-        return self.needs.pliancy > self.tolerance
+        """Whether blocks are so compliant that they must deform."""
+        return self.needs.compliance > self.tolerance
 
     @property
-    def way(self) -> float | None:
-        """How far the wall sways before it falls, in block sizes; None where that is not known."""
-        return None if self.answer is None else sway(self.scene, self.answer)
+    def displacement(self) -> float | None:
+        """How far the wall moves before it collapses, in block sizes; None where nothing tells."""
+        return None if self.answer is None else collapse_displacement(self.scene, self.answer)
 
-    def estimate(self, model: str) -> Estimate:
+    def estimate(self, model: Model) -> Estimate:
         """What a model is going to cost, at the pace of those run so far."""
-        paced = pace(self.scene, self.tolerance, self.outcomes)
-        return estimate(model, self.scene, self.tolerance, paced)
+        return estimate(model, self.scene, self.tolerance, pace(self.scene, self.tolerance, self.outcomes))
 
     def meaning(self) -> str:
         """What the bracket of the answer means; empty without one."""
         if self.answer is None:
             return ""
         above = "" if self.bound is None else f"; above {number(self.bound)} nothing stands"
-        if self.kind == "proof":
+        if self.evidence == "proof":
             return "forces and a mechanism prove it, whether or not sliding joints dilate"
-        if self.kind == "finite":
+        if self.evidence == "finite":
             return self.answer.message + (above and f"{above} at small displacements")
-        if self.kind == "certificate":
+        if self.evidence == "certificate":
             return f"collapse is certified from the lower load on; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
-        return f"largest load at rest and smallest of a fall in one history, loads raised slowly{below}{above}"
+        return f"largest load at rest and smallest at collapse in one history, loads raised slowly{below}{above}"

@@ -17,42 +17,29 @@ NO_SLIP = 1e-6
 
 @dataclass(frozen=True)
 class Needs:
-    """What a scene asks of a model.
+    """What a scene asks of a model."""
 
-    Parameters
-    ----------
-    pliancy
-        Share that blocks have in the give of the wall, k_n h / (k_n h + E); zero where either is not given and blocks
-        are taken as rigid.
-    softens
-        Whether joints lose their strength as they open and slip: they have a strength to lose and fracture energies.
-    cracks
-        Whether blocks may crack.
-    weightless
-        Whether nothing but the live load presses the joints.
-    """
-
-    pliancy: float
-    softens: bool
-    cracks: bool
-    weightless: bool
+    compliance: float  # share of the blocks in the compliance of the wall; see `block_compliance`
+    softens: bool  # joints have a strength to lose, and fracture energies by which they lose it
+    cracks: bool  # blocks may crack
+    weightless: bool  # nothing but the live load presses the joints
 
 
 def needs_of(scene: Scene) -> Needs:
     """Read off a scene what it asks for."""
-    return Needs(
-        pliancy(scene),
-        any(
-            material.cohesion > 0 and (material.fracture_energy_1, material.fracture_energy_2) != (None, None)
-            for material in scene.joint_materials
-        ),
-        scene.inner_joint is not None,
-        not any(scene.load.gravity),
+    softening = (
+        material.cohesion > 0 and (material.fracture_energy_1, material.fracture_energy_2) != (None, None)
+        for material in scene.joint_materials
     )
+    weightless = not any(scene.load.gravity)
+    return Needs(block_compliance(scene), any(softening), scene.inner_joint is not None, weightless)
 
 
-def pliancy(scene: Scene) -> float:
-    """Share that blocks have in the give of a column of blocks and joints, k_n h / (k_n h + E)."""
+def block_compliance(scene: Scene) -> float:
+    """Share of the blocks in the compliance of a column of blocks and joints, k_n h / (k_n h + E).
+
+    Zero where the scene leaves out either stiffness and blocks are taken as rigid.
+    """
     if scene.block.young is None or scene.joint.elasticity is None:
         return 0.0
     height = scene.bond.height if scene.bond else scene.lowest_block
@@ -73,25 +60,25 @@ def sliding_dilates(scene: Scene, motion: Array) -> bool:
     return bool(((slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())
 
 
-def sway(scene: Scene, outcome: Outcome) -> float | None:
+def collapse_displacement(scene: Scene, outcome: Outcome) -> float | None:
     """How far a wall moves under the live load until it collapses, in block sizes.
 
-    By the outcome's own curve, where its model followed the wall, else `elastic_sway`.
+    By the outcome's own curve, where its model followed the wall, else `elastic_displacement`.
     """
     if outcome.lower is None:
         return None
     if not len(outcome.curve):
-        return elastic_sway(scene, outcome.lower)
+        return elastic_displacement(scene, outcome.lower)
     displacement, multiplier = outcome.curve.T
     last = int(np.argmin(np.abs(multiplier - outcome.lower)))
     return float(abs(displacement[last] - displacement[0]) / scene.block_size)
 
 
-def elastic_sway(scene: Scene, multiplier: float) -> float | None:
-    """Largest motion of a block under the live load alone, in block sizes, while joints neither open nor slip.
+def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
+    """Largest displacement of a block under the live load alone, in block sizes, while joints neither open nor slip.
 
-    A lower bound of the way to the collapse, soft blocks counted in; None without a stiffness, or on pins that leave
-    such a wall loose.
+    A lower bound of that at collapse, soft blocks counted in; None without a stiffness, or on pins that leave such a
+    wall loose.
     """
     if scene.joint.elasticity is None:
         return None
@@ -99,5 +86,5 @@ def elastic_sway(scene: Scene, multiplier: float) -> float | None:
     moved = wall.move(np.ones(wall.law.stiffness.shape, dtype=np.bool_), multiplier * wall.live)
     if moved is None:
         return None
-    share = pliancy(scene)
+    share = block_compliance(scene)
     return float(np.abs(moved.reshape(-1, 3)[:, :2]).max() / (1 - share) / scene.block_size)

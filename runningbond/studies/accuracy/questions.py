@@ -13,12 +13,12 @@ from dem.dynamic import dem_dynamic, finite_pushover
 from dem.rigid_system import rigid_system
 from dem.static import dem_static
 from fem_interface import ModeCount
-from fem_interface.finite import fem_pushover
+from fem_interface.finite_pushover import fem_pushover
 from fem_interface.model import fem
 from fem_interface.system import fem_system
 from homog import elastic_moduli, homog
 from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
-from runningbond.dynamics.verdict import COLLAPSE
+from runningbond.dynamics.collapse import U_CRIT
 from runningbond.joints import joint_stiffness
 from runningbond.limit import limit
 from runningbond.results import Outcome
@@ -89,7 +89,7 @@ def _driven(model: str, scene: Scene, steps: int) -> Answer:
 def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:
     run = Run(system)
     state = State.at_rest(system)
-    settle(run, state, 0.0, Criteria(collapse=COLLAPSE * scene.block_size))
+    settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
     return drive(run, state, distance, steps)
 
 

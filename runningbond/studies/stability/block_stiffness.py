@@ -133,7 +133,7 @@ def at_stiffness(young: float) -> list[Stiffness]:
         "none": system_of(found, mass_scaling=False),
         "each mode by its own": system_of(found),
     }
-    systems[UNIFORM] = uniformly_scaled(found, systems["none"], rigid.block_frequency_squared)
+    systems[UNIFORM] = uniformly_scaled(found, systems["none"], rigid.interface.frequency_squared)
     exact, _ = vibrations(systems["none"])
     band = float(vibrations(rigid)[0][-1])
     kinds = []
@@ -158,9 +158,10 @@ def at_stiffness(young: float) -> list[Stiffness]:
 
 def uniformly_scaled(found: ModalWall, system: BlockSystem, target: float) -> BlockSystem:
     """The system with all deformable modes heavier by the factor that brings its largest ω² to a target [1/s²]."""
-    factor = max(1.0, system.block_frequency_squared / target)
+    factor = max(1.0, system.interface.frequency_squared / target)
     mass = np.where(found.stiffness > 0, factor * found.mass, found.mass)
-    return replace(system, mass=mass, block_frequency_squared=min(target, system.block_frequency_squared))
+    bound = min(target, system.interface.frequency_squared)
+    return replace(system, mass=mass, interface=replace(system.interface, frequency_squared=bound))
 
 
 def by_scaling(found: Sequence[Stiffness], scaling: str) -> list[Stiffness]:

@@ -27,7 +27,8 @@ from scipy.optimize import brentq
 
 from runningbond.compare.figures import COLOURS, bare
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, Verdict, ramp, settle
-from runningbond.dynamics.run import CALM, LOCAL, VISCOUS, Fall
+from runningbond.dynamics.collapse import CALM, CollapseDetector
+from runningbond.dynamics.run import LOCAL, VISCOUS
 
 from .finding import Edge, Entry, Finding
 from .literature import RAMP, KnownWall, rounded_wall, sliding_block, toppling_block
@@ -149,7 +150,7 @@ def least_local(steps: int = SHORT) -> Edge:
 
     def surplus(local: float) -> float:
         rings = math.log(1 / criteria.rest) / (0.5 * math.log((1 + local) / (1 - local)))
-        omega = math.sqrt((wall.system.law.normal_stiffness * wall.system.area).sum() / _mass(wall))
+        omega = math.sqrt((wall.system.interface.law.normal_stiffness * wall.system.interface.area).sum() / _mass(wall))
         half = math.pi / (2 * omega) * (1 / math.sqrt(1 - local) + 1 / math.sqrt(1 + local))
         return steps - rings * half / dt
 
@@ -168,7 +169,7 @@ def most_local(budget: int = SHORT) -> Edge:
 
     def surplus(left: float) -> float:
         run, rest = wall.rest(1 - left)
-        time = math.sqrt(2 * Fall.SOON * wall.far * wall.inertia / (left * BESIDE * wall.multiplier))
+        time = math.sqrt(2 * CollapseDetector.EARLY * wall.far * wall.inertia / (left * BESIDE * wall.multiplier))
         return budget - (1 + RAMP) * rest.steps - time / run.dt
 
     return Edge(
@@ -191,7 +192,10 @@ def most_mass_rate(wall: KnownWall, tolerance: float | None) -> Edge:
     def surplus(rate: float) -> float:
         decay = (1 - LOCAL) * rate
         calm = math.log(beyond * wall.unrest / criteria.rest) / decay + looks
-        return beyond / (rate * wall.inertia) * (calm - (1 - math.exp(-decay * calm)) / decay) - Fall.SOON * wall.far
+        return (
+            beyond / (rate * wall.inertia) * (calm - (1 - math.exp(-decay * calm)) / decay)
+            - CollapseDetector.EARLY * wall.far
+        )
 
     theory = float(brentq(surplus, 0.1, 1e4))
     return Edge(

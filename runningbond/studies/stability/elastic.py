@@ -23,10 +23,12 @@ def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
     Assembled from the jumps that each mode makes, one after another.
     """
     moving, one = np.flatnonzero(np.isfinite(system.mass)), np.eye(len(system.mass))
-    jump = np.zeros((len(moving), 2, system.law.points))
+    jump = np.zeros((len(moving), 2, system.interface.law.points))
     for row, mode in zip(jump, moving, strict=True):
-        system.gather(one[mode], system.geometry, *row)
-    springs = system.area * np.stack([system.law.normal_stiffness, system.law.shear_stiffness])
+        system.interface.gather(one[mode], system.interface.geometry, *row)
+    springs = system.interface.area * np.stack(
+        [system.interface.law.normal_stiffness, system.interface.law.shear_stiffness]
+    )
     joints = np.einsum("idp,dp,jdp->ij", jump, springs, jump, optimize=True)
     return joints + np.diag(system.stiffness[moving]), system.mass[moving]
 

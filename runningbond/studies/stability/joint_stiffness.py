@@ -19,7 +19,7 @@ from fem_interface.model import fem
 from runningbond.compare import published_scene
 from runningbond.compare.figures import OURS, bare
 from runningbond.dynamics import Criteria, Run, State, settle
-from runningbond.dynamics.verdict import COLLAPSE
+from runningbond.dynamics.collapse import U_CRIT
 from runningbond.joints.stiffness_range import SOFT
 from runningbond.results import Outcome
 from runningbond.scene import Scene, Stiffness
@@ -71,7 +71,7 @@ def experiment() -> Finding:
     scene = wall(NORMAL[0])
     exact = limit_nonassociated(scene).multiplier
     assert exact is not None
-    depth = max((joints for joints in found if joints.overlap < COLLAPSE), key=lambda joints: _off(joints, scene))
+    depth = max((joints for joints in found if joints.overlap < U_CRIT), key=lambda joints: _off(joints, scene))
     edges = [
         Edge(
             f"overlap at {depth.normal:.0e} Pa/m, of all the farthest from theory [block sizes]",
@@ -213,8 +213,8 @@ def draw(figure: Figure, found: Sequence[Joints], exact: float) -> None:
     depths.plot(
         stiffness, [joints.overlap for joints in found], marker, color=colour, mfc="none", label="dem-dynamic at rest"
     )
-    depths.axhline(SOFT * COLLAPSE, color="#c2410c", lw=0.9, ls="--", label="a note is made above")
-    depths.axhline(COLLAPSE, color="#c2410c", lw=0.9, label="counts as collapse")
+    depths.axhline(SOFT * U_CRIT, color="#c2410c", lw=0.9, ls="--", label="a note is made above")
+    depths.axhline(U_CRIT, color="#c2410c", lw=0.9, label="counts as collapse")
     depths.set(yscale="log", ylabel="overlap under dead load [block sizes]")
     steps.plot(
         stiffness, [joints.rest for joints in found], marker, color=colour, mfc="none", label="to rest under dead load"

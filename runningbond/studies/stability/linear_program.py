@@ -56,7 +56,7 @@ def glued() -> Scene:
     """A glued pier under a load on its top, whose multiplier is in newtons; nothing else is as it was in `dusty`."""
     wall = row_of_piers(1)
     joint = replace(wall.joint, cohesion=1e4, tensile_strength=1e4)
-    return replace(wall, joint=joint, load=Load((0.0, -9.81), PointLoad((0.06, 0.48), (1.0, -0.5))))
+    return replace(wall, joint=joint, load=Load((0.0, -9.81), (PointLoad((0.06, 0.48), (1.0, -0.5)),)))
 
 
 @dataclass(frozen=True)
@@ -80,17 +80,17 @@ DEGENERATE = (
 def scaled(quantity: str, factor: float) -> tuple[Scene, float]:
     """`glued` with a quantity multiplied, strength along with weight, and the factor by which λ must change."""
     wall = glued()
-    live = wall.load.live
+    (live,) = wall.load.live
     assert isinstance(live, PointLoad)
     if quantity == "density":
         joint = replace(wall.joint, cohesion=1e4 * factor, tensile_strength=1e4 * factor)
         return replace(wall, block=replace(wall.block, density=1800.0 * factor), joint=joint), factor
     if quantity == "load":
         force = (live.force[0] * factor, live.force[1] * factor)
-        return replace(wall, load=replace(wall.load, live=PointLoad(live.at, force))), 1 / factor
+        return replace(wall, load=replace(wall.load, live=(PointLoad(live.at, force),))), 1 / factor
     outlines = [factor * wall.blocks.polygon(int(k)) for k in np.flatnonzero(wall.wall)]
     joint = replace(wall.joint, cohesion=1e4 * factor, tensile_strength=1e4 * factor)
-    load = replace(wall.load, live=PointLoad((live.at[0] * factor, live.at[1] * factor), live.force))
+    load = replace(wall.load, live=(PointLoad((live.at[0] * factor, live.at[1] * factor), live.force),))
     grown = build_scene(
         "pier", outlines, thickness=wall.thickness * factor, block=wall.block, joint=joint, load=load
     )  # fmt: skip

@@ -18,8 +18,8 @@ import numpy as np
 from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.dynamics.verdict import COLLAPSE
 from runningbond.scene import Array, Scene
 
 from .blocks import one_block, rounded
@@ -60,7 +60,7 @@ class KnownWall:
     @property
     def far(self) -> float:
         """Displacement [m] by which the suite judges whether it falls."""
-        return COLLAPSE * self.scene.block_size
+        return U_CRIT * self.scene.block_size
 
     @cached_property
     def mechanism(self) -> Array:

@@ -20,10 +20,11 @@ from matplotlib.figure import Figure
 from dem.rigid_system import rigid_system
 from runningbond.compare.figures import COLOURS, bare
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import BlockSystem, Criteria, Run, State, drive, load_steps, moved_by, settle, settled_drive
-from runningbond.dynamics.loading import LOADING, LOADING_WEIGHTLESS
+from runningbond.dynamics import BlockSystem, Criteria, Run, State, drive, load_steps, settle, settled_drive
+from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics.collapse_load import FIRST_STEP
+from runningbond.dynamics.load_stepping import LOADING, LOADING_WEIGHTLESS
 from runningbond.dynamics.run import LOCAL
-from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
 from runningbond.scene import Array
 
 from .finding import Edge, Entry, Finding
@@ -177,7 +178,7 @@ def stepped(wall: KnownWall, loadings: Sequence[float] = LOADINGS) -> Stepped:
 def stepped_dry(name: str, loadings: Sequence[float] = LOADINGS) -> Stepped:
     """Load steps of a published wall whose λ depends on its history."""
     scene = published_scene(name)
-    system, far = rigid_system(scene), COLLAPSE * scene.block_sizes
+    system, far = rigid_system(scene), U_CRIT * scene.block_sizes
     brackets = {loading: bracket(system, far, loading) for loading in loadings}
     default = LOADING_WEIGHTLESS if system.weightless else LOADING
     return Stepped(name, brackets, sum(brackets[max(loadings)]) / 2, default)
@@ -246,7 +247,7 @@ def experiment() -> Finding:
 def _falls_at(run: Run, rest: State, rate: float, far: float) -> float:
     state, multiplier = rest.copy(), 0.0
     step = rate * LOOK * run.dt
-    while moved_by(run.system, state, rest.motion) < far:
+    while run.system.farthest(state.motion - rest.motion) < far:
         run.hold(state, multiplier + step / 2, LOOK)
         multiplier += step
     return multiplier - step / 2

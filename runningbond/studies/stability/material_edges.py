@@ -176,7 +176,7 @@ def _held() -> Scene:
 def answer(extreme: Extreme, model: str) -> tuple[Answer, Outcome | None]:
     """Ask a model about an extreme."""
     try:
-        outcome = MODELS[model](extreme.build(), TOLERANCE)
+        outcome = MODELS[model].solve(extreme.build(), TOLERANCE)
     except SceneError as error:
         # `homog` refuses what it has no closed form for, and the reader what is no wall.
         right = extreme.exact == "refused"

@@ -179,7 +179,7 @@ def measured(name: str, system: BlockSystem) -> Measured:
         state.motion += SMALL * (shapes[:, -1] + 1e-6 * shapes @ noise)
         return growth(Run(system, local=0.0, viscous=0.0, dt=step), state, STEPS)
 
-    bound = 2 / math.sqrt(system.block_frequency_squared)
+    bound = 2 / math.sqrt(system.interface.frequency_squared)
     growths = np.array([growth_at(times * exact) for times in TIMES])
     return Measured(name, bound, exact, edge_of(growth_at, bound), growths)
 
@@ -203,7 +203,7 @@ def mass_edge(mass: OneMass, *, local: float = 0.0, viscous: float = 0.0) -> flo
 def mass_growth(mass: OneMass, omega_dt: float, *, local: float = 0.0, viscous: float = 0.0) -> float:
     """Growth a step of one mass at a step ω Δt."""
     # The run's damping ratio is that at the bound of the system's frequencies.
-    ratio = viscous * math.sqrt(mass.system.block_frequency_squared) / mass.frequency
+    ratio = viscous * math.sqrt(mass.system.interface.frequency_squared) / mass.frequency
     state = State.at_rest(mass.system)
     state.motion += SMALL * mass.shape
     return growth(Run(mass.system, local=local, viscous=ratio, dt=omega_dt / mass.frequency), state, STEPS_DAMPED)
@@ -235,7 +235,7 @@ def edge_of(growth_at: Callable[[float], float], low: float) -> float:
 def _size(system: BlockSystem, state: State) -> float:
     """Size of a vibration: it need only grow as the vibration does."""
     moving = np.isfinite(system.mass)
-    square = system.block_frequency_squared * state.motion[moving] ** 2 + state.velocity[moving] ** 2
+    square = system.interface.frequency_squared * state.motion[moving] ** 2 + state.velocity[moving] ** 2
     return float(np.sqrt(system.mass[moving] @ square))
 
 
@@ -248,7 +248,7 @@ def too_long(model: str, times: float = MUCH) -> Outcome:
     else:
         system, order = rigid_system(scene), np.argsort(contact_points(scene).joint, kind="stable")
     step = times * 2 / float(vibrations(system)[0][-1])
-    return collapse_by_steps(scene, model, Run(system, dt=step), 0.01, point_order=order, locks=lambda: False)
+    return collapse_by_steps(scene, model, Run(system, dt=step), 0.01, point_order=order, is_self_locking=lambda: False)
 
 
 def draw(figure: Figure, walls: Sequence[Measured]) -> None:

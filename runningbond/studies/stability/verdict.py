@@ -22,26 +22,27 @@ from dem.rigid_system import rigid_system
 from runningbond.compare.figures import COLOURS, bare
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, load_steps, ramp, settle
-from runningbond.dynamics.verdict import COLLAPSE, FIRST_STEP
+from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 
 from .finding import Edge, Entry, Finding
 from .literature import RAMP, KnownWall, rounded_wall, sliding_block, toppling_block
 
-REST = Criteria(collapse=COLLAPSE).rest
+REST = Criteria(collapse=U_CRIT).rest
 """The suite's threshold of rest."""
 
-INTERVAL = Criteria(collapse=COLLAPSE).interval
+INTERVAL = Criteria(collapse=U_CRIT).interval
 """The suite's steps between two looks."""
 
 RESTS = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 2 * REST, REST, REST / 2, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16)
 """Thresholds of rest, in force units."""
 
-FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, COLLAPSE / 2, COLLAPSE, 2 * COLLAPSE, 0.4, 1.6)
+FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, U_CRIT / 2, U_CRIT, 2 * U_CRIT, 0.4, 1.6)
 """Displacements of a collapse, in block sizes, of walls with a weight."""
 
-FARS_WEIGHTLESS = (1e-3, COLLAPSE / 2, COLLAPSE, 2 * COLLAPSE, 0.4)
+FARS_WEIGHTLESS = (1e-3, U_CRIT / 2, U_CRIT, 2 * U_CRIT, 0.4)
 """The same of a wall without weight."""
 
 INTERVALS = (1, 20, INTERVAL // 2, INTERVAL, 2 * INTERVAL, 2000)
@@ -174,26 +175,26 @@ def trial(scene: Scene, collapse: float, *, rest: float = REST, interval: int = 
 
 def rest_sweep(wall: KnownWall, rests: Sequence[float] = RESTS) -> Sweep:
     """The threshold of rest, from rounding errors up to a good part of a block's weight."""
-    trials = {rest: trial(wall.scene, COLLAPSE, rest=rest) for rest in sorted(rests)}
+    trials = {rest: trial(wall.scene, U_CRIT, rest=rest) for rest in sorted(rests)}
     return Sweep(wall.name, "rest [force units]", REST, trials, wall.multiplier)
 
 
 def far_sweep(wall: KnownWall, fars: Sequence[float] = FARS) -> Sweep:
     """The displacement of a collapse, from below what a wall settles under its weight up to more than a block."""
     trials = {far: trial(wall.scene, far) for far in sorted(fars)}
-    return Sweep(wall.name, "u_crit [block sizes]", COLLAPSE, trials, wall.multiplier)
+    return Sweep(wall.name, "u_crit [block sizes]", U_CRIT, trials, wall.multiplier)
 
 
 def weightless_sweep(fars: Sequence[float] = FARS_WEIGHTLESS) -> Sweep:
     """The same for a wall without weight, that may slip far and be caught."""
     scene = published_scene(WEIGHTLESS)
     trials = {far: trial(scene, far) for far in sorted(fars)}
-    return Sweep(f"{WEIGHTLESS}, no weight", "u_crit [block sizes]", COLLAPSE, trials)
+    return Sweep(f"{WEIGHTLESS}, no weight", "u_crit [block sizes]", U_CRIT, trials)
 
 
 def interval_sweep(wall: KnownWall, intervals: Sequence[int] = INTERVALS) -> Sweep:
     """The steps between two looks."""
-    trials: dict[float, Trial] = {n: trial(wall.scene, COLLAPSE, interval=n) for n in sorted(intervals)}
+    trials: dict[float, Trial] = {n: trial(wall.scene, U_CRIT, interval=n) for n in sorted(intervals)}
     return Sweep(wall.name, "steps between looks", INTERVAL, trials, wall.multiplier)
 
 
@@ -223,7 +224,7 @@ def experiment() -> Finding:
         trust=f"λ is the same to {100 * WIDTH:g} % with thresholds of rest from {_both(rests)} force units and, of "
         f"walls with a weight, u_crit from {_both(fars[:2])} block sizes; without weight, loaded in pauses, from "
         f"{_both(fars[2:])}; and with looks every {looks.plateau[0]:g} to {looks.plateau[1]:g} steps. "
-        f"The suite takes {REST:g}, {COLLAPSE:g} block sizes, and {INTERVAL} steps.",
+        f"The suite takes {REST:g}, {U_CRIT:g} block sizes, and {INTERVAL} steps.",
         beyond="A threshold of rest too loose gives a λ too high by (4), one below rounding `undecided`. A u_crit too "
         "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
         "large costs steps, and in the end is `undecided`.",

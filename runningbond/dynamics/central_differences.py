@@ -10,31 +10,86 @@ with v half a step behind q (Cundall & Strack 1979; Munjiza 2004).
 """
 
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
-from .system import Kernel
+from .system import Kernel, Restraint
 
 kernel = compiled.kernel
+
+
+class Modes(NamedTuple):
+    """What resists each mode, ``(nd,)`` each.
+
+    Parameters
+    ----------
+    stiffness, viscosity : (nd,) float
+        Of the bodies themselves [N/m, N s/m].
+    mobility : (nd,) float
+        One over the mass [1/kg]; zero where a mode is held.
+    """
+
+    stiffness: Array
+    viscosity: Array
+    mobility: Array
+
+
+class StateArrays(NamedTuple):
+    """The arrays of a `State` that the steps write to."""
+
+    motion: Array
+    velocity: Array
+    history: Array
+    damped: Array
+    force: Array
+
+
+class Work(NamedTuple):
+    """Buffers of one run: motions ``(nd,)``, then jumps [m] and tractions [Pa] of the points ``(np,)``."""
+
+    moved: Array
+    opening: Array
+    slip: Array
+    normal: Array
+    tangential: Array
+
+
+class Watch(NamedTuple):
+    """What the energy is compared with.
+
+    Parameters
+    ----------
+    steps : int
+        Steps taken before.
+    given : float
+        Energy [J] that the state was given, but for the work of loads that are constant now; inf watches nothing.
+    most : (1,) float
+        Largest energy supplied so far [J], brought up to date.
+    """
+
+    steps: int
+    given: float
+    most: Array
+
 
 LOOK = 100
 """Steps between two looks at the energy."""
 
-CERTAIN = 0.05
+CERTAIN_SHARE = 0.05
 """Share of the energy in motion and in springs that a stable run certainly was supplied with.
 
 Of the work W of the loads, central differences make energy E in motion and in springs and energy D spent, with
-W = D + E + R to rounding, where |R| ≤ (Δt / Δt_critical) E for velocities are half a step behind. A stable run has
-W ≥ D + (1 − Δt / Δt_critical) E, then; this share holds up to 0.95 of the critical step. Where a swing comes back to
+W = D + E + R to rounding, where |R| ≤ (Δt / Δt_critical) E as velocities are half a step behind. So a stable run has
+W ≥ D + (1 − Δt / Δt_critical) E; this share holds up to 0.95 of the critical step. Where a swing comes back to
 its start W passes through nothing, and the velocity of half a step ago does not: W is the largest of the run so far.
 """
 
-TOO_MUCH = 2.0
-"""Energy spent on damping, in energies supplied, that no stable run comes to: 1, but it is added up step by step."""
+TOO_MUCH_SPENT = 2.0
+"""Energy spent on damping, in energies supplied, that no stable run comes to: 1, but it is summed step by step."""
 
 
 @kernel
@@ -82,27 +137,27 @@ def _update(
 
 
 @kernel
-def _sound(given: float, load: Array, modes: Any, state: Any, most: Array) -> bool:
+def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most: Array) -> bool:
     """Whether no more energy [J] is in motion, in springs and spent on damping than was supplied; not where it is NaN.
 
     Supplied are what was given and the work of a load that was constant; `most` keeps the most of it. The joints' work
-    is left out: at high frequencies that of their viscosity is told too large, and in a wall that rings without
-    damping so is that of their friction.
+    is left out: at high frequencies that of their viscosity comes out too large, and in a wall that rings without
+    damping so does that of their friction.
     """
     stiffness, _, mobility = modes
     motion, velocity, _, damped, _ = state
     supplied = given
-    kept = 0.0
+    held = 0.0
     spent = 0.0
     for i in range(motion.size):
         supplied += load[i] * motion[i]
         if mobility[i] > 0.0:
-            kept += 0.5 * velocity[i] * velocity[i] / mobility[i]
-        kept += 0.5 * stiffness[i] * motion[i] * motion[i]
+            held += 0.5 * velocity[i] * velocity[i] / mobility[i]
+        held += 0.5 * stiffness[i] * motion[i] * motion[i]
         spent += damped[i]
     most[0] = max(most[0], supplied)
     # Local damping that makes a mode unstable gives energy instead of taking it.
-    return bool(max(spent, 0.0) + CERTAIN * kept <= TOO_MUCH * most[0])
+    return bool(max(spent, 0.0) + CERTAIN_SHARE * held <= TOO_MUCH_SPENT * most[0])
 
 
 @cache
@@ -114,8 +169,8 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kerne
     hold, drive
         ``hold(steps, dt, local, joint_viscosity, load, …)`` and ``drive(…, load, live, speed, …)``. Both return the
         steps taken and whether no more energy is spent than was supplied; they look every `LOOK` steps of the state's
-        life, and stop where it is not so. The latter also returns the mean multiplier of its steps and the work of
-        the live load.
+        life, and stop where it is not so. The latter also returns the sum of the multipliers of its steps and the
+        work of the live load.
     """
     respond = _responder(gather, law, scatter)
     return _holder(respond), _driver(respond)
@@ -130,11 +185,11 @@ def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
         joint_viscosity: float,
         geometry: Any,
         parameters: Any,
-        restraint: Any,
+        restraint: Restraint,
         motion: Array,
         history: Array,
         force: Array,
-        work: Any,
+        work: Work,
     ) -> None:
         """Write the forces on the modes: the load, less those of the joints' tractions."""
         freedom, basis = restraint
@@ -169,11 +224,11 @@ def _holder(respond: Kernel) -> Any:
         load: Array,
         geometry: Any,
         parameters: Any,
-        modes: Any,
-        restraint: Any,
-        state: Any,
-        work: Any,
-        watch: Any,
+        modes: Modes,
+        restraint: Restraint,
+        state: StateArrays,
+        work: Work,
+        watch: Watch,
     ) -> tuple[int, bool]:
         stiffness, viscosity, mobility = modes
         motion, velocity, history, damped, force = state
@@ -181,7 +236,7 @@ def _holder(respond: Kernel) -> Any:
         for step in range(steps):
             respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
             _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
-            if (before + step + 1) % LOOK == 0 and given < np.inf and not _sound(given, load, modes, state, most):
+            if (before + step + 1) % LOOK == 0 and given < np.inf and not _is_stable(given, load, modes, state, most):
                 return step + 1, False
         return steps, True
 
@@ -202,11 +257,11 @@ def _driver(respond: Kernel) -> Any:
         speed: float,
         geometry: Any,
         parameters: Any,
-        modes: Any,
-        restraint: Any,
-        state: Any,
-        work: Any,
-        watch: Any,
+        modes: Modes,
+        restraint: Restraint,
+        state: StateArrays,
+        work: Work,
+        watch: Watch,
     ) -> tuple[int, bool, float, float]:
         stiffness, viscosity, mobility = modes
         motion, velocity, history, damped, force = state
@@ -240,13 +295,13 @@ def _driver(respond: Kernel) -> Any:
             total += multiplier
             worked += 0.5 * multiplier * dt * (before + speed)
             due = (already + step + 1) % LOOK == 0 and given < np.inf
-            if due and not _sound(given + worked, load, modes, state, most):
-                return step + 1, False, total / (step + 1), worked
-        return steps, True, total / steps, worked
+            if due and not _is_stable(given + worked, load, modes, state, most):
+                return step + 1, False, total, worked
+        return steps, True, total, worked
 
     return drive
 
 
-def work_arrays(n_modes: int, n_points: int) -> tuple[Array, ...]:
-    """Buffers of one run: motions, then opening, slip, normal and tangential traction of the points."""
-    return (np.zeros(n_modes), *(np.zeros(n_points) for _ in range(4)))
+def work_arrays(n_modes: int, n_points: int) -> Work:
+    """Buffers for so many modes and points."""
+    return Work(np.zeros(n_modes), *(np.zeros(n_points) for _ in range(4)))

@@ -15,18 +15,15 @@ import numpy as np
 from runningbond.scene import Array, JointMaterial
 
 from .compiled import kernel
-from .point_kernel import (
-    DAMPED_WORK,
-    FRICTION_WORK,
-    OPENING_BEFORE,
-    SLIP_BEFORE,
-    KernelLaw,
-    Parameters,
-    coulomb_constants,
-)
+from .coulomb import HISTORY as PLASTIC_HISTORY
+from .coulomb import PLASTIC_SLIP, coulomb_constants
+from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE, KernelLaw, Law, Parameters
+from .point_law import PointLaw
 
-PLASTIC_SLIP, DAMAGE, SLIPPED = 4, 5, 6
-"""Rows of the history beside those of every law: slip that stays [m], damage, and the length of its path [m]."""
+HISTORY = (*PLASTIC_HISTORY, "damage", "slipped")
+"""Beside the rows of plastic points: damage, and the length of the path that they have slipped along [m]."""
+
+DAMAGE, SLIPPED = HISTORY.index("damage"), HISTORY.index("slipped")
 
 NEVER = 1e30
 """Opening [m] at which a joint that is perfectly plastic in opening ends to soften.
@@ -52,11 +49,11 @@ def _end_of_softening(energy: float | None, strength: float, never: float) -> fl
     return max(2 * energy / strength if strength > 0 else 0.0, 1e-15)
 
 
-def stored_by_secant(law: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
+def stored_by_secant(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
     """Energy of points that unload to the origin in opening, ``(np,)`` [J/m²]."""
-    closed = normal**2 / (2 * law.normal_stiffness)
+    closed = normal**2 / (2 * points.normal_stiffness)
     opened = normal * np.maximum(opening, 0.0) / 2
-    return np.asarray(np.where(opening > 0, opened, closed) + tangential**2 / (2 * law.shear_stiffness))
+    return np.asarray(np.where(opening > 0, opened, closed) + tangential**2 / (2 * points.shear_stiffness))
 
 
 @kernel
@@ -113,3 +110,9 @@ def softening_kernel(
             slip_before[i] = jump_t
             normal[i] = n
             tangential[i] = t
+
+
+SOFTENING = Law(
+    "softening", softening_constants, softening_kernel, HISTORY, stored_by_secant, damage="damage", response=PointLaw
+)
+"""Models that solve for rest follow no softening: to them its joints are perfectly plastic."""

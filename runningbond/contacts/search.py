@@ -1,125 +1,19 @@
-"""Which sides of which blocks face each other, near enough to touch before anyone looks again."""
+"""The search for contacts: which sides of which blocks are near enough to touch before the next search."""
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from runningbond.scene import Array, Blocks, Indices, Mask, Scene, SceneError
+from runningbond.scene import Array, Indices, Mask
 
-from .side_kernels import gather_finite, place_outline
+from .outline import FLAT, Outline
+from .rigid_sides import Placed, RigidSides, gather_sides
 
-MARGIN = 0.02
-"""Least distance up to which sides count as near, in sizes of the smallest block (root of its area).
-
-It costs time, not accuracy: the wider, the more pairs are looked at every step, and the fewer times they are sought.
-"""
-
-SWIFT = math.sqrt(5)
+FASTEST_OPENING = math.sqrt(5)
 """Most by which an opening changes, in ways of the corner (`sharp_opening`)."""
-
-FLAT = 0.1
-"""Turn [rad] of the outline below which a corner is hardly one: it is not rounded, and rests with both its sides."""
-
-
-@dataclass(frozen=True, eq=False)
-class Outline:
-    """Blocks with rounded corners: arcs that touch their two sides an inset away from the corner.
-
-    Parameters
-    ----------
-    blocks
-        The blocks, undeformed.
-    radius : (nv,) float
-        Radius of each corner's arc [m].
-    centre : (nv, 2) float
-        Its centre, from the centroid of its block [m].
-    normal : (nv, 2) float
-        Outward normal of the side that starts at the corner.
-    straight : (nv,) float
-        Length of that side between its arcs [m].
-    exterior : (nv,) float
-        Angle by which the outline turns at the corner [rad].
-    thickness : float
-        Out-of-plane thickness [m].
-    held : (nb,) bool
-        Blocks between which nothing can happen.
-    """
-
-    blocks: Blocks
-    radius: Array
-    centre: Array
-    normal: Array
-    straight: Array
-    exterior: Array
-    thickness: float
-    held: Mask
-
-    @classmethod
-    def of(cls, scene: Scene) -> "Outline":
-        """Round the corners of a scene's blocks by the inset of its joints.
-
-        Raises
-        ------
-        SceneError
-            If the inset takes up a whole side.
-        """
-        blocks = scene.blocks
-        start, after = blocks.vertices, blocks.successor
-        side = start[after] - start
-        length = np.hypot(*side.T)
-        run = side / length[:, None]
-        normal = np.column_stack([run[:, 1], -run[:, 0]])
-        before = np.empty_like(after)
-        before[after] = np.arange(len(after))
-        turn = run[before]
-        exterior = np.arctan2(turn[:, 0] * run[:, 1] - turn[:, 1] * run[:, 0], (turn * run).sum(axis=1))
-        inset = np.where(exterior > FLAT, scene.joint.inset, 0.0)
-        radius = inset / np.tan(np.maximum(exterior, FLAT) / 2)
-        straight = length - inset - inset[after]
-        if (straight < 0).any():
-            raise SceneError("joint.inset", "must be less than half the shortest side of a block", scene.joint.inset)
-        centre = start + inset[:, None] * run - radius[:, None] * normal - blocks.centroid[blocks.owner]
-        return cls(blocks, radius, centre, normal, straight, exterior, scene.thickness, scene.fixed)
-
-    @property
-    def margin(self) -> float:
-        """Distance up to which sides of blocks that hardly move count as near [m]."""
-        return float(MARGIN * np.sqrt(self.blocks.area.min()))
-
-    @cached_property
-    def reach(self) -> Array:
-        """Distance of the farthest corner of each block from its centroid, ``(nb,)`` [m]."""
-        blocks = self.blocks
-        return np.maximum.reduceat(np.hypot(*(blocks.vertices - blocks.centroid[blocks.owner]).T), blocks.first[:-1])
-
-    @property
-    def for_kernels(self) -> tuple[NDArray[Any], ...]:
-        """What the kernels need to place the outline."""
-        blocks = self.blocks
-        freedom = (3 * blocks.owner).astype(np.uint64)
-        return blocks.centroid.copy(), freedom, self.centre.copy(), self.normal.copy()
-
-    def placed(self, motion: Array) -> tuple[Array, Array]:
-        """Blocks ``(nb, 4)`` and arcs ``(nv, 4)`` in space after a motion ``(3 nb,)``; see `place_outline`."""
-        blocks = self.blocks
-        placed = (np.zeros((len(blocks), 4)), np.zeros((len(self.radius), 4)))
-        place_outline(motion, self.for_kernels, placed)
-        return placed
-
-    def corners(self, motion: Array) -> Array:
-        """Corners after a motion ``(3 nb,)``, ``(nv, 2)`` [m]."""
-        return self.points(self.blocks.owner, self.blocks.vertices, motion)
-
-    def points(self, block: Indices, at: Array, motion: Array) -> Array:
-        """Points of blocks, given on the undeformed wall, after a motion ``(3 nb,)``, ``(n, 2)`` [m]."""
-        cosine, sine, x, y = self.placed(motion)[0][block].T
-        arm = at - self.blocks.centroid[block]
-        return np.column_stack([x + cosine * arm[:, 0] - sine * arm[:, 1], y + sine * arm[:, 0] + cosine * arm[:, 1]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,16 +62,22 @@ class Contacts:
 
     @property
     def key(self) -> Indices:
-        """What an end is known by from one search to the next, ``(n,)``."""
+        """Number by which an end is recognised from one search to the next, ``(n,)``."""
         return np.asarray(self.ends[:, :2].astype(np.int64) @ [2**32, 1] * 2 + (self.inwards > 0))
 
-    def geometry(self, outline: Outline) -> tuple[Any, ...]:
-        """What `gather_finite` and `scatter_finite` share, with buffers of its own."""
-        blocks = outline.blocks
-        buffers = (np.zeros((len(blocks), 4)), np.zeros((len(outline.radius), 4)))
-        fixed = (outline.for_kernels, outline.radius.copy(), outline.straight.copy())
-        ends = (self.ends.copy(), self.inwards.copy(), self.tilt.copy(), self.area.copy())
-        return (*fixed, *ends, buffers, np.zeros((len(self), 4)))
+    def geometry(self, outline: Outline) -> RigidSides:
+        """The arrays that `gather_sides` and `scatter_sides` share, with buffers of their own."""
+        return RigidSides(
+            outline.corner_arrays,
+            outline.radius.copy(),
+            outline.straight.copy(),
+            self.ends.copy(),
+            self.inwards.copy(),
+            self.tilt.copy(),
+            self.area.copy(),
+            Placed(np.zeros((len(outline.blocks), 4)), np.zeros((len(outline.radius), 4))),
+            np.zeros((len(self), 4)),
+        )
 
 
 def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
@@ -185,7 +85,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
 
     None of those left out touches before some block has moved by half the margin.
     """
-    e, f = facing_sides(outline, motion, SWIFT * margin)
+    e, f = facing_sides(outline, motion, FASTEST_OPENING * margin)
     blocks, after = outline.blocks, outline.blocks.successor
     owner = blocks.owner
     spin = motion[2::3]
@@ -206,7 +106,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
         np.tile(area, 2),
         np.zeros(2 * n, dtype=bool),
     )
-    near = np.abs(jumps(outline, both, motion)[0]) < SWIFT * margin
+    near = np.abs(jumps(outline, both, motion)[0]) < FASTEST_OPENING * margin
     # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
     # rests with both, each of which stands for its own area.
     corner, _ = resting(outline, both, motion)
@@ -216,14 +116,14 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
 
 def jumps(outline: Outline, contacts: Contacts, motion: Array) -> Array:
     """Opening and slip of contacts after a motion ``(3 nb,)``, ``(2, n)`` [m]."""
-    found = np.zeros((2, len(contacts)))
-    gather_finite(motion, contacts.geometry(outline), *found)
-    return found
+    opening_and_slip = np.zeros((2, len(contacts)))
+    gather_sides(motion, contacts.geometry(outline), *opening_and_slip)
+    return opening_and_slip
 
 
 def resting(outline: Outline, contacts: Contacts, motion: Array) -> tuple[Indices, Indices]:
     """Of each end, the corner that is farther in and the side it rests on after a motion ``(3 nb,)``, two ``(n,)``."""
-    arcs = outline.placed(motion)[1]
+    arcs = outline.placed(motion).arcs
     v, w, _, _, e, f = contacts.ends.astype(np.int64).T
     apart = arcs[v, :2] - arcs[w, :2]
     inwards = contacts.inwards * (apart[:, 1] * arcs[f, 2] - apart[:, 0] * arcs[f, 3])
@@ -234,7 +134,7 @@ def resting(outline: Outline, contacts: Contacts, motion: Array) -> tuple[Indice
 def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indices, Indices]:
     """Sides e of one block and f of another, of lower number, that face each other and whose boxes are near."""
     blocks = outline.blocks
-    corners, arcs = outline.corners(motion), outline.placed(motion)[1]
+    corners, arcs = outline.corners(motion), outline.placed(motion).arcs
     following = corners[blocks.successor]
     low, high = np.minimum(corners, following) - margin / 2, np.maximum(corners, following) + margin / 2
     boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])

@@ -10,16 +10,10 @@ from runningbond.joints import stiffness_note
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
-from .loading import LoadSteps, load_steps
-from .run import Criteria, Observer, Run, Unstable, nobody
-from .system import State
-
-COLLAPSE = 0.05
-"""Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_sizes`).
-
-A wall without weight may slip as far and be caught by the pressure that the slip itself brings about; loaded slowly
-enough it does not.
-"""
+from .collapse import U_CRIT, Criteria
+from .load_stepping import LoadSteps, load_steps
+from .run import Observer, Run, Unstable, no_observer
+from .state import State
 
 FIRST_STEP = 0.05
 """First load step, in live loads as large as the largest dead one (for a weightless wall, as the strongest joint)."""
@@ -27,11 +21,14 @@ FIRST_STEP = 0.05
 UNACCOUNTED = 0.01
 """Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
 
-MOST, FARTHEST = 1e6, 10.0
+LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 """Multiplier, in first steps, and displacement, in block sizes, beyond which no collapse is looked for.
 
 So far small displacements are none, and what is elastic between two loads is more than counts as collapse.
 """
+
+DRAWN_OVERLAP = 0.02
+"""Overlap of joints in a mechanism, in largest displacements of a block, that is hardly seen."""
 
 BUDGET = 2_000_000
 """Time steps after which a load is left undecided."""
@@ -44,12 +41,12 @@ def collapse_by_steps(
     tolerance: float,
     *,
     point_order: Indices,
-    locks: Callable[[], bool],
+    is_self_locking: Callable[[], bool],
     note: str = "",
-    collapse: float = COLLAPSE,
+    collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
-    observe: Observer = nobody,
+    observe: Observer = no_observer,
 ) -> Outcome:
     """Find the load that brings a wall down.
 
@@ -65,8 +62,8 @@ def collapse_by_steps(
         Relative width of the bracket.
     point_order : (np,) int
         Joint points in the order in which the outcome lists their forces.
-    locks
-        Whether the wall is known to bear any multiple of the live load; asked where no load brought it down.
+    is_self_locking
+        Whether joint forces balance any multiple of the live load; asked where no load brought the wall down.
     note
         What the message is to say about the run besides.
     collapse
@@ -82,101 +79,114 @@ def collapse_by_steps(
     -------
     Outcome
         `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `curve` has every state at rest, and ends in the fall. ``failed`` where the run makes up energy,
-        as one with too long a time step does.
+        it fell. `curve` has every state at rest, and ends in the fall; `motion` is that of the fall. ``failed``
+        where the run makes up energy, as one with too long a time step does.
     """
-    system = run.system
-    criteria = Criteria(collapse=collapse * run.sizes(scene), budget=budget)
+    system, sizes = run.system, scene.block_sizes[run.system.owner]
+    criteria = Criteria(collapse=collapse * sizes, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
-    # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
     try:
+        # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):
-            most, farthest = MOST * first, FARTHEST * run.sizes(scene)
-            found = load_steps(run, first, tolerance, criteria, most=most, farthest=farthest, observe=observe)
+            most, farthest = LARGEST_LOAD * first, LARGEST_DISPLACEMENT * sizes
+            result = load_steps(run, first, tolerance, criteria, most=most, farthest=farthest, observe=observe)
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    outcome = _judge(replace(outcome, steps=found.taken), scene, run, found, tolerance, point_order, locks)
-    window = _window(scene, run, found, criteria)
-    if outcome.status == "infeasible" and window:
+    outcome = _judge(replace(outcome, steps=result.steps), scene, run, result, tolerance, point_order, is_self_locking)
+    stiffness = _note_on_stiffness(scene, run, result, criteria)
+    if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
         outcome = replace(outcome, status="undecided", message=message)
-    elif outcome.status == found.verdict == "undecided" and not found.interrupted:
+    elif outcome.status == result.verdict == "undecided" and not result.interrupted:
         note = "; ".join(part for part in (note, f"each load was followed for at most {budget * run.dt:.2g} s") if part)
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
-    parts = (outcome.message, note, long if run.dt > run.safe_step else "", window)
+    parts = (outcome.message, note, long if run.dt > run.safe_step else "", stiffness)
     return replace(outcome, message="; ".join(part for part in parts if part))
 
 
-def _window(scene: Scene, run: Run, found: LoadSteps, criteria: Criteria) -> str:
+def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Criteria) -> str:
     """What there is to say of the stiffness of joints: at rest, or in a fall, under the dead load."""
-    state, law = found.rests[0][1] if found.rests else found.fallen, run.system.law
+    state, law, area = result.rests[0][1] if result.rests else result.fallen, run.interface.law, run.interface.area
     if state is None:
         return ""
     normal, _ = run.forces(state)
-    springs = law.normal_stiffness * run.system.area
+    springs = law.normal_stiffness * area
     overlap = float((-normal / springs).max(initial=0.0))
-    stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * run.system.area).max(initial=0.0)))
+    stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * area).max(initial=0.0)))
     smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
-    far = float(np.min(criteria.collapse))
-    return stiffness_note(overlap, far, scene.block_size, stiffest, smallest)
+    return stiffness_note(overlap, float(np.min(criteria.collapse)), scene.block_size, stiffest, smallest)
 
 
 def _judge(
     outcome: Outcome,
     scene: Scene,
     run: Run,
-    found: LoadSteps,
+    result: LoadSteps,
     tolerance: float,
     point_order: Indices,
-    locks: Callable[[], bool],
+    is_self_locking: Callable[[], bool],
 ) -> Outcome:
     """Outcome of a search."""
-    if found.borne is None:
-        return _never_at_rest(outcome, found)
-    curve, force = _curve(run, found), np.column_stack(run.forces(found.borne))[point_order]
-    if found.interrupted:
-        message = "interrupted: the bracket found so far"
-        return replace(outcome, lower=found.lower, upper=found.upper, curve=curve, force=force, message=message)
-    if found.upper is None or found.lower is None or found.fallen is None:
-        return _never_fallen(outcome, found, locks)
-    motion = _mechanism(scene, run, found.borne, found.fallen)
-    outcome = replace(outcome, lower=found.lower, upper=found.upper, curve=curve, motion=motion, force=force)
-    lost = _unaccounted(run, found.fallen)
+    if result.borne is None:
+        return _never_at_rest(outcome, result)
+    curve, force = _curve(run, result), np.column_stack(run.forces(result.borne))[point_order]
+    if result.interrupted:
+        message = "interrupted: the bracket so far"
+        return replace(outcome, lower=result.lower, upper=result.upper, curve=curve, force=force, message=message)
+    if result.upper is None or result.lower is None or result.fallen is None:
+        return _never_fallen(outcome, result, is_self_locking)
+    motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(_fall(run, result, result.fallen)))
+    outcome = replace(outcome, lower=result.lower, upper=result.upper, curve=curve, motion=motion, force=force)
+    lost = _unaccounted(run, result.fallen)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
-    if found.verdict == "undecided":
+    if result.verdict == "undecided":
         return replace(outcome, message="the budget ran out inside this bracket: the wall neither rested nor fell")
     wide = ""
-    if found.upper - found.lower > tolerance * found.upper:
+    if result.upper - result.lower > tolerance * result.upper:
         wide = "; wider than the tolerance because loads as small as their difference would not be seen at rest"
     return replace(
         outcome,
         status="collapse",
-        multiplier=(found.lower + found.upper) / 2,
+        multiplier=(result.lower + result.upper) / 2,
         message="largest load at rest and smallest in collapse, small displacements; "
         f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
     )
 
 
-def _never_at_rest(outcome: Outcome, found: LoadSteps) -> Outcome:
+def _never_at_rest(outcome: Outcome, result: LoadSteps) -> Outcome:
     """Outcome of a wall that did not come to rest under its dead load."""
-    if found.interrupted:
+    if result.interrupted:
         return replace(outcome, message="interrupted before the wall came to rest under its dead load")
-    if found.verdict == "collapse":
-        return replace(outcome, status="infeasible", message="falls under its dead load")
+    if result.verdict == "collapse":
+        return replace(outcome, status="infeasible", message="collapses under its dead load")
     return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
 
 
-def _never_fallen(outcome: Outcome, found: LoadSteps, locks: Callable[[], bool]) -> Outcome:
+def _never_fallen(outcome: Outcome, result: LoadSteps, is_self_locking: Callable[[], bool]) -> Outcome:
     """Outcome of a wall that no load brought down."""
-    if locks():
-        message = "self-locking: borne up to every load tried, and joint forces balance any multiple of it"
+    if is_self_locking():
+        message = "self-locking: it bore every load up to the largest, and joint forces balance any multiple of it"
         return replace(outcome, status="unbounded", message=message)
     message = "the budget ran out: the wall neither rested nor fell"
-    if found.verdict == "stable":
-        message = f"it bore every load tried, the largest of them {found.lower:.3g}"
-    return replace(outcome, lower=found.lower, message=message)
+    if result.verdict == "stable":
+        message = f"it bore every load tried, the largest of them {result.lower:.3g}"
+    return replace(outcome, lower=result.lower, message=message)
+
+
+def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
+    """Motion of the fall, ``(nd,)``: as late as the wall can be drawn in it.
+
+    Gaps that earlier loads opened may close in a fall; drawn on the undeformed wall, blocks would lie in each other.
+    """
+    motions = [fallen.motion - start for start in result.fall_starts]
+    for motion in motions:
+        opening, _ = run.interface.jumps(run.system.unrestrained(motion))
+        overlap = -opening.min(initial=0.0)
+        if run.system.live @ motion > 0 and overlap <= DRAWN_OVERLAP * run.system.farthest(motion):
+            return motion
+    return motions[-1]
 
 
 def _unaccounted(run: Run, state: State) -> float:
@@ -190,14 +200,9 @@ def _unaccounted(run: Run, state: State) -> float:
     return abs(ledger.residual) / work if work else 0.0
 
 
-def _curve(run: Run, found: LoadSteps) -> Array:
+def _curve(run: Run, result: LoadSteps) -> Array:
     """Control displacement and multiplier of the states at rest, then of the fall."""
-    rows = [(run.system.control @ state.motion, multiplier) for multiplier, state in found.rests]
-    if found.fallen is not None and found.upper is not None:
-        rows.append((run.system.control @ found.fallen.motion, found.upper))
+    rows = [(run.system.control @ state.motion, multiplier) for multiplier, state in result.rests]
+    if result.fallen is not None and result.upper is not None:
+        rows.append((run.system.control @ result.fallen.motion, result.upper))
     return np.array(rows)
-
-
-def _mechanism(scene: Scene, run: Run, borne: State, fallen: State) -> Array:
-    """What moved between the last rest and the fall, its fastest corner by one metre."""
-    return fastest_corner_by_one(scene.blocks, run.motion_of_blocks(fallen) - run.motion_of_blocks(borne))

@@ -2,7 +2,7 @@
 
 A node is at c + u + R(θ) (X + Σ φ_k q_k): centroid, translation and rotation of its block, and small deformations in
 the block's frame. A side of a block is the polygon of its nodes, and lies on a side of another block at the two ends
-of their overlap, as the sides of rigid blocks do (`contacts.side_kernels`): there the corner of one block, rounded or
+of their overlap, as the sides of rigid blocks do (`contacts.rigid_sides`): there the corner of one block, rounded or
 sharp, rests on a facet of the other. Nodes inside a side rest on the other one's facets too, once they are farther
 from its corners than half a facet, where the ends of the overlap bear for them.
 
@@ -12,33 +12,136 @@ the jumps have in them, turned back into the block's frame and projected on its 
 """
 
 import math
-from typing import Any, TypeAlias
+from typing import NamedTuple
 
-from runningbond.contacts.side_kernels import sharp_opening
+from runningbond.contacts.rigid_sides import angle, arc_on_arc, far_arcs, sharp_opening
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
-from .block_kernels import to_modes, to_nodes
+from .block_kernels import NodalTables, to_modes, to_nodes
 
 kernel = compiled.kernel
-Geometry: TypeAlias = tuple[Any, ...]
+
+
+class OutlineNodes(NamedTuple):
+    """Nodes on the outlines of blocks, side by side, each the start of a facet.
+
+    Parameters
+    ----------
+    rigid : (nb, 3) int
+        Where the rigid coordinates of each block stand.
+    centroid : (nb, 2) float
+        Centroid of each undeformed block [m].
+    owner : (no,) int
+        Block of each node.
+    arm : (no, 2) float
+        Place of each node from the centroid of its undeformed block [m].
+    place : (no, 2) int
+        Where its displacements stand.
+    following : (no,) int
+        Next node counter-clockwise.
+    begin, length : (no,) float
+        Way along its side to each node, and length of the facet that starts there [m].
+    """
+
+    rigid: Indices
+    centroid: Array
+    owner: Indices
+    arm: Array
+    place: Indices
+    following: Indices
+    begin: Array
+    length: Array
+
+
+class Sides(NamedTuple):
+    """Sides of blocks, numbered as the corners that they start from.
+
+    Parameters
+    ----------
+    outer : (nv, 2) int
+        First and last facet of each side.
+    shares : (nv, 2) float
+        Share of each of them at which the arc of the corner touches it.
+    whole, straight : (nv,) float
+        Length of the side, and between its arcs [m].
+    successor : (nv,) int
+        Next corner.
+    inset, radius : (nv,) float
+        Distance from the corner at which its arc touches its sides, and the radius of that arc [m].
+    """
+
+    outer: Indices
+    shares: Array
+    whole: Array
+    straight: Array
+    successor: Indices
+    inset: Array
+    radius: Array
+
+
+class PlacedNodes(NamedTuple):
+    """Where blocks, facets and arcs are in space.
+
+    Parameters
+    ----------
+    blocks : (nb, 4) float
+        Cosine and sine of each block's rotation, and its centroid [m].
+    facets : (no, 5) float
+        Node that each facet starts from [m], its direction and one over its length [1/m].
+    arcs : (nv, 4) float
+        Centres of the arcs at the two ends of each side [m].
+    """
+
+    blocks: Array
+    facets: Array
+    arcs: Array
+
+
+class DeformableSides(NamedTuple):
+    """What `gather_deformable` and `scatter_deformable` share.
+
+    Parameters
+    ----------
+    tables
+        Displacements of the outlines' nodes per deformation.
+    nodes, sides
+        The outlines of the undeformed blocks.
+    ends : (np, 6) int
+        As in `RigidSides`; of a node inside a side, that node after the number of corners, the side it is near, 1
+        where that is block b's, the corner after that side, and the two sides e and f.
+    inwards : (np,) float
+        1 where inwards is along the tangent of f, −1 where it is against it, 0 for a node inside a side.
+    area : (np,) float
+        Area that each contact stands for [m²].
+    placed
+        Written by `gather_deformable`: the outlines in space.
+    contact : (np, 7) float
+        Written by it: point [m] and normal of each contact, the shares of the facets of b and a at which it is, and
+        the stretch along which its slip is measured.
+    touched : (np, 3) int
+        Written by it: the facets of b and a, and 1 where a's corner rests on b.
+    """
+
+    tables: NodalTables
+    nodes: OutlineNodes
+    sides: Sides
+    ends: Indices
+    inwards: Array
+    area: Array
+    placed: PlacedNodes
+    contact: Array
+    touched: Indices
 
 
 @kernel
-def place_nodes(motion: Array, deformable: Any, nodes: Any, placed: tuple[Array, Array]) -> None:
-    """Write cosine, sine and centroid of the blocks ``(nb, 4)`` and the facets in space ``(no, 5)``.
-
-    `deformable` is as in `block_kernels`, of the deformations only: shapes, tables forward and backward, the first
-    entry that never moves, displacements of the nodes and a buffer of products. `nodes` is where the blocks' rigid
-    coordinates stand ``(nb, 3)``, their centroids, and of each node the block, the place from its centroid, the
-    places of its displacements and the next node counter-clockwise. A facet's row is the node that it starts from,
-    its direction and one over its length.
-    """
-    shapes, forward, _, still, nodal, _ = deformable
-    rigid, centroid, owner, arm, place, following = nodes
-    turned, facets = placed
-    to_nodes(shapes, motion, forward, nodal)
-    nodal[still[0] :] = 0.0
+def place_nodes(motion: Array, tables: NodalTables, nodes: OutlineNodes, placed: PlacedNodes) -> None:
+    """Write where blocks and facets are after a motion ``(nd,)``."""
+    rigid, centroid, owner, arm, place, following, _, _ = nodes
+    turned, facets, _ = placed
+    nodal = tables.nodal
+    to_nodes(tables, motion)
+    nodal[tables.still[0] :] = 0.0
     for i in range(turned.shape[0]):
         spin = motion[rigid[i, 2]]
         turned[i, 0] = math.cos(spin)
@@ -61,11 +164,9 @@ def place_nodes(motion: Array, deformable: Any, nodes: Any, placed: tuple[Array,
 
 
 @kernel
-def _place_arcs(facets: Array, ends: Indices, shares: Array, radius: Array, successor: Indices, arcs: Array) -> None:
-    """Write the centres of the arcs at the two ends of each side ``(nv, 4)``.
-
-    An arc touches its side's first or last facet in a share of it that is given, an inset away from the corner.
-    """
+def _place_arcs(sides: Sides, facets: Array, arcs: Array) -> None:
+    """Write the centres of the arcs at the two ends of each side."""
+    ends, shares, _, _, successor, _, radius = sides
     for side in range(arcs.shape[0]):
         for end in range(2):
             j = ends[side, end]
@@ -101,27 +202,14 @@ def _onto(x: float, y: float, facets: Array, begin: Array, ends: Indices) -> tup
 
 
 @kernel
-def _angle(nx: float, ny: float, fx: float, fy: float) -> float:
-    """Angle from one unit vector f to another n."""
-    return math.atan2(fx * ny - fy * nx, fx * nx + fy * ny)
-
-
-@kernel
-def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
-    """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``.
-
-    `geometry` is `deformable` and `nodes` of `place_nodes`; of the nodes the way along their side and the length of
-    the facet that starts there; of the sides the first and the last facet, the share of each in which its arc
-    touches it, and their length, whole and between the arcs; of the corners the next one, inset and radius; `ends`,
-    whether inwards is along the tangent (1), against it (−1) or the contact is a node inside a side (0), and the
-    area; and, written, the placed blocks, facets and arcs, per contact the point, the normal, the facets' shares and
-    the stretch along which slip is measured, and the facets of b and a and whether a's corner rests on b.
-    """
-    deformable, nodes, sides, ends, inwards, _, placed, arcs, contact, touched = geometry
-    begin, length, outer, shares, whole, straight, successor, inset, radius = sides
-    place_nodes(motion, deformable, nodes, placed)
-    facets = placed[1]
-    _place_arcs(facets, outer, shares, radius, successor, arcs)
+def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, slip: Array) -> None:
+    """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``."""
+    tables, nodes, sides, ends, inwards, _, placed, contact, touched = geometry
+    begin, length = nodes.begin, nodes.length
+    outer, shares, whole, straight, successor, inset, radius = sides
+    facets, arcs = placed.facets, placed.arcs
+    place_nodes(motion, tables, nodes, placed)
+    _place_arcs(sides, facets, arcs)
     for k in range(inwards.size):
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
         sense = inwards[k]
@@ -170,7 +258,7 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
                 away = (vx - facets[j, 0]) * nx + (vy - facets[j, 1]) * ny - r_v
                 moved = sense * on_f
                 if r_v > 0.0:
-                    moved -= r_v * _angle(facets[b, 3], -facets[b, 2], -nx, -ny)
+                    moved -= r_v * angle(facets[b, 3], -facets[b, 2], -nx, -ny)
                 a, share_a, stretch = j, share, length[j] * facets[j, 4]
                 beyond = on_f - straight[f]
                 far = ends[k, 3]
@@ -179,8 +267,9 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
                 elif beyond > 0.0:
                     a, share_a, stretch = outer[f, 1 - of_f], shares[f, 1 - of_f], 1.0
                     dx, dy = vx - arcs[f, 2 * (1 - of_f)], vy - arcs[f, 2 * (1 - of_f) + 1]
-                    away, moved, nx, ny = _far_arcs(
-                        dx, dy, r_v, radius[far], facets[b, 2], facets[b, 3], facets[a, 2], facets[a, 3]
+                    radii = (r_v, radius[far])
+                    away, moved, nx, ny = far_arcs(
+                        dx, dy, radii, -facets[b, 3], facets[b, 2], facets[a, 3], -facets[a, 2]
                     )
                     moved += sense * straight[f]
             elif on_e >= 0.0:
@@ -190,7 +279,7 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
                 away = (facets[i, 0] - wx) * nx + (facets[i, 1] - wy) * ny - r_w
                 moved = -sense * on_e
                 if r_w > 0.0:
-                    moved += r_w * _angle(-nx, -ny, -facets[a, 3], facets[a, 2])
+                    moved += r_w * angle(-nx, -ny, -facets[a, 3], facets[a, 2])
                 b, share_b, stretch = i, share_e, length[i] * facets[i, 4]
                 beyond = on_e - straight[e]
                 far = ends[k, 2]
@@ -199,18 +288,17 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
                 elif beyond > 0.0:
                     b, share_b, stretch = outer[e, 1 - of_e], shares[e, 1 - of_e], 1.0
                     dx, dy = arcs[e, 2 * (1 - of_e)] - wx, arcs[e, 2 * (1 - of_e) + 1] - wy
-                    away, moved, nx, ny = _far_arcs(
-                        dx, dy, radius[far], r_w, facets[b, 2], facets[b, 3], facets[a, 2], facets[a, 3]
+                    radii = (radius[far], r_w)
+                    away, moved, nx, ny = far_arcs(
+                        dx, dy, radii, -facets[b, 3], facets[b, 2], facets[a, 3], -facets[a, 2]
                     )
                     moved -= sense * straight[e]
             else:
                 of_a = True
                 dx, dy = vx - wx, vy - wy
-                distance = math.hypot(dx, dy)
-                away = distance - r_v - r_w
-                nx, ny = dx / distance, dy / distance
-                moved = r_v * _angle(nx, ny, -facets[b, 3], facets[b, 2])
-                moved += r_w * _angle(nx, ny, facets[a, 3], -facets[a, 2])
+                away, nx, ny = arc_on_arc(dx, dy, r_v + r_w)
+                moved = r_v * angle(nx, ny, -facets[b, 3], facets[b, 2])
+                moved += r_w * angle(nx, ny, facets[a, 3], -facets[a, 2])
             x -= behind * nx
             y -= behind * ny
         opening[k] = away
@@ -228,33 +316,11 @@ def gather_deformable(motion: Array, geometry: Geometry, opening: Array, slip: A
 
 
 @kernel
-def _far_arcs(
-    dx: float, dy: float, r_v: float, r_w: float, ex: float, ey: float, fx: float, fy: float
-) -> tuple[float, float, float, float]:
-    """Opening, slip and normal of two arcs by which blocks come off each other's sides; see `contacts.side_kernels`."""
-    distance = math.hypot(dx, dy)
-    away, nx, ny = distance - r_v - r_w, dx / distance, dy / distance
-    turn_e = _angle(nx, ny, -ey, ex)
-    turn_f = _angle(nx, ny, fy, -fx)
-    if abs(turn_e + turn_f) > 0.5 * math.pi:
-        away = abs(away)
-    return away, r_v * turn_e + r_w * turn_f, nx, ny
-
-
-@kernel
-def scatter_deformable(normal: Array, tangential: Array, geometry: Geometry, force: Array) -> None:
+def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSides, force: Array) -> None:
     """Subtract from forces ``(nd,)`` what the contacts' tractions ``(np,)`` do on the modes."""
-    deformable, nodes, area, placed, contact, touched = (
-        geometry[0],
-        geometry[1],
-        geometry[5],
-        geometry[6],
-        geometry[8],
-        geometry[9],
-    )
-    shapes, _, backward, _, nodal, product = deformable
-    rigid, _, owner, _, place, following = nodes
-    turned, facets = placed
+    rigid, _, owner, _, place, following, _, _ = geometry.nodes
+    turned, facets, _ = geometry.placed
+    area, contact, touched, nodal = geometry.area, geometry.contact, geometry.touched, geometry.tables.nodal
     nodal[:] = 0.0
     for k in range(normal.size):
         if normal[k] == 0.0 and tangential[k] == 0.0:
@@ -282,4 +348,4 @@ def scatter_deformable(normal: Array, tangential: Array, geometry: Geometry, for
             nodal[place[after, 0]] -= c * hx + s * hy
             nodal[place[after, 1]] -= c * hy - s * hx
             fx, fy = -fx, -fy
-    to_modes(shapes, nodal, backward, product, force)
+    to_modes(geometry.tables, force)

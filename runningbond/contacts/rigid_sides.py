@@ -15,25 +15,91 @@ they touch: forces there do the work that the jumps say, and keep linear and ang
 """
 
 import math
-from typing import Any, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runningbond.joints.compiled import kernel
 from runningbond.scene import Array
 
-Geometry: TypeAlias = tuple[Any, ...]
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 
 
-@kernel
-def place_outline(motion: Array, outline: tuple[Array, ...], placed: tuple[Array, Array]) -> None:
-    """Write cosine, sine and centroid of the blocks ``(nb, 4)`` and the corners' arcs in space ``(nv, 4)``.
+class Corners(NamedTuple):
+    """The corners of undeformed blocks, in the frame of the undeformed wall.
 
-    `outline` is centroids; first freedom of each corner's block; centre of its arc and normal of the side that starts
-    there, from the centroid and in the frame of the undeformed wall. An arc's row is its centre and that normal.
+    Parameters
+    ----------
+    centroid : (nb, 2) float
+        Centroid of each block [m].
+    freedom : (nv,) uint
+        First freedom of each corner's block.
+    centre : (nv, 2) float
+        Centre of each corner's arc, from the centroid [m].
+    normal : (nv, 2) float
+        Outward normal of the side that starts at the corner.
     """
-    centroid, freedom, centre, normal = outline
+
+    centroid: Array
+    freedom: NDArray[np.uint64]
+    centre: Array
+    normal: Array
+
+
+class Placed(NamedTuple):
+    """Where blocks and the arcs of their corners are in space.
+
+    Parameters
+    ----------
+    blocks : (nb, 4) float
+        Cosine and sine of each block's rotation, and its centroid [m].
+    arcs : (nv, 4) float
+        Centre of each corner's arc [m] and outward normal of the side that starts there.
+    """
+
+    blocks: Array
+    arcs: Array
+
+
+class RigidSides(NamedTuple):
+    """What `gather_sides` and `scatter_sides` share.
+
+    Parameters
+    ----------
+    corners
+        The corners of the undeformed blocks.
+    radius, straight : (nv,) float
+        Radius of each corner's arc, and length of the side that starts there between its arcs [m].
+    ends : (np, 6) uint
+        Of each end of facing sides e and f the corners v and w, the far corners of e and f, and e and f.
+    inwards : (np,) float
+        1 where inwards is along the tangent of f, −1 where it is against it.
+    tilt : (np,) float
+        Tilt of e against f, less the turns of the blocks [rad].
+    area : (np,) float
+        Area the end stands for [m²].
+    placed
+        Written by `gather_sides`: the outlines in space.
+    contact : (np, 4) float
+        Written by `gather_sides`: point of contact [m] and normal of each end.
+    """
+
+    corners: Corners
+    radius: Array
+    straight: Array
+    ends: NDArray[np.uint64]
+    inwards: Array
+    tilt: Array
+    area: Array
+    placed: Placed
+    contact: Array
+
+
+@kernel
+def place_outline(motion: Array, corners: Corners, placed: Placed) -> None:
+    """Write where blocks and arcs are after a motion ``(3 nb,)``."""
+    centroid, freedom, centre, normal = corners
     turned, arcs = placed
     for i in range(turned.shape[0]):
         spin = motion[3 * i + 2]
@@ -51,7 +117,7 @@ def place_outline(motion: Array, outline: tuple[Array, ...], placed: tuple[Array
 
 
 @kernel
-def _arc_on_arc(dx: float, dy: float, radii: float) -> tuple[float, float, float]:
+def arc_on_arc(dx: float, dy: float, radii: float) -> tuple[float, float, float]:
     """Opening of two arcs and the normal along the line of their centres ``(dx, dy)``."""
     distance = math.hypot(dx, dy)
     return distance - radii, dx / distance, dy / distance
@@ -69,18 +135,12 @@ def sharp_opening(away: float, beyond: float) -> float:
 
 
 @kernel
-def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array) -> None:
-    """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``.
-
-    `geometry` is the outline of the blocks; radius of each corner and straight length of the side that starts there;
-    per end the corners v, w, the far corners of their sides, and sides e, f; whether inwards is along the tangent (1)
-    or against it (−1), the tilt without the blocks' turns and the area; and, written, the placed outline and, per
-    end, the point of contact and the normal.
-    """
-    outline, radius, straight, ends, inwards, tilt, _, placed, contact = geometry
-    place_outline(motion, outline, placed)
-    freedom = outline[1]
-    arcs = placed[1]
+def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
+    """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``."""
+    corners, radius, straight, ends, inwards, tilt, _, placed, contact = geometry
+    place_outline(motion, corners, placed)
+    freedom = corners.freedom
+    arcs = placed.arcs
     for k in range(inwards.size):
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
         dx, dy = arcs[v, 0] - arcs[w, 0], arcs[v, 1] - arcs[w, 1]
@@ -101,7 +161,7 @@ def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array
                 away = sharp_opening(away, beyond)
             elif beyond > 0.0:
                 dx, dy = arcs[v, 0] - arcs[far, 0], arcs[v, 1] - arcs[far, 1]
-                away, moved, nx, ny = _far_arcs(dx, dy, r_v, radius[far], arcs, e, f)
+                away, moved, nx, ny = far_arcs(dx, dy, (r_v, radius[far]), -arcs[e, 2], -arcs[e, 3], nx, ny)
                 moved += sense * straight[f]
         else:
             ex, ey = -arcs[e, 2], -arcs[e, 3]
@@ -118,11 +178,11 @@ def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array
                     away = sharp_opening(away, beyond)
                 elif beyond > 0.0:
                     dx, dy = arcs[far, 0] - arcs[w, 0], arcs[far, 1] - arcs[w, 1]
-                    away, moved, nx, ny = _far_arcs(dx, dy, radius[far], r_w, arcs, e, f)
+                    away, moved, nx, ny = far_arcs(dx, dy, (radius[far], r_w), ex, ey, arcs[f, 2], arcs[f, 3])
                     moved -= sense * straight[e]
             elif r_v + r_w > 0.0:
-                away, nx, ny = _arc_on_arc(dx, dy, r_v + r_w)
-                moved = r_v * _angle(nx, ny, ex, ey) + r_w * _angle(nx, ny, arcs[f, 2], arcs[f, 3])
+                away, nx, ny = arc_on_arc(dx, dy, r_v + r_w)
+                moved = r_v * angle(nx, ny, ex, ey) + r_w * angle(nx, ny, arcs[f, 2], arcs[f, 3])
         opening[k] = away
         slip[k] = moved
         contact[k, 0] = x - behind * nx
@@ -132,32 +192,34 @@ def gather_finite(motion: Array, geometry: Geometry, opening: Array, slip: Array
 
 
 @kernel
-def _angle(nx: float, ny: float, fx: float, fy: float) -> float:
+def angle(nx: float, ny: float, fx: float, fy: float) -> float:
     """Angle from one unit vector f to another n."""
     return math.atan2(fx * ny - fy * nx, fx * nx + fy * ny)
 
 
 @kernel
-def _far_arcs(
-    dx: float, dy: float, r_v: float, r_w: float, arcs: Array, e: int, f: int
+def far_arcs(
+    dx: float, dy: float, radii: tuple[float, float], ex: float, ey: float, fx: float, fy: float
 ) -> tuple[float, float, float, float]:
-    """Opening, slip and normal of two arcs by which blocks come off each other's sides.
+    """Opening, slip and normal of two arcs, of radii (r_v, r_w), by which blocks come off each other's sides.
 
-    Beyond a tilt of 45° on the average, they belong to the sides round the corners; so they are not counted twice.
+    ``(dx, dy)`` leads from the centre of w to that of v, ``(ex, ey)`` is the inward normal of e and ``(fx, fy)`` the
+    outward one of f. Beyond a tilt of 45° on the average, the arcs belong to the sides round the corners; so they are
+    not counted twice.
     """
-    away, nx, ny = _arc_on_arc(dx, dy, r_v + r_w)
-    of_e = _angle(nx, ny, -arcs[e, 2], -arcs[e, 3])
-    of_f = _angle(nx, ny, arcs[f, 2], arcs[f, 3])
+    r_v, r_w = radii
+    away, nx, ny = arc_on_arc(dx, dy, r_v + r_w)
+    of_e, of_f = angle(nx, ny, ex, ey), angle(nx, ny, fx, fy)
     if abs(of_e + of_f) > 0.5 * math.pi:
         away = abs(away)
     return away, r_v * of_e + r_w * of_f, nx, ny
 
 
 @kernel
-def scatter_finite(normal: Array, tangential: Array, geometry: Geometry, force: Array) -> None:
+def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force: Array) -> None:
     """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
-    outline, ends, area, placed, contact = geometry[0], geometry[3], geometry[6], geometry[7], geometry[8]
-    freedom, turned = outline[1], placed[0]
+    freedom, turned = geometry.corners.freedom, geometry.placed.blocks
+    ends, area, contact = geometry.ends, geometry.area, geometry.contact
     for k in range(normal.size):
         if normal[k] == 0.0:
             continue

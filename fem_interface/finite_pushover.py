@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from runningbond.dynamics import finite_curve
+from runningbond.dynamics import Run, pushover_curve
 from runningbond.scene import Array, Scene
 
-from .finite_system import FiniteRun
-from .finite_wall import finite_wall
+from .finite_system import finite_system
 from .modes import ModeCount
+from .node_outline import node_outline
 
 
 def fem_pushover(
@@ -53,8 +53,8 @@ def fem_pushover(
     SceneError
         For a scene that is not of this kind.
     """
-    blocks = finite_wall(scene, cells, modes)
-    run = FiniteRun(blocks, local=local)
+    blocks = node_outline(scene, cells, modes)
+    run = Run(finite_system(blocks), local=local)
     held, at, direction = scene.control_point
     wall, corners = blocks.wall, blocks.node[blocks.first[:-1]]
     # How the deformations move the control point, in the frames of the blocks that have it.
@@ -63,10 +63,10 @@ def fem_pushover(
     arm = at - scene.blocks.centroid[held]
 
     def measure(motion: Array) -> tuple[float, float]:
-        cosine, sine, x, y = blocks.outline.placed(blocks.rigid(motion))[0][held].T
+        cosine, sine, x, y = blocks.outline.placed(blocks.rigid(motion)).blocks[held].T
         px, py = (arm + rows @ motion).T
         control = np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py]) - at
         moved = (blocks.positions(motion)[corners] - scene.blocks.vertices) @ direction
         return float((control @ direction).mean()), float(moved.max())
 
-    return finite_curve(run, scene, distance, speed, measure)
+    return pushover_curve(run, scene, distance, speed, measure)

@@ -1,4 +1,4 @@
-"""Time series for ParaView: a VTU file a moment, and a PVD file that lists them, whole after every moment."""
+"""Time series for ParaView: a VTU file a frame, and a PVD file that lists them, readable after every frame."""
 
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -6,57 +6,56 @@ from typing import Any
 
 from runningbond.results.store import StoreError, write_atomically
 
-from .frame import Frame, Stage
-from .grids import Grid, Grids
-from .vtk_imports import whole_imports
-from .vtk_messages import vtk_errors_raised
+from .frame import Discretisation, Frame
+from .vtk_grids import Grid, GridBuilder
+from .vtk_safety import import_pyvista, vtk_errors_raised
 
 KINDS = ("blocks", "joints")
-"""What a series is kept of: ``blocks.pvd`` and ``joints.pvd``, each with its own VTU files."""
+"""What a series consists of: ``blocks.pvd`` and ``joints.pvd``, each with its own VTU files."""
 
-MOST = 40
-"""Moments that a series keeps; when there are more, it lets go of every other one."""
+MAX_FRAMES = 40
+"""Frames that a series keeps; when there are more, every other one is deleted."""
 
 
-class Series:
-    """Moments of one wall in a folder, in the order in which they come; the first replaces what was there before.
+class TimeSeries:
+    """Frames of one wall in a folder, in the order in which they come; the first replaces what was there before.
 
     Parameters
     ----------
-    stage
+    discretisation
         The wall.
     folder
-        Where ``blocks.pvd``, ``joints.pvd`` and a folder ``frames`` with the moments go.
+        Where ``blocks.pvd``, ``joints.pvd`` and a folder ``frames`` with the VTU files go.
     """
 
-    def __init__(self, stage: Stage, folder: Path) -> None:
-        self._grids = Grids(stage)
+    def __init__(self, discretisation: Discretisation, folder: Path) -> None:
+        self._grids = GridBuilder(discretisation)
         self._folder = folder
         self._numbers: list[int] = []
         self._next = 0
-        self._begun = False
+        self._is_started = False
 
     def __len__(self) -> int:
         return len(self._numbers)
 
     def clear(self) -> None:
-        """Let go of all moments, also of those that were there before."""
-        self._numbers, self._next, self._begun = [], 0, True
+        """Delete all frames, also those that were there before."""
+        self._numbers, self._next, self._is_started = [], 0, True
         for kind in KINDS:
             (self._folder / f"{kind}.pvd").unlink(missing_ok=True)
             for stale in (self._folder / "frames").glob(f"{kind}-*.vtu"):
                 stale.unlink()
 
     def add(self, frame: Frame) -> None:
-        """Write a moment; the series is whole before and after."""
-        if not self._begun:
+        """Write a frame; the series can be read before and after."""
+        if not self._is_started:
             self.clear()
         grids = {"blocks": self._grids.blocks(frame), "joints": self._grids.joints(frame)}
         for kind, grid in grids.items():
             write_atomically(self._file(kind, self._next), vtu(grid))
         self._numbers.append(self._next)
         self._next += 1
-        dropped = self._numbers[1:-1:2] if len(self._numbers) > MOST else []
+        dropped = self._numbers[1:-1:2] if len(self._numbers) > MAX_FRAMES else []
         self._numbers = [number for number in self._numbers if number not in dropped]
         for kind in KINDS:
             files = [(number, self._file(kind, number)) for number in self._numbers]
@@ -68,7 +67,7 @@ class Series:
         return self._folder / "frames" / f"{kind}-{number:04d}.vtu"
 
 
-def moments(folder: Path, kind: str) -> list[Path]:
+def frame_files(folder: Path, kind: str) -> list[Path]:
     """VTU files that a folder's ``blocks.pvd`` or ``joints.pvd`` lists, in order; none where there is no such file.
 
     Raises
@@ -87,20 +86,19 @@ def moments(folder: Path, kind: str) -> list[Path]:
 
 def read_grid(path: Path) -> Grid:
     """Read a VTU file."""
-    with whole_imports():
-        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    pv = import_pyvista("UnstructuredGrid")
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
     reader: Any = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     with vtk_errors_raised():
         reader.Update()
-    return reader.GetOutput()
+    return pv.wrap(reader.GetOutput())
 
 
 def vtu(grid: Grid) -> bytes:
     """A grid as the content of a VTU file."""
-    with whole_imports():
-        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
     writer: Any = vtkXMLUnstructuredGridWriter()
     writer.SetInputData(grid)

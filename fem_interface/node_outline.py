@@ -1,0 +1,201 @@
+"""Outlines of deformable blocks: their sides as polygons of the nodes of their mesh."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from runningbond.contacts.outline import Outline
+from runningbond.scene import Array, Indices, Scene, SceneError
+
+from .block_kernels import NodalTables, nodal_tables
+from .deformable_sides import OutlineNodes, Sides
+from .element_order import modal_wall
+from .modal_wall import ModalWall
+from .modes import ModeCount
+from .templates import nodes_of
+
+
+@dataclass(frozen=True, eq=False)
+class NodeOutline:
+    """Blocks with modes whose sides are polygons of the nodes of their mesh.
+
+    Outline nodes are numbered side by side, the sides as the corners that they start from; each starts a facet.
+
+    Parameters
+    ----------
+    wall
+        The blocks in modal coordinates.
+    outline
+        Their undeformed outlines.
+    node : (no,) int
+        Node of the mesh.
+    first : (nv + 1,) int
+        First outline node of each side, then their number.
+    """
+
+    wall: ModalWall
+    outline: Outline
+    node: Indices
+    first: Indices
+
+    @property
+    def scene(self) -> Scene:
+        """The wall."""
+        return self.wall.scene
+
+    @cached_property
+    def side(self) -> Indices:
+        """Side of each outline node, ``(no,)``."""
+        return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
+
+    @cached_property
+    def following(self) -> Indices:
+        """Next outline node counter-clockwise, ``(no,)``."""
+        following = np.arange(1, len(self.node) + 1)
+        following[self.first[1:] - 1] = self.first[self.outline.blocks.successor]
+        return following
+
+    @cached_property
+    def owner(self) -> Indices:
+        """Block of each outline node, ``(no,)``."""
+        return np.asarray(self.outline.blocks.owner[self.side])
+
+    @cached_property
+    def length(self) -> Array:
+        """Length of the facet that starts at each outline node, ``(no,)`` [m]."""
+        points = self.wall.mesh.points[self.node]
+        return np.asarray(np.hypot(*(points[self.following] - points).T))
+
+    @cached_property
+    def begin(self) -> Array:
+        """Way along its side to each outline node, ``(no,)`` [m]."""
+        total = np.cumsum(self.length) - self.length
+        return np.asarray(total - total[self.first[:-1]][self.side])
+
+    def rigid(self, motion: Array) -> Array:
+        """Translations and rotation of each block in a motion ``(nd,)``, ``(3 nb,)``."""
+        return np.ascontiguousarray(motion[self.wall.rigid]).ravel()
+
+    def positions(self, motion: Array) -> Array:
+        """Where the nodes of the mesh are after a motion ``(nd,)``, ``(nn, 2)`` [m]."""
+        mesh, blocks = self.wall.mesh, self.outline.blocks
+        deformed = motion.copy()
+        deformed[self.wall.rigid] = 0.0
+        cosine, sine, x, y = self.outline.placed(self.rigid(motion)).blocks[mesh.block].T
+        px, py = (mesh.points - blocks.centroid[mesh.block] + self.wall.displacement(deformed)).T
+        return np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py])
+
+    def deformation(self, motion: Array) -> float:
+        """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
+        pairs = zip(self._tables, self.wall.split(motion), strict=True)
+        far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for (_, table), Q in pairs]
+        return float(np.sqrt(2) * max(far, default=0.0))
+
+    @cached_property
+    def inset(self) -> Array:
+        """Distance from each corner at which its arc touches its sides, ``(nv,)`` [m]."""
+        return np.where(self.outline.radius > 0, self.outline.radius * np.tan(self.outline.exterior / 2), 0.0)
+
+    @cached_property
+    def nodes(self) -> OutlineNodes:
+        """The nodes, as the kernels take them."""
+        blocks, wall = self.outline.blocks, self.wall
+        return OutlineNodes(
+            wall.rigid.astype(np.int64),
+            blocks.centroid.copy(),
+            self.owner.astype(np.int64),
+            wall.mesh.points[self.node] - blocks.centroid[self.owner],
+            wall.places([own for own, _ in self._tables])[0][self.node],
+            self.following,
+            self.begin,
+            self.length,
+        )
+
+    @cached_property
+    def sides(self) -> Sides:
+        """The sides, as the kernels take them."""
+        outline, first = self.outline, self.first
+        successor = outline.blocks.successor.astype(np.int64)
+        outer = np.column_stack([first[:-1], first[1:] - 1])
+        shares = np.column_stack([self.inset, -self.inset[successor]]) / self.length[outer] + [0.0, 1.0]
+        whole = outline.straight + self.inset + self.inset[successor]
+        return Sides(outer, shares, whole, outline.straight.copy(), successor, self.inset, outline.radius.copy())
+
+    def new_tables(self) -> NodalTables:
+        """Displacements of the nodes per deformation, with buffers of their own."""
+        wall, rows = self.wall, []
+        _, place = wall.places([own for own, _ in self._tables])
+        for template, first, (_, table), at in zip(wall.templates, wall.first, self._tables, place, strict=False):
+            n, (width, modes) = len(template.blocks), table.shape
+            if modes:
+                rows.append(((n, modes, width, int(first) + 3 * n, int(at)), table))
+        return nodal_tables(rows, int(place[-1]), 1)
+
+    @cached_property
+    def _tables(self) -> list[tuple[Indices, Array]]:
+        """Of each template the nodes on its outline, in numbers of its own, and their displacements per deformation.
+
+        No nodes if the blocks do not deform.
+        """
+        mesh = self.wall.mesh
+        of_block = np.split(self.node, self.first[self.outline.blocks.first[1:-1]])
+        tables = []
+        for template in self.wall.templates:
+            block, shape = template.blocks[0], template.modes.shape[:, 3:]
+            modes = shape.shape[1]
+            local = np.sort(of_block[block]) - mesh.first_node[block] if modes else np.zeros(0, dtype=np.int64)
+            tables.append((local, shape.reshape(len(shape) // 2, 2, modes)[local].reshape(2 * len(local), modes)))
+        return tables
+
+
+def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> NodeOutline:
+    """Mesh a scene whose blocks are to move far.
+
+    Raises
+    ------
+    SceneError
+        If the scene pins corners, pushes at a point, has blocks that crack, or glues its joints for ever.
+    """
+    joint = scene.joint
+    if len(scene.pins):
+        raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
+    if not (scene.live_forces.on_mass_alone and scene.dead_forces.on_mass_alone):
+        raise SceneError("load.live", "finite displacements need a load on the blocks' mass")
+    if scene.inner_joint is not None:
+        raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
+    if joint.cohesion > 0 and (joint.fracture_energy_1 is None or joint.fracture_energy_2 is None):
+        raise SceneError("joint", "finite displacements need dry joints, or fracture energies with which they break")
+    wall = modal_wall(scene, cells, modes)
+    node, first = [], [0]
+    for local in _sides(wall):
+        node.append(local)
+        first.append(first[-1] + len(local))
+    return NodeOutline(wall, Outline.of(scene), np.concatenate(node), np.array(first))
+
+
+def _sides(wall: ModalWall) -> Iterator[Indices]:
+    """Nodes of each side from its first corner up to the last but one."""
+    blocks, mesh = wall.scene.blocks, wall.mesh
+    seen: dict[tuple[int, bytes], list[Indices]] = {}
+    for block in range(len(blocks)):
+        own = nodes_of(mesh, block)
+        corners = blocks.vertices[blocks.first[block] : blocks.first[block + 1]]
+        likeness = np.rint((corners - mesh.points[own.start]) / blocks.tolerance).astype(np.int64).tobytes()
+        key = int(mesh.shape[block]), likeness
+        if key not in seen:
+            seen[key] = [
+                _nodes_between(mesh.points[own], start, stop, blocks.tolerance)
+                for start, stop in zip(corners, np.roll(corners, -1, axis=0), strict=True)
+            ]
+        yield from (own.start + local for local in seen[key])
+
+
+def _nodes_between(points: Array, start: Array, stop: Array, tolerance: float) -> Indices:
+    """Points on a straight line, in its sense, but for its end."""
+    run = stop - start
+    length = np.hypot(*run)
+    along, off = (points - start) @ run / length, (points - start) @ [run[1], -run[0]] / length
+    on = np.flatnonzero((np.abs(off) < tolerance) & (along > -tolerance) & (along < length - tolerance))
+    return on[np.argsort(along[on])]

@@ -1,0 +1,86 @@
+"""What a model is: how a scene becomes an outcome, and what tables, charts and `advise` need to know of it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, Literal, Protocol, TypeAlias
+
+from runningbond.pictures.frame import Discretisation, Frame
+from runningbond.results import Outcome
+from runningbond.scene import Array, JointMaterial, Mortar, Scene
+
+Kind: TypeAlias = Literal["estimate", "bound", "certificate", "history"]
+"""What the multiplier of a model is worth: `bound` is proved from above, `certificate` an interval of loads at which
+collapse is proved possible, `history` the collapse of a wall that is followed there."""
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Law of what a model costs; `runningbond.compare.advice.costs` says how it is used."""
+
+    at_100: float  # seconds for 100 blocks
+    growth: float  # power of the number of blocks
+    spread: float  # factor within which two thirds of the walls lie about the law
+    weightless: float = 1.0  # how many times as much walls without weight cost
+    finer: float = 0.0  # power of the tolerance; 0 for a model that does not bisect
+    start: float = 0.0  # seconds until its compiled kernels are loaded, once a process
+    cracked: float = 1.0  # how many times as much walls whose blocks may crack cost
+
+
+class Recorder(Protocol):
+    """Observes a run of its model, and in the end has written what it saw, or has it in `frames` without a folder."""
+
+    @property
+    def discretisation(self) -> Discretisation:
+        """The wall as it is observed."""
+
+    @property
+    def frames(self) -> Sequence[Frame]:
+        """What was seen, where there is no folder."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> None:
+        """Look at a state, as the model shows it."""
+
+    def finish(self, outcome: Outcome) -> None:
+        """End, once the outcome is there."""
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A model: how a scene becomes an outcome, and what others need to know of that.
+
+    `solve` goes from a scene and the relative width of the bracket asked for to an outcome. It is handed `parameters`
+    by name, and ``observe=…`` if the model has an `observer`. `reads` has the keys of a scene file that have an
+    influence on the outcome, as ``joint.friction``, besides the wall, its supports and its loads, which every model
+    reads or refuses by name.
+    """
+
+    name: str  # what the command line, tables and charts call it
+    title: str  # what it does, in half a line
+    solve: Callable[..., Outcome]
+    reads: frozenset[str]
+    kind: Kind = "estimate"  # what its multiplier is worth
+    parameters: tuple[str, ...] = ()  # names of its own settings
+    observer: Callable[[Scene, Path | None], Recorder] | None = None  # records a run in a folder, or in memory
+    interruptible: bool = False  # whether it ends with what it has found so far on KeyboardInterrupt
+    cost: Cost | None = None  # `advise` runs no model without
+    pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed
+    colour: str = "0.35"  # how charts draw it,
+    marker: str = "*"
+    line: str | tuple[int, tuple[int, ...]] = "-"  # and its pushover curve
+
+    def unread(self, scene: Scene) -> list[str]:
+        """Keys of its file that a scene gives and this model does not take into account."""
+        tables = {"block": scene.block, "joint": scene.joint, "inner_joint": scene.inner_joint}
+        given = [f"{table}.{key}" for table, material in tables.items() if material for key in _given_keys(material)]
+        inner = {f"inner_{key}" for key in self.reads if "inner_joint" in self.reads}
+        return [key for key in given if key not in self.reads | inner]
+
+
+def _given_keys(material: Any) -> list[str]:
+    """Keys of a material's table that say something else than their defaults."""
+    keys = [entry.name for entry in fields(material) if getattr(material, entry.name) != entry.default]
+    if isinstance(material, JointMaterial) and "elasticity" in keys:
+        stiffness = ["mortar"] if isinstance(material.elasticity, Mortar) else ["normal_stiffness", "shear_stiffness"]
+        keys[keys.index("elasticity") : keys.index("elasticity") + 1] = stiffness
+    return keys

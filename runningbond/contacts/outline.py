@@ -1,0 +1,114 @@
+"""Outlines of blocks whose corners are rounded by the inset of the joints."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from runningbond.scene import Array, Blocks, Indices, Mask, Scene, SceneError
+
+from .rigid_sides import Corners, Placed, place_outline
+
+MARGIN = 0.02
+"""Least distance up to which sides count as near, in sizes of the smallest block (root of its area).
+
+It costs time, not accuracy: the wider, the more pairs are looked at every step, and the fewer times they are sought.
+"""
+
+FLAT = 0.1
+"""Turn [rad] of the outline below which a corner is hardly one: it is not rounded, and rests with both its sides."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """Blocks with rounded corners: arcs that touch their two sides an inset away from the corner.
+
+    Parameters
+    ----------
+    blocks
+        The blocks, undeformed.
+    radius : (nv,) float
+        Radius of each corner's arc [m].
+    centre : (nv, 2) float
+        Its centre, from the centroid of its block [m].
+    normal : (nv, 2) float
+        Outward normal of the side that starts at the corner.
+    straight : (nv,) float
+        Length of that side between its arcs [m].
+    exterior : (nv,) float
+        Angle by which the outline turns at the corner [rad].
+    thickness : float
+        Out-of-plane thickness [m].
+    held : (nb,) bool
+        Blocks between which nothing can happen.
+    """
+
+    blocks: Blocks
+    radius: Array
+    centre: Array
+    normal: Array
+    straight: Array
+    exterior: Array
+    thickness: float
+    held: Mask
+
+    @classmethod
+    def of(cls, scene: Scene) -> "Outline":
+        """Round the corners of a scene's blocks by the inset of its joints.
+
+        Raises
+        ------
+        SceneError
+            If the inset takes up a whole side.
+        """
+        blocks = scene.blocks
+        start, after = blocks.vertices, blocks.successor
+        side = start[after] - start
+        length = np.hypot(*side.T)
+        run = side / length[:, None]
+        normal = np.column_stack([run[:, 1], -run[:, 0]])
+        before = np.empty_like(after)
+        before[after] = np.arange(len(after))
+        turn = run[before]
+        exterior = np.arctan2(turn[:, 0] * run[:, 1] - turn[:, 1] * run[:, 0], (turn * run).sum(axis=1))
+        inset = np.where(exterior > FLAT, scene.joint.inset, 0.0)
+        radius = inset / np.tan(np.maximum(exterior, FLAT) / 2)
+        straight = length - inset - inset[after]
+        if (straight < 0).any():
+            raise SceneError("joint.inset", "must be less than half the shortest side of a block", scene.joint.inset)
+        centre = start + inset[:, None] * run - radius[:, None] * normal - blocks.centroid[blocks.owner]
+        return cls(blocks, radius, centre, normal, straight, exterior, scene.thickness, scene.fixed)
+
+    @property
+    def margin(self) -> float:
+        """Distance up to which sides of blocks that hardly move count as near [m]."""
+        return float(MARGIN * np.sqrt(self.blocks.area.min()))
+
+    @cached_property
+    def reach(self) -> Array:
+        """Distance of the farthest corner of each block from its centroid, ``(nb,)`` [m]."""
+        blocks = self.blocks
+        return np.maximum.reduceat(np.hypot(*(blocks.vertices - blocks.centroid[blocks.owner]).T), blocks.first[:-1])
+
+    @property
+    def corner_arrays(self) -> Corners:
+        """The arrays from which kernels place the outline."""
+        blocks = self.blocks
+        freedom = (3 * blocks.owner).astype(np.uint64)
+        return Corners(blocks.centroid.copy(), freedom, self.centre.copy(), self.normal.copy())
+
+    def placed(self, motion: Array) -> Placed:
+        """Blocks and arcs in space after a motion ``(3 nb,)``."""
+        placed = Placed(np.zeros((len(self.blocks), 4)), np.zeros((len(self.radius), 4)))
+        place_outline(motion, self.corner_arrays, placed)
+        return placed
+
+    def corners(self, motion: Array) -> Array:
+        """Corners after a motion ``(3 nb,)``, ``(nv, 2)`` [m]."""
+        return self.points(self.blocks.owner, self.blocks.vertices, motion)
+
+    def points(self, block: Indices, at: Array, motion: Array) -> Array:
+        """Points of blocks, given on the undeformed wall, after a motion ``(3 nb,)``, ``(n, 2)`` [m]."""
+        cosine, sine, x, y = self.placed(motion).blocks[block].T
+        arm = at - self.blocks.centroid[block]
+        return np.column_stack([x + cosine * arm[:, 0] - sine * arm[:, 1], y + sine * arm[:, 0] + cosine * arm[:, 1]])

@@ -1,0 +1,165 @@
+"""A load held until the wall is at rest or in collapse: when it counts as the one, and when as the other."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from runningbond.scene import Array
+
+from .run import Observer, Run, no_observer
+from .state import State
+
+CALM = 3
+"""Looks in a row at which a wall must be balanced to be at rest: one in full motion may pass through balance."""
+
+U_CRIT = 0.05
+"""Displacement at which a wall that does not slow down is in collapse, in block sizes (`Scene.block_sizes`).
+
+A wall without weight may slip as far and be caught by the pressure that the slip itself brings about; loaded slowly
+enough it does not.
+"""
+
+Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
+"""What a wall does under a load."""
+
+
+@dataclass(frozen=True)
+class Criteria:
+    """When a held load has been borne, and when it has brought the wall down.
+
+    Parameters
+    ----------
+    rest
+        Unbalanced force, in the system's units, below which the wall is at rest.
+    collapse : float or (n,) float
+        Displacement [m] of any body, or of each, since the load was raised: the unit in which `CollapseDetector`
+        measures whether a wall that does not slow down is in collapse.
+    budget
+        Steps after which the question is left undecided.
+    interval
+        Steps between two looks.
+    """
+
+    collapse: float | Array
+    rest: float = 1e-5
+    budget: int = 2_000_000
+    interval: int = 200
+
+
+@dataclass(frozen=True)
+class HeldLoad:
+    """What a wall does under a load.
+
+    Parameters
+    ----------
+    verdict
+        Whether it rests or falls.
+    halfway : (nd,) float or None
+        Where it was half the way before it counted as falling.
+    """
+
+    verdict: Verdict
+    halfway: Array | None = None
+
+
+def settle(
+    run: Run,
+    state: State,
+    multiplier: float,
+    criteria: Criteria,
+    observe: Observer = no_observer,
+    *,
+    sudden: bool = False,
+) -> Verdict:
+    """Hold a load until the wall rests or falls, and say which; see `hold_load`."""
+    return hold_load(run, state, multiplier, criteria, observe, sudden=sudden).verdict
+
+
+def hold_load(
+    run: Run,
+    state: State,
+    multiplier: float,
+    criteria: Criteria,
+    observe: Observer = no_observer,
+    *,
+    sudden: bool = False,
+) -> HeldLoad:
+    """Hold a load until the wall rests or falls.
+
+    It rests when the unbalanced force is below the threshold at `CALM` looks in a row. It falls when it has moved far
+    and does not slow down (`CollapseDetector`), so that a wall that slips and is caught is not mistaken for one in
+    collapse; one on which a `sudden` load was put may give way elastically first.
+
+    Raises
+    ------
+    Unstable
+        If it spends more energy than the load and the state at the start can have supplied.
+    """
+    start, given = state.motion.copy(), run.given(state)
+    detector = CollapseDetector(elastic=sudden or run.system.weightless)
+    halfway = start
+    calm = 0
+    for _ in range(criteria.budget // criteria.interval):
+        run.hold(state, multiplier, criteria.interval, given=given)
+        observe(run, state, multiplier)
+        calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
+        if calm == CALM:
+            return HeldLoad("stable")
+        marks = detector.marks
+        if detector.goes_on(run.system.farthest(state.motion - start, criteria.collapse), state.steps):
+            return HeldLoad("collapse", halfway)
+        if detector.marks > marks:
+            halfway = state.motion.copy()
+    return HeldLoad("undecided")
+
+
+class CollapseDetector:
+    """Whether a motion is a collapse: it has come a unit, and no slower over the last half of its way than before.
+
+    `EARLY` is enough where the same held when it had come half as far. A motion that does slow down is a collapse
+    once it has come `FARTHEST` doublings of the unit.
+
+    Parameters
+    ----------
+    elastic
+        Whether springs may take up a good part of the unit, so that it has to come the whole: under a load put on at
+        once, or in a wall without weight, whose joints hold by nothing but what the load presses them together.
+    """
+
+    FARTHEST = 4
+    """Doublings after which a motion that does slow down counts as collapse all the same."""
+
+    SLACK = 1.1
+    """How much slower than before is not yet slower: sliding contacts chatter, and their speed with them."""
+
+    EARLY = 0.5
+    """Part of the unit, a power of two, after which a motion that never slowed is a collapse.
+
+    Dry walls that were caught had slowed by then, and a fall at constant speed takes twice the steps for the whole.
+    """
+
+    def __init__(self, *, elastic: bool = False) -> None:
+        # Steady at EARLY for the second time, or at the unit for the first, is at the fourth mark, or the third.
+        first = -2 if elastic else int(math.log2(self.EARLY)) - 3
+        self._marks = [2.0**k for k in range(first, self.FARTHEST + 1)]
+        self._passed: list[int] = []
+        self._steady = 0
+
+    @property
+    def marks(self) -> int:
+        """Marks that were passed, each twice as far as the one before."""
+        return len(self._passed)
+
+    def goes_on(self, moved: float, steps: int) -> bool:
+        """Whether a wall that has moved so far after so many steps is in collapse."""
+        while self.marks < len(self._marks) and moved > (mark := self._marks[self.marks]):
+            self._passed.append(steps)
+            if len(self._passed) >= 3:
+                first, second, third = self._passed[-3:]
+                # The way from the second mark to the third is twice as long as that from the first to the second.
+                # Marks passed in one look say nothing of the speed.
+                steady = 0 < third - second <= 2 * self.SLACK * (second - first)
+                self._steady = self._steady + 1 if steady else 0
+            if self._steady >= (1 if mark >= 1 else 2) or self.marks == len(self._marks):
+                return True
+        return False

@@ -1,0 +1,136 @@
+"""When contacts are found anew at finite displacements, and how their history is handed on."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from runningbond.contacts.search import Contacts
+from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
+from runningbond.scene import Array, Indices
+
+from .state import PLASTIC_SLIP, State, history_free_of_shear
+from .system import BlockSystem, ContactSearch, Interface
+
+SPEED_FACTOR = 2
+"""Times the speed that bodies have, and that loads alone would give them, with which they are taken to move on."""
+
+STEPS_AHEAD = 16
+"""Steps of the fastest body within which sides count as near at least."""
+
+MOST_STEPS = 1000
+"""Steps between two looks at how far the bodies have moved."""
+
+
+class ContactUpdate:
+    """Keeps the contacts of states up to date as the bodies of a system move.
+
+    Parameters
+    ----------
+    system
+        The bodies.
+    search
+        How their contacts are found.
+    """
+
+    def __init__(self, system: BlockSystem, search: ContactSearch) -> None:
+        self._system, self._search = system, search
+        self._acceleration = self._travel((np.abs(system.dead) + np.abs(system.live)) / system.mass)
+
+    def interface_on(self, contacts: Contacts) -> Interface:
+        """The interface on contacts, with a frequency no lower than that of the undeformed wall."""
+        undeformed = self._system.interface
+        if contacts is self._search.undeformed:
+            return undeformed
+        interface = self._search.interface_on(contacts, self._system)
+        # Bodies that have flown apart have no frequency, and may meet again.
+        return replace(interface, frequency_squared=max(interface.frequency_squared, undeformed.frequency_squared))
+
+    def is_due(self, state: State) -> bool:
+        """Whether the bodies have used up three quarters of the way on which no contact can have been missed."""
+        return self._left(state) < (contacts_of(state).margin / 2 - self._search.deformation(state.motion)) / 4
+
+    def steps_until_next_look(self, state: State, dt: float) -> int:
+        """Steps of a length [s] in which the bodies may have moved as far as no contact can be missed."""
+        left = max(0.0, self._left(state))
+        speed, gain = SPEED_FACTOR * self._travel(state.velocity), SPEED_FACTOR * self._acceleration
+        root = np.sqrt(speed**2 + 2 * gain * left)
+        time = 2 * left / (speed + root) if root > 0 else np.inf
+        return int(np.clip(time / dt, 1, MOST_STEPS))
+
+    def renew(self, state: State, interface: Interface, dt: float) -> Interface:
+        """Find the contacts of a state anew, in place, hand their history on and return the interface on them.
+
+        Parameters
+        ----------
+        state
+            Its contacts are those of `interface`.
+        interface
+            The interface on the contacts so far.
+        dt
+            Time step [s].
+        """
+        search, before, history = self._search, contacts_of(state), state.history
+        rested = search.resting(before, state.motion)
+        opening, slip = interface.jumps(state.motion)
+        plastic_slip = interface.law.law.row(PLASTIC_SLIP)
+        shear = slip - history[plastic_slip]
+        state.friction += float(before.area @ history[FRICTION_WORK])
+        state.absorbed += float(before.area @ history[DAMPED_WORK])
+
+        # What flies moves by many a step's way before the next look, and may be as deep in a block by then; what has
+        # struck one may be deeper, and is not to be lost sight of before it is thrown back.
+        fast = STEPS_AHEAD * self._travel(state.velocity) * dt
+        deep = -2 * opening.min(initial=0.0)
+        contacts = search.find(state.motion, max(search.outline.margin, fast, deep))
+        # The same end of the same two sides; or, for a corner that has turned on, the same corner on the same side,
+        # which goes on with the area that it had: another stiffness would jolt it.
+        turned = _where(rested, search.resting(contacts, state.motion))
+        same = _where(before.key, contacts.key)
+        on, still = turned >= 0, same >= 0
+        area, glued = contacts.area.copy(), np.zeros(len(contacts), dtype=bool)
+        area[on] = before.area[turned[on]]
+        area[still] = before.area[same[still]]
+        glued[still] = before.glued[same[still]]
+
+        state.contacts = replace(contacts, area=area, glued=glued)
+        renewed = self.interface_on(state.contacts)
+        state.history = history_free_of_shear(renewed, state.motion)
+        state.history[plastic_slip, on] -= shear[turned[on]]
+        state.history[:, still] = history[:, same[still]]
+        state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
+        return renewed
+
+    def _left(self, state: State) -> float:
+        """How far [m] bodies may yet move before contacts that are not known of may touch."""
+        contacts, rigid = contacts_of(state), state.motion[self._system.rigid].ravel()
+        return contacts.margin / 2 - self._search.deformation(state.motion) - self._reach(rigid - contacts.motion)
+
+    def _travel(self, motion: Array) -> float:
+        """At most how far any point of a body goes in a motion ``(nd,)`` [m], but for its deformation."""
+        return self._reach(motion[self._system.rigid].ravel())
+
+    def _reach(self, rigid: Array) -> float:
+        u, v, spin = rigid.reshape(-1, 3).T
+        return float((np.hypot(u, v) + np.abs(spin) * self._search.outline.reach).max())
+
+
+def contacts_of(state: State) -> Contacts:
+    """The contacts of a state at finite displacements.
+
+    Raises
+    ------
+    TypeError
+        If it is a state at small ones.
+    """
+    if state.contacts is None:
+        raise TypeError("finite displacements need a state with contacts: begin with State.at_rest of their system")
+    return state.contacts
+
+
+def _where(keys: Indices, sought: Indices) -> Indices:
+    """Position in `keys` of each key sought, −1 where it is not among them."""
+    if not len(keys):
+        return np.full(len(sought), -1)
+    order = np.argsort(keys)
+    at = order[np.minimum(np.searchsorted(keys, sought, sorter=order), len(keys) - 1)]
+    return np.where(keys[at] == sought, at, -1)

@@ -1,0 +1,272 @@
+"""Steps of constant load, each held until the wall rests or falls, with slow ramps between them."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from runningbond.scene import Array
+
+from .collapse import Criteria, HeldLoad, Verdict, hold_load, settle
+from .controls import ramp
+from .run import Observer, Run, no_observer
+from .state import State
+
+LOADING, LOADING_WEIGHTLESS = 16, 4
+"""Times in which the load grows by its first step, in times that the wall takes to rest under that step put on at once.
+
+A wall that is loaded faster slips in several places at once where it would slip in one after the other, and so comes
+to bear more, or less.
+"""
+
+PAUSES, NEARLY_AT_REST = 10, 1e-3
+"""How often the load of a wall without weight pauses in a step, and the unbalanced force at which it grows again.
+
+Such a wall has no pressure on its joints but what the load gives it, and slips for good wherever a wave takes that
+away. A wall with a weight chatters at such loads without end, and slow growth does it better.
+"""
+
+PAUSE_INTERVAL = 200
+"""Time steps of a pause between two looks."""
+
+RESOLVED = 10
+"""Least width of a bracket, in live loads that a wall would be held to bear though nothing balances them."""
+
+GROWTH = 1 / 8
+"""Largest step, once the first ones are borne, as a fraction of the load."""
+
+MOST_UNDECIDED = 4
+"""Undecided loads, side by side, after which a search that has seen a fall ends; half as many end one that has seen
+none. Each has cost the whole budget."""
+
+UNDECIDED_BUDGETS = 3
+"""Budgets that may be spent on undecided loads, wherever they are, before a search ends."""
+
+DOUBLED_BEYOND = 200
+"""Load, in first steps, beyond which it is doubled in each: at ten weights a wall that stands probably locks."""
+
+
+@dataclass(eq=False)
+class LoadSteps:
+    """Result of a search by steps of constant load.
+
+    Parameters
+    ----------
+    lower, upper
+        Largest multiplier that the wall bore at rest, smallest that brought it down; None where none did.
+    verdict
+        Of the last load tried, or ``undecided`` where undecided loads ended the search; ``stable`` without `upper`
+        where it ended beyond the largest load or displacement.
+    borne
+        State at rest under `lower`; None if not even the dead load was borne.
+    fallen
+        State in the collapse under `upper`, or under the dead load.
+    fall_starts : list of (nd,) float
+        Where the wall was on its way to that collapse, the latest first: half the way before, then each rest.
+    rests : list of (multiplier, State)
+        Every state at rest, in order of load.
+    steps
+        Steps taken, on every path.
+    interrupted
+        Whether Ctrl-C ended it.
+    """
+
+    lower: float | None = None
+    upper: float | None = None
+    verdict: Verdict = "undecided"
+    borne: State | None = None
+    fallen: State | None = None
+    fall_starts: list[Array] = field(default_factory=list)
+    rests: list[tuple[float, State]] = field(default_factory=list)
+    steps: int = 0
+    interrupted: bool = False
+
+    def add(self, trial: float, state: State, held: HeldLoad) -> None:
+        """Take note of a load and of the wall under it."""
+        self.verdict = held.verdict
+        if self.verdict == "stable":
+            self.lower, self.borne = trial, state
+            self.rests.append((trial, state))
+        elif self.verdict == "collapse":
+            self.upper, self.fallen = trial, state
+            rests = [rest.motion for _, rest in reversed(self.rests)]
+            self.fall_starts = rests if held.halfway is None else [held.halfway, *rests]
+
+
+@dataclass(frozen=True)
+class UndecidedLoads:
+    """Undecided loads inside the bracket.
+
+    Parameters
+    ----------
+    loads
+        The loads.
+    """
+
+    loads: tuple[float, ...] = ()
+
+    def sides(self, result: LoadSteps) -> tuple[float, float]:
+        """Width of the bracket below the lowest of the loads, and above the highest."""
+        return min(self.loads) - (result.lower or 0.0), (result.upper or np.inf) - max(self.loads)
+
+    def closed(self, result: LoadSteps, width: float) -> bool:
+        """Whether loads around these would make a bracket of some width no narrower."""
+        most = MOST_UNDECIDED // 2 if result.upper is None else MOST_UNDECIDED
+        return bool(self.loads) and (len(self.loads) >= most or max(self.sides(result)) <= width / 4)
+
+    def after(self, result: LoadSteps, trial: float) -> "UndecidedLoads":
+        """These loads and one more if it is undecided; none where the wall held above them or fell below them."""
+        undecided = UndecidedLoads((*self.loads, trial) if result.verdict == "undecided" else self.loads)
+        return undecided if undecided.loads and min(undecided.sides(result)) > 0 else UndecidedLoads()
+
+
+def load_steps(
+    run: Run,
+    first: float,
+    tolerance: float,
+    criteria: Criteria,
+    *,
+    most: float = np.inf,
+    farthest: float | Array = np.inf,
+    loading: float | None = None,
+    observe: Observer = no_observer,
+) -> LoadSteps:
+    """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
+
+    Every trial starts from the last state at rest, so that a fall leaves no trace in the states that count.
+    Steps grow while they are borne, so that the first one need not know the answer's size. An undecided load is passed
+    by, just beside it; once a fall is known the bracket closes in on such loads from both sides.
+
+    Parameters
+    ----------
+    run
+        The system.
+    first
+        First step of the multiplier.
+    tolerance
+        Relative width of the bracket at which to stop; it stops as well where the criterion of rest sees no more.
+    criteria
+        When a load counts as borne.
+    most
+        Multiplier beyond which the search ends.
+    farthest : float or (n,) float
+        Displacement [m] of any body, or of each, since the dead load was borne, beyond which it ends.
+    loading
+        Time in which the load grows by its first step, or by an eighth where that is more, in times that the wall
+        takes to rest under the first step put on at once; `LOADING` or `LOADING_WEIGHTLESS` where none is given.
+    observe
+        Called at every look.
+
+    Returns
+    -------
+    LoadSteps
+        Ctrl-C ends the search with the result so far.
+    """
+    result = LoadSteps()
+    if loading is None:
+        loading = LOADING_WEIGHTLESS if run.system.weightless else LOADING
+    try:
+        _search(result, run, first, tolerance, criteria, (most, farthest), loading, observe)
+    except KeyboardInterrupt:
+        result.interrupted, result.verdict = True, "undecided"
+    return result
+
+
+def _search(
+    result: LoadSteps,
+    run: Run,
+    first: float,
+    tolerance: float,
+    criteria: Criteria,
+    limits: tuple[float, float | Array],
+    loading: float,
+    observe: Observer,
+) -> None:
+    """Fill in the result of a search as it goes on."""
+    system, state = run.system, State.at_rest(run.system)
+    result.verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
+    result.steps = state.steps
+    if result.verdict != "stable":
+        result.fallen = state
+        return
+    most, farthest = limits
+    result.lower, result.borne = 0.0, state
+    result.rests.append((0.0, state))
+    probe = state.copy()
+    answered = settle(run, probe, first, criteria, sudden=True) != "undecided"
+    # A wall that comes to rest slowly is loaded as slowly as the budget allows.
+    unhurried = min(loading * (probe.steps - state.steps), criteria.budget) if answered else criteria.budget
+    result.steps = probe.steps
+    step, undecided, in_vain = first, UndecidedLoads(), 0
+    narrowest = RESOLVED * criteria.rest / (system.measure(system.live) or 1.0)
+    while result.upper is None or result.upper - result.lower > max(tolerance * result.upper, narrowest):
+        if undecided.closed(result, max(tolerance * (result.upper or 0.0), narrowest)):
+            result.verdict = "undecided"
+            return
+        trial = _next_trial(result, step, undecided, tolerance)
+        if trial > most:
+            return
+        state = result.borne.copy()
+        growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
+        share = (trial - result.lower) / max(first, growth * trial)
+        trial = _raise(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
+        held = hold_load(run, state, trial, criteria, observe)
+        taken = state.steps - result.borne.steps
+        result.steps += taken
+        result.add(trial, state, held)
+        in_vain += taken if result.verdict == "undecided" else 0
+        if in_vain > UNDECIDED_BUDGETS * criteria.budget:
+            return
+        undecided = undecided.after(result, trial)
+        if result.verdict == "stable":
+            if result.upper is None and system.farthest(state.motion - result.rests[0][1].motion, farthest) > 1:
+                return
+            if growth > GROWTH:
+                step = growth * trial
+            elif len(result.rests) % 3 == 0:
+                step = max(step, min(2 * step, GROWTH * trial))
+
+
+def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float) -> float:
+    """Next load to try: a step up, or the middle of the bracket; beside an undecided load, or well off two."""
+    lower, upper = result.lower or 0.0, result.upper
+    if not undecided.loads:
+        return lower + step if upper is None else (lower + upper) / 2
+    low, high = min(undecided.loads), max(undecided.loads)
+    if upper is None or len(undecided.loads) == 1:
+        above = high * (1 + tolerance / 4)
+        return above if upper is None or upper > above else low * (1 - tolerance / 4)
+    below, above = undecided.sides(result)
+    return (lower + low) / 2 if below > above else (high + upper) / 2
+
+
+def _raise(run: Run, state: State, start: float, stop: float, steps: float, pauses: float, criteria: Criteria) -> float:
+    """Raise the multiplier in some steps, in place; a wall without weight pauses, and falls where it cannot.
+
+    Returns
+    -------
+    float
+        The multiplier that was reached.
+    """
+    if not run.system.weightless:
+        ramp(run, state, start, stop, round(steps))
+        return stop
+    motion, parts = state.motion.copy(), max(1, round(pauses))
+    reached = start
+    for part in range(1, parts + 1):
+        before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
+        ramp(run, state, before, reached, round(steps / parts))
+        if not _pauses(run, state, reached, motion, criteria):
+            return reached
+    return stop
+
+
+def _pauses(run: Run, state: State, multiplier: float, motion: Array, criteria: Criteria) -> bool:
+    """Hold a load, in place, until the wall is nearly at rest; not where it has come far from a motion before."""
+    given = run.given(state)
+    for _ in range(criteria.budget // PAUSE_INTERVAL):
+        if run.unbalanced(state) < NEARLY_AT_REST:
+            return True
+        run.hold(state, multiplier, PAUSE_INTERVAL, given=given)
+        if run.system.farthest(state.motion - motion, criteria.collapse) > 1:
+            return False
+    return False

@@ -1,0 +1,85 @@
+"""Where a system is, and what it has been through."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from runningbond.contacts.search import Contacts
+from runningbond.joints.law import OPENING_BEFORE, SLIP_BEFORE
+from runningbond.scene import Array
+
+from .system import BlockSystem, Interface
+
+PLASTIC_SLIP = "plastic slip"
+"""Name of the row of a law's history that holds the slip [m] at which a point would be free of shear."""
+
+
+@dataclass(eq=False)
+class State:
+    """Where a system is: brought forward in place by the integrator.
+
+    Parameters
+    ----------
+    motion, velocity : (nd,) float
+        Modal displacement, and velocity half a step behind.
+    history : (rows, np) float
+        History of the joint points, as their law keeps it.
+    damped : (nd,) float
+        Work done against damping [J], mode by mode.
+    unbalanced : (nd,) float
+        Force of the last step.
+    contacts
+        The contacts that the history is of, a column each; None at small displacements, which know but one set.
+    external : float
+        Work of the loads [J].
+    steps : int
+        Steps taken.
+    time : float
+        Time since the start [s].
+    supplied : (1,) float
+        Largest energy that was supplied at any look at it [J].
+    friction, absorbed : float
+        Work spent on earlier contacts and on their viscosity [J], up to when the present ones were found.
+    """
+
+    motion: Array
+    velocity: Array
+    history: Array
+    damped: Array
+    unbalanced: Array
+    contacts: Contacts | None = None
+    external: float = 0.0
+    steps: int = 0
+    time: float = 0.0
+    supplied: Array = field(default_factory=lambda: np.zeros(1))
+    friction: float = 0.0
+    absorbed: float = 0.0
+
+    @classmethod
+    def at_rest(cls, system: BlockSystem, motion: Array | None = None) -> "State":
+        """A system without velocity and free of shear: undeformed, or after a motion ``(nd,)``."""
+        search, interface, contacts = system.contacts, system.interface, None
+        if search is not None:
+            contacts = search.undeformed
+            if motion is not None:
+                contacts = search.find(motion, search.outline.margin)
+                interface = search.interface_on(contacts, system)
+        nd = len(system.mass)
+        motion = np.zeros(nd) if motion is None else motion.copy()
+        history = history_free_of_shear(interface, motion)
+        return cls(motion, np.zeros(nd), history, np.zeros(nd), np.zeros(nd), contacts)
+
+    def copy(self) -> "State":
+        """A state that goes its own way from here."""
+        arrays = ("motion", "velocity", "history", "damped", "unbalanced", "supplied")
+        return replace(self, **{name: getattr(self, name).copy() for name in arrays})
+
+
+def history_free_of_shear(interface: Interface, motion: Array) -> Array:
+    """History ``(rows, np)`` of points that are free of shear after a motion ``(nd,)``."""
+    history = np.zeros((interface.law.rows, interface.law.points))
+    history[OPENING_BEFORE], history[SLIP_BEFORE] = interface.jumps(motion)
+    law = interface.law.law
+    if PLASTIC_SLIP in law.history:
+        history[law.row(PLASTIC_SLIP)] = history[SLIP_BEFORE]
+    return history

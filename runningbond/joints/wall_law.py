@@ -1,0 +1,54 @@
+"""Which law the joint points of a wall have, and that law over all of them, with its compiled kernel."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from runningbond.scene import Indices, JointMaterial, SceneError
+
+from .coulomb import COULOMB
+from .law import KernelLaw, Law
+from .softening import SOFTENING
+
+
+def law_of(material: JointMaterial) -> Law:
+    """Law of a material: its own, or Coulomb's, which softens where there is a fracture energy."""
+    if isinstance(material.law, Law):
+        return material.law
+    if material.law is not None:
+        raise SceneError("joint.law", "must be a runningbond.joints.Law", material.law)
+    return COULOMB if material.fracture_energy_1 is None else SOFTENING
+
+
+def common_law(materials: Sequence[JointMaterial]) -> Law:
+    """The one law of materials that joints of one wall are of.
+
+    Raises
+    ------
+    SceneError
+        For materials of laws that do not go together; plastic joints may stand beside softening ones.
+    """
+    laws = {law.name: law for law in map(law_of, materials)}
+    if laws.keys() == {COULOMB.name, SOFTENING.name}:
+        return SOFTENING
+    if len(laws) > 1:
+        names = " and ".join(f'"{name}"' for name in laws)
+        raise SceneError("joint.law", f"the joints of a wall have one law, and these are of {names}")
+    return next(iter(laws.values()))
+
+
+def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelLaw:
+    """Law over joint points.
+
+    Parameters
+    ----------
+    materials
+        Materials of the joints; they need a stiffness.
+    of_point : (np,) int
+        Material of each point. Points of one material in a row are taken together.
+    """
+    law = common_law(materials)
+    start = np.flatnonzero(np.diff(of_point, prepend=-1))
+    segments = np.append(start, len(of_point)).astype(np.uint64)
+    constants = np.array([law.constants(material) for material in materials])
+    return KernelLaw(law, segments, np.ascontiguousarray(constants[of_point[start]]))

@@ -1,0 +1,184 @@
+"""The deformed shape of a wall, as polygons of its blocks and of its joints' gaps: what every picture is drawn from."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from runningbond.results.mechanism import carried
+from runningbond.scene import Array, Indices, Scene
+
+from .joint_state import JointState
+from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, STATE_COLOURS, Colouring
+
+Extent: TypeAlias = tuple[float, float, float, float]
+"""A part of the plane: left, right, bottom and top [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class DeformedShape:
+    """Where the blocks and joints of a wall are at one moment, and how that is to be drawn.
+
+    Parameters
+    ----------
+    scene
+        The wall.
+    points, displacement : (n, 2) float
+        Corners of one polygon after another, counter-clockwise, before they move [m], and their displacement [m].
+    first : (nc + 1,) int
+        Where each polygon's corners start. A polygon is a block, or one of its triangles.
+    block : (nc,) int
+        Block of each polygon; the ground is left out.
+    edges : (ne, 2) int
+        Corners at the ends of the blocks' edges.
+    faces, face_displacement : (nf, 4, 2) float
+        Corners of each joint's gap before they move [m], along block a's side and back along b's, and their
+        displacement [m].
+    state : (nf,) int
+        A `JointState` each.
+    multiplier
+        λ.
+    scale
+        Factor of displacements in the drawing.
+    colouring
+        How blocks are coloured.
+    """
+
+    scene: Scene
+    points: Array
+    displacement: Array
+    first: Indices
+    block: Indices
+    edges: Indices
+    faces: Array
+    face_displacement: Array
+    state: Indices
+    multiplier: float
+    scale: float
+    colouring: Colouring = "displacement"
+
+    @classmethod
+    def of_rigid_blocks(cls, scene: Scene, motion: Array, state: Indices, multiplier: float) -> "DeformedShape":
+        """Blocks that move by ``(nb, 3)`` [m, m, rad], their joints in states ``(nj,)``; displacements made visible."""
+        blocks, joints = scene.blocks, scene.joints
+        own = scene.wall[blocks.owner]
+        displacement = carried(blocks, blocks.owner, blocks.vertices, motion)[own]
+        first = np.concatenate([[0], np.cumsum(np.diff(blocks.first)[scene.wall])])
+        faces = joints.ends[:, [0, 1, 1, 0]]
+        sides = joints.block[:, [0, 0, 1, 1]]
+        moved = carried(blocks, sides.ravel(), faces.reshape(-1, 2), motion).reshape(-1, 4, 2)
+        return cls(
+            scene,
+            blocks.vertices[own],
+            displacement,
+            first,
+            np.flatnonzero(scene.wall),
+            outer_edges(np.arange(len(displacement)), first),
+            faces,
+            moved,
+            state,
+            multiplier,
+            visible_scale(scene, displacement),
+        )
+
+    @property
+    def placed(self) -> Array:
+        """Corners of the polygons where they are drawn, ``(n, 2)`` [m]."""
+        return self.points + self.scale * self.displacement
+
+    @property
+    def placed_faces(self) -> Array:
+        """Corners of the joints' gaps where they are drawn, ``(nf, 4, 2)`` [m]."""
+        return self.faces + self.scale * self.face_displacement
+
+    @property
+    def extent(self) -> Extent:
+        """What shows the whole wall before and after, with a little air around it."""
+        both = np.concatenate([self.scene.blocks.vertices[self.scene.wall[self.scene.blocks.owner]], self.placed])
+        (left, bottom), (right, top) = both.min(axis=0), both.max(axis=0)
+        air = 0.03 * max(right - left, top - bottom)
+        return left - air, right + air, bottom - air, top + air
+
+    @property
+    def states(self) -> list[JointState]:
+        """States of its joints that are drawn."""
+        return [state for state in STATE_COLOURS if state in self.state]
+
+    def drawn_displacement(self, block: Indices, at: Array) -> Array:
+        """How far a point ``(2,)`` [m] of some blocks ``(n,)`` is drawn to have moved, ``(2,)`` [m]."""
+        own = np.repeat(np.isin(self.block, block), np.diff(self.first))
+        # The linear displacement that fits the corners best is exact where the block is rigid.
+        place = np.column_stack([np.ones(own.sum()), self.points[own] - at])
+        fitted = np.linalg.lstsq(place, self.displacement[own], rcond=None)[0]
+        return np.asarray(self.scale * fitted[0])
+
+    def block_colours(self) -> Array:
+        """Colour of each polygon, ``(nc, 3)``; what moves as far as is drawn at most has that of the fastest."""
+        if self.colouring == "course":
+            colours = np.array(COURSES)[course_numbers(self.scene)[self.block] % len(COURSES)]
+        else:
+            moved = np.add.reduceat(np.hypot(*self.displacement.T), self.first[:-1]) / np.diff(self.first)
+            share = np.minimum(self.scale * moved / (DRAWN * wall_size(self.scene)), 1.0)
+            colours = np.array(AT_REST) + share[:, None] * (np.array(FASTEST) - AT_REST)
+        colours[self.scene.fixed[self.block]] = HELD
+        return colours
+
+
+def undeformed_shape(scene: Scene) -> DeformedShape:
+    """The wall as it was built."""
+    return DeformedShape.of_rigid_blocks(
+        scene, np.zeros((len(scene.blocks), 3)), np.zeros(len(scene.joints), np.int64), 0.0
+    )
+
+
+def visible_scale(scene: Scene, displacement: Array) -> float:
+    """Factor that makes the largest displacement of corners ``(n, 2)`` [m] visible; 1 where nothing moves."""
+    farthest = float(np.hypot(*displacement.T).max())
+    return DRAWN * wall_size(scene) / farthest if farthest > 0 else 1.0
+
+
+def wall_size(scene: Scene) -> float:
+    """Size of a wall: the root of its length times its height [m]."""
+    low, high = scene.blocks.extent(scene.wall)
+    return float(np.sqrt(np.prod(high - low)))
+
+
+def course_numbers(scene: Scene) -> Indices:
+    """Course of each block from below, ``(nb,)``, the ground's being −1."""
+    course = np.full(len(scene.blocks), -1)
+    height = scene.blocks.centroid[scene.wall, 1]
+    levels = np.sort(height)
+    starts = np.diff(levels, prepend=-np.inf) > 0.1 * scene.lowest_block
+    course[scene.wall] = np.searchsorted(levels[starts], height + scene.blocks.tolerance) - 1
+    return course
+
+
+def outer_edges(corner: Indices, first: Indices) -> Indices:
+    """Ends of the edges that no two polygons share, ``(ne, 2)``, as places among the corners of one after another.
+
+    Parameters
+    ----------
+    corner : (n,) int
+        Number of each corner; polygons that share an edge share the numbers of its ends.
+    first : (nc + 1,) int
+        Where each polygon's corners start.
+    """
+    following = np.arange(1, len(corner) + 1)
+    following[first[1:] - 1] = first[:-1]
+    ends = np.sort(np.column_stack([corner, corner[following]]), axis=1)
+    _, index, count = np.unique(ends @ [corner.max() + 1, 1], return_index=True, return_counts=True)
+    single = index[count == 1]
+    return np.column_stack([single, following[single]])
+
+
+def outline(scene: Scene) -> list[Array]:
+    """Outline of the undeformed wall, openings and all: closed lines, each ``(n, 2)`` [m]."""
+    import shapely
+
+    blocks = scene.blocks
+    own = scene.wall[blocks.owner]
+    number = np.cumsum(scene.wall) - 1
+    polygons = shapely.polygons(shapely.linearrings(blocks.vertices[own], indices=number[blocks.owner[own]]))
+    # What touches in the scene may be as far apart as the tolerance.
+    union = shapely.union_all(shapely.buffer(polygons, blocks.tolerance, join_style="mitre"))
+    return [np.asarray(ring.coords) for part in shapely.get_parts(union) for ring in (part.exterior, *part.interiors)]

@@ -1,0 +1,70 @@
+"""What a joint does, sticks, slides or opens, read from its jumps and tractions."""
+
+from enum import IntEnum
+
+import numpy as np
+
+from runningbond.joints import JointPoints, joint_stiffness
+from runningbond.joints.mohr_coulomb import truncated_cone
+from runningbond.scene import Array, Indices, Scene
+
+VISIBLE = 0.01
+"""Jump of a mechanism, in motions of its fastest corner, below which a picture does not show it."""
+
+NORMALITY = 1e-4
+"""Lack of opening, in motions of the fastest corner, that rounding in a program leaves in an associated mechanism."""
+
+AT_THE_LIMIT = 1e-3
+"""Shear below the strength, relative to it, that counts as sliding."""
+
+
+class JointState(IntEnum):
+    """State of a joint point; the numbers are those in files."""
+
+    STICK = 0
+    SLIDE = 1
+    OPEN = 2
+    DEBONDED = 3
+    """Neither slides nor is open, but its bond is broken (damage 1)."""
+
+
+_BY_WEIGHT = (JointState.STICK, JointState.DEBONDED, JointState.SLIDE, JointState.OPEN)
+"""States, that with the most to show last."""
+
+
+def joint_states(state: Indices) -> Indices:
+    """State of each joint ``(n,)`` from those of its points ``(n, k)``: the one with the most to show."""
+    most = np.argsort(_BY_WEIGHT)[state].max(axis=1, initial=0)
+    return np.asarray(np.array(_BY_WEIGHT)[most], dtype=np.int64)
+
+
+def states_of_mechanism(scene: Scene, points: JointPoints, opening: Array, slip: Array) -> Indices:
+    """States of joint points ``(np,)`` by the jumps of a mechanism whose fastest corner moves by one metre.
+
+    A joint opens if a picture shows it open. Where flow is associated, as in `limit`, a joint that slides opens by
+    tan φ times its slip, and only what exceeds that is opening. Such a mechanism is recognised by its jumps: nowhere
+    does it open by less.
+    """
+    friction = np.array([material.friction for material in scene.joint_materials])
+    dilation = friction[scene.material_of_joint[points.joint]] * np.abs(slip)
+    associated = bool((opening >= dilation - NORMALITY).all())
+    opens = opening > (dilation if associated else 0.0) + VISIBLE
+    slides = np.abs(slip) > VISIBLE
+    return np.select([opens, slides], [JointState.OPEN, JointState.SLIDE], JointState.STICK)
+
+
+def states_under_load(
+    scene: Scene, points: JointPoints, opening: Array, normal: Array, tangential: Array, damage: Array
+) -> Indices:
+    """States of joint points ``(np,)`` by their jumps [m], tractions [Pa] and damage.
+
+    A point is open where it has opened farther than tension can stretch it; the joints of the scene need a stiffness.
+    """
+    cones = [(*truncated_cone(material), joint_stiffness(material).normal) for material in scene.joint_materials]
+    friction, tension, shear, stiffness = np.array(cones)[scene.material_of_joint[points.joint]].T
+    sound = 1 - damage
+    strength = sound * shear + friction * np.maximum(0.0, sound * tension - normal)
+    opens = opening > np.where(damage < 1, tension / stiffness, 0.0) * (1 + 1e-9)
+    slides = np.abs(tangential) >= (1 - AT_THE_LIMIT) * strength
+    kinds = [JointState.OPEN, JointState.SLIDE, JointState.DEBONDED]
+    return np.select([opens, slides, damage >= 1], kinds, JointState.STICK)

@@ -1,0 +1,61 @@
+"""The collapse mechanism of an outcome, checked before it is drawn."""
+
+import numpy as np
+
+from runningbond.joints import wall_points
+from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.results import MechanismCheck, Outcome, check_mechanism
+from runningbond.results.mechanism import rigid_jumps
+from runningbond.scene import Scene
+
+from .deformed_shape import DeformedShape
+from .frame import Frame
+from .joint_state import joint_states, states_of_mechanism
+
+
+def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
+    """The mechanism of an outcome, its fastest corner moving by one metre; None where it has none.
+
+    Tractions are those under the load at which it was found, or zero where the outcome lists none for the two points
+    of each joint that rigid blocks have.
+    """
+    if not has_mechanism(scene, outcome):
+        return None
+    points = wall_points(scene)
+    opening, slip = rigid_jumps(scene.blocks, points, outcome.motion)
+    listed = len(outcome.force) == len(points)
+    traction = outcome.force / points.area[:, None] if listed else np.zeros((len(points), 2))
+    state = states_of_mechanism(scene, points, opening, slip)
+    multiplier = outcome.multiplier if outcome.multiplier is not None else outcome.upper or 0.0
+    return Frame(multiplier, outcome.motion, opening, slip, traction[:, 0], traction[:, 1], state)
+
+
+def has_mechanism(scene: Scene, outcome: Outcome) -> bool:
+    """Whether an outcome lists a motion of every block."""
+    return len(outcome.motion) == len(scene.blocks)
+
+
+def outcome_check(scene: Scene, outcome: Outcome) -> MechanismCheck | None:
+    """Check the mechanism of an outcome under the load that brought the wall down; None where it has none."""
+    if not has_mechanism(scene, outcome):
+        return None
+    bounds = (outcome.upper, outcome.multiplier, outcome.lower)
+    multiplier = next((bound for bound in bounds if bound is not None), 0.0)
+    return check_mechanism(scene, outcome.motion, dead_load(scene), live_load(scene), multiplier)
+
+
+def mechanism_warning(scene: Scene, outcome: Outcome) -> str:
+    """What a picture of an outcome's mechanism has to say of it, in plain words; empty where nothing is wrong."""
+    check = outcome_check(scene, outcome)
+    if check is None or not check.warning:
+        return ""
+    return check.warning if check.is_driven else f"mechanism not drawn: {check.warning}"
+
+
+def mechanism_shape(scene: Scene, outcome: Outcome) -> DeformedShape | None:
+    """The mechanism of an outcome to be drawn; None where it has none, or one that its loads do not drive."""
+    frame, check = mechanism_frame(scene, outcome), outcome_check(scene, outcome)
+    if frame is None or check is None or not check.is_driven:
+        return None
+    states = joint_states(frame.state.reshape(-1, 2))
+    return DeformedShape.of_rigid_blocks(scene, frame.motion, states, frame.multiplier)

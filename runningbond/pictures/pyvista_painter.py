@@ -1,0 +1,129 @@
+"""Walls painted by PyVista, into an off-screen image or a window."""
+
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runningbond.scene import Array, Indices
+
+from .deformed_shape import DeformedShape, Extent, outline
+from .joint_state import JointState
+from .style import EDGE, OUTLINE, STATE_COLOURS, tint
+from .vtk_safety import import_pyvista, uninterrupted_imports, vtk_errors_raised
+
+Image: TypeAlias = NDArray[np.uint8]
+
+WIDTHS = {JointState.SLIDE: 3.0, JointState.OPEN: 3.4, JointState.DEBONDED: 3.0}
+"""Widths of the joints' lines, in pixels of an image of the reference's size."""
+
+FINE, FAINTEST = 12.0, 0.25
+"""Pixels of a block's height below which lines give way to what they lie on, and the least opacity of a joint's."""
+
+REFERENCE = 1000
+"""Pixels of a side of an image in which lines have the widths above."""
+
+
+class Painter:
+    """Paints walls, one after another, with one square off-screen window.
+
+    Parameters
+    ----------
+    pixels
+        Sides of the window.
+    """
+
+    def __init__(self, pixels: int = REFERENCE) -> None:
+        self._pyvista = import_pyvista("Plotter")
+        self.pixels = pixels
+        self._window: Any = None
+
+    def paint(self, shape: DeformedShape, extent: Extent) -> Image:
+        """Paint a wall, ``(pixels, pixels, 3)``; the image shows the square around an extent."""
+        left, right, *_ = square_around(extent)
+        block = shape.scene.lowest_block * self.pixels / (right - left)
+        with vtk_errors_raised():
+            plotter = self._cleared()
+            fill_plotter(plotter, shape, self.pixels / REFERENCE, min(block / FINE, 1.0))
+            look_at(plotter, extent)
+            plotter.render()  # a screenshot alone would be of what was there before
+            return np.array(plotter.screenshot(return_img=True, transparent_background=False))
+
+    def close(self) -> None:
+        """Close the window."""
+        if self._window is not None:
+            self._window.close()
+        self._window = None
+
+    def _cleared(self) -> Any:
+        if self._window is None:
+            with uninterrupted_imports():
+                self._window = self._pyvista.Plotter(off_screen=True, window_size=[self.pixels, self.pixels])
+            self._window.enable_anti_aliasing("msaa", multi_samples=8)
+            self._window.set_background("white")
+        self._window.clear()
+        return self._window
+
+
+def square_around(extent: Extent) -> Extent:
+    """The square about the middle of an extent that shows all of it."""
+    left, right, bottom, top = extent
+    x, y, half = (left + right) / 2, (bottom + top) / 2, max(right - left, top - bottom) / 2
+    return x - half, x + half, y - half, y + half
+
+
+def look_at(plotter: Any, extent: Extent) -> None:
+    """Look at a part of the plane straight from above, parallel lines staying parallel."""
+    left, right, bottom, top = square_around(extent)
+    x, y = (left + right) / 2, (bottom + top) / 2
+    camera = plotter.camera
+    camera.position, camera.focal_point, camera.up = (x, y, 100.0), (x, y, 0.0), (0.0, 1.0, 0.0)
+    camera.parallel_projection = True
+    camera.parallel_scale = (top - bottom) / 2
+    camera.clipping_range = (1.0, 200.0)
+
+
+def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: float = 1.0) -> None:
+    """Put the blocks of the wall, its joints and its undeformed outline into a window, what is in front last.
+
+    Lines are `width` times as wide as in an image of the reference's size. Those of blocks are as much thinner and
+    fainter as their strength is less than 1.
+    """
+    flat = {"lighting": False, "show_scalar_bar": False, "reset_camera": False, "render": False}
+    for ring in outline(shape.scene):
+        ends = np.arange(len(ring) - 1)[:, None] + [0, 1]
+        plotter.add_mesh(_lines(ring, ends, 0.0), color=OUTLINE, line_width=1.6 * width, **flat)
+
+    wall = _polygons(shape.placed, shape.first, 1.0)
+    wall.cell_data["colour"] = np.rint(255 * shape.block_colours()).astype(np.uint8)
+    plotter.add_mesh(wall, scalars="colour", rgb=True, **flat)
+    edges = _lines(shape.placed, shape.edges, 1.5)
+    plotter.add_mesh(edges, color=EDGE, line_width=0.8 * width, opacity=strength, **flat)
+
+    for level, (state, colour) in enumerate(STATE_COLOURS.items()):
+        corners = shape.placed_faces[shape.state == state].reshape(-1, 2)
+        if len(corners):
+            gaps = _polygons(corners, np.arange(0, len(corners) + 1, 4), 2.0 + level)
+            faces = _lines(corners, np.arange(len(corners)).reshape(-1, 2), 2.5 + level)
+            plotter.add_mesh(gaps, color=tint(colour), **flat)
+            thin = {"line_width": WIDTHS[state] * width * strength, "opacity": max(strength, FAINTEST)}
+            plotter.add_mesh(faces, color=colour, **thin, **flat)
+
+
+def _polygons(points: Array, first: Indices, height: float) -> Any:
+    """Polygons, one after another, in the plane at a height above it: what is higher is in front."""
+    import pyvista as pv
+
+    faces = np.insert(np.arange(len(points)), first[:-1], np.diff(first))
+    return pv.PolyData(_at(points, height), faces=faces)
+
+
+def _lines(points: Array, ends: NDArray[Any], height: float) -> Any:
+    """Lines between points of the plane, at a height above it."""
+    import pyvista as pv
+
+    return pv.PolyData(_at(points, height), lines=np.insert(ends, 0, 2, axis=1).ravel())
+
+
+def _at(points: Array, height: float) -> Array:
+    return np.column_stack([points, np.full(len(points), height)])

@@ -1,0 +1,45 @@
+"""Colours, widths and sizes of type, the same in vector drawings and in those painted by PyVista."""
+
+from typing import Literal, TypeAlias
+
+from .joint_state import JointState
+
+Colouring: TypeAlias = Literal["displacement", "course"]
+"""Blocks are coloured by how far they move, or by course."""
+
+Colour: TypeAlias = tuple[float, float, float]
+
+AT_REST: Colour = (0.955, 0.945, 0.925)
+FASTEST: Colour = (0.50, 0.66, 0.84)
+"""Colours of a block at rest, and of the one that moves fastest."""
+
+COURSES: tuple[Colour, Colour] = ((0.93, 0.90, 0.85), (0.80, 0.86, 0.93))
+"""Colours of alternate courses."""
+
+HELD: Colour = (0.72, 0.72, 0.72)
+EDGE: Colour = (0.52, 0.52, 0.52)
+OUTLINE: Colour = (0.45, 0.45, 0.45)
+
+STATE_COLOURS: dict[JointState, str] = {
+    JointState.SLIDE: "#009e73",
+    JointState.OPEN: "#d55e00",
+    JointState.DEBONDED: "#000000",
+}
+"""From the palette of Okabe and Ito (2008), which colour-blind readers tell apart."""
+
+STATE_NAMES = {JointState.SLIDE: "slides", JointState.OPEN: "opens", JointState.DEBONDED: "debonded"}
+
+DARK = "0.25"
+"""Colour of annotations and notes."""
+
+TYPE, SMALL_TYPE = 7.5, 6.5
+"""Sizes of type [pt]: titles and annotations, notes and keys."""
+
+DRAWN = 0.12
+"""How far the fastest corner is drawn to move, in sizes of the wall."""
+
+
+def tint(colour: str) -> Colour:
+    """A light shade of a colour ``#rrggbb``."""
+    red, green, blue = (1 - 0.45 * (1 - int(colour[i : i + 2], 16) / 255) for i in (1, 3, 5))
+    return red, green, blue

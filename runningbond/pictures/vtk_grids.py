@@ -1,0 +1,167 @@
+"""Blocks and joints of one frame as VTK grids, and back: what is written to files is what a film is drawn from.
+
+Names and units are those of docs/paraview.md, and the same in every frame.
+"""
+
+from functools import cached_property
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from runningbond.results.mechanism import carried
+from runningbond.scene import Array, Blocks, Indices, Scene
+
+from .deformed_shape import DeformedShape, course_numbers, outer_edges, visible_scale
+from .frame import Discretisation, Frame
+from .joint_state import joint_states
+from .vtk_safety import import_pyvista
+
+Grid: TypeAlias = Any
+"""A ``pyvista.UnstructuredGrid``; PyVista is only imported where one is made."""
+
+LINE, TRIANGLE, POLYGON, QUAD = 3, 5, 7, 9
+"""VTK's numbers for kinds of cells."""
+
+
+class GridBuilder:
+    """Makes grids of the frames of one wall."""
+
+    def __init__(self, discretisation: Discretisation) -> None:
+        self._scene, self._points = discretisation.scene, discretisation.points
+        self._triangles = discretisation.triangles
+
+    def blocks(self, frame: Frame) -> Grid:
+        """Blocks, each a polygon, or in triangles where they deform, with the arrays of ``blocks.pvd``."""
+        blocks, triangles = self._scene.blocks, self._triangles
+        if triangles is None:
+            block, owner, points = np.arange(len(blocks)), blocks.owner, blocks.vertices
+            displacement = carried(blocks, owner, points, frame.motion)
+            grid = _grid(points, [(POLYGON, np.arange(len(points)), np.diff(blocks.first))])
+        else:
+            block, points, displacement = triangles.block, triangles.points, frame.displacement
+            owner = np.empty(len(points), dtype=np.int64)
+            owner[triangles.corners.ravel()] = np.repeat(block, 3)
+            grid = _grid(points, [(TRIANGLE, triangles.corners.ravel(), np.full(len(block), 3))])
+        velocity = carried(blocks, owner, points, frame.velocity)
+        _add(grid.point_data, displacement=_in_space(displacement), velocity=_in_space(velocity))
+        course, template, held = self._courses[block], self._templates[block], self._scene.fixed[block]
+        _add(grid.cell_data, block=block, template=template, course=course, held=held.astype(np.uint8))
+        if len(frame.stress):
+            _add(grid.cell_data, stress=frame.stress)
+        _add(grid.field_data, multiplier=[frame.multiplier])
+        return grid
+
+    def joints(self, frame: Frame) -> Grid:
+        """Joints, piece by piece between neighbouring points, with the arrays of ``joints.pvd``.
+
+        Mid-lines come first, then quadrilaterals from side to side.
+        """
+        points, pair = self._points, self._pieces
+        # Points of a piece: its mid-line's two ends, then around it, a's side along the tangent and b's back.
+        at = pair[:, [0, 1, 0, 1, 1, 0]].ravel()
+        n = len(pair)
+        corner = 6 * np.arange(n)[:, None]
+        lines, quads = corner + np.arange(2), corner + np.arange(2, 6)
+        grid = _grid(points.position[at], [(LINE, lines.ravel(), np.full(n, 2)), (QUAD, quads.ravel(), np.full(n, 4))])
+
+        jump = frame.opening[:, None] * points.normal + frame.slip[:, None] * points.tangent
+        share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
+        _add(
+            grid.point_data,
+            displacement=_in_space(self._sides(frame, jump)[at] + share[:, None] * jump[at]),
+            opening=frame.opening[at],
+            slip=frame.slip[at],
+            sigma=frame.normal[at],
+            tau=frame.tangential[at],
+            damage=frame.damage[at],
+            state=frame.state[at].astype(np.uint8),
+        )
+        joint = np.tile(points.joint[pair[:, 0]], 2)
+        state, inner = np.tile(joint_states(frame.state[pair]), 2), self._scene.joints.inner[joint]
+        _add(grid.cell_data, joint=joint, inner=inner.astype(np.uint8), state=state.astype(np.uint8))
+        _add(grid.field_data, multiplier=[frame.multiplier])
+        return grid
+
+    def _sides(self, frame: Frame, jump: Array) -> Array:
+        """Displacement of block a at each joint point, ``(np, 2)`` [m].
+
+        Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
+        """
+        points = self._points
+        a, b = (carried(self._scene.blocks, side, points.position, frame.motion) for side in points.block.T)
+        return np.asarray((a + b - jump) / 2)
+
+    @cached_property
+    def _pieces(self) -> Indices:
+        """Joint points at the two ends of each piece of a joint, ``(n, 2)``."""
+        points = self._points
+        along = (points.position * points.tangent).sum(axis=1)
+        order = np.lexsort((along, points.joint))
+        first, second = order[:-1], order[1:]
+        length = along[second] - along[first]
+        apart = (points.joint[first] == points.joint[second]) & (length > self._scene.blocks.tolerance)
+        return np.column_stack([first[apart], second[apart]])
+
+    @cached_property
+    def _courses(self) -> Indices:
+        return course_numbers(self._scene)
+
+    @cached_property
+    def _templates(self) -> Indices:
+        return _templates(self._scene.blocks)
+
+
+def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
+    """The deformed shape that two grids of a wall hold, its displacements made visible."""
+    own = scene.wall[blocks.cell_data["block"]]
+    count = np.diff(blocks.cell_offsets)
+    corner = np.asarray(blocks.cell_connectivity)[np.repeat(own, count)]
+    first = np.concatenate([[0], np.cumsum(count[own])])
+    displacement = np.asarray(blocks.point_data["displacement"])[corner, :2]
+    quads = joints.celltypes == QUAD
+    corners = joints.cells_dict[QUAD]
+    return DeformedShape(
+        scene,
+        np.asarray(blocks.points)[corner, :2],
+        displacement,
+        first,
+        np.asarray(blocks.cell_data["block"])[own],
+        outer_edges(corner, first),
+        np.asarray(joints.points)[corners, :2],
+        np.asarray(joints.point_data["displacement"])[corners, :2],
+        np.asarray(joints.cell_data["state"])[quads],
+        float(blocks.field_data["multiplier"][0]),
+        visible_scale(scene, displacement),
+    )
+
+
+def _templates(blocks: Blocks) -> Indices:
+    """The same number for congruent blocks, ``(nb,)``."""
+    shape = np.rint((blocks.vertices - blocks.vertices[blocks.first[:-1]][blocks.owner]) / blocks.tolerance)
+    seen: dict[bytes, int] = {}
+    pieces = np.split(shape, blocks.first[1:-1])
+    return np.array([seen.setdefault(piece.tobytes(), len(seen)) for piece in pieces])
+
+
+def _in_space(vectors: Array) -> Array:
+    """Vectors of the plane in space."""
+    return np.column_stack([vectors, np.zeros(len(vectors))])
+
+
+def _grid(points: Array, cells: list[tuple[int, Indices, Indices]]) -> Grid:
+    """Grid of points ``(n, 2)`` and cells: their kind, their points in a row, and the number of points of each."""
+    pv = import_pyvista("UnstructuredGrid")
+    kinds, corners, counts = zip(*cells, strict=True)
+    count = np.concatenate(counts)
+    first = np.concatenate([[0], np.cumsum(count)])
+    connectivity = np.insert(np.concatenate(corners), first[:-1], count)
+    types = np.repeat(kinds, [len(of_kind) for of_kind in counts])
+    return pv.UnstructuredGrid(connectivity, types.astype(np.uint8), _in_space(points))
+
+
+def _add(data: Any, **arrays: ArrayLike) -> None:
+    """Add named arrays to a grid's data; whole numbers take four bytes."""
+    for name, values in arrays.items():
+        array = np.asarray(values)
+        data[name] = array.astype(np.int32) if array.dtype == np.int64 else array

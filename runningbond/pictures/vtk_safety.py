@@ -1,0 +1,69 @@
+"""VTK made safe: no signal interrupts its imports, which would crash the process, and its errors are raised."""
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+
+@contextmanager
+def uninterrupted_imports() -> Iterator[None]:
+    """Hold back Ctrl-C, and what else raises an exception at a signal, until what is imported inside is there."""
+    if threading.current_thread() is not threading.main_thread():  # where no signal is heard
+        yield
+        return
+    heard: list[int] = []
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    held = {number: handler for number, handler in before.items() if callable(handler)}
+    for number in held:
+        signal.signal(number, lambda number, _: heard.append(number))
+    try:
+        yield
+    finally:
+        for number, handler in held.items():
+            signal.signal(number, handler)
+        if heard:
+            signal.raise_signal(heard[0])
+
+
+def import_pyvista(*names: str) -> Any:
+    """Import PyVista with what is needed of it, such as its ``Plotter``, and return it."""
+    with uninterrupted_imports():
+        import pyvista
+        import vtkmodules.vtkIOXML  # noqa: F401
+
+        for name in names:  # imported by PyVista when they are first asked for
+            getattr(pyvista, name)
+    return pyvista
+
+
+class VtkError(Exception):
+    """VTK reported an error; the message is its own."""
+
+
+@contextmanager
+def vtk_errors_raised() -> Iterator[None]:
+    """Raise the first error that VTK reports inside, once it has been left; warnings pass unheard."""
+    with uninterrupted_imports():
+        from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+
+    before, window = vtkOutputWindow.GetInstance(), vtkStringOutputWindow()
+    verbosity = vtkLogger.GetCurrentVerbosityCutoff()
+    errors: list[str] = []
+
+    def heard(caller: object, event: str, message: str = "") -> None:
+        errors.append(message)
+
+    heard.CallDataType = "string0"  # type: ignore[attr-defined]
+    listening: Any = window
+    listening.AddObserver("ErrorEvent", heard)
+    vtkOutputWindow.SetInstance(window)
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        vtkLogger.SetStderrVerbosity(verbosity)
+        vtkOutputWindow.SetInstance(before)
+    if errors:
+        raise VtkError(" ".join(errors[0].split()) or "VTK reported an error")

@@ -1,0 +1,95 @@
+"""What loads do: forces on the blocks of a scene, and the arrows that stand for them in drawings."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import Array, Indices, frozen
+
+if TYPE_CHECKING:
+    from .wall import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Forces:
+    """What loads do to the blocks of a scene.
+
+    Parameters
+    ----------
+    acceleration : (nb, 2) float
+        Force on each block per mass [m/s²].
+    moment : (nb,) float
+        Moment on each block [N m], counter-clockwise.
+    block : (n,) int
+        Blocks with a force at a point.
+    at, force : (n, 2) float
+        Those points [m] and forces [N].
+    """
+
+    acceleration: Array
+    moment: Array
+    block: Indices
+    at: Array
+    force: Array
+
+    @classmethod
+    def on(
+        cls,
+        scene: "Scene",
+        acceleration: ArrayLike = (0.0, 0.0),
+        moment: ArrayLike = 0.0,
+        *,
+        block: ArrayLike = (),
+        at: ArrayLike = (),
+        force: ArrayLike = (),
+    ) -> "Forces":
+        """Forces on a scene's blocks; an acceleration or a moment may be one for all of them."""
+        nb, block = len(scene.blocks), frozen(block, np.int64)
+        at, force = (np.broadcast_to(np.reshape(x, (-1, 2)), (len(block), 2)) for x in (at, force))
+        return cls(
+            frozen(np.broadcast_to(acceleration, (nb, 2))),
+            frozen(np.broadcast_to(moment, nb)),
+            block,
+            frozen(at),
+            frozen(force),
+        )
+
+    def __add__(self, other: "Forces") -> "Forces":
+        return Forces(
+            self.acceleration + other.acceleration,
+            self.moment + other.moment,
+            np.concatenate([self.block, other.block]),
+            np.concatenate([self.at, other.at]),
+            np.concatenate([self.force, other.force]),
+        )
+
+    @property
+    def on_mass_alone(self) -> bool:
+        """Whether they are proportional to mass: no force at a point and no moment."""
+        return len(self.block) == 0 and not self.moment.any()
+
+    @property
+    def at_points_alone(self) -> bool:
+        """Whether they act at points only."""
+        return not self.acceleration.any() and not self.moment.any()
+
+
+@dataclass(frozen=True, eq=False)
+class Arrow:
+    """An arrow that stands for a load in drawings.
+
+    Parameters
+    ----------
+    direction : (2,) float
+        Unit vector.
+    at : (2,) float or None
+        Where its tip is [m]; None is a row of arrows along the side of the wall that the load pushes.
+    block : (n,) int
+        Blocks with which the tip moves.
+    """
+
+    direction: Array
+    at: Array | None
+    block: Indices

@@ -1,0 +1,93 @@
+"""What values may be, said once beside the field that holds them: the same in Python and in files."""
+
+import difflib
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache
+from numbers import Real
+from typing import Annotated, Any, TypeAlias, get_args, get_type_hints
+
+import numpy as np
+
+from .errors import SceneError
+
+SMALLEST = 1e-100
+"""Numbers below it, or above its inverse, describe nothing; their products leave the range of a double."""
+
+
+@dataclass(frozen=True)
+class Range:
+    """A range of finite numbers."""
+
+    least: float = -math.inf
+    most: float = math.inf
+    above: float = -math.inf
+    below: float = math.inf
+
+    def __str__(self) -> str:
+        words = {"above": self.above, "at least": self.least, "at most": self.most, "below": self.below}
+        limits = [f"{word} {limit:g}" for word, limit in words.items() if math.isfinite(limit)]
+        return f"a number {' and '.join(limits)}" if limits else "a number, finite"
+
+    def take(self, key: str, value: object) -> float:
+        """A value as a number of the range; any other is refused under its key."""
+        number = _finite(value)
+        if number is None or not (self.least <= number <= self.most and self.above < number < self.below):
+            raise SceneError(key, f"must be {self}", value)
+        return number
+
+
+ABOVE_ZERO, AT_LEAST_ZERO = Range(above=0.0), Range(least=0.0)
+Positive: TypeAlias = Annotated[float, ABOVE_ZERO]
+NotNegative: TypeAlias = Annotated[float, AT_LEAST_ZERO]
+
+
+@cache
+def ranges_of(part: Any) -> dict[str, Range]:
+    """Ranges of the fields of a dataclass, a type, that are annotated with one, by their names."""
+    hints = get_type_hints(part, include_extras=True)
+    parts = [(name, part) for name, hint in hints.items() for part in (hint, *get_args(hint))]
+    return {name: part.__metadata__[0] for name, part in parts if hasattr(part, "__metadata__")}
+
+
+def check_numbers(part: Any, table: str) -> None:
+    """Bring a frozen dataclass's numbers into their ranges as floats; None passes for what is left out."""
+    kind: Any = type(part)
+    for name, within in ranges_of(kind).items():
+        value = getattr(part, name)
+        if value is not None or getattr(kind, name, 0.0) is not None:
+            object.__setattr__(part, name, within.take(f"{table}.{name}", value))
+
+
+def vector(key: str, value: Any) -> tuple[float, float]:
+    """A pair of finite numbers."""
+    numbers = [_finite(x) for x in value] if isinstance(value, (list, tuple, np.ndarray)) else []
+    if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
+        raise SceneError(key, "must be a pair of finite numbers [x, y]", value)
+    return numbers[0], numbers[1]
+
+
+def one_of(key: str, value: object, options: Iterable[str]) -> str:
+    """One of a few words."""
+    words = list(options)
+    if not isinstance(value, str) or value not in words:
+        listed = ", ".join(f'"{word}"' for word in words)
+        raise SceneError(key, f"must be one of {listed}{suggestion(value, words)}", value)
+    return value
+
+
+def suggestion(word: object, options: list[str]) -> str:
+    """What a misspelt word may have been meant to be."""
+    likely = difflib.get_close_matches(word, options, n=1) if isinstance(word, str) else []
+    return f'; did you mean "{likely[0]}"?' if likely else ""
+
+
+def _finite(value: object) -> float | None:
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, Real):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if number == 0.0 or SMALLEST <= abs(number) <= 1 / SMALLEST else None
