@@ -73,7 +73,7 @@ def sparse(wall: ModalWall, steps: int, *, lumped: bool) -> tuple[list[float], f
     properties = (mesh.points, mesh.triangles, scene.block.density, scene.thickness)
     M = diags_array(lumped_mass(*properties)).tocsr() if lumped else mass_matrix(*properties)
     M = csr_array(M[free][:, free])
-    jump = nodal_jump(wall.interface, len(mesh.points))
+    jump = nodal_jump(wall.elements, len(mesh.points))
     B_n, B_t = (csr_array(B.tocsc()[:, free].tocsr()) for B in (jump.opening, jump.slip))
     weight = diags_array(system.interface.area)
     B_n_t, B_t_t = csr_array(B_n.T @ weight), csr_array(B_t.T @ weight)
@@ -120,7 +120,7 @@ def main() -> None:
     }
     fast, dt = found["modes and runs"]
     fast_cost = statistics.median(fast)
-    print(f"{blocks} blocks, {n} triangles, {len(wall.interface.points)} joint points, E = 1000 GPa\n")
+    print(f"{blocks} blocks, {n} triangles, {len(wall.elements.points)} joint points, E = 1000 GPa\n")
     print("                          ns a triangle-step (spread)   ratio   step [µs]   s a physical second   ratio")
     for name, (times, step) in found.items():
         cost = statistics.median(times)

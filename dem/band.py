@@ -74,7 +74,7 @@ def band(row: Indices, column: Indices, position: Array, spacing: float) -> Band
         place = np.argsort(order)
         return int(np.abs(place[row[there]] - place[column[there]]).max()), place
 
-    width, place = min((numbered(0), numbered(1)), key=lambda found: found[0])
+    width, place = min((numbered(0), numbered(1)), key=lambda result: result[0])
     size = (3 * width + 1) * len(place)
     address = np.where(there, 2 * width + place[row] - place[column] + (3 * width + 1) * place[column], size)
     entry, slot = np.unique(np.append(address, size), return_inverse=True)

@@ -1,7 +1,7 @@
-"""The way of rigid blocks to their collapse: states of rest under growing loads, and past the peak.
+"""The load path of rigid blocks to their collapse: states of rest under growing loads, and past the peak.
 
-Loads are held one after the other until the wall rests or falls (`Way.push`). Past the largest that it bears, the
-displacement f_live · q that does the live load's work is prescribed instead, and λ follows (`Way.follow`).
+Loads are held one after the other until the wall rests or falls (`LoadPath.push`). Past the largest that it bears, the
+displacement f_live · q that does the live load's work is prescribed instead, and λ follows (`LoadPath.follow`).
 """
 
 from collections.abc import Callable
@@ -32,7 +32,7 @@ ATTEMPTS = ((1.0, False), (0.25, False), (1.0, True))
 
 
 @dataclass(frozen=True, eq=False)
-class State:
+class StaticState:
     """A state of rest.
 
     Parameters
@@ -58,17 +58,17 @@ class State:
         return float(self.x[-1])
 
 
-StaticObserver: TypeAlias = Callable[[StaticSystem, State], None]
+StaticObserver: TypeAlias = Callable[[StaticSystem, StaticState], None]
 """Looks at a state of rest as it is found, and changes nothing."""
 
 
-def no_observer(system: StaticSystem, state: State) -> None:
+def no_observer(system: StaticSystem, state: StaticState) -> None:
     """Observe nothing."""
 
 
 @dataclass(eq=False)
-class Way:
-    """What is known of a wall's way to its collapse.
+class LoadPath:
+    """The path of a wall to its collapse, as far as it was followed.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ class Way:
     system: StaticSystem
     far: float
     budget: int
-    rests: list[State]
+    rests: list[StaticState]
     upper: float | None = None
     fall: Array | None = None
     observe: StaticObserver = no_observer
@@ -105,15 +105,15 @@ class Way:
         """Hold a load larger than the last until the wall rests or falls, and note which."""
         last = self.rests[-1]
         start = np.append(last.x[:-1], multiplier)
-        found = self._relax(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
-        if found.verdict == "rest":
-            self.rests.append(state_of(self.system, found))
+        result = self._relax(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
+        if result.verdict == "rest":
+            self.rests.append(state_of(self.system, result))
             self.observe(self.system, self.rests[-1])
-        elif found.verdict == "fall":
-            self.upper, self.fall = multiplier, found.last
-        return found
+        elif result.verdict == "fall":
+            self.upper, self.fall = multiplier, result.last
+        return result
 
-    def follow(self, budget: int) -> list[State]:
+    def follow(self, budget: int) -> list[StaticState]:
         """States of rest at growing displacements after the last load's, until one falls or the budget is spent."""
         if len(self.rests) < 2:
             return []
@@ -129,21 +129,21 @@ class Way:
             for share, creeps in ATTEMPTS:
                 ahead = share * stride
                 control = Control(now.displacement + ahead)
-                found = self._relax(now.x + ahead * onward, now.plastic_slip, control, budget, creeps)
-                budget -= found.solves
-                if found.verdict == "rest":
+                result = self._relax(now.x + ahead * onward, now.plastic_slip, control, budget, creeps)
+                budget -= result.solves
+                if result.verdict == "rest":
                     break
             else:
                 break
             stride = ahead
-            states.append(state_of(self.system, found))
-            stride = min(stride * lengthened(found.solves), STRIDE * (states[-1].displacement - origin))
+            states.append(state_of(self.system, result))
+            stride = min(stride * lengthened(result.solves), STRIDE * (states[-1].displacement - origin))
         return states[2:]
 
     def _relax(self, start: Array, plastic_slip: Array, control: Control, budget: int, creeps: bool = True) -> Rest:
-        found = relax(self.system, start, plastic_slip, control, self.far, min(budget, self.budget), creeps=creeps)
-        self.budget -= found.solves
-        return found
+        result = relax(self.system, start, plastic_slip, control, self.far, min(budget, self.budget), creeps=creeps)
+        self.budget -= result.solves
+        return result
 
 
 def lengthened(solves: int) -> float:
@@ -151,8 +151,8 @@ def lengthened(solves: int) -> float:
     return float(np.clip((EASY / max(solves, 1)) ** 0.5, SHORTER, LONGER))
 
 
-def state_of(system: StaticSystem, rest: Rest) -> State:
+def state_of(system: StaticSystem, rest: Rest) -> StaticState:
     """A state of rest as it is kept."""
     force = np.column_stack([rest.response.normal, rest.response.tangential])
     displacement = float(system.equilibrium.live @ rest.x[: system.freedoms])
-    return State(rest.x, rest.response.plastic_slip, force, displacement)
+    return StaticState(rest.x, rest.response.plastic_slip, force, displacement)

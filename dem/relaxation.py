@@ -28,12 +28,12 @@ from runningbond.scene import Array
 
 from .static_system import Control, StaticSystem
 
-Verdict: TypeAlias = Literal["rest", "fall", "undecided"]
+RestVerdict: TypeAlias = Literal["rest", "fall", "undecided"]
 
 BALANCED = 1e-9
 """Largest unbalanced force that counts as none, relative to the largest joint force (or to the unit of force)."""
 
-FIRST, LEAST, MOST = 1e-2, 1e-12, 1e3
+FIRST, LEAST, LARGEST = 1e-2, 1e-12, 1e3
 """ε of the first time step if there is no equilibrium at once, and its bounds."""
 
 FOLLOWED, EXACT = 0.3, 1e-10
@@ -76,7 +76,7 @@ class Rest:
         Linear systems solved.
     """
 
-    verdict: Verdict
+    verdict: RestVerdict
     x: Array
     response: PointResponse
     last: Array
@@ -108,7 +108,7 @@ def relax(
     far
         Motion of a freedom that is a fall unless it slows down.
     budget
-        Linear systems after which it is given up.
+        Linear systems after which it is left undecided.
     creeps
         Whether it may creep where there is no equilibrium at once; else it is left undecided.
     """
@@ -132,12 +132,12 @@ def relax(
             if made is not None and not refused and np.abs(made[0][:nd] - guess[:nd]).max() > far:
                 made = None  # nothing falls at once: a rest may lie on the way
             if made is None:
-                rate = min(REFUSAL * rate, MOST) if refused else FIRST
+                rate = min(REFUSAL * rate, LARGEST) if refused else FIRST
                 wary, refused = WARINESS, True
         last, x, tangent, plastic_slip = made[0][:nd] - x[:nd], made[0], made[1].tangent, made[1].plastic_slip
         # The tangent is that of the step behind: a point that slid is taken to slide on.
         response = system.respond(x, plastic_slip)
-        rate = float(np.clip(rate * np.clip(taken / USUAL, WARY if wary else SMALLER, LARGER), LEAST, MOST))
+        rate = float(np.clip(rate * np.clip(taken / USUAL, WARY if wary else SMALLER, LARGER), LEAST, LARGEST))
         wary = max(wary - 1, 0)
 
 

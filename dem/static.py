@@ -25,24 +25,24 @@ from runningbond.limit.kinematics import control_row, movable_freedoms
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
-from .pushover import State, StaticObserver, Way, lengthened, no_observer, state_of
+from .pushover import LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system
 
 FIRST_STEP = 0.03
 """First load, in units of `Equilibrium`."""
 
-COLLAPSE = 0.05
+U_CRIT = 0.05
 """Motion of a block that is a fall unless it slows down, in heights of the lowest block."""
 
 NOISE = 1e-6
 """Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
 
-MOST = 1e6
+LARGEST_LOAD = 1e6
 """Multiplier, in first steps, beyond which no collapse is looked for."""
 
 BUDGET = 20_000
-"""Linear systems after which a wall is given up."""
+"""Linear systems after which a wall is left undecided."""
 
 PAST = 500
 """Linear systems that are spent past the largest load."""
@@ -53,7 +53,7 @@ def dem_static(
     tolerance: float = 0.01,
     *,
     first_step: float = FIRST_STEP,
-    collapse: float = COLLAPSE,
+    collapse: float = U_CRIT,
     budget: int = BUDGET,
     past: int = PAST,
     observe: StaticObserver = no_observer,
@@ -72,7 +72,7 @@ def dem_static(
     collapse
         Motion of a block that is a fall unless it slows down, in heights of the lowest block.
     budget
-        Linear systems after which it is given up.
+        Linear systems after which it is left undecided.
     past
         Linear systems that are spent on the curve past the largest load, and on a closer look at the bracket.
     observe
@@ -88,8 +88,8 @@ def dem_static(
     system = static_system(scene)
     # Bands are too narrow for a second thread to gain anything.
     with threadpool_limits(limits=1, user_api="blas"):
-        found = _found(scene, system, tolerance, first_step, collapse, budget, past, observe)
-    return replace(found, seconds=time.perf_counter() - start)
+        result = _found(scene, system, tolerance, first_step, collapse, budget, past, observe)
+    return replace(result, seconds=time.perf_counter() - start)
 
 
 def _found(
@@ -102,29 +102,29 @@ def _found(
     past: int,
     observe: StaticObserver,
 ) -> Outcome:
-    found = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
+    result = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
     far = collapse * scene.lowest_block / system.length_unit
     nothing = np.zeros(len(system.law.normal_stiffness))
     rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
     if rest.verdict != "rest":
-        return _fallen(replace(found, steps=rest.solves), system)
-    way = Way(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-    observe(system, way.rests[0])
-    climb = _climb(way, first_step, tolerance, past)
+        return _fallen(replace(result, steps=rest.solves), system)
+    path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
+    observe(system, path.rests[0])
+    climb = _climb(path, first_step, tolerance, past)
     for state in climb.past:
         observe(system, state)
-    found = _judged(found, way, climb, tolerance)
-    message = "; ".join(part for part in (found.message, _window(way)) if part)
-    return replace(found, message=message, steps=budget - way.budget)
+    result = _judged(result, path, climb, tolerance)
+    message = "; ".join(part for part in (result.message, _window(path)) if part)
+    return replace(result, message=message, steps=budget - path.budget)
 
 
-def _window(way: Way) -> str:
+def _window(path: LoadPath) -> str:
     """What there is to say of the stiffness of joints: at rest under the dead load."""
-    equations, law, unit = way.system.equilibrium, way.system.law, way.system.length_unit
-    overlap = unit * float((-way.rests[0].force[:, 0] / law.normal_stiffness).max(initial=0.0))
+    equations, law, unit = path.system.equilibrium, path.system.law, path.system.length_unit
+    overlap = unit * float((-path.rests[0].force[:, 0] / law.normal_stiffness).max(initial=0.0))
     stiffest = float(max(law.normal_stiffness.max(initial=0.0), law.shear_stiffness.max(initial=0.0)))
     spring, size = equations.force_unit / unit, equations.scene.lowest_block
-    return stiffness_note(overlap, way.far * unit, size, spring * stiffest, equations.force_unit)
+    return stiffness_note(overlap, path.far * unit, size, spring * stiffest, equations.force_unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,66 +132,66 @@ class Climb:
     """How far a wall got: why it is `undecided`, if it is, and its states past the last load that it bore."""
 
     undecided: str
-    past: list[State]
+    past: list[StaticState]
 
 
-def _climb(way: Way, first_step: float, tolerance: float, past: int) -> Climb:
+def _climb(path: LoadPath, first_step: float, tolerance: float, past: int) -> Climb:
     """Load a wall until it has fallen, close enough to the last load at rest, and follow it from there."""
     step = first_step
-    while way.upper is None or way.upper - way.lower > tolerance * max(way.upper, NOISE):
-        held = way.push(way.lower + step if way.upper is None else (way.lower + way.upper) / 2)
+    while path.upper is None or path.upper - path.lower > tolerance * max(path.upper, NOISE):
+        held = path.push(path.lower + step if path.upper is None else (path.lower + path.upper) / 2)
         if held.verdict == "undecided":
             return Climb("it neither rested nor fell", [])
-        step = max(step * lengthened(held.solves), 2 * tolerance * way.lower)
-        if way.upper is None and way.lower > MOST * first_step:
+        step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
+        if path.upper is None and path.lower > LARGEST_LOAD * first_step:
             return Climb("it bore every load tried", [])
     if not past:
         return Climb("", [])
-    states = way.follow(past)
+    states = path.follow(past)
     # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
-    closer = (1 + tolerance / 4) * _peak(way, states).multiplier
-    if closer < way.upper and way.push(closer, past).verdict == "rest":
-        states = way.follow(past)
+    closer = (1 + tolerance / 4) * _peak(path, states).multiplier
+    if closer < path.upper and path.push(closer, past).verdict == "rest":
+        states = path.follow(past)
     return Climb("", states)
 
 
-def _peak(way: Way, past: list[State]) -> State:
+def _peak(path: LoadPath, past: list[StaticState]) -> StaticState:
     """State of the largest λ in equilibrium that is none at which the wall fell."""
-    most = np.inf if way.upper is None else way.upper
-    return max((state for state in (*way.rests, *past) if state.multiplier < most), key=lambda state: state.multiplier)
+    most = np.inf if path.upper is None else path.upper
+    return max((state for state in (*path.rests, *past) if state.multiplier < most), key=lambda state: state.multiplier)
 
 
-def _judged(found: Outcome, way: Way, climb: Climb, tolerance: float) -> Outcome:
+def _judged(result: Outcome, path: LoadPath, climb: Climb, tolerance: float) -> Outcome:
     """Verdict on a climb, and its arrays."""
-    system, states = way.system, [*way.rests, *climb.past]
-    equations, peak = system.equilibrium, _peak(way, climb.past)
+    system, states = path.system, [*path.rests, *climb.past]
+    equations, peak = system.equilibrium, _peak(path, climb.past)
     unit, nd = equations.live_unit, system.freedoms
     row = control_row(equations.scene)[movable_freedoms(equations.scene)] * equations.scale * system.length_unit
     q = np.array([state.x[:nd] for state in states])
-    moving = way.fall if way.fall is not None else q[-1] - q[-2] if len(q) > 1 else None
-    found = replace(
-        found,
+    moving = path.fall if path.fall is not None else q[-1] - q[-2] if len(q) > 1 else None
+    result = replace(
+        result,
         lower=unit * peak.multiplier,
-        upper=None if way.upper is None else unit * way.upper,
+        upper=None if path.upper is None else unit * path.upper,
         curve=np.column_stack([(q - q[0]) @ row, [unit * state.multiplier for state in states]]),
         motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
         force=equations.force_unit * peak.force,
     )
     if not climb.undecided:
-        heights = way.far * system.length_unit / equations.scene.lowest_block
+        heights = path.far * system.length_unit / equations.scene.lowest_block
         message = (
             f"largest load at rest and smallest of a fall over {heights:.2g} block heights, small displacements; "
             "friction remembers, other load steps may differ by more than the bracket"
         )
-        return replace(found, status="collapse", multiplier=found.lower, message=message)
-    if way.upper is None and way.budget > 0 and is_self_locking(equations.scene):
+        return replace(result, status="collapse", multiplier=result.lower, message=message)
+    if path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
         message = f"self-locking: {climb.undecided}, and joint forces balance any multiple of it"
-        return replace(found, status="unbounded", lower=None, message=message)
-    return replace(found, message=f"the wall was given up: {climb.undecided}")
+        return replace(result, status="unbounded", lower=None, message=message)
+    return replace(result, message=f"no answer: {climb.undecided}")
 
 
-def _fallen(found: Outcome, system: StaticSystem) -> Outcome:
+def _fallen(result: Outcome, system: StaticSystem) -> Outcome:
     """Outcome of a wall that was not brought to rest under its dead load."""
     if not stands_under_dead_load(system.equilibrium):
-        return replace(found, status="infeasible", message=NO_EQUILIBRIUM)
-    return replace(found, message="no equilibrium was found under the dead load, though forces exist that balance it")
+        return replace(result, status="infeasible", message=NO_EQUILIBRIUM)
+    return replace(result, message="no equilibrium was found under the dead load, though forces exist that balance it")

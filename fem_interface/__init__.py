@@ -4,17 +4,17 @@
 """
 
 from .modes import ModeCount, Modes, block_modes
-from .operators import Interface, NodalJump, interface, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
+from .operators import JointElements, NodalJump, joint_elements, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
 from .templates import Template, templates
 
 __all__ = [
-    "Interface",
+    "JointElements",
     "ModeCount",
     "Modes",
     "NodalJump",
     "Template",
     "block_modes",
-    "interface",
+    "joint_elements",
     "lumped_mass",
     "mass_matrix",
     "nodal_jump",

@@ -224,18 +224,18 @@ def _shapes(points: Array, first_node: Indices, held: Mask) -> Indices:
     side = corner[:, 1:] - corner[:, :1]
     size = np.sqrt(np.abs(np.linalg.det(side)).min())
     _, shape = np.unique(np.rint(side.reshape(-1, 4) / (SAME * size)), axis=0, return_inverse=True)
-    found = np.empty(len(held), dtype=np.int64)
-    found[~held] = shape.ravel()
-    found[held] = len(shape) + np.arange(held.sum())
-    return found
+    result = np.empty(len(held), dtype=np.int64)
+    result[~held] = shape.ravel()
+    result[held] = len(shape) + np.arange(held.sum())
+    return result
 
 
 def _pins(scene: Scene, mesh: WallMesh, block: Indices, node: Indices) -> Pins:
     """Pins of the pieces: each of those that meet at a pinned corner is held there."""
-    found = []
+    result = []
     for k, (owner, point) in enumerate(zip(scene.pins.block, scene.pins.point, strict=True)):
         there = np.flatnonzero(mesh.block[node] == owner)
         near = np.hypot(*(mesh.points[node[there]] - point).T) <= scene.blocks.tolerance
-        found += [(k, piece) for piece in block[there[near]]]
-    pin, piece = np.array(found, dtype=np.int64).reshape(-1, 2).T
+        result += [(k, piece) for piece in block[there[near]]]
+    pin, piece = np.array(result, dtype=np.int64).reshape(-1, 2).T
     return Pins(piece, scene.pins.point[pin], scene.pins.direction[pin])

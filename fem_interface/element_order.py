@@ -16,7 +16,7 @@ from runningbond.scene import Indices, Scene
 from .cracks import Cracks, pieces
 from .modal_wall import ModalWall
 from .modes import BENDING, ModeCount
-from .operators import PointsOn, interface
+from .operators import PointsOn, joint_elements
 from .templates import templates
 
 RESOLUTION = 1e-9
@@ -33,7 +33,7 @@ def element_runs(wall: ModalWall) -> tuple[Indices, Indices]:
     (nr + 1,) int
         First element of each run in that order, then their number.
     """
-    joint = wall.interface
+    joint = wall.elements
     n, ne, _ = joint.weights.shape
     block = wall.mesh.block[joint.nodes[:, [0, 2]]]
     template, row = wall.place[block].transpose(2, 0, 1)
@@ -61,10 +61,10 @@ def modal_wall(
     cracks: Cracks = "joints",
 ) -> ModalWall:
     """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_system`."""
-    found = pieces(scene, wall_mesh(scene, cells), cracks)
-    joints = interface(found.mesh, found.scene, rule, points)
+    result = pieces(scene, wall_mesh(scene, cells), cracks)
+    joints = joint_elements(result.mesh, result.scene, rule, points)
     if modes is None:
         modes = BENDING if cracks == "joints" else "all"
-    wall = ModalWall(found, templates(found.mesh, found.scene, modes), joints)
+    wall = ModalWall(result, templates(result.mesh, result.scene, modes), joints)
     order, _ = element_runs(wall)
-    return replace(wall, interface=joints.arranged(order))
+    return replace(wall, elements=joints.arranged(order))

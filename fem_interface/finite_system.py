@@ -39,7 +39,7 @@ def finite_system(blocks: NodeOutline, *, damping: float = DAMPING, mass_scaling
     wall, contacts = blocks.wall, DeformableContacts(blocks)
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     dead, live = wall.load(wall.scene.dead_forces), wall.load(wall.scene.live_forces)
-    strength = wall_strength(wall.scene, wall.interface.points)
+    strength = wall_strength(wall.scene, wall.elements.points)
     return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,

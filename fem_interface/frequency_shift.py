@@ -32,13 +32,13 @@ def elastic_stiffness(wall: ModalWall) -> csr_array:
         values.append(np.tile(shape[row, mode], (n, 1)))
     entries = [np.concatenate([part.ravel() for part in parts]) for parts in (values, of_node, of_coordinate)]
     basis = csr_array((entries[0], (entries[1], entries[2])), shape=(2 * len(wall.mesh.points), len(wall.mass)))
-    jump, points = nodal_jump(wall.interface, len(wall.mesh.points)), wall.interface.points
+    jump, points = nodal_jump(wall.elements, len(wall.mesh.points)), wall.elements.points
     moving = np.flatnonzero(np.isfinite(wall.mass))
-    found = diags_array(wall.stiffness).tocsr()
+    result = diags_array(wall.stiffness).tocsr()
     for operator, stiffness in zip((jump.opening, jump.slip), wall_stiffness(wall.scene, points.joint), strict=True):
         B = operator @ basis
-        found = found + B.T @ (B * (stiffness * points.area)[:, None])
-    return csr_array(found[moving][:, moving])
+        result = result + B.T @ (B * (stiffness * points.area)[:, None])
+    return csr_array(result[moving][:, moving])
 
 
 class FrequencyShift:

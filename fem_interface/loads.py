@@ -40,10 +40,10 @@ def inner_mass(wall: Pieces) -> Array:
     moments = np.zeros((count, 3, 3))
     np.add.at(moments, owner, of_node[:, None, None] * terms[:, :, None] * terms[:, None, :])
     share = np.linalg.pinv(moments / weight[:, None, None], rcond=1e-9, hermitian=True)[:, 0]
-    found = of_node / weight[owner] * (terms * share[owner]).sum(axis=1)
+    result = of_node / weight[owner] * (terms * share[owner]).sum(axis=1)
 
     still = np.bincount(wall.owner, wall.scene.fixed, minlength=count) > 0
-    held = np.column_stack([np.bincount(owner, found * term, minlength=count) for term in terms.T])
+    held = np.column_stack([np.bincount(owner, result * term, minlength=count) for term in terms.T])
     lost = ~still & (np.abs(held - [1, 0, 0]).max(axis=1) > 1e-9)
     if lost.any():
         piece = int(np.argmax(wall.owner == np.argmax(lost)))
@@ -51,7 +51,7 @@ def inner_mass(wall: Pieces) -> Array:
             wall.scene.blocks.name(piece), "has no inner nodes that could bear its load; take more cells a block"
         )
     mass = wall.scene.block.density * wall.scene.thickness * weight
-    return np.where(still[owner], 0.0, found * mass[owner])
+    return np.where(still[owner], 0.0, result * mass[owner])
 
 
 def _on_outline(wall: Pieces) -> Mask:

@@ -144,13 +144,13 @@ def _viscosity(stiffness: Array, mass: Array, damping: float) -> Array:
 
 def _rigid_bound(kinds: list[_Kind]) -> float:
     """Largest ω² of blocks that do not deform."""
-    found = 0.0
+    result = 0.0
     for kind in kinds:
         rigid = np.flatnonzero(kind.stiffness == 0)
         if len(rigid):
             joints = kind.joints[:, rigid[:, None], rigid]
-            found = max(found, float(block_frequency_squared(joints, _each(kind.mass[rigid], joints)).max()))
-    return found
+            result = max(result, float(block_frequency_squared(joints, _each(kind.mass[rigid], joints)).max()))
+    return result
 
 
 def _bound(kind: _Kind, square: float, damping: float, fit: float) -> float:
@@ -171,7 +171,7 @@ def _all_kinds(wall: ModalWall) -> list[list[_Kind]]:
 
 def _kinds(wall: ModalWall, share: float) -> list[_Kind]:
     """Blocks that differ in their mesh, their pins or their joints."""
-    joint = wall.interface
+    joint = wall.elements
     n, ne, _ = joint.weights.shape
     block = joint.points.block[:ne]
     part = joint_shares(np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block], share)
@@ -188,7 +188,7 @@ def _kinds(wall: ModalWall, share: float) -> list[_Kind]:
 
     order = np.lexsort([likeness, block])
     of_block = np.split(order, np.searchsorted(block[order], np.arange(1, len(wall.scene.blocks))))
-    found = []
+    result = []
     for template in wall.templates:
         modes = template.modes
         moving = np.isfinite(modes.mass)
@@ -202,5 +202,5 @@ def _kinds(wall: ModalWall, share: float) -> list[_Kind]:
                 frame = np.array([joint.normal[e], [-joint.normal[e, 1], joint.normal[e, 0]]])
                 jumps = np.einsum("dx,pxm->dpm", frame, at_points)
                 matrix += part[side] * np.einsum("dp,dpm,dpk->mk", springs[:, :, e], jumps, jumps)
-        found.append(_Kind(modes.mass[moving], modes.stiffness[moving], joints))
-    return found
+        result.append(_Kind(modes.mass[moving], modes.stiffness[moving], joints))
+    return result

@@ -10,13 +10,13 @@ from runningbond.scene import Array, Forces, Indices, Scene
 
 from .cracks import Pieces
 from .loads import Loads, inner_mass
-from .operators import Interface
+from .operators import JointElements
 from .templates import Template, nodes_of, triangles_of
 
 
 @dataclass(frozen=True, eq=False)
 class ModalWall:
-    """Blocks with modes, joined at the points of an interface.
+    """Blocks with modes, joined at the points of joint elements.
 
     Modal coordinates stand template by template, in each mode by mode, for all its blocks side by side. Fixed blocks
     share the last one, which never moves.
@@ -27,13 +27,13 @@ class ModalWall:
         The wall and its mesh. Where its blocks may crack, their triangles are what is called a block here.
     templates
         Its movable blocks.
-    interface
-        Its joint points.
+    elements
+        Its joint elements and their points.
     """
 
     pieces: Pieces
     templates: list[Template]
-    interface: Interface
+    elements: JointElements
 
     @property
     def scene(self) -> Scene:
@@ -79,11 +79,11 @@ class ModalWall:
     @cached_property
     def rigid(self) -> Indices:
         """Where each block's rigid coordinates stand, ``(nb, 3)``; the last coordinate of all for fixed blocks."""
-        found = np.full((len(self.scene.blocks), 3), self.first[-1])
+        result = np.full((len(self.scene.blocks), 3), self.first[-1])
         for template, first in zip(self.templates, self.first, strict=False):
             n = len(template.blocks)
-            found[template.blocks] = first + np.arange(n)[:, None] + n * np.arange(3)
-        return found
+            result[template.blocks] = first + np.arange(n)[:, None] + n * np.arange(3)
+        return result
 
     def _of_modes(self, values: list[Array], still: float = 0.0) -> Array:
         each = [np.repeat(v, len(t.blocks)) for v, t in zip(values, self.templates, strict=True)]
@@ -91,23 +91,23 @@ class ModalWall:
 
     def displacement(self, motion: Array) -> Array:
         """Displacement of every node, ``(nn, 2)`` [m]."""
-        found = np.zeros_like(self.mesh.points)
+        result = np.zeros_like(self.mesh.points)
         for template, Q in zip(self.templates, self.split(motion), strict=True):
             shape = template.modes.shape
             nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
-            found[nodes] = (shape @ Q).reshape(-1, 2, len(template.blocks)).transpose(0, 2, 1)
-        return found
+            result[nodes] = (shape @ Q).reshape(-1, 2, len(template.blocks)).transpose(0, 2, 1)
+        return result
 
     def strain(self, motion: Array) -> Array:
         """Mean strains ε_x, ε_y and γ_xy of each triangle, ``(nt, 3)``; zero where nothing moves."""
         triangle_block = self.mesh.triangle_block
         order = np.argsort(triangle_block, kind="stable")
         first = np.searchsorted(triangle_block[order], np.arange(len(self.scene.blocks)))
-        found = np.zeros((len(triangle_block), 3))
+        result = np.zeros((len(triangle_block), 3))
         for template, Q in zip(self.templates, self.split(motion), strict=True):
             triangles = order[first[template.blocks] + np.arange(len(template.strain) // 3)[:, None]]
-            found[triangles] = (template.strain @ Q).reshape(-1, 3, len(template.blocks)).transpose(0, 2, 1)
-        return found
+            result[triangles] = (template.strain @ Q).reshape(-1, 3, len(template.blocks)).transpose(0, 2, 1)
+        return result
 
     def split(self, motion: Array) -> list[Array]:
         """Coordinates of each template's blocks, ``(m, n)`` each."""
@@ -136,12 +136,12 @@ class ModalWall:
 
     def nodal_force(self, force: Array) -> Array:
         """Modal forces of forces on the nodes ``(nn, 2)`` [N], ``(nd,)`` [N]; the transpose of `displacement`."""
-        found = np.zeros(self.first[-1] + 1)
-        for template, into in zip(self.templates, self.split(found), strict=True):
+        result = np.zeros(self.first[-1] + 1)
+        for template, into in zip(self.templates, self.split(result), strict=True):
             shape = template.modes.shape
             nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
             into += shape.T @ force[nodes].transpose(0, 2, 1).reshape(len(shape), -1)
-        return found
+        return result
 
     def load(self, forces: Forces, loads: Loads = "consistent") -> Array:
         """Modal forces of forces on the blocks, ``(nd,)`` [N]; a moment acts on a block's rotation alone."""
@@ -166,9 +166,9 @@ class ModalWall:
         shares = np.linalg.solve(corners.transpose(0, 2, 1), np.array([*at, 1.0])[:, None])[:, :, 0]
         best = int(np.argmax(shares.min(axis=1)))
         shape = self.templates[template].modes.shape.reshape(len(points), 2, -1)[triangles[best]]
-        found = np.zeros(self.first[-1] + 1)
-        self.split(found)[template][:, row] = np.einsum("c,x,cxm->m", shares[best], direction, shape)
-        return found
+        result = np.zeros(self.first[-1] + 1)
+        self.split(result)[template][:, row] = np.einsum("c,x,cxm->m", shares[best], direction, shape)
+        return result
 
     def control_row(self) -> Array:
         """Displacement of the control point along the live load, ``(nd,)``; see `runningbond.results.Outcome`.

@@ -23,7 +23,7 @@ With 6 a block moves as in discontinuous deformation analysis (`shi1988`), with 
 (`koo1996`).
 """
 
-MOST, BENDING = 20, 10
+MOST_MODES, BENDING = 20, 10
 """Displacements up to third degree, and how many of them bend a brick well enough: its deflection as a cantilever comes
 out 5.5 % too small for 240 × 60 mm and 14.5 % for 240 × 120 mm."""
 
@@ -44,8 +44,8 @@ def degree_of(count: ModeCount) -> int:
     """
     if count == "all":
         return 1
-    if not isinstance(count, int) or (count != 3 and not 6 <= count <= MOST):
-        raise ValueError(f'modes = {count!r}: must be 3, a number from 6 to {MOST}, or "all"')
+    if not isinstance(count, int) or (count != 3 and not 6 <= count <= MOST_MODES):
+        raise ValueError(f'modes = {count!r}: must be 3, a number from 6 to {MOST_MODES}, or "all"')
     return 1 if count <= 6 else 3
 
 
@@ -179,8 +179,8 @@ def _even_or_odd(points: Array, shapes: Array, own: Array, M: Array) -> Array:
     mirrored = shapes.reshape(len(points), 2, -1).copy()
     mirrored[np.append(low, high)] = mirrored[np.append(high, low)]
     mirrored[:, 0] *= -1
-    image, found = mirrored.reshape(shapes.shape), shapes.copy()
+    image, result = mirrored.reshape(shapes.shape), shapes.copy()
     for alike in np.split(np.arange(len(own)), np.flatnonzero(np.diff(own) > EQUAL * own[1:]) + 1):
         _, turn = np.linalg.eigh(shapes[:, alike].T @ M @ image[:, alike])
-        found[:, alike] = shapes[:, alike] @ turn
-    return found
+        result[:, alike] = shapes[:, alike] @ turn
+    return result

@@ -87,7 +87,7 @@ def _mesh(points: Array, triangles: Indices) -> MeshTri:
 
 
 @dataclass(frozen=True, eq=False)
-class Interface:
+class JointElements:
     """Points on the joint elements of a mesh, and how the displacements of the elements' nodes reach them.
 
     The points are numbered like `points`: the first points of all elements, then all second ones, and so on. Where
@@ -119,11 +119,11 @@ class Interface:
         along = (self.points.position * self.points.tangent).sum(axis=1)
         return np.lexsort((along, np.tile(self.element, len(self.weights))))
 
-    def arranged(self, order: Indices) -> "Interface":
+    def arranged(self, order: Indices) -> "JointElements":
         """The same elements ``(ne,)`` in another order."""
         ne = len(order)
         of_points = (np.arange(len(self.weights))[:, None] * ne + order).ravel()
-        return Interface(
+        return JointElements(
             self.element[order],
             self.nodes[order],
             self.normal[order],
@@ -132,7 +132,9 @@ class Interface:
         )
 
 
-def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: PointsOn = "elements") -> Interface:
+def joint_elements(
+    mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: PointsOn = "elements"
+) -> JointElements:
     """Lay a quadrature rule on the joints, moved in from their ends by their inset.
 
     Parameters
@@ -171,7 +173,7 @@ def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: Po
     if np.abs(weights - weights_b).max(initial=0.0) > 1e-9:
         raise ValueError("the two sides of a joint element are divided differently")
     n = local.shape[1]
-    found = JointPoints(
+    result = JointPoints(
         np.tile(mesh.joint[element], n),
         np.tile(mesh.block[np.column_stack([a0, b0])], (n, 1)),
         position.transpose(1, 0, 2).reshape(-1, 2),
@@ -179,7 +181,7 @@ def interface(mesh: WallMesh, scene: Scene, rule: Rule | None = None, points: Po
         np.tile(tangent, (n, 1)),
         (scene.thickness * length * share.T).ravel(),
     )
-    return Interface(element, np.column_stack([a0, a1, b0, b1]), normal, weights.transpose(1, 0, 2).copy(), found)
+    return JointElements(element, np.column_stack([a0, a1, b0, b1]), normal, weights.transpose(1, 0, 2).copy(), result)
 
 
 def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tuple[Indices, Array, Array]:
@@ -266,15 +268,15 @@ def _facets(wall: MeshTri, first: Indices, last: Indices) -> Indices:
     keys = low.astype(np.int64) * count + high
     order = np.argsort(keys)
     wanted = np.minimum(first, last) * count + np.maximum(first, last)
-    found = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
-    if (keys[found] != wanted).any():
+    result = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
+    if (keys[result] != wanted).any():
         raise ValueError("a joint element does not lie on sides of triangles")
-    return np.asarray(found)
+    return np.asarray(result)
 
 
 @dataclass(frozen=True, eq=False)
 class NodalJump:
-    """Jump operator of the nodes: opening and slip at the points of an interface.
+    """Jump operator of the nodes: opening and slip at the points of joint elements.
 
     Parameters
     ----------
@@ -286,20 +288,20 @@ class NodalJump:
     slip: csr_array
 
 
-def nodal_jump(found: Interface, nodes: int) -> NodalJump:
+def nodal_jump(result: JointElements, nodes: int) -> NodalJump:
     """Jump operator of a mesh with so many nodes."""
-    n, ne, _ = found.weights.shape
+    n, ne, _ = result.weights.shape
     rows = np.arange(n * ne)
-    tangent = np.column_stack([-found.normal[:, 1], found.normal[:, 0]])
+    tangent = np.column_stack([-result.normal[:, 1], result.normal[:, 0]])
 
     def along(direction: Array) -> csr_array:
         parts = []
         for column, (sense, end) in enumerate([(-1.0, 0), (-1.0, 1), (1.0, 0), (1.0, 1)]):
-            share = sense * found.weights[:, :, end]
-            node = np.tile(found.nodes[:, column], n)
+            share = sense * result.weights[:, :, end]
+            node = np.tile(result.nodes[:, column], n)
             for axis in (0, 1):
                 values = (share * direction[:, axis]).ravel()
                 parts.append(coo_array((values, (rows, 2 * node + axis)), shape=(n * ne, 2 * nodes)))
         return csr_array(sum(parts[1:], start=csr_array(parts[0])))
 
-    return NodalJump(along(found.normal), along(tangent))
+    return NodalJump(along(result.normal), along(tangent))

@@ -84,7 +84,7 @@ def system_of(
     energies: Energies = "given",
 ) -> BlockSystem:
     """Block system of a wall in modal coordinates; see `fem_system`."""
-    scene, points, pieces = wall.scene, wall.interface.points, wall.pieces
+    scene, points, pieces = wall.scene, wall.elements.points, wall.pieces
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     materials, of_joint = fractured(scene, energies)
     dead, live = wall.load(scene.dead_forces, loads), wall.load(scene.live_forces, loads)
@@ -114,7 +114,7 @@ def _restraint(wall: ModalWall) -> Restraint:
 
 
 def _geometry(wall: ModalWall) -> ModalJoints:
-    mesh, joint = wall.mesh, wall.interface
+    mesh, joint = wall.mesh, wall.elements
     n, ne, _ = joint.weights.shape
     _, start = element_runs(wall)
     local, tables = zip(*_tables(wall), strict=True) if wall.templates else ((), ())
@@ -142,7 +142,7 @@ def _geometry(wall: ModalWall) -> ModalJoints:
 
 def _tables(wall: ModalWall) -> Iterator[tuple[Indices, Array]]:
     """Of each template the nodes that lie on joints, and their displacements per rigid motion and deformation."""
-    mesh, on_joint = wall.mesh, np.unique(wall.interface.nodes)
+    mesh, on_joint = wall.mesh, np.unique(wall.elements.nodes)
     of_node = wall.place[mesh.block[on_joint], 0]
     for k, template in enumerate(wall.templates):
         own, modes = on_joint[of_node == k], template.modes

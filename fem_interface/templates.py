@@ -45,12 +45,12 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
     order = scene.column_by_column
     for block in order[~scene.fixed[order]]:
         alike.setdefault(_likeness(mesh, scene, int(block)), []).append(int(block))
-    found = []
+    result = []
     for blocks in alike.values():
         modes, strain = _modes(mesh, scene, blocks[0], count)
         most = max(4, LARGE // modes.shape.size)
-        found += [Template(np.array(blocks[i : i + most]), modes, strain) for i in range(0, len(blocks), most)]
-    return found
+        result += [Template(np.array(blocks[i : i + most]), modes, strain) for i in range(0, len(blocks), most)]
+    return result
 
 
 def nodes_of(mesh: WallMesh, block: int) -> slice:

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 class PathState:
     """A wall under one multiple of its live load.
 
-    Joint points stand joint by joint, those of a joint in the sense of its tangent, as in `Result.joints`.
+    Joint points stand joint by joint, those of a joint in the sense of its tangent, as in `Result.joints`. They are
+    those of the model's own mesh; where blocks may crack, their pieces are blocks here.
 
     Parameters
     ----------

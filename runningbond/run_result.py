@@ -9,12 +9,14 @@ from .compare.model import Model
 from .compare.models import find_model, run_model
 from .joints import wall_points
 from .path_states import PathState, collected
+from .pictures.captions import to_png, to_svg
+from .pictures.flat import draw_mechanism, figure_of
 from .results import Outcome, Status
 from .results.mechanism import rigid_jumps
 from .results.outcome import number
 from .scene import Array
 from .tables import Table, table
-from .wall import Wall
+from .wall import Wall, new_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,8 +104,6 @@ class Result:
 
     def plot(self, what: Literal["mechanism", "curve"] | None = None, axes: "Axes | None" = None) -> "Axes":
         """Draw the mechanism, the curve where there is no mechanism, or what is asked for, into axes."""
-        from .pictures.flat import draw_mechanism
-
         axes = axes or new_axes()
         if what == "mechanism" or (what is None and (len(self.motion) or not len(self.outcome.curve))):
             draw_mechanism(axes, self.wall.scene, self.outcome)
@@ -122,15 +122,9 @@ class Result:
         return f"<Result of {self.model} on {self.outcome.scene!r}: {self.status}{': ' + bracket if bracket else ''}>"
 
     def _repr_svg_(self) -> str:
-        from .pictures.captions import to_svg
-        from .pictures.flat import figure_of
-
         return to_svg(figure_of(self.wall.scene, self.outcome)).decode()
 
     def _repr_png_(self) -> bytes:
-        from .pictures.captions import to_png
-        from .pictures.flat import figure_of
-
         return to_png(figure_of(self.wall.scene, self.outcome))
 
 
@@ -143,10 +137,3 @@ def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, par
         return Result(wall, outcome, [] if states else None)
     recorder.finish(outcome)
     return Result(wall, outcome, collected(recorder))
-
-
-def new_axes() -> "Axes":
-    """Axes of a figure that matplotlib's pyplot shows."""
-    from matplotlib.pyplot import subplots
-
-    return subplots()[1]

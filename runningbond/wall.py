@@ -179,7 +179,6 @@ class Wall:
     def plot(self, axes: "Axes | None" = None) -> "Axes":
         """Draw the wall with its support and loads into axes, new ones where none are given."""
         from .pictures.flat import draw_wall
-        from .run_result import new_axes
 
         axes = axes or new_axes()
         draw_wall(axes, self.scene)
@@ -231,6 +230,13 @@ def read(wall: str | Path) -> Wall:
 
     path = find_scene(str(wall))
     return Wall({"title": path.stem, **read_description(path)}, path.parent)
+
+
+def new_axes() -> "Axes":
+    """Axes of a figure that matplotlib's pyplot shows."""
+    from matplotlib.pyplot import subplots
+
+    return subplots()[1]
 
 
 def _as_in_a_file(value: Any) -> Any:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dem.relaxation import Verdict, relax
+from dem.relaxation import RestVerdict, relax
 from dem.static import dem_static
 from dem.static_system import Control, static_system
 from dem.stiffness_update import stiffness_update
@@ -186,7 +186,9 @@ def test_solution_of_the_elastic_wall_balances_its_load(name: str) -> None:
 
 @pytest.mark.parametrize(("multiplier", "verdict"), [(0.2499, "rest"), (0.2501, "fall")])
 @pytest.mark.parametrize("far", [1e3, 1e6])
-def test_block_rests_below_its_collapse_load_and_falls_above(multiplier: float, verdict: Verdict, far: float) -> None:
+def test_block_rests_below_its_collapse_load_and_falls_above(
+    multiplier: float, verdict: RestVerdict, far: float
+) -> None:
     """b/h = 1/4; however far it has to go to have fallen."""
     system = static_system(pile([rectangle(0, 0, 0.5, 2)], 0.6))
     start = np.append(np.zeros(system.freedoms), multiplier)

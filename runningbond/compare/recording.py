@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from dem.pushover import State as StaticState
+from dem.pushover import StaticState
 from dem.rigid_system import contact_points
 from dem.static_system import StaticSystem
 from fem_interface.modal_wall import ModalWall
@@ -125,7 +125,7 @@ class MotionRecorder(SeriesRecorder):
         """Turn to the mesh of a run; the pieces of blocks that may crack are blocks of their own there."""
         self._wall = wall
         triangles = Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
-        self._begin(Discretisation(wall.scene, wall.interface.points, triangles))
+        self._begin(Discretisation(wall.scene, wall.elements.points, triangles))
 
     def _next_load(self, multiplier: float) -> None:
         if multiplier == 0.0 and len(self._series):  # the search begins anew, more slowly

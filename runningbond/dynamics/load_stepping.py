@@ -213,7 +213,7 @@ def _search(
         taken = state.steps - result.borne.steps
         result.steps += taken
         result.add(trial, state, held)
-        in_vain += taken if result.verdict == "undecided" else 0
+        in_vain += taken if held.verdict == "undecided" else 0
         if in_vain > UNDECIDED_BUDGETS * criteria.budget:
             return
         undecided = undecided.after(result, trial)

@@ -145,8 +145,13 @@ class Blocks:
 
     def neighbours(self) -> tuple[Indices, Indices]:
         """Pairs ``a < b`` of blocks whose bounding boxes touch."""
-        low = np.minimum.reduceat(self.vertices, self.first[:-1]) - self.tolerance
-        high = np.maximum.reduceat(self.vertices, self.first[:-1]) + self.tolerance
-        boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
-        a, b = shapely.STRtree(boxes).query(boxes)
+        low, high = (extreme.reduceat(self.vertices, self.first[:-1]) for extreme in (np.minimum, np.maximum))
+        a, b = touching_boxes(low - self.tolerance, high + self.tolerance)
         return a[a < b], b[a < b]
+
+
+def touching_boxes(low: Array, high: Array) -> tuple[Indices, Indices]:
+    """Pairs of boxes that meet, each in both orders and with itself, from their corners ``(n, 2)`` [m]."""
+    boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
+    a, b = shapely.STRtree(boxes).query(boxes)
+    return a, b

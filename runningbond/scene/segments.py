@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from .arrays import Array, Indices, Mask, frozen
-from .blocks import Blocks
+from .blocks import Blocks, touching_boxes
 from .errors import SceneError
 
 
@@ -64,7 +64,7 @@ def find_joints(blocks: Blocks) -> Joints:
     tolerance = blocks.tolerance
     start = blocks.vertices
     stop = start[blocks.successor]
-    a, b = _touching_edges(blocks, tolerance)
+    a, b = touching_boxes(np.minimum(start, stop) - tolerance, np.maximum(start, stop) + tolerance)
     a, b = a[blocks.owner[a] < blocks.owner[b]], b[blocks.owner[a] < blocks.owner[b]]
     along = stop[a] - start[a]
     length = np.hypot(*along.T)
@@ -90,15 +90,6 @@ def find_joints(blocks: Blocks) -> Joints:
     ends = start[a][:, None, :] + np.stack([low, high], axis=1)[:, :, None] * along[:, None, :]
     _refuse_overlaps(blocks, pair)
     return Joints(pair, ends)
-
-
-def _touching_edges(blocks: Blocks, tolerance: float) -> tuple[Indices, Indices]:
-    """Pairs of edges whose bounding boxes meet."""
-    start, stop = blocks.vertices, blocks.vertices[blocks.successor]
-    low, high = np.minimum(start, stop) - tolerance, np.maximum(start, stop) + tolerance
-    boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
-    a, b = shapely.STRtree(boxes).query(boxes)
-    return a, b
 
 
 def _refuse_overlaps(blocks: Blocks, joined: Indices) -> None:

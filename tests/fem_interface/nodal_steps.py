@@ -16,7 +16,7 @@ class NodalSteps:
     def __init__(self, found: ModalWall, system: BlockSystem) -> None:
         K, M = whole(found.mesh, found.scene)
         free = np.repeat(~found.scene.fixed[found.mesh.block], 2)
-        jump = nodal_jump(found.interface, len(found.mesh.points))
+        jump = nodal_jump(found.elements, len(found.mesh.points))
         self.law, self.area, self.free = system.interface.law, system.interface.area, free
         self.K, self.M = K[free][:, free], M[free][:, free].tocsc()
         self.opening, self.slip = jump.opening.tocsc()[:, free].tocsr(), jump.slip.tocsc()[:, free].tocsr()

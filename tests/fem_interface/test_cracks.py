@@ -101,8 +101,8 @@ def test_every_triangle_is_a_piece_and_every_edge_inside_a_block_a_joint(make: A
     twice = (np.unique(edges, axis=0, return_counts=True)[1] == 2).sum()
     assert len(found.mesh.joint) - len(whole.mesh.joint) == twice
     assert found.scene.joints.inner.sum() == scene.joints.inner.sum() + twice
-    points = found.interface.points
-    facing = found.mesh.points[found.interface.nodes[:, :2]] - found.mesh.points[found.interface.nodes[:, 2:]]
+    points = found.elements.points
+    facing = found.mesh.points[found.elements.nodes[:, :2]] - found.mesh.points[found.elements.nodes[:, 2:]]
     assert np.abs(facing).max() <= scene.blocks.tolerance
     assert ((_between(found, points.block) * points.normal).sum(axis=1) > 0).all()
     assert found.pieces.owner.max() + 1 == len(scene.blocks)
@@ -139,8 +139,8 @@ def test_whole_blocks_open_no_inner_joint(make: Any, on: Any) -> None:
     u = np.random.default_rng(3).normal(size=whole.mesh.points.shape)
     parts = []
     for wall_, nodal in ((whole, u), (found, u[found.pieces.node])):
-        jump = nodal_jump(wall_.interface, len(wall_.mesh.points))
-        order = wall_.interface.listing
+        jump = nodal_jump(wall_.elements, len(wall_.mesh.points))
+        order = wall_.elements.listing
         parts.append([(jump.opening @ nodal.ravel())[order], (jump.slip @ nodal.ravel())[order]])
     n = len(parts[0][0])
     for before, after in zip(*parts, strict=True):
@@ -272,7 +272,7 @@ def test_a_block_torn_apart_dissipates_the_energy_of_its_crack(direction: int) -
         after = run.system.interface.area * state.history[FRICTION_WORK]
         assert (after - spent).min() >= -1e-12 * after.max()
         spent = after
-    points = found.interface.points
+    points = found.elements.points
     crack = np.abs(points.position[:, 0] - 0.12) < 1e-9
     crack &= found.scene.joints.inner[points.joint] & (np.abs(points.normal[:, 0]) > 0.99)
     assert run.system.interface.area[crack].sum() == pytest.approx(0.06 * 0.12, rel=1e-12)
@@ -306,7 +306,7 @@ def test_dissipation_never_falls_where_blocks_crack(energy: float | None) -> Non
     found = modal_wall(wall(inner, 1e11), cracks="blocks")
     run = Run(system_of(found))
     spent = check_dissipation(run, 200).history[FRICTION_WORK]
-    inside = found.scene.joints.inner[found.interface.points.joint]
+    inside = found.scene.joints.inner[found.elements.points.joint]
     assert spent[inside].max() > 0
     assert spent[~inside].max() > 0
 

@@ -25,8 +25,8 @@ def _cell_moduli(width: float, height: float, young: float) -> Array:
     )
     assert len(inside) == 2
     K, _ = whole(mesh, scene)
-    jump = nodal_jump(modal_wall(scene, 1, 3, lobatto(3)).interface, len(mesh.points))
-    points = modal_wall(scene, 1, 3, lobatto(3)).interface.points
+    jump = nodal_jump(modal_wall(scene, 1, 3, lobatto(3)).elements, len(mesh.points))
+    points = modal_wall(scene, 1, 3, lobatto(3)).elements.points
     owned = np.isin(points.block[:, 0], inside)
 
     lattice = np.array([[width, 0.0], [0.0, 2 * height]])

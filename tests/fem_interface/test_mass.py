@@ -59,7 +59,7 @@ def test_loads_lumped_at_inner_nodes_have_the_resultant_of_each_block(make: Any,
         assert np.abs(a - b)[found.rigid].max() < 1e-12 * np.abs(a).max()
         assert np.abs(a - b).max() > 0.1 * np.abs(a).max()
     at_nodes = inner_mass(found.pieces)
-    on_joint = np.unique(found.interface.nodes)
+    on_joint = np.unique(found.elements.nodes)
     assert not at_nodes[on_joint].any()
     moving = ~found.scene.fixed
     mass = np.bincount(found.mesh.block, at_nodes, minlength=len(moving))

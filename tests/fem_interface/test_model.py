@@ -158,7 +158,7 @@ def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> Non
     mesh, held = found.mesh, np.zeros_like(found.mesh.points, dtype=bool)
     held[mesh.points[:, 1] + np.abs(np.abs(mesh.points[:, 0] - 0.12) - 0.12) < 1e-9] = True
     free = ~held.ravel()
-    jump = nodal_jump(found.interface, len(mesh.points))
+    jump = nodal_jump(found.elements, len(mesh.points))
     K = csr_array(whole(mesh, scene)[0] + joint_stiffness_of(system, jump.opening, jump.slip))
     force = np.zeros_like(mesh.points)
     force[np.argmin(np.hypot(*(mesh.points - [0.0, 0.12]).T)), 1] = -1e3

@@ -103,7 +103,7 @@ def test_congruent_blocks_share_a_template_and_blocks_of_their_own_shape_have_th
 def test_kernels_are_the_nodal_jump_operator_and_its_transpose(make: Any, count: ModeCount, cells: int) -> None:
     found = modal_wall(make(), cells, count, lobatto(3), "joints" if count == 6 else "elements")
     system = system_of(found)
-    jump = nodal_jump(found.interface, len(found.mesh.points))
+    jump = nodal_jump(found.elements, len(found.mesh.points))
     rng = np.random.default_rng(1)
     motion = rng.normal(size=len(system.mass))
     motion[np.isinf(system.mass)] = 0.0
@@ -128,7 +128,7 @@ def test_elements_of_a_wall_of_equal_blocks_come_in_long_runs() -> None:
     assert (order == np.arange(len(order))).all()
     assert np.diff(start).sum() == len(found.mesh.joint)
     assert np.diff(start).mean() > 4
-    assert (np.sort(found.interface.element) == np.arange(len(found.mesh.joint))).all()
+    assert (np.sort(found.elements.element) == np.arange(len(found.mesh.joint))).all()
 
 
 @pytest.mark.parametrize("kind", ["corners", "pinned-corners"])

@@ -15,7 +15,7 @@ from skfem import Basis, ElementTriP1, MeshTri
 
 from dem import jump_operator, mass_matrix_diagonal
 from dem.rigid_system import contact_points
-from fem_interface import interface, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
+from fem_interface import joint_elements, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
 from fem_interface.element_order import modal_wall
 from fem_interface.modes import rigid_motions
 from fem_interface.templates import nodes_of, triangles_of
@@ -52,9 +52,9 @@ def test_rigid_motions_open_joints_as_rigid_blocks_do(
     """B_fem R = B_dem at the same points, and RᵀMR = diag(m, m, J) with the consistent mass, K R = 0; all to 1e-12."""
     scene = courses(pattern, joint__mortar=MORTAR, joint__inset=inset, block__young=1e10, block__poisson=0.3)
     found = modal_wall(scene, cells, points=on)
-    mesh, points = found.mesh, found.interface.points
+    mesh, points = found.mesh, found.elements.points
     R = rigid_of_nodes(mesh, scene)
-    ours, rigid = nodal_jump(found.interface, len(mesh.points)), jump_operator(points, scene.blocks.centroid)
+    ours, rigid = nodal_jump(found.elements, len(mesh.points)), jump_operator(points, scene.blocks.centroid)
     assert np.abs(ours.opening @ R - rigid.opening.toarray()).max() < 1e-12
     assert np.abs(ours.slip @ R - rigid.slip.toarray()).max() < 1e-12
 
@@ -82,7 +82,7 @@ def same_points(ours: JointPoints, theirs: JointPoints) -> bool:
 @pytest.mark.parametrize("changes", [{}, {"joint__inset": 0.01}])
 def test_with_one_element_a_joint_the_points_are_those_of_rigid_blocks(changes: dict[str, Any]) -> None:
     scene = wall(support__kind="fixed-first-course", **changes)
-    assert same_points(modal_wall(scene).interface.points, contact_points(scene))
+    assert same_points(modal_wall(scene).elements.points, contact_points(scene))
 
 
 @pytest.mark.parametrize("cells", [1, 2, 3])
@@ -90,11 +90,11 @@ def test_with_one_element_a_joint_the_points_are_those_of_rigid_blocks(changes: 
 def test_on_whole_joints_the_points_are_those_of_rigid_blocks(make: Any, cells: int) -> None:
     """On any mesh and support, and with an inset wider than an element."""
     scene = make()
-    assert same_points(modal_wall(scene, cells, 3, points="joints").interface.points, contact_points(scene))
+    assert same_points(modal_wall(scene, cells, 3, points="joints").elements.points, contact_points(scene))
     inset = 0.45 * scene.joints.length.min()
     scene = replace(scene, joint=replace(scene.joint, inset=inset))
     for rule in (lobatto(3), gauss(2)):
-        found = modal_wall(scene, cells, 3, rule, "joints").interface
+        found = modal_wall(scene, cells, 3, rule, "joints").elements
         assert same_points(found.points, wall_points(scene, rule))
         listed = found.points.joint[found.listing]
         assert (listed == np.sort(listed)).all()
@@ -118,10 +118,10 @@ def test_jumps_are_those_of_scikit_fems_own_interpolation(
     scene = make()
     scene = replace(scene, joint=replace(scene.joint, inset=inset))
     found = modal_wall(scene, 2, 3, rule, on)
-    mesh, points = found.mesh, found.interface.points
+    mesh, points = found.mesh, found.elements.points
     assert points.area.sum() == pytest.approx(scene.thickness * scene.joints.length.sum(), rel=1e-12)
     u = np.random.default_rng(0).normal(size=mesh.points.shape)
-    jump = nodal_jump(found.interface, len(mesh.points))
+    jump = nodal_jump(found.elements, len(mesh.points))
     expected = np.zeros((len(points), 2))
     for block in range(len(scene.blocks)):
         nodes = nodes_of(mesh, block)
@@ -261,7 +261,7 @@ def test_sides_of_a_slanted_joint_may_be_apart_by_the_contact_tolerance(share: f
     shut = replace_blocks(patch(), [lower, upper])
     apart = share * shut.blocks.tolerance * math.sqrt(2)
     scene = replace_blocks(patch(), [lower, upper + [0.0, apart]])
-    found, exact = (interface(wall_mesh(each), each) for each in (scene, shut))
+    found, exact = (joint_elements(wall_mesh(each), each) for each in (scene, shut))
     assert len(found.points) == len(exact.points)
     assert found.weights == pytest.approx(exact.weights, abs=1e-3)
     assert found.points.area.sum() == pytest.approx(exact.points.area.sum(), rel=1e-3)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import runningbond as rb
+from fem_interface.element_order import modal_wall
 from runningbond.results import Outcome
 from runningbond.run_result import Result
 
@@ -85,6 +86,23 @@ def test_states_end_in_the_bracket_and_begin_at_rest_under_the_weight(model: str
             assert -state.force[ground, 0].sum() == pytest.approx(weight, rel=1e-3)
             assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
     assert (np.diff(states[0].points.joint) >= 0).all()
+
+
+def test_states_of_a_finer_mesh_are_on_its_points() -> None:
+    """The run's own points, and forces on them that bear the weight; at `lower` the push as well."""
+    result = WALL.run("fem", states=True, tolerance=0.1, cells=2, modes=6)
+    points = modal_wall(WALL.scene, 2, 6).elements.points
+    weight = 9.81 * WALL.scene.mass[WALL.scene.wall].sum()
+    first = result.states[0]
+    assert len(points) > len(result.joints)
+    for name in ("position", "area"):
+        seen, there = (np.asarray(getattr(each, name)) for each in (first.points, points))
+        assert np.sort(seen, axis=0) == pytest.approx(np.sort(there, axis=0))
+    last = next(state for state in result.states if state.multiplier == result.lower)
+    for state in (first, last):
+        ground = state.points.block[:, 1] == len(WALL.scene.blocks) - 1
+        assert -state.force[ground, 0].sum() == pytest.approx(weight, rel=1e-3)
+        assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
 
 
 def test_forces_of_the_last_rest_stand_in_the_order_of_the_joints() -> None:

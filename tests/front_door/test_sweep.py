@@ -2,6 +2,7 @@
 
 import runpy
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,9 @@ import pytest
 
 import runningbond as rb
 from runningbond.compare import models, tasks
+from runningbond.compare.fingerprint import fingerprint
 from runningbond.results import Outcome
+from runningbond.scene import Action, Array, Forces, Indices, Scene
 
 WALL = rb.Wall.courses(
     [[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0, friction=0.4
@@ -101,6 +104,48 @@ def test_a_changed_load_of_ones_own_is_computed_anew(tmp_path: Path) -> None:
         push = runpy.run_path(str(tmp_path / "push.py"))["Push"]
         table = rb.sweep(WALL, {"load.live": [push()]}, "limit", folder=tmp_path / "kept", jobs=1)
         assert np.asarray(table["multiplier"]) == pytest.approx([0.4 / factor])
+
+
+class Gust(Action):
+    """A push on all blocks by a function of their height, and what no force tells."""
+
+    def __init__(self, profile: Callable[[Array], Array], *record: Array) -> None:
+        self.profile, self.record = profile, record
+
+    def forces(self, scene: Scene) -> Forces:
+        """The push, to the right."""
+        return Forces.on(scene, np.outer(self.profile(scene.blocks.centroid[:, 1]), [1.0, 0.0]))
+
+
+class ReadLeft(Gust):
+    """The same, with displacements read at another block."""
+
+    def control(self, scene: Scene) -> tuple[Indices, Array, Array]:
+        """The first block, at the origin."""
+        return np.array([0]), np.zeros(2), np.array([1.0, 0.0])
+
+
+ReadLeft.__name__ = "Gust"
+
+
+def test_a_load_of_ones_own_is_known_by_what_it_does_and_not_by_where_it_lies() -> None:
+    def key(load: Gust) -> str:
+        return fingerprint(WALL.with_({"load.live": load}).scene, "limit", 0.01)
+
+    def gust(factor: float = 1.0, kind: type[Gust] = Gust, last: float = 0.0) -> Gust:
+        return kind(lambda height: 1.0 + factor * height, np.append(np.zeros(2000), [last, 0.0, 0.0, 0.0]))
+
+    assert key(gust()) == key(gust())
+    others = (gust(2.0), gust(kind=ReadLeft), gust(last=1.0))
+    assert len({key(gust()), *map(key, others)}) == 4
+
+
+def test_a_model_of_ones_own_may_be_swept(tmp_path: Path) -> None:
+    """Exact: the monolith slides at λ = tan φ."""
+    model = runpy.run_path(str(Path(__file__).parents[2] / "examples" / "own_model.py"))["MONOLITH"]
+    for _ in range(2):
+        table = rb.sweep(WALL, {"joint.friction": [0.2, 0.3]}, model, folder=tmp_path, jobs=1)
+        assert np.asarray(table["multiplier"]) == pytest.approx([0.2, 0.3])
 
 
 def test_an_unknown_model_is_refused_at_once() -> None:

@@ -32,7 +32,7 @@ def rigid_cell(scene: Scene) -> tuple[Array, int]:
 def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> tuple[Array, int]:
     """The same of blocks in triangles, in as many modes as `fem` takes."""
     wall = modal_wall(scene, cells, modes, RULE)
-    jump = nodal_jump(wall.interface, len(wall.mesh.points))
+    jump = nodal_jump(wall.elements, len(wall.mesh.points))
     shapes, translations, stiffness = [], [], []
     for block in range(len(scene.blocks)):
         template = wall.place[block, 0]
@@ -47,7 +47,7 @@ def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount | None = None
     spread = _spread(scene, inside, images, shapes, translations)
     own = np.concatenate([stiffness[block] for block in inside])
     opening, slip = jump.opening @ spread, jump.slip @ spread
-    return _condensed(scene, wall.interface.points, inside, opening, slip, own), len(own)
+    return _condensed(scene, wall.elements.points, inside, opening, slip, own), len(own)
 
 
 def _images(scene: Scene) -> tuple[Indices, Indices]:

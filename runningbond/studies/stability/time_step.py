@@ -244,7 +244,7 @@ def too_long(model: str, times: float = MUCH) -> Outcome:
     scene = published_scene(WALL)
     if model == "fem":
         wall = modal_wall(scene)
-        system, order = system_of(wall), wall.interface.listing
+        system, order = system_of(wall), wall.elements.listing
     else:
         system, order = rigid_system(scene), np.argsort(contact_points(scene).joint, kind="stable")
     step = times * 2 / float(vibrations(system)[0][-1])
