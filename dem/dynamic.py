@@ -12,14 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from runningbond.contacts.outline import Outline
-from runningbond.dynamics import (
-    U_CRIT,
-    Observer,
-    Run,
-    collapse_by_steps,
-    no_observer,
-    pushover_curve,
-)
+from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome

@@ -60,11 +60,11 @@ def modal_wall(
     points: PointsOn = "elements",
     cracks: Cracks = "joints",
 ) -> ModalWall:
-    """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_system`."""
-    result = pieces(scene, wall_mesh(scene, cells), cracks)
-    joints = joint_elements(result.mesh, result.scene, rule, points)
+    """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_interface.model.fem`."""
+    parts = pieces(scene, wall_mesh(scene, cells), cracks)
+    joints = joint_elements(parts.mesh, parts.scene, rule, points)
     if modes is None:
         modes = BENDING if cracks == "joints" else "all"
-    wall = ModalWall(result, templates(result.mesh, result.scene, modes), joints)
+    wall = ModalWall(parts, templates(parts.mesh, parts.scene, modes), joints)
     order, _ = element_runs(wall)
     return replace(wall, elements=joints.arranged(order))

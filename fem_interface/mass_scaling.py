@@ -88,7 +88,7 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
     kinds = min(_all_kinds(wall), key=_rigid_bound)
     if mass_scaling:
         square = _smallest(kinds, damping)
-        fit = _unslowed(wall, square)
+        fit = _square_to_scale_for(wall, square)
         if fit > square:
             square = _smallest(kinds, damping, fit)
     else:
@@ -112,8 +112,8 @@ def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> f
     return high
 
 
-def _unslowed(wall: ModalWall, square: float) -> float:
-    """An ω² from `square` up that masses may be scaled for, so that the lowest vibrations stay as they are.
+def _square_to_scale_for(wall: ModalWall, square: float) -> float:
+    """An ω² from `square` up for which masses may be scaled, so that the lowest frequencies stay as they are.
 
     It is the smallest, but where what is lost falls faster than 1 / ω², in walls of a few blocks.
     """

@@ -41,30 +41,12 @@ def fem_system(
     mass_scaling: bool = True,
     energies: Energies = "given",
 ) -> BlockSystem:
-    """Set up the deformable blocks of a scene.
+    """Set up the deformable blocks of a scene; see `fem_interface.model.fem` for what is not said here.
 
     Parameters
     ----------
-    scene
-        The scene; its joints need a stiffness, its blocks one too if they deform.
-    cells
-        Cells in half a block along the course, and in a block's height.
-    modes
-        Modes of each block (`ModeCount`): 10 by default, all where blocks may crack.
-    rule
-        Quadrature rule of the joints; two Lobatto points where none is given.
-    points
-        Whether the rule is laid on each joint element or on each joint whole, as for rigid blocks.
-    cracks
-        Whether blocks stay whole or may crack between all of their triangles, at the scene's `inner_joint`.
-    loads
-        Whether loads proportional to mass act as it does, or at inner nodes.
     damping
         Viscous damping ratio of the deformable modes.
-    mass_scaling
-        Make deformable modes heavy enough not to limit the time step.
-    energies
-        Where the joints' fracture energies come from.
 
     Raises
     ------
@@ -83,7 +65,7 @@ def system_of(
     mass_scaling: bool = True,
     energies: Energies = "given",
 ) -> BlockSystem:
-    """Block system of a wall in modal coordinates; see `fem_system`."""
+    """Set up the deformable blocks of a wall in modal coordinates; see `fem_system`."""
     scene, points, pieces = wall.scene, wall.elements.points, wall.pieces
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     materials, of_joint = fractured(scene, energies)

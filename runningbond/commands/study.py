@@ -14,7 +14,7 @@ from .terminal import progress_bar, whole
 
 
 def study(*, out: Path = Path("study"), jobs: Annotated[int, Parameter(converter=whole)] = 1) -> int:
-    """Measure every model and its knobs on walls whose answer is known: error against cost.
+    """Measure every model and its parameters on walls whose answer is known: error against cost.
 
     Measurements are kept as they come: an interrupted study goes on where it was.
 
@@ -27,25 +27,26 @@ def study(*, out: Path = Path("study"), jobs: Annotated[int, Parameter(converter
     """
     if jobs < 1:
         raise SceneError("--jobs", "must be a number of processes, 1 or more", jobs)
-    from runningbond.studies.accuracy import all_cases, run_study
-    from runningbond.studies.accuracy.conclusions import conclusions
-    from runningbond.studies.accuracy.page import write_page
+    from runningbond.studies.accuracy.study import STUDY, page
+    from runningbond.studies.page import write_page
+    from runningbond.studies.store import failures, run_study
 
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     console = Console(stderr=True)
     try:
         with progress_bar(console) as bar:
-            task = bar.add_task("measuring", total=len(all_cases()))
-            rows = run_study(out, jobs=jobs, progress=lambda case: bar.update(task, advance=1, description=str(case)))
+            task = bar.add_task("measuring", total=len(STUDY.cases))
+            rows = run_study(STUDY, out, jobs=jobs, progress=lambda case: bar.update(task, advance=1, description=case))
     except KeyboardInterrupt:
         console.print(
             f"Interrupted: what is measured is kept in {out}; the same command goes on.", soft_wrap=True, markup=False
         )
         return STOPPED
-    written = write_page(rows, out)
-    print("\n".join(conclusions(rows)))
+    written = write_page("speed against accuracy", page(rows, out), out, STUDY.name)
+    for sheet in STUDY.tables(rows)[:2]:
+        print(sheet.markdown())
     print(f"written: {', '.join(map(str, written))}")
-    failed = [row for row in rows if row.status == "failed"]
-    for row in failed:
-        console.print(f"{row.case}: {row.message}", markup=False)
+    failed = failures(rows)
+    for words in failed:
+        console.print(words, markup=False)
     return NO_ANSWER if failed else DONE

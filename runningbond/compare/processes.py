@@ -1,6 +1,7 @@
 """The tasks of a campaign in processes of this machine, whatever becomes of those."""
 
 import multiprocessing
+import multiprocessing.resource_tracker
 import signal
 import threading
 import warnings
@@ -38,6 +39,7 @@ def _processes(jobs: int) -> Iterator[None]:
         with parallel_config(backend="sequential"):
             yield
         return
+    multiprocessing.resource_tracker.ensure_running()  # its start unblocks what `side_by_side` blocks
     # More processes than cores gain nothing but memory.
     n_jobs = cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count()))
     with parallel_config(backend="loky", n_jobs=n_jobs, initializer=_leave_interrupts_to_the_parent), _quiet_kill():

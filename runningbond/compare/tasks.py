@@ -1,5 +1,6 @@
 """The tasks of a campaign: one model on one scene each, and the answers to them."""
 
+import signal
 import threading
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -76,4 +77,10 @@ def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:
     """Answers as they come, from wherever joblib has been told to send its tasks."""
     # All of them at once, for the sake of workers that join a cluster later.
     run = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="all")
-    yield from run(delayed(Task.run)(task) for task in tasks)
+    # A process that starts inherits the mask: Ctrl-C reaches all of a terminal's processes, and the parent ends them.
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        answers = run(delayed(Task.run)(task) for task in tasks)
+    finally:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    yield from answers

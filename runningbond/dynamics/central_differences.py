@@ -10,71 +10,33 @@ with v half a step behind q (Cundall & Strack 1979; Munjiza 2004).
 """
 
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
-from .system import Kernel, Restraint
+from .system import Kernel
 
 kernel = compiled.kernel
 
 
-class Modes(NamedTuple):
-    """What resists each mode, ``(nd,)`` each.
+Modes: TypeAlias = tuple[Array, Array, Array]
+"""Stiffness [N/m], viscosity [N s/m] and one over the mass [1/kg] of each mode, ``(nd,)``; the last zero where held."""
 
-    Parameters
-    ----------
-    stiffness, viscosity : (nd,) float
-        Of the bodies themselves [N/m, N s/m].
-    mobility : (nd,) float
-        One over the mass [1/kg]; zero where a mode is held.
-    """
+StateArrays: TypeAlias = tuple[Array, Array, Array, Array, Array]
+"""Motion, velocity, history, damped and unbalanced of a `State`, which the steps write to."""
 
-    stiffness: Array
-    viscosity: Array
-    mobility: Array
+Work: TypeAlias = tuple[Array, Array, Array, Array, Array]
+"""Buffers: motions ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
 
+Watch: TypeAlias = tuple[int, float, Array]
+"""Steps taken before; energy [J] that the state was given but for the work of loads that are constant now, inf where
+it is not watched; the largest energy supplied so far ``(1,)`` [J], brought up to date.
 
-class StateArrays(NamedTuple):
-    """The arrays of a `State` that the steps write to."""
-
-    motion: Array
-    velocity: Array
-    history: Array
-    damped: Array
-    force: Array
-
-
-class Work(NamedTuple):
-    """Buffers of one run: motions ``(nd,)``, then jumps [m] and tractions [Pa] of the points ``(np,)``."""
-
-    moved: Array
-    opening: Array
-    slip: Array
-    normal: Array
-    tangential: Array
-
-
-class Watch(NamedTuple):
-    """What the energy is compared with.
-
-    Parameters
-    ----------
-    steps : int
-        Steps taken before.
-    given : float
-        Energy [J] that the state was given, but for the work of loads that are constant now; inf watches nothing.
-    most : (1,) float
-        Largest energy supplied so far [J], brought up to date.
-    """
-
-    steps: int
-    given: float
-    most: Array
-
+These are plain tuples: to take a named one apart costs a call of the kernels a tenth of the steps of a small wall.
+"""
 
 LOOK = 100
 """Steps between two looks at the energy."""
@@ -161,19 +123,73 @@ def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> tuple[Kernel, Kernel]:
-    """Compile the two loops of a model: at a constant load, and at a prescribed work-conjugate speed.
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
+    """Compile the loop of a model: at a constant load, or `driven` at a prescribed work-conjugate speed.
 
     Returns
     -------
-    hold, drive
-        ``hold(steps, dt, local, joint_viscosity, load, …)`` and ``drive(…, load, live, speed, …)``. Both return the
-        steps taken and whether no more energy is spent than was supplied; they look every `LOOK` steps of the state's
-        life, and stop where it is not so. The latter also returns the sum of the multipliers of its steps and the
-        work of the live load.
+    step
+        ``step(steps, dt, local, joint_viscosity, load, live, speed, …)`` holds a constant load; driven, it keeps
+        live · v at the speed [W] besides, by a multiplier of the live load. Returns the steps taken, whether no more
+        energy is spent than was supplied, the sum of the multipliers and the work of the live load. It looks at the
+        energy every `LOOK` steps of the state's life, and stops where it does not add up.
     """
     respond = _responder(gather, law, scatter)
-    return _holder(respond), _driver(respond)
+
+    @kernel
+    def step(
+        steps: int,
+        dt: float,
+        local: float,
+        joint_viscosity: float,
+        load: Array,
+        live: Array,
+        speed: float,
+        geometry: Any,
+        parameters: Any,
+        modes: Modes,
+        restraint: tuple[Indices, Array],
+        state: StateArrays,
+        work: Work,
+        watch: Watch,
+    ) -> tuple[int, bool, float, float]:
+        stiffness, viscosity, mobility = modes
+        motion, velocity, history, damped, force = state
+        already, given, most = watch
+        response, total, worked, multiplier, before = 0.0, 0.0, 0.0, 0.0, 0.0
+        if driven:
+            for i in range(live.size):
+                response += live[i] * mobility[i] * live[i]
+        for taken in range(steps):
+            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
+            if driven:
+                pushed, before = 0.0, 0.0
+                for i in range(live.size):
+                    pushed += live[i] * mobility[i] * (force[i] - stiffness[i] * motion[i] - viscosity[i] * velocity[i])
+                    before += live[i] * velocity[i]
+                multiplier = -pushed / response
+                for i in range(live.size):
+                    force[i] += multiplier * live[i]
+            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+            if driven:
+                # Local damping acts on the live load too; what it takes from the prescribed speed is given back.
+                after = 0.0
+                for i in range(live.size):
+                    after += live[i] * velocity[i]
+                returned = (speed - after) / (dt * response)
+                for i in range(live.size):
+                    change = dt * returned * mobility[i] * live[i]
+                    velocity[i] += change
+                    motion[i] += dt * change
+                multiplier += returned
+                total += multiplier
+                worked += 0.5 * multiplier * dt * (before + speed)
+            due = (already + taken + 1) % LOOK == 0 and given < np.inf
+            if due and not _is_stable(given + worked, load, modes, state, most):
+                return taken + 1, False, total, worked
+        return steps, True, total, worked
+
+    return step
 
 
 def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
@@ -185,7 +201,7 @@ def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
         joint_viscosity: float,
         geometry: Any,
         parameters: Any,
-        restraint: Restraint,
+        restraint: tuple[Indices, Array],
         motion: Array,
         history: Array,
         force: Array,
@@ -212,96 +228,6 @@ def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
     return respond
 
 
-def _holder(respond: Kernel) -> Any:
-    """Compile the loop at a constant load."""
-
-    @kernel
-    def hold(
-        steps: int,
-        dt: float,
-        local: float,
-        joint_viscosity: float,
-        load: Array,
-        geometry: Any,
-        parameters: Any,
-        modes: Modes,
-        restraint: Restraint,
-        state: StateArrays,
-        work: Work,
-        watch: Watch,
-    ) -> tuple[int, bool]:
-        stiffness, viscosity, mobility = modes
-        motion, velocity, history, damped, force = state
-        before, given, most = watch
-        for step in range(steps):
-            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
-            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
-            if (before + step + 1) % LOOK == 0 and given < np.inf and not _is_stable(given, load, modes, state, most):
-                return step + 1, False
-        return steps, True
-
-    return hold
-
-
-def _driver(respond: Kernel) -> Any:
-    """Compile the loop at a prescribed work-conjugate speed."""
-
-    @kernel
-    def drive(
-        steps: int,
-        dt: float,
-        local: float,
-        joint_viscosity: float,
-        load: Array,
-        live: Array,
-        speed: float,
-        geometry: Any,
-        parameters: Any,
-        modes: Modes,
-        restraint: Restraint,
-        state: StateArrays,
-        work: Work,
-        watch: Watch,
-    ) -> tuple[int, bool, float, float]:
-        stiffness, viscosity, mobility = modes
-        motion, velocity, history, damped, force = state
-        already, given, most = watch
-        response = 0.0
-        for i in range(live.size):
-            response += live[i] * mobility[i] * live[i]
-        total = 0.0
-        worked = 0.0
-        for step in range(steps):
-            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
-            pushed = 0.0
-            before = 0.0
-            for i in range(live.size):
-                pushed += live[i] * mobility[i] * (force[i] - stiffness[i] * motion[i] - viscosity[i] * velocity[i])
-                before += live[i] * velocity[i]
-            multiplier = -pushed / response
-            for i in range(live.size):
-                force[i] += multiplier * live[i]
-            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
-            # Local damping acts on the live load too; what it takes from the prescribed speed is given back.
-            after = 0.0
-            for i in range(live.size):
-                after += live[i] * velocity[i]
-            returned = (speed - after) / (dt * response)
-            for i in range(live.size):
-                change = dt * returned * mobility[i] * live[i]
-                velocity[i] += change
-                motion[i] += dt * change
-            multiplier += returned
-            total += multiplier
-            worked += 0.5 * multiplier * dt * (before + speed)
-            due = (already + step + 1) % LOOK == 0 and given < np.inf
-            if due and not _is_stable(given + worked, load, modes, state, most):
-                return step + 1, False, total, worked
-        return steps, True, total, worked
-
-    return drive
-
-
 def work_arrays(n_modes: int, n_points: int) -> Work:
     """Buffers for so many modes and points."""
-    return Work(np.zeros(n_modes), *(np.zeros(n_points) for _ in range(4)))
+    return np.zeros(n_modes), np.zeros(n_points), np.zeros(n_points), np.zeros(n_points), np.zeros(n_points)

@@ -11,7 +11,7 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array
 
-from .central_differences import Modes, StateArrays, Watch, stepper, work_arrays
+from .central_differences import stepper, work_arrays
 from .contact_update import ContactUpdate, contacts_of
 from .state import State
 from .system import BlockSystem, Interface
@@ -85,7 +85,7 @@ class Run:
     ) -> None:
         self.system, self.local, self.viscous = system, local, viscous
         self._given_step = dt
-        self._modes = Modes(system.stiffness, system.viscosity, 1 / system.mass)
+        self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
         self._update = None if search is None else ContactUpdate(system, search)
         self._take_up(system.interface, None if search is None else search.undeformed)
@@ -96,8 +96,8 @@ class Run:
         self.safe_step = stable_step(interface.frequency_squared, self.viscous, self.local)
         self.dt = self._given_step or self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(interface.frequency_squared) / self.dt
-        self._hold, self._drive = stepper(interface.gather, interface.law.kernel, interface.scatter)
-        self._arrays = (interface.geometry, interface.law.parameters, self._modes, self.system.restraint)
+        self._kernels = (interface.gather, interface.law.kernel, interface.scatter)
+        self._arrays = (interface.geometry, interface.law.parameters, self._modes, tuple(self.system.restraint))
         self._work = work_arrays(len(self.system.mass), interface.law.points)
 
     def _return_to(self, state: State) -> None:
@@ -137,43 +137,36 @@ class Run:
         Unstable
             As soon as the energy that is watched does not add up; the state is left as it is then.
         """
-        load = dead * self.system.dead + multiplier * self.system.live
-        for piece in self._pieces(state, steps):
-            before = float(load @ state.motion)
-            watch = Watch(state.steps, given + state.external - before, state.supplied)
-            coefficients = (piece, self.dt, self.local, self._viscosity)
-            taken, stable = self._hold(*coefficients, load, *self._arrays, _arrays_of(state), self._work, watch)
-            state.external += float(load @ state.motion) - before
-            self._account(state, taken, stable)
+        self._advance(state, dead * self.system.dead + multiplier * self.system.live, None, steps, given)
 
     def drive(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
         """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier.
 
         `given` watches the energy as in `hold`.
         """
-        system, total = self.system, 0.0
+        return self._advance(state, self.system.dead, speed, steps, given) / steps
+
+    def _advance(self, state: State, load: Array, speed: float | None, steps: int, given: float) -> float:
+        """Take steps under a constant load, driven besides where there is a speed; the sum of the multipliers."""
+        total = 0.0
         for piece in self._pieces(state, steps):
-            before = float(system.dead @ state.motion)
-            watch = Watch(state.steps, given + state.external - before, state.supplied)
-            coefficients = (piece, self.dt, self.local, self._viscosity)
-            loads = (system.dead, system.live, speed)
-            taken, stable, multipliers, work = self._drive(
-                *coefficients, *loads, *self._arrays, _arrays_of(state), self._work, watch
-            )
+            step = stepper(*self._kernels, speed is not None)
+            before = float(load @ state.motion)
+            watch = (state.steps, given + state.external - before, state.supplied)
+            arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
+            coefficients = (piece, self.dt, self.local, self._viscosity, load, self.system.live, speed or 0.0)
+            taken, stable, multipliers, work = step(*coefficients, *self._arrays, arrays, self._work, watch)
             total += multipliers
-            state.external += float(system.dead @ state.motion) - before + work
-            self._account(state, taken, stable)
-        return total / steps
+            state.external += float(load @ state.motion) - before + work
+            state.steps += taken
+            state.time += taken * self.dt
+            if not stable:
+                raise Unstable(state.steps, self.dt, self.safe_step)
+        return total
 
     def given(self, state: State) -> float:
         """Energy [J] of a state that its loads did not supply: none but for one that was set in motion by hand."""
         return max(0.0, -self.ledger(state).residual)
-
-    def _account(self, state: State, taken: int, stable: bool) -> None:
-        state.steps += taken
-        state.time += taken * self.dt
-        if not stable:
-            raise Unstable(state.steps, self.dt, self.safe_step)
 
     def unbalanced(self, state: State) -> float:
         """Largest unbalanced force of the last step, relative to its block's weight."""
@@ -215,7 +208,3 @@ class Run:
             friction=float(area @ state.history[FRICTION_WORK]) + state.friction,
             damped=float(state.damped.sum() + area @ state.history[DAMPED_WORK]) + state.absorbed,
         )
-
-
-def _arrays_of(state: State) -> StateArrays:
-    return StateArrays(state.motion, state.velocity, state.history, state.damped, state.unbalanced)

@@ -185,7 +185,11 @@ class BlockSystem:
 
     def farthest(self, motion: Array, unit: float | Array = 1.0) -> float:
         """Largest translation of any body in a motion ``(nd,)``, in a unit [m] or in each body's own ``(n,)``."""
-        return float((np.abs(motion[self.rigid[:, :2]]).max(axis=1) / unit).max())
+        return float((np.abs(motion[self._translations]).max(axis=1) / unit).max())
+
+    @cached_property
+    def _translations(self) -> Indices:
+        return self.rigid[:, :2].copy()
 
 
 def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength: PointStrength) -> Array:

@@ -1,1 +1,5 @@
-"""Studies of the models themselves: error against cost, and where each method may be trusted."""
+"""Studies: cases, rows of what was measured, edges beside theory, and pages of them, on one skeleton."""
+
+from .study import Case, Chart, Edge, Part, Row, Rows, Study
+
+__all__ = ["Case", "Chart", "Edge", "Part", "Row", "Rows", "Study"]

@@ -24,9 +24,9 @@ from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.law import OPENING_BEFORE
 from runningbond.joints.softening import DAMAGE
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
-from tests.test_dem import pile, rectangle
-from tests.test_dynamics import GRAVITY
-from tests.test_finite import check_energy_of_a_fall, check_sliding
+from tests.contacts.test_finite_displacement import check_energy_of_a_fall, check_sliding
+from tests.dynamics.test_dynamics import GRAVITY
+from tests.limit.test_limit import pile, rectangle
 from tests.walls import panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}

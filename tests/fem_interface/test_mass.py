@@ -22,9 +22,9 @@ from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.controls import ramp
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError
-from runningbond.studies.stability.elastic import elastic_stiffness as of_modes
-from runningbond.studies.stability.elastic import vibrations
-from tests.test_dem import rectangle
+from runningbond.studies.walls import elastic_stiffness as of_modes
+from runningbond.studies.walls import vibrations
+from tests.limit.test_limit import rectangle
 from tests.walls import panel
 
 from .nodal_steps import NodalSteps

@@ -1,4 +1,4 @@
-"""The knobs of each model, and what they are turned to: one thing at a time, beside the model as it is."""
+"""The parameters of each model that are varied, one at a time, beside the model as it is."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from runningbond.joints import gauss, lobatto
 
 VARIED = ("stack-of-5", "wall-w1-inset", "wall-w3-inset", "panel-02")
-"""Walls on which knobs are turned."""
+"""Walls on which parameters are varied."""
 
 COLLAPSE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem")
 """Models that answer for any wall, in the order of their cost."""
@@ -16,80 +16,58 @@ MODES: dict[str, dict[str, Any]] = {str(count): {"modes": count} for count in (3
 
 
 @dataclass(frozen=True)
-class Knob:
-    """A knob of some models.
+class Parameter:
+    """A parameter of some models, arguments of the model by the name of each setting, and walls on which it is varied.
 
-    Parameters
-    ----------
-    name
-        What it is called in tables and charts.
-    models
-        Models that have it.
-    settings
-        Arguments of the model by the name of each setting.
-    walls
-        Walls on which it is turned.
-    dear
-        Settings that are too dear for walls other than those of `cheap`.
+    Settings that are too expensive for most walls are tried on those of `cheap` alone.
     """
 
     name: str
     models: tuple[str, ...]
     settings: dict[str, dict[str, Any]]
     walls: tuple[str, ...] = VARIED
-    dear: tuple[str, ...] = field(default=())
+    expensive: tuple[str, ...] = field(default=())
 
     @property
     def cheap(self) -> tuple[str, ...]:
-        """Walls that dear settings are tried on."""
+        """Walls on which expensive settings are tried."""
         return self.walls[:2]
 
 
-KNOBS = (
-    Knob("joint rule", ("fem",), {"Simpson": {"rule": lobatto(3)}, "Gauss 2": {"rule": gauss(2)}}),
-    Knob("cells", ("fem",), {"2": {"cells": 2}, "4": {"cells": 4}}, dear=("4",)),
-    Knob("modes", ("fem",), MODES),
-    Knob("mass scaling", ("fem",), {"off": {"mass_scaling": False}}, dear=("off",)),
-    Knob(
-        "tolerance",
-        ("dem-static", "dem-dynamic", "fem"),
-        {"5 %": {"tolerance": 0.05}, "2 %": {"tolerance": 0.02}, "0.5 %": {"tolerance": 0.005}},
-    ),
-    Knob("first step", ("dem-static",), {"half": {"first_step": 0.015}, "double": {"first_step": 0.06}}),
-    Knob("first step", ("dem-dynamic", "fem"), {"half": {"first_step": 0.025}, "double": {"first_step": 0.1}}),
-    Knob(
-        "driven, steps",
-        ("dem-dynamic", "fem"),
-        {"25,000": {"drive": 25_000}, "100,000": {"drive": 100_000}, "400,000": {"drive": 400_000}},
-        dear=("400,000",),
-    ),
-    Knob(
-        "speed",
-        ("dem-dynamic", "fem"),
-        {"4 mm/s": {"speed": 4e-3}, "16 mm/s": {"speed": 1.6e-2}},
-        walls=("turned-block",),
-    ),
-    Knob("displacements", ("dem-dynamic", "fem"), {"small": {"drive": 100_000}}, walls=("turned-block",)),
-    Knob("modes", ("fem",), MODES, walls=("cell-1e10", "cell-1e11", "cell-1e12")),
-    Knob("modes", ("fem",), {"3": {"modes": 3}}, walls=("cell-shear",)),
-    Knob(
-        "mass scaling",
-        ("fem",),
-        {"off": {"mass_scaling": False}},
-        walls=("stiff-1e9", "stiff-1e10", "stiff-1e11", "stiff-1e12", "stiff-1e13"),
-    ),
+IN_MOTION = ("dem-dynamic", "fem")
+OFF: dict[str, dict[str, Any]] = {"off": {"mass_scaling": False}}
+RULES = {"Simpson": {"rule": lobatto(3)}, "Gauss 2": {"rule": gauss(2)}}
+STEPS = {f"{steps:,}": {"drive": steps} for steps in (25_000, 100_000, 400_000)}
+BRACKETS = {f"{100 * width:g} %": {"tolerance": width} for width in (0.05, 0.02, 0.005)}
+SPEEDS = {"4 mm/s": {"speed": 4e-3}, "16 mm/s": {"speed": 1.6e-2}}
+STIFF = tuple(f"stiff-1e{power}" for power in range(9, 14))
+
+PARAMETERS = (
+    Parameter("joint rule", ("fem",), RULES),
+    Parameter("cells", ("fem",), {"2": {"cells": 2}, "4": {"cells": 4}}, expensive=("4",)),
+    Parameter("modes", ("fem",), MODES),
+    Parameter("mass scaling", ("fem",), OFF, expensive=("off",)),
+    Parameter("tolerance", ("dem-static", *IN_MOTION), BRACKETS),
+    Parameter("first step", ("dem-static",), {"half": {"first_step": 0.015}, "double": {"first_step": 0.06}}),
+    Parameter("first step", IN_MOTION, {"half": {"first_step": 0.025}, "double": {"first_step": 0.1}}),
+    Parameter("driven, steps", IN_MOTION, STEPS, expensive=("400,000",)),
+    Parameter("speed", IN_MOTION, SPEEDS, walls=("turned-block",)),
+    Parameter("displacements", IN_MOTION, {"small": {"drive": 100_000}}, walls=("turned-block",)),
+    Parameter("modes", ("fem",), MODES, walls=("cell-1e10", "cell-1e11", "cell-1e12")),
+    Parameter("modes", ("fem",), {"3": {"modes": 3}}, walls=("cell-shear",)),
+    Parameter("mass scaling", ("fem",), OFF, walls=STIFF),
 )
-"""What is turned, and where. As they are, blocks of `fem` have two Lobatto points an element, one cell and ten modes.
+"""What is varied, and where. As they are, blocks of `fem` have two Lobatto points an element, one cell and ten modes.
 
 Three Lobatto points are Simpson's rule.
 """
 
 
-def settings_of(model: str, knob: str, setting: str) -> dict[str, Any]:
-    """Arguments that turn a knob of a model to a setting; none where no knob is named."""
-    if not knob:
+def settings_of(model: str, parameter: str, setting: str) -> dict[str, Any]:
+    """Arguments of a model by which a parameter has a setting; none where no parameter is named."""
+    if not parameter:
         return {}
-    for found in KNOBS:
-        if found.name == knob and model in found.models and setting in found.settings:
-            return found.settings[setting]
-    raise KeyError(f"{model} has no knob {knob!r} with {setting!r}")
+    for result in PARAMETERS:
+        if result.name == parameter and model in result.models and setting in result.settings:
+            return result.settings[setting]
+    raise KeyError(f"{model} has no parameter {parameter!r} with {setting!r}")

@@ -1,10 +1,11 @@
-"""Questions that a model is asked about a wall, with its knobs turned."""
+"""Questions that a model is asked about a wall, as it is or with a parameter changed."""
 
 import statistics
 import time
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, TypeAlias
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,7 +25,6 @@ from runningbond.limit import limit
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, Stiffness
 
-from .answer import Answer
 from .cell import deformable_cell, rigid_cell
 from .walls import TURNED, Question
 
@@ -41,7 +41,20 @@ SOFT = 1e10
 """Stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner."""
 
 
-Asked: TypeAlias = Callable[..., Answer]
+class Answer(NamedTuple):
+    """What a model said, as columns of the study's table; the value that was asked for may have a bracket.
+
+    `status` is that of `runningbond.results.Outcome`, or ``not applicable`` where the model has nothing to say.
+    """
+
+    status: str
+    value: float | None = None
+    lower: float | None = None
+    upper: float | None = None
+    dofs: int | None = None
+    steps: int | None = None
+    message: str = ""
+
 
 MODELS: dict[str, Callable[..., Outcome]] = {
     "homog": homog,
@@ -51,20 +64,11 @@ MODELS: dict[str, Callable[..., Outcome]] = {
     "dem-dynamic": dem_dynamic,
     "fem": fem,
 }
+"""Models as functions that take the arguments of `parameters`."""
 
 
 def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> Answer:
-    """Ask a model a question about a scene.
-
-    Parameters
-    ----------
-    question, model
-        What is asked, and whom.
-    scene
-        The scene.
-    settings
-        Arguments of the model, from `knobs`.
-    """
+    """Ask a model a question about a scene, with arguments of the model from `parameters`."""
     try:
         return QUESTIONS[question](model, scene, **settings)
     except SceneError as reason:
@@ -74,16 +78,16 @@ def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) 
 def _collapse(model: str, scene: Scene, **settings: Any) -> Answer:
     if "drive" in settings:
         return _driven(model, scene, settings["drive"])
-    found = MODELS[model](scene, **settings)
-    return Answer(found.status, found.multiplier, found.lower, found.upper, found.dofs, found.steps, found.message)
+    said = MODELS[model](scene, **settings)
+    return Answer(said.status, said.multiplier, said.lower, said.upper, said.dofs, said.steps, said.message)
 
 
 def _driven(model: str, scene: Scene, steps: int) -> Answer:
     """The peak of the curve under work-conjugate displacement control, at a speed that some steps give."""
     system = _system(model, scene)
-    found = _drive(system, scene, DRIVEN * scene.block_size, steps)
+    result = _drive(system, scene, DRIVEN * scene.block_size, steps)
     speed = f"largest λ while driven {1e3 * DRIVEN * scene.block_size:.3g} mm"
-    return Answer("collapse", found.peak, None, None, system.freedoms, found.state.steps, speed)
+    return Answer("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
 
 
 def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:
@@ -121,30 +125,17 @@ def _read_off(turned: Array, multiplier: Array, dofs: int, steps: int | None) ->
     return Answer("collapse", value, None, None, dofs, steps, f"curve scatters by {scatter:.1e}")
 
 
-def _compression(model: str, scene: Scene, **settings: Any) -> Answer:
-    return _modulus(1, model, scene, **settings)
-
-
-def _shear(model: str, scene: Scene, **settings: Any) -> Answer:
-    return _modulus(2, model, scene, **settings)
-
-
 def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
     """A2222 or A1212 of a periodic cell; the energy of a shear E12 is 4 A1212 / 2."""
     if model == "homog":
         joint = joint_stiffness(scene.joint)
         assert scene.bond is not None
-        moduli = elastic_moduli(
-            scene.bond.width,
-            scene.bond.height,
-            bed_normal=joint.normal,
-            bed_shear=joint.shear,
-            head_normal=joint.normal,
-            head_shear=joint.shear,
-        )
+        springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
+        springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
+        moduli = elastic_moduli(scene.bond.width, scene.bond.height, **springs)
         return Answer("elastic", (moduli.a2222, moduli.a1212)[which - 1])
-    found, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
-    return Answer("elastic", float(found[which, which]) / (1, 1, 4)[which], dofs=dofs)
+    result, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
+    return Answer("elastic", float(result[which, which]) / (1, 1, 4)[which], dofs=dofs)
 
 
 def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
@@ -163,10 +154,10 @@ def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
     return Answer("measured", middle, min(costs), max(costs), system.freedoms, STEPS, step)
 
 
-QUESTIONS: dict[Question, Asked] = {
+QUESTIONS: dict[Question, Callable[..., Answer]] = {
     "collapse": _collapse,
     "turned block": _turned,
-    "compression": _compression,
-    "shear": _shear,
+    "compression": partial(_modulus, 1),
+    "shear": partial(_modulus, 2),
     "physical second": _physical_second,
 }

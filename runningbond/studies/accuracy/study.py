@@ -1,152 +1,113 @@
-"""The study: every case measured, kept in its table as it comes, and not again where it is there."""
+"""The study of accuracy against cost: its cases, and how its page tells of them."""
 
-import hashlib
-import statistics
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import replace
-from functools import cache
+from collections.abc import Iterator
 from pathlib import Path
-from threading import Event
-from typing import Any
 
+from fem_interface.modes import BENDING
 from runningbond.compare.fingerprint import fingerprint
-from runningbond.results import write_atomically
+from runningbond.studies import Case, Part, Rows, Study
+from runningbond.studies.apart import LONGEST
+from runningbond.studies.page import Block, draw_charts, edges_sheet
+from runningbond.studies.store import failures, table_path
+from runningbond.studies.walls import INSET
 
-from .cases import Case, all_cases, wall_of
-from .measure import Killed, Measurement, TooLong, machine, measure_apart
-from .parameters import settings_of
-from .rows import FAILED, TOO_LONG, Row, csv_text, read_csv, with_errors
+from .charts import CHARTS
+from .measure import CHEAP, REFERENCE, RUNS, machine, measure
+from .parameters import COLLAPSE, PARAMETERS, settings_of
+from .tables import fits, tables
+from .walls import accuracy_walls, all_walls, growth_walls, stiffness_walls
 
-TABLE = "study.csv"
+ASKED = {
+    "collapse": ("homog", *COLLAPSE),
+    "turned block": ("dem-dynamic", "fem"),
+    "compression": ("homog", "dem-static", "fem"),
+    "shear": ("homog", "dem-static", "fem"),
+}
+"""Models that are asked each question."""
 
-SOURCES = ("walls", "knobs", "cell", "questions", "measure")
-"""Modules beside the computing rooms that change what is measured."""
-
-
-def run_study(
-    folder: Path,
-    *,
-    cases: Sequence[Case] | None = None,
-    jobs: int = 1,
-    measure: Callable[[Case, Event], Measurement] = measure_apart,
-    progress: Callable[[Case], None] = lambda case: None,
-) -> list[Row]:
-    """Measure what is not in the table yet.
-
-    Parameters
-    ----------
-    folder
-        Where the table is kept. A row is good for as long as its scene, settings, code and machine are the same.
-    cases
-        What to measure; everything where nothing is said.
-    jobs
-        Processes side by side. More than one share caches and memory, and their seconds are worth less.
-    measure
-        Measures one case, and gives up where the event is set.
-    progress
-        Called with each case that is done.
-
-    Returns
-    -------
-    list of Row
-        The whole table.
-    """
-    cases = all_cases() if cases is None else cases
-    kept = _kept(folder / TABLE)
-    left = [case for case in cases if case not in kept]
-    for case in cases:
-        if case in kept:
-            progress(case)
-    for row in _measured(left, jobs, measure):
-        kept[row.case] = row
-        _keep(kept, folder)
-        progress(row.case)
-    return _keep(kept, folder)
+HOW = (
+    "Walls with an exact answer are a block that topples, one that slides and a stack, λ = min(tan φ, b / (n h)); a "
+    "block that has turned by θ, λ = tan(α − θ); and periodic cells. W1 – W3 of Ferris & Tin-Loi have their contacts "
+    f"{1e3 * INSET:g} mm in from the ends of the joints, with which λ is unique, and are published to four digits. Of "
+    "the panels the answer is the interval of loads that `limit-nonassociated` certifies: the error is the distance "
+    "from it, and zero inside, where nothing can be said against any load; smaller loads are not excluded. A model is "
+    "not judged by its own certificates.",
+    "The error is that of the multiplier which a model reports: the middle of a bracket of `dem-dynamic` and `fem`, "
+    "the lower end of one of `limit-nonassociated` and `dem-static`. Parameters are changed one at a time: without, "
+    f"`fem` has two Lobatto points a joint element, one cell in half a block, {BENDING} modes and scaled masses, "
+    "brackets are 1 % wide, and loads are held until the wall rests or falls. *Driven* walls are pushed at a "
+    "prescribed work-conjugate speed instead, in so many time steps over a twentieth of a block if all of it moved "
+    "as far, and λ is the largest on the way.",
+    "Every case runs in a process of its own, on one thread, after an untimed run that loads the kernels: "
+    f"{RUNS} times, or once if it takes more than {CHEAP:g} s; seconds are medians, of the processor. Ratios are to "
+    f"`{REFERENCE}` on the same wall, run in turn in the same process. A run that would take more than {LONGEST} s is "
+    "broken off and left out.",
+)
+"""How the study is made, for its reader."""
 
 
-def key_of(case: Case) -> str:
-    """Digest of all that a case's row depends on: scene, settings, code, libraries and machine."""
-    settings = settings_of(case.model, case.knob, case.setting)
-    what = f"{case.part} {case.model} {settings!r} {_own_digest()} {machine()}"
-    return fingerprint(wall_of(case).scene, what, 0.0)
+def _accuracy() -> Iterator[Case]:
+    """Every model on every wall whose answer is known, as it is and with each parameter that is varied there."""
+    for name, wall in accuracy_walls().items():
+        for model in ASKED[wall.question]:
+            if model == "homog" and wall.question == "collapse" and wall.known != "certified":
+                continue  # a continuum of one block, or one that is no running bond, says nothing
+            if name != "cell-shear" or model != "fem":  # deformable blocks have no closed form
+                yield name, model, "", ""
+            yield from _varied(name, model)
 
 
-@cache
-def _own_digest() -> str:
-    digest = hashlib.sha256()
-    for name in SOURCES:
-        digest.update((Path(__file__).parent / f"{name}.py").read_bytes())
-    return digest.hexdigest()
+def _stiffness() -> Iterator[Case]:
+    for name in stiffness_walls():
+        yield name, "fem", "", ""
+        yield from _varied(name, "fem")
+    yield name, "dem-dynamic", "", ""
 
 
-def _kept(path: Path) -> dict[Case, Row]:
-    """Rows of a table that are still good; what failed is tried again."""
-    try:
-        rows = read_csv(path.read_text(encoding="utf-8"))
-    except (OSError, TypeError, ValueError):  # not there, or damaged
-        return {}
-    known = set(all_cases())
-    return {row.case: row for row in rows if row.status != FAILED and row.case in known and row.key == key_of(row.case)}
+def _varied(wall: str, model: str) -> Iterator[Case]:
+    for parameter in PARAMETERS:
+        if model in parameter.models and wall in parameter.walls:
+            for setting in parameter.settings:
+                if setting not in parameter.expensive or wall in parameter.cheap:
+                    yield wall, model, parameter.name, setting
 
 
-def _keep(kept: dict[Case, Row], folder: Path) -> list[Row]:
-    """Write the table, whole or not at all, in the order of the study."""
-    place = {case: i for i, case in enumerate(all_cases())}
-    rows = with_errors(sorted(kept.values(), key=lambda row: place.get(row.case, len(place))))
-    write_atomically(folder / TABLE, csv_text(rows).encode())
-    return rows
+def depends(case: Case) -> str:
+    """Scene, settings and machine."""
+    wall, model, parameter, setting = case
+    return fingerprint(all_walls()[wall].scene, f"{settings_of(model, parameter, setting)!r} {machine()}", 0.0)
 
 
-def _measured(cases: Sequence[Case], jobs: int, measure: Callable[[Case, Event], Measurement]) -> Iterator[Row]:
-    """Rows as they come, from threads that each wait for a process."""
-    stop = Event()
-    with ThreadPoolExecutor(jobs) as threads:
-        tasks = [threads.submit(_row, case, measure, stop) for case in cases]
-        try:
-            for task in as_completed(tasks):
-                yield task.result()
-        finally:
-            stop.set()
-            threads.shutdown(cancel_futures=True)
+COLUMNS = ("wall", "model", "parameter", "setting")
+HERE, SHARED = Path(__file__).parent, Path(__file__).parents[1]
+SOURCES = (*(HERE / f"{name}.py" for name in ("walls", "cell", "questions", "measure")), SHARED / "walls.py")
+GROWTH = [(name, model, "", "") for name in growth_walls() for model in COLLAPSE]
+
+STUDY = Study(
+    "study",
+    "Speed against accuracy",
+    parts={
+        "accuracy": Part(COLUMNS, [*_accuracy()], measure),
+        "stiffness": Part(COLUMNS, [*_stiffness()], measure),
+        "growth": Part(COLUMNS, GROWTH, measure),
+    },
+    charts=CHARTS,
+    fits=fits,
+    tables=tables,
+    sources=SOURCES,
+    depends=depends,
+    apart=True,
+)
 
 
-def _row(case: Case, measure: Callable[[Case, Event], Measurement], stop: Event) -> Row:
-    wall = wall_of(case)
-    low, high = wall.answer or (None, None)
-    row = Row(
-        case.part,
-        case.wall,
-        wall.blocks,
-        wall.question,
-        case.model,
-        case.knob,
-        case.setting,
-        wall.known,
-        low,
-        high,
-        machine=machine(),
-        key=key_of(case),
-    )
-    try:
-        found = measure(case, stop)
-    except TooLong as reason:
-        return replace(row, status=TOO_LONG, message=str(reason))
-    except Killed as reason:
-        return replace(row, message=str(reason))
-    return replace(
-        row,
-        **vars(found.answer),
-        **_spread("wall_s", found.wall_s),
-        **_spread("cpu_s", found.cpu_s),
-        **_spread("ratio", found.ratio),
-        runs=len(found.wall_s),
-        memory_mb=found.memory_mb,
-    )
-
-
-def _spread(name: str, values: Sequence[float]) -> dict[str, Any]:
-    """Median, least and most of what was measured, if anything was."""
-    if not values:
-        return {}
-    return {name: statistics.median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
+def page(rows: Rows, folder: Path) -> list[Block]:
+    """The study's page; its charts are drawn into a folder."""
+    every = [row for own in rows.values() for row in own]
+    machines = "; ".join(sorted({row["machine"] for row in every if row.get("machine")}))
+    failed = failures(rows)
+    blocks: list[Block] = ["# Speed against accuracy", "What `runningbond study` printed.", *HOW]
+    blocks.append(f"Measured on {machines}: {len(every) - len(failed)} of {len(STUDY.cases)} cases.")
+    blocks += [f"Failed: {words}" for words in failed]
+    blocks += ["## Charts", *draw_charts(STUDY, rows, folder), "## Tables", *STUDY.tables(rows)]
+    blocks += [edges_sheet(STUDY.edges(rows)), f"Every run is a row of `{table_path(STUDY, folder).name}`."]
+    return blocks

@@ -5,10 +5,12 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Literal, TypeAlias
 
+from dem import limit_nonassociated
 from homog import elastic_moduli
 from runningbond.compare.published import published_scene
 from runningbond.joints import joint_stiffness
 from runningbond.scene import BlockMaterial, Scene, scene_from_dict
+from runningbond.studies.walls import inset_wall
 
 Known: TypeAlias = Literal["exact", "published", "certified", ""]
 """What an answer is worth; nothing where none is known."""
@@ -17,9 +19,6 @@ Question: TypeAlias = Literal["collapse", "turned block", "compression", "shear"
 """λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second."""
 
 Interval: TypeAlias = tuple[float, float]
-
-INSET = 0.02
-"""Distance of the contacts from the ends of their joints [m], with which λ of Ferris & Tin-Loi's walls is unique."""
 
 PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
 """Their λ with contacts moved in (Ferris & Tin-Loi 2001), to four digits."""
@@ -37,18 +36,9 @@ STIFF = 1e12
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A wall and what is known of it.
+    """A wall, what is asked of it, and what the answer is worth.
 
-    Parameters
-    ----------
-    scene
-        The wall.
-    question
-        What is asked.
-    known
-        What the answer is worth; a certified one is found by the study itself.
-    answer
-        The interval in which the answer lies; None where it is to be certified, or not known.
+    `answer` is the interval in which it lies; None where it is to be certified (`interval`), or not known.
     """
 
     scene: Scene
@@ -60,6 +50,22 @@ class Wall:
     def blocks(self) -> int:
         """Number of its blocks."""
         return int(self.scene.wall.sum())
+
+    def interval(self) -> Interval | None:
+        """The answer, certified by limit analysis with true friction where it is to be; None where there is none."""
+        if self.known != "certified":
+            return self.answer
+        result = limit_nonassociated(self.scene)
+        if result.status != "collapse" or result.lower is None or result.upper is None:
+            return None
+        return result.lower, result.upper
+
+
+def error(value: float, interval: Interval) -> float:
+    """Distance of a value from an interval, relative to the nearer end; zero inside."""
+    low, high = interval
+    nearer = low if value < low else high
+    return 0.0 if low <= value <= high else abs(value - nearer) / abs(nearer)
 
 
 def _exactly(scene: Scene, answer: float, question: Question = "collapse") -> Wall:
@@ -101,17 +107,15 @@ def elastic_cell(young: float, question: Question, width: float = 0.24, height: 
     joint = joint_stiffness(scene.joint)
     if question == "compression":
         return _exactly(scene, 1 / (1 / (height * joint.normal) + 1 / young), question)
-    stiffness = {"bed_normal": joint.normal, "bed_shear": joint.shear}
-    stiffness |= {"head_normal": joint.normal, "head_shear": joint.shear}
+    stiffness = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
+    stiffness |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
     return _exactly(scene, elastic_moduli(width, height, **stiffness).a1212, question)
 
 
-def inset_wall(name: str) -> Wall:
+def published_wall(name: str) -> Wall:
     """A wall of Ferris & Tin-Loi with contacts moved in."""
-    scene = published_scene(name)
     middle = PUBLISHED_INSET[name]
-    moved = replace(scene, joint=replace(scene.joint, inset=INSET))
-    return Wall(moved, "collapse", "published", (middle - DIGITS, middle + DIGITS))
+    return Wall(inset_wall(name), "collapse", "published", (middle - DIGITS, middle + DIGITS))
 
 
 def square_panel(courses: int, young: float = STIFF) -> Scene:
@@ -126,7 +130,7 @@ def accuracy_walls() -> dict[str, Wall]:
         "block-topples": pile(0.23, 0.36, 1, 0.9),
         "block-slides": pile(0.23, 0.36, 1, 0.497),
         "stack-of-5": pile(0.23, 0.1, 5, 0.9),
-        **{f"{name}-inset": inset_wall(name) for name in PUBLISHED_INSET},
+        **{f"{name}-inset": published_wall(name) for name in PUBLISHED_INSET},
         **{name: Wall(published_scene(name), known="certified") for name in ("panel-02", "panel-03", "panel-04")},
         "turned-block": turned_block(0.1, 0.4),
         **{f"cell-{young:.0e}".replace("+", ""): elastic_cell(young, "compression") for young in (1e10, 1e11, 1e12)},
@@ -148,3 +152,9 @@ def stiffness_walls() -> dict[str, Wall]:
         f"stiff-1e{power}": Wall(replace(scene, block=BlockMaterial(1800.0, 10.0**power)), "physical second")
         for power in range(9, 14)
     }
+
+
+@cache
+def all_walls() -> dict[str, Wall]:
+    """Every wall of the study, by name."""
+    return accuracy_walls() | growth_walls() | stiffness_walls()

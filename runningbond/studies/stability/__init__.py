@@ -1,11 +1,11 @@
 """Where the methods fail: every one driven over its edge on purpose, the edge measured and set beside theory.
 
-Each experiment is a module of its own with a function ``experiment()`` that returns a `Finding`.
+Each experiment is a module of its own with a `STUDY`.
 """
 
 from importlib import import_module
 
-from .finding import Edge, Entry, Finding
+from runningbond.studies import Study
 
 EXPERIMENTS = (
     "time-step",
@@ -19,16 +19,14 @@ EXPERIMENTS = (
     "displacements",
     "material-edges",
     "linear-program",
-    "machine",
 )
 """Names of the experiments, in the order in which they are told."""
 
-__all__ = ["EXPERIMENTS", "Edge", "Entry", "Finding", "find_out"]
+__all__ = ["EXPERIMENTS", "experiment"]
 
 
-def find_out(name: str) -> Finding:
-    """Do an experiment by its name."""
-    module = import_module(f"{__name__}.{name.replace('-', '_')}")
-    finding = module.experiment()
-    assert isinstance(finding, Finding)
-    return finding
+def experiment(name: str) -> Study:
+    """An experiment by its name."""
+    study = import_module(f"{__name__}.{name.replace('-', '_')}").STUDY
+    assert isinstance(study, Study)
+    return study

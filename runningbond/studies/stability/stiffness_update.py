@@ -7,28 +7,25 @@ paper's reading of l_c, the whole length of the joint, to twice that.
 """
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from functools import cache
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from dem.static import dem_static
-from dem.stiffness_update import StiffnessUpdate, UpdateStatus, stiffness_update
-from runningbond.compare.figures import COLOURS
+from dem.stiffness_update import StiffnessUpdate, stiffness_update
 from runningbond.compare.published import BARALDI, FERRIS, PUBLISHED, published_scene
 from runningbond.scene import Scene
-
-from .blocks import one_block
-from .finding import Edge, Finding
+from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
+from runningbond.studies.charts import LOOKS as LINES
+from runningbond.studies.walls import one_block
 
 WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS))
 """Dry walls: the paper's twelve panels, W1 to W3."""
 
-TENTHS = 10
-"""Shares of the collapse load that are told."""
+TENTHS, FINE = 10, 2000
+"""Shares of the collapse load that are told, and increments to the collapse load of a single block."""
 
 INCREMENTS = (1, 10, 100)
 """Load steps to the collapse load; 1 stands for each tenth of it put on at once."""
@@ -36,68 +33,53 @@ INCREMENTS = (1, 10, 100)
 ARMS = (0.5, 1.0)
 """l_c as a share of the joint's length: exact, and as the paper reads."""
 
-FINE = 2000
-"""Increments to the collapse load of a single block."""
+OUTSIDE, TOLERANCE = 1e-3, 0.02
+"""Excess of forces over Eq. 3, in the largest of them, that counts as one; width of the bracket of collapse loads."""
 
-OUTSIDE = 1e-3
-"""Excess of forces over Eq. 3, in the largest of them, that counts as one."""
-
-TOLERANCE = 0.02
-"""Relative width of the bracket of the collapse loads."""
-
-Fate: TypeAlias = UpdateStatus | Literal["outside", "unreached"]
-"""What became of a tenth of the collapse load: ``outside`` if it converged on forces that break Eq. 3."""
-
-LOOKS: dict[Fate, tuple[str, str, str]] = {
+LOOKS = {
     "converged": ("#bfe3df", "", "converged"),
     "outside": ("#6db8af", "×", "converged, forces break Eq. 3"),
-    "cycle": (COLOURS[2], "c", "cycle"),
-    "singular": (COLOURS[3], "s", "singular"),
-    "wandering": (COLOURS[0], "w", "wandering"),
+    "cycle": (LINES[2][0], "c", "cycle"),
+    "singular": (LINES[3][0], "s", "singular"),
+    "wandering": (LINES[0][0], "w", "wandering"),
     "unreached": ("white", "", "given up before"),
 }
-"""Colour, letter and words of each fate."""
+"""Colour, letter and words of what may become of a tenth of the collapse load."""
+
+BLOCKS = {
+    "topples, l_c half the joint": ((0.5, 2.0), 0.25, 0.5, 1.0),
+    "slides, l_c half the joint": ((2.0, 0.5), 0.6, 0.5, 1.0),
+    "topples, l_c the whole joint": ((0.5, 2.0), 0.25, 1.0, 2.0),
+}
+"""Width and height [m], exact λ, l_c as a share of the joint, and load borne by theory, in collapse loads."""
+
+BLOCK, PART = "load borne by one block [collapse load]", "Walls up to their collapse load"
+ENDED, BORNE, EXCESS = "ended", "borne [collapse load]", "largest excess over Eq. 3 [largest force]"
 
 
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """A wall, loaded up to its collapse load by the published algorithm.
-
-    Parameters
-    ----------
-    wall
-        Its name.
-    collapse
-        Its collapse load λ.
-    increments, arm
-        Load steps to it, and l_c as a share of each joint's length.
-    fates
-        What became of each tenth of the load.
-    borne
-        Share of the load up to which every step converged; −1 if not even the dead load's did.
-    excess
-        Largest excess over Eq. 3 with which a step converged, in its largest force.
-    solves
-        Linear systems solved.
-    """
-
-    wall: str
-    collapse: float
-    increments: int
-    arm: float
-    fates: Sequence[Fate]
-    borne: float
-    excess: float
-    solves: int
-
-    @property
-    def end(self) -> str:
-        """How it ended."""
-        return next((fate for fate in self.fates if fate in ("cycle", "singular", "wandering")), "converged")
+def block_row(what: str) -> Row:
+    """What a single block bears, in its collapse load."""
+    size, exact, arm, theory = BLOCKS[what]
+    result = stiffness_update(one_block(*size, 0.6, 1e11), exact / FINE, 2.5 * exact, arm)
+    assert result.multiplier is not None
+    return {"measured": result.multiplier / exact, "theory": theory, "allowed": 1e-3}
 
 
-def trial(wall: str, scene: Scene, collapse: float, increments: int, arm: float) -> Trial:
-    """Load a wall up to its collapse load; see `Trial`."""
+@cache
+def collapse_load(wall: str) -> float:
+    """λ of a wall by `dem_static`."""
+    outcome = dem_static(published_scene(wall), TOLERANCE)
+    assert outcome.lower is not None, outcome.message
+    return outcome.lower
+
+
+def measure(wall: str, arm: float, increments: int) -> Row:
+    """What became of each tenth of a wall's collapse load."""
+    return {"λ, dem-static": collapse_load(wall), **loaded(published_scene(wall), collapse_load(wall), arm, increments)}
+
+
+def loaded(scene: Scene, collapse: float, arm: float, increments: int) -> Row:
+    """Load a scene up to a load: how it ended, what it bore (−1 if not even its weight), and each tenth's fate."""
     if increments == 1:
         loads = collapse * np.arange(1, TENTHS + 1) / TENTHS
         runs = [stiffness_update(scene, load, load, arm) for load in loads]
@@ -109,14 +91,17 @@ def trial(wall: str, scene: Scene, collapse: float, increments: int, arm: float)
         fates = [_fate(runs[0], k * each + (k > 0), (k + 1) * each) for k in range(TENTHS)]
     lost = next((k for k, fate in enumerate(fates) if fate not in ("converged", "outside")), TENTHS)
     borne = lost / TENTHS if increments == 1 else (len(runs[0].curve) - 1) / increments
-    if not all(len(run.curve) for run in runs):
-        borne = -1.0
-    excess = max(float(run.excess.max(initial=0.0)) for run in runs)
-    return Trial(wall, collapse, increments, arm, fates, borne, excess, sum(run.solves for run in runs))
+    return {
+        ENDED: next((fate for fate in fates if fate in ("cycle", "singular", "wandering")), "converged"),
+        BORNE: borne if all(len(run.curve) for run in runs) else -1.0,
+        EXCESS: max(float(run.excess.max(initial=0.0)) for run in runs),
+        "linear systems": sum(run.solves for run in runs),
+        "fates": fates,
+    }
 
 
-def _fate(run: StiffnessUpdate, first: int, last: int | None = None) -> Fate:
-    """What became of load steps `first` to `last`, by default all."""
+def _fate(run: StiffnessUpdate, first: int, last: int | None = None) -> str:
+    """What became of load steps `first` to `last`, by default all; ``outside`` if they converged and break Eq. 3."""
     ends = run.status[first:] if last is None else run.status[first : last + 1]
     if not ends:
         return "unreached"
@@ -125,101 +110,65 @@ def _fate(run: StiffnessUpdate, first: int, last: int | None = None) -> Fate:
     return "outside" if run.excess[first : first + len(ends)].max() > OUTSIDE else "converged"
 
 
-def trials(walls: Sequence[str], increments: Sequence[int] = INCREMENTS, arms: Sequence[float] = ARMS) -> list[Trial]:
-    """Load published walls up to the collapse loads of `dem_static`, in increments of every size."""
-    found = []
-    for wall in walls:
-        scene = published_scene(wall)
-        outcome = dem_static(scene, TOLERANCE)
-        assert outcome.lower is not None, outcome.message
-        found += [trial(wall, scene, outcome.lower, n, arm) for arm in arms for n in increments]
-    return found
+def fits(rows: Rows) -> list[Edge]:
+    """How runs in steps ended, and what is borne at the least."""
+    stepped = [row for row in rows[PART] if row["steps"] > 1]
+    nowhere = {row["wall"] for row in stepped if row[BORNE] <= 0}
+    least = min(row[BORNE] for row in stepped if row["wall"] not in nowhere)
+    ends = Counter(row[ENDED] for row in stepped)
+    return [
+        Edge("share of the collapse load that every wall bears but those that bear nothing", least),
+        Edge(f"walls of {len(WALLS)} that bear nothing", len(nowhere)),
+        *(Edge(f"runs of {len(stepped)} in steps that ended: {end}", ends[end]) for end in LOOKS if ends[end]),
+        Edge("of them met forces that break Eq. 3", sum(row[EXCESS] > OUTSIDE for row in stepped)),
+        Edge(EXCESS, max(row[EXCESS] for row in rows[PART])),
+    ]
 
 
-def block_edges() -> list[Edge]:
-    """What a single block bears, in its collapse load."""
-    edges = []
-    for what, size, exact, arm, theory in (
-        ("block that topples, l_c half the joint", (0.5, 2.0), 0.25, 0.5, 1.0),
-        ("block that slides, l_c half the joint", (2.0, 0.5), 0.6, 0.5, 1.0),
-        ("block that topples, l_c the whole joint", (0.5, 2.0), 0.25, 1.0, 2.0),
-    ):
-        found = stiffness_update(one_block(*size, 0.6, 1e11), exact / FINE, 2.5 * exact, arm)
-        assert found.multiplier is not None
-        edges.append(Edge(f"load borne by a {what} [collapse load]", found.multiplier / exact, theory, 1e-3))
-    return edges
-
-
-def experiment() -> Finding:
-    """Run the published algorithm on a single block and on every dry published wall."""
-    found = trials(WALLS)
-    stepped = [each for each in found if each.increments > 1]
-    ends = Counter(each.end for each in stepped)
-    hopeless = sorted({each.wall for each in stepped if each.borne <= 0})
-    safe = min(each.borne for each in stepped if each.wall not in hopeless)
-    largest = max(each.excess for each in found)
-    broken = sum(each.excess > OUTSIDE for each in stepped)
-    told = ", ".join(f"{ends[end]} {word}" for end, word in ENDS.items())
-    return Finding(
-        "The stiffness update as published, on walls up to their collapse load",
-        HEADS,
-        [_row(each) for each in found],
-        [*block_edges(), Edge("share of the collapse load that every wall bears but those that bear nothing", safe)],
-        f"On a single block, up to its collapse. On no wall: {', '.join(hopeless)} get nowhere, the others to as "
-        f"little as {100 * safe:.0f} % of the collapse load, which `dem-static` reaches on all of them. "
-        f"Of {len(stepped)} runs in steps {told}; {broken} converged on the way on forces that break Eq. 3, "
-        f"by up to {100 * largest:.0f} % of the largest.",
-        "Each load step has its status, and the run ends with the first that is not converged but cycle, singular or "
-        "wandering; its curve stops at the last load that converged.",
-        lambda figure: draw(figure, [each for each in found if each.arm == ARMS[0]]),
-    )
-
-
-ENDS = {"cycle": "cycled", "singular": "went singular", "wandering": "wandered", "converged": "got to the end"}
-"""What is said of runs by how they ended."""
-
-HEADS = (
-    "wall",
-    "collapse load λ (dem-static)",
-    "l_c / joint",
-    "steps to it",
-    "ended",
-    "borne [collapse load]",
-    "largest excess over Eq. 3 [largest force]",
-    "linear systems",
-)
-
-
-def _row(each: Trial) -> tuple[str, float, float, str, str, str | float, float, int]:
-    steps = "each tenth at once" if each.increments == 1 else str(each.increments)
-    borne = "not even its weight" if each.borne < 0 else each.borne
-    return each.wall, each.collapse, each.arm, steps, each.end, borne, each.excess, each.solves
-
-
-def draw(figure: Figure, found: Sequence[Trial]) -> None:
+def draw(figure: Figure, rows: Rows) -> None:
     """Map of what became of every tenth of the collapse load, wall by wall, for each size of increment."""
-    axes_of = figure.subplots(1, len(INCREMENTS), sharey=True)
-    for axes, increments in zip(axes_of, INCREMENTS, strict=True):
-        shown = [each for each in found if each.increments == increments]
-        for row, each in enumerate(shown):
-            for k, fate in enumerate(each.fates):
+    figure.set_size_inches(9, 5)
+    for axes, increments in zip(figure.subplots(1, len(INCREMENTS), sharey=True), INCREMENTS, strict=True):
+        own = [row for row in rows[PART] if (row["steps"], row["l_c / joint"]) == (increments, ARMS[0])]
+        for place, row in enumerate(own):
+            for k, fate in enumerate(row["fates"]):
                 colour, letter, _ = LOOKS[fate]
                 edge = "0.85" if fate == "unreached" else "white"
-                axes.barh(row, 1 / TENTHS, left=k / TENTHS, height=0.9, color=colour, edgecolor=edge, lw=0.8)
+                axes.barh(place, 1 / TENTHS, left=k / TENTHS, height=0.9, color=colour, edgecolor=edge, lw=0.8)
                 ink = "white" if fate in ("singular", "wandering") else "black"
-                axes.text((k + 0.5) / TENTHS, row, letter, color=ink, ha="center", va="center", fontsize=7)
-        axes.set_yticks(range(len(shown)), [each.wall for each in shown], fontsize=8)
-        axes.set(xlim=(-0.01, 1.01), ylim=(len(shown) - 0.4, -0.6))
+                axes.text((k + 0.5) / TENTHS, place, letter, color=ink, ha="center", va="center", fontsize=7)
+        axes.set_yticks(range(len(own)), [row["wall"] for row in own], fontsize=8)
+        axes.set(xlim=(-0.01, 1.01), ylim=(len(own) - 0.4, -0.6))
         axes.set_xticks((0, 0.5, 1), ("0", "0.5", "1"), fontsize=8)
         axes.set_xlabel("load / collapse load", fontsize=9)
-        title = "each tenth put on at once" if increments == 1 else f"{increments} equal steps"
-        axes.set_title(title, fontsize=9)
+        axes.set_title("each tenth put on at once" if increments == 1 else f"{increments} equal steps", fontsize=9)
         axes.tick_params(length=0)
         axes.spines[:].set_visible(False)
-    met = {fate for each in found for fate in each.fates}
+    met = {fate for row in rows[PART] for fate in row["fates"]}
     handles = [
-        Patch(facecolor=colour, edgecolor="0.7", label=f"{words} ({letter})" if letter else words)
-        for fate, (colour, letter, words) in LOOKS.items()
+        Patch(facecolor=colour, edgecolor="0.7", label=f"{label} ({letter})" if letter else label)
+        for fate, (colour, letter, label) in LOOKS.items()
         if fate in met
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
+
+
+STUDY = Study(
+    "stiffness-update",
+    "The stiffness update as published, on walls up to their collapse load",
+    trusted="on a single block, up to its collapse; on no wall",
+    beyond="each load step has its status, and a run ends with the first that is `cycle`, `singular` or `wandering`; "
+    "its curve stops at the last load that converged",
+    parts={
+        BLOCK: Part(("block that",), [(what,) for what in BLOCKS], block_row),
+        PART: Part(
+            ("wall", "l_c / joint", "steps"),
+            [(wall, arm, steps) for wall in WALLS for arm in ARMS for steps in INCREMENTS],
+            measure,
+        ),
+    },
+    charts=[
+        Chart("stiffness-update", "What became of each tenth of the collapse load under the published algorithm", draw)
+    ],
+    fits=fits,
+)

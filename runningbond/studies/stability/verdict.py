@@ -5,13 +5,11 @@ units, takes it for standing up to
 
     λ − λ_c = r / w,                                                                                           (4)
 
-w the largest unbalanced force of its motion for each unit of λ − λ_c (`KnownWall.unrest`). The other way round, a
+w the largest unbalanced force of its motion for each unit of λ − λ_c (`KnownWall.unbalanced`). The other way round, a
 wall that settles or slips a little, and is caught, is taken for falling where that is far enough.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,276 +17,173 @@ from matplotlib.figure import Figure
 
 from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
-from runningbond.compare.figures import COLOURS, bare
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, load_steps, ramp, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
-from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
+from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
+from runningbond.studies.charts import looks_of
+from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wall
 
-from .finding import Edge, Entry, Finding
-from .literature import RAMP, KnownWall, rounded_wall, sliding_block, toppling_block
-
-REST = Criteria(collapse=U_CRIT).rest
-"""The suite's threshold of rest."""
-
-INTERVAL = Criteria(collapse=U_CRIT).interval
-"""The suite's steps between two looks."""
-
-RESTS = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4, 2 * REST, REST, REST / 2, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16)
-"""Thresholds of rest, in force units."""
-
-FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, U_CRIT / 2, U_CRIT, 2 * U_CRIT, 0.4, 1.6)
-"""Displacements of a collapse, in block sizes, of walls with a weight."""
-
-FARS_WEIGHTLESS = (1e-3, U_CRIT / 2, U_CRIT, 2 * U_CRIT, 0.4)
-"""The same of a wall without weight."""
-
-INTERVALS = (1, 20, INTERVAL // 2, INTERVAL, 2 * INTERVAL, 2000)
-"""Steps between two looks."""
-
+SUITE = Criteria(collapse=U_CRIT)
+WALLS = (SLIDING, TOPPLING, W1)
 WEIGHTLESS = "point-load-4"
 """The published wall without weight."""
 
-MARKERS = "os^"
-"""Marks of the walls, by their colours."""
+REST, FAR, INTERVAL = CRITERIA = ("rest [force units]", "u_crit [block sizes]", "steps between looks")
+DEFAULT: dict[str, float] = {REST: SUITE.rest, FAR: U_CRIT, INTERVAL: SUITE.interval}
+LOOSE = (0.01, 0.03)
+"""Thresholds of rest so loose that (4) is seen."""
 
-WIDTH = 0.005
-"""Relative width of the brackets."""
+TINY, LARGE = (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6), (1e-4, 1e-3, *LOOSE, 0.1, 0.3)
+RESTS = (*TINY, *(x * SUITE.rest for x in (0.5, 1, 2)), *LARGE)
+FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4, 1.6)
+FARS_WEIGHTLESS = (1e-3, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4)
+INTERVALS = (1, 20, *(int(x * SUITE.interval) for x in (0.5, 1, 2)), 2000)
+SWEEPS = {
+    **{(name, REST): RESTS for name in WALLS},
+    **{(name, FAR): FARS for name in (W1, W2)},
+    (WEIGHTLESS, FAR): FARS_WEIGHTLESS,
+    (W1, INTERVAL): INTERVALS,
+}
+"""Values of a criterion on a wall, ascending."""
 
-BUDGET = 1_000_000
-"""Steps after which a load is left undecided."""
+WIDTH, BUDGET = 0.005, 1_000_000
+"""Relative width of the brackets, and steps after which a load is left undecided."""
 
-
-@dataclass(frozen=True)
-class Trial:
-    """A search for λ with some criteria of the verdict.
-
-    Parameters
-    ----------
-    lower, upper
-        Largest load at rest, smallest in collapse; None where there was none.
-    decided
-        Whether the budget sufficed.
-    """
-
-    lower: float | None
-    upper: float | None
-    decided: bool
-
-    @property
-    def middle(self) -> float | None:
-        """Middle of the bracket; None where there is none, or the budget ran out."""
-        return None if self.lower is None or self.upper is None or not self.decided else (self.lower + self.upper) / 2
-
-    @property
-    def answer(self) -> str:
-        """What a user is told."""
-        if not self.decided:
-            return "undecided"
-        return "infeasible" if self.middle is None else "collapse"
-
-    def agrees(self, other: "Trial") -> bool:
-        """Whether both are decided, at loads that differ by less than their brackets are wide."""
-        if self.middle is None or other.middle is None:
-            return False
-        return abs(self.middle - other.middle) <= WIDTH * other.middle
+PART, SCALED = "Searches for λ, one criterion changed", "λ / λ known"
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
-    """One criterion driven from too tight to too loose.
-
-    Parameters
-    ----------
-    name
-        The wall.
-    criterion
-        What is changed, with its unit.
-    default
-        Its value in the suite.
-    trials
-        A search for each value, in ascending order.
-    known
-        λ that is known; None where none is.
-    """
-
-    name: str
-    criterion: str
-    default: float
-    trials: dict[float, Trial]
-    known: float | None = None
-
-    @property
-    def unit(self) -> float:
-        """λ that is known, or else that of the suite's own value."""
-        middle = self.trials[self.default].middle
-        assert middle is not None
-        return self.known or middle
-
-    @property
-    def plateau(self) -> tuple[float, float]:
-        """Smallest and largest value about the suite's that find the same λ."""
-        values = list(self.trials)
-        same = [self.trials[value].agrees(self.trials[self.default]) for value in values]
-        first = last = values.index(self.default)
-        while first > 0 and same[first - 1]:
-            first -= 1
-        while last < len(values) - 1 and same[last + 1]:
-            last += 1
-        return values[first], values[last]
+def scene_of(name: str) -> Scene:
+    """A wall by its name."""
+    return published_scene(name) if name == WEIGHTLESS else known_wall(name).scene
 
 
-def trial(scene: Scene, collapse: float, *, rest: float = REST, interval: int = INTERVAL) -> Trial:
-    """Search for λ with some criteria, as slowly at first as the suite does.
-
-    Parameters
-    ----------
-    scene
-        The wall.
-    collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes.
-    rest
-        Threshold of rest, in force units.
-    interval
-        Steps between two looks.
-    """
+def search(name: str, criterion: str, value: float) -> Row:
+    """Search for λ with one criterion changed, as slowly at first as the suite does."""
+    scene = scene_of(name)
+    chosen = DEFAULT | {criterion: value}
     run = Run(rigid_system(scene))
     first = FIRST_STEP / run.system.measure(run.system.live)
-    criteria = Criteria(collapse * scene.block_size, rest, BUDGET, interval)
-    found = load_steps(run, first, WIDTH, criteria)
-    lower, upper, borne = found.lower, found.upper, found.borne
-    if lower is None or upper is None or borne is None or found.verdict == "undecided":
-        return Trial(lower, upper, lower is None and found.verdict == "collapse")
+    criteria = Criteria(chosen[FAR] * scene.block_size, chosen[REST], BUDGET, int(chosen[INTERVAL]))
+    result = load_steps(run, first, WIDTH, criteria)
+    lower, upper, borne = result.lower, result.upper, result.borne
+    if lower is None or upper is None or borne is None or result.verdict == "undecided":
+        infeasible = lower is None and result.verdict == "collapse"
+        return {"answer": "infeasible" if infeasible else "undecided", "λ lower": lower, "λ upper": upper}
     # The suite leaves its bracket as wide as a loose threshold of rest makes it uncertain; here its edge is looked for.
-    settling = RAMP * found.rests[0][1].steps
+    settling = RAMP * result.rests[0][1].steps
     while upper - lower > WIDTH * upper:
         middle, state = (lower + upper) / 2, borne.copy()
         ramp(run, state, lower, middle, settling)
         verdict = settle(run, state, middle, criteria)
         if verdict == "undecided":
-            return Trial(lower, upper, False)
+            return {"answer": "undecided", "λ lower": lower, "λ upper": upper}
         lower, upper, borne = (middle, upper, state) if verdict == "stable" else (lower, middle, borne)
-    return Trial(lower, upper, True)
+    middle = (lower + upper) / 2
+    row: Row = {"answer": "collapse", "λ lower": lower, "λ upper": upper, "λ": middle}
+    if name != WEIGHTLESS:
+        row[SCALED] = middle / known_wall(name).multiplier
+    if criterion == REST and value in LOOSE:
+        row |= {"measured": middle, "theory": believed(name, value), "allowed": WIDTH}
+    return row
 
 
-def rest_sweep(wall: KnownWall, rests: Sequence[float] = RESTS) -> Sweep:
-    """The threshold of rest, from rounding errors up to a good part of a block's weight."""
-    trials = {rest: trial(wall.scene, U_CRIT, rest=rest) for rest in sorted(rests)}
-    return Sweep(wall.name, "rest [force units]", REST, trials, wall.multiplier)
+def believed(name: str, rest: float) -> float:
+    """λ up to which a wall is taken for standing with a threshold of rest, by (4)."""
+    wall = known_wall(name)
+    return wall.multiplier + rest / wall.unbalanced
 
 
-def far_sweep(wall: KnownWall, fars: Sequence[float] = FARS) -> Sweep:
-    """The displacement of a collapse, from below what a wall settles under its weight up to more than a block."""
-    trials = {far: trial(wall.scene, far) for far in sorted(fars)}
-    return Sweep(wall.name, "u_crit [block sizes]", U_CRIT, trials, wall.multiplier)
+def plateau(rows: Sequence[Row]) -> tuple[float, float]:
+    """Smallest and largest value of a criterion about the suite's that find the same λ, to the width of brackets."""
+    values = [row["value"] for row in rows]
+    first = last = values.index(DEFAULT[rows[0]["criterion"]])
+    multiplier = rows[first]["λ"]
+    same = [row.get("λ") is not None and abs(row["λ"] - multiplier) <= WIDTH * multiplier for row in rows]
+    while first > 0 and same[first - 1]:
+        first -= 1
+    while last < len(rows) - 1 and same[last + 1]:
+        last += 1
+    return values[first], values[last]
 
 
-def weightless_sweep(fars: Sequence[float] = FARS_WEIGHTLESS) -> Sweep:
-    """The same for a wall without weight, that may slip far and be caught."""
-    scene = published_scene(WEIGHTLESS)
-    trials = {far: trial(scene, far) for far in sorted(fars)}
-    return Sweep(f"{WEIGHTLESS}, no weight", "u_crit [block sizes]", U_CRIT, trials)
+def sweep(rows: Rows, name: str, criterion: str) -> list[Row]:
+    """Rows of one criterion on one wall."""
+    return [row for row in rows[PART] if (row["wall"], row["criterion"]) == (name, criterion)]
 
 
-def interval_sweep(wall: KnownWall, intervals: Sequence[int] = INTERVALS) -> Sweep:
-    """The steps between two looks."""
-    trials: dict[float, Trial] = {n: trial(wall.scene, U_CRIT, interval=n) for n in sorted(intervals)}
-    return Sweep(wall.name, "steps between looks", INTERVAL, trials, wall.multiplier)
-
-
-def believed(wall: KnownWall, rest: Array) -> Array:
-    """λ up to which a wall is taken for standing with thresholds of rest ``(n,)``, by (4)."""
-    return np.asarray(wall.multiplier + rest / wall.unrest)
-
-
-def experiment() -> Finding:
-    """Change the criteria of the verdict one at a time, and see what becomes of λ."""
-    walls = (sliding_block(), toppling_block(), rounded_wall("wall-w1"))
-    rests = [rest_sweep(wall) for wall in walls]
-    fars = [*(far_sweep(wall) for wall in (walls[2], rounded_wall("wall-w2"))), weightless_sweep()]
-    looks = interval_sweep(walls[2])
-    certified = limit_nonassociated(published_scene(WEIGHTLESS))
-    sweeps = [*rests, *fars, looks]
-    rows: list[tuple[Entry, ...]] = []
-    for sweep in sweeps:
-        for value, found in sweep.trials.items():
-            ends = [f"{end / sweep.unit:.4f}" if end is not None else "–" for end in (found.lower, found.upper)]
-            rows.append((sweep.name, sweep.criterion, f"{value:g}", found.answer, *ends))
-    return Finding(
-        title="Verdict: when a wall is at rest, and when it has fallen",
-        heads=("wall", "criterion", "value", "answer", "at rest, of λ known", "falls, of λ known"),
-        rows=rows,
-        edges=_edges(walls, rests, fars),
-        trust=f"λ is the same to {100 * WIDTH:g} % with thresholds of rest from {_both(rests)} force units and, of "
-        f"walls with a weight, u_crit from {_both(fars[:2])} block sizes; without weight, loaded in pauses, from "
-        f"{_both(fars[2:])}; and with looks every {looks.plateau[0]:g} to {looks.plateau[1]:g} steps. "
-        f"The suite takes {REST:g}, {U_CRIT:g} block sizes, and {INTERVAL} steps.",
-        beyond="A threshold of rest too loose gives a λ too high by (4), one below rounding `undecided`. A u_crit too "
-        "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
-        "large costs steps, and in the end is `undecided`.",
-        draw=partial(_draw, walls, rests, fars, certified),
-    )
-
-
-def _both(sweeps: Sequence[Sweep]) -> str:
-    """Plateau that some sweeps have in common."""
-    low, high = max(sweep.plateau[0] for sweep in sweeps), min(sweep.plateau[1] for sweep in sweeps)
-    return f"{low:g} to {high:g}"
-
-
-def _edges(walls: Sequence[KnownWall], rests: Sequence[Sweep], fars: Sequence[Sweep]) -> list[Edge]:
+def fits(rows: Rows) -> list[Edge]:
+    """Ranges of every criterion in which λ is the suite's."""
     edges = []
-    for wall, sweep in zip(walls, rests, strict=True):
-        for rest in (0.03, 0.01):
-            middle = sweep.trials[rest].middle
-            if middle is not None:
-                what = f"λ taken for standing with rest at {rest:g} force units, {wall.name}"
-                edges.append(Edge(what, middle, float(believed(wall, np.array([rest]))[0]), WIDTH))
-    for sweep in (*rests, *fars):
-        low, high = sweep.plateau
-        edges.append(Edge(f"smallest {sweep.criterion} that finds the suite's λ, {sweep.name}", low))
-        edges.append(Edge(f"largest {sweep.criterion} that finds the suite's λ, {sweep.name}", high))
+    for name, criterion in SWEEPS:
+        ends = zip(("smallest", "largest"), plateau(sweep(rows, name, criterion)), strict=True)
+        edges += [Edge(f"{which} {criterion} that finds the suite's λ, {name}", value) for which, value in ends]
     return edges
 
 
-def _draw(
-    walls: Sequence[KnownWall], rests: Sequence[Sweep], fars: Sequence[Sweep], certified: Outcome, figure: Figure
-) -> None:
-    figure.set_size_inches(10, 4.8)
+def draw(figure: Figure, rows: Rows) -> None:
+    """λ by the threshold of rest, and by the displacement of a collapse."""
+    figure.set_size_inches(10, 5)
     left, right = figure.subplots(1, 2)
-    for wall, sweep, colour, marker in zip(walls, rests, COLOURS, MARKERS, strict=False):
-        _draw_sweep(left, sweep, colour, marker, 0.93)
-        many = np.geomspace(1e-5, 0.3, 60)
-        left.plot(many, believed(wall, many) / wall.multiplier, color=colour, lw=1)
-    left.set(
-        xscale="log", xlim=(2e-17, 1), ylim=(0.9, 1.5), xlabel="threshold of rest [force units]", ylabel="λ / λ known"
-    )
-    left.annotate("?  undecided", (1e-12, 0.93), color="0.4", fontsize=8)
+    many: Array = np.geomspace(1e-5, 0.3, 60)
+    for name, (colour, marker) in looks_of(WALLS).items():
+        _draw_sweep(left, sweep(rows, name, REST), name, colour, marker, 0.93)
+        theory = [believed(name, rest) / known_wall(name).multiplier for rest in many]
+        left.plot(many, theory, color=colour, lw=1)
+    limits = {"xlim": (2e-17, 1), "ylim": (0.9, 1.5)}
+    left.set(xscale="log", xlabel="threshold of rest [force units]", ylabel=SCALED, **limits)
+    left.annotate("?  undecided", (1e-12, 0.945), color="0.4", fontsize=8)
     left.set_title("at rest; lines: λ taken for standing, by theory", fontsize=10)
-    for sweep, colour, marker in zip(fars, (COLOURS[2], COLOURS[3], COLOURS[0]), "^Ds", strict=True):
-        _draw_sweep(right, sweep, colour, marker, 0.75, joined=True)
+    looks = dict(zip((W1, W2, WEIGHTLESS), list(looks_of(range(4)).values())[1:], strict=True))
+    for name, (colour, marker) in looks.items():
+        label = f"{name}, no weight" if name == WEIGHTLESS else name
+        _draw_sweep(right, sweep(rows, name, FAR), label, colour, marker, 0.75, joined=True)
+    certified, unit = limit_nonassociated(scene_of(WEIGHTLESS)), _unit(sweep(rows, WEIGHTLESS, FAR))
     if certified.lower is not None and certified.upper is not None:
-        span = (certified.lower / fars[-1].unit, certified.upper / fars[-1].unit)
-        right.errorbar(5, span[0], [[0], [span[1] - span[0]]], color=COLOURS[0], lw=1.5, capsize=3)
-        right.annotate(f"certified for\n{WEIGHTLESS}", (7, span[1] + 0.005), ha="right", color=COLOURS[0], fontsize=8)
-    right.annotate("×  “falls under its weight”\n?  undecided", (2e-6, 0.74), color="0.4", fontsize=8)
-    right.set(xscale="log", xlim=(4e-8, 8), ylim=(0.7, 1.1), xlabel="displacement of a collapse [block sizes]")
+        low, high, colour = certified.lower / unit, certified.upper / unit, looks[WEIGHTLESS][0]
+        right.errorbar(5, low, [[0], [high - low]], color=colour, lw=1.5, capsize=3)
+        right.annotate(f"certified for\n{WEIGHTLESS}", (7, high + 0.005), ha="right", color=colour, fontsize=8)
+    right.annotate("×  infeasible\n?  undecided", (2e-6, 0.77), color="0.4", fontsize=8)
+    right.set(xscale="log", xlim=(4e-8, 8), ylim=(0.6, 1.1), xlabel="displacement of a collapse [block sizes]")
     right.set_ylabel("λ / λ known (without weight: / the suite's)")
     right.set_title("fallen", fontsize=10)
     for axes in (left, right):
         axes.plot([], [], "o", ms=11, mfc="none", mec="0.3", label="the suite's")
         axes.legend(fontsize=8, frameon=False, loc="upper left")
-        bare(axes)
 
 
-def _draw_sweep(axes: Axes, sweep: Sweep, colour: str, marker: str, bottom: float, *, joined: bool = False) -> None:
+def _unit(rows: Sequence[Row]) -> float:
+    """λ that is known, or else that of the suite's own value."""
+    own = next(row for row in rows if row["value"] == DEFAULT[row["criterion"]])
+    return float(own["λ"] / own.get(SCALED, 1.0))
+
+
+def _draw_sweep(
+    axes: Axes, rows: Sequence[Row], label: str, colour: str, marker: str, bottom: float, *, joined: bool = False
+) -> None:
     """Middles of a sweep's brackets, narrower than their marks, the suite's in a circle; at the bottom, no answer."""
-    drawn = [(value, found.middle / sweep.unit) for value, found in sweep.trials.items() if found.middle is not None]
-    value, middle = np.array(drawn).T
-    axes.plot(value, middle, marker, ls="-" if joined else "none", lw=0.8, ms=5, color=colour, label=sweep.name)
-    for value, found in sweep.trials.items():
-        if found.middle is None:
-            axes.annotate("?" if found.answer == "undecided" else "×", (value, bottom), color=colour, ha="center")
-    axes.plot(sweep.default, dict(drawn)[sweep.default], "o", ms=11, mfc="none", mec=colour)
+    drawn = {row["value"]: row["λ"] / _unit(rows) for row in rows if row.get("λ") is not None}
+    line = "-" if joined else "none"
+    axes.plot([*drawn], [*drawn.values()], marker, ls=line, lw=0.8, ms=5, color=colour, label=label)
+    for row in rows:
+        if row["value"] not in drawn:
+            mark = "?" if row["answer"] == "undecided" else "×"
+            axes.annotate(mark, (row["value"], bottom), color=colour, ha="center")
+    suite = DEFAULT[rows[0]["criterion"]]
+    axes.plot(suite, drawn[suite], "o", ms=11, mfc="none", mec=colour)
+
+
+CASES = [(name, criterion, value) for (name, criterion), values in SWEEPS.items() for value in values]
+STUDY = Study(
+    "verdict",
+    "Verdict: when a wall is at rest, and when it has fallen",
+    trusted="λ is the same over decades of each criterion, and the suite's values stand inside",
+    beyond="a threshold of rest too loose gives a λ too high by (4), one below rounding `undecided`; a u_crit too "
+    "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
+    "large costs steps, and in the end is `undecided`",
+    parts={PART: Part(("wall", "criterion", "value"), CASES, search)},
+    charts=[Chart("verdict", "λ by the threshold of rest and by the displacement that counts as a collapse", draw)],
+    fits=fits,
+)

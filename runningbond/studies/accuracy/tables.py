@@ -1,0 +1,268 @@
+"""What the rows say, as tables: models as they are, their parameters, growth, stiffness, and what is cheapest."""
+
+import statistics
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from runningbond.compare.table import Sheet
+from runningbond.joints import joint_stiffness
+from runningbond.studies import Edge, Row, Rows
+from runningbond.studies.apart import TOO_LONG
+from runningbond.studies.charts import MODEL_LOOKS
+
+from .measure import REFERENCE
+from .parameters import VARIED
+from .walls import all_walls
+
+KINDS = {
+    "any": tuple(MODEL_LOOKS),
+    "without a path": (REFERENCE, "limit-nonassociated"),
+    "follows a path": ("dem-static", "dem-dynamic", "fem"),
+    "in motion": ("dem-dynamic", "fem"),
+}
+"""Models of which the cheapest is looked for."""
+
+QUESTIONS = {
+    "homog": "the trend in texture and slenderness",
+    "limit": "a bound at once",
+    "limit-nonassociated": "true friction, without a path",
+    "dem-static": "a pushover curve",
+    "dem-dynamic": "loads brought up in time",
+    "fem": "blocks that deform or crack",
+}
+"""What each model is taken for."""
+
+CHANGED, DEARER, EXACT = 1.5, 1.25, 1e-4
+"""Ratios of errors and of costs from which on a parameter is said to change them, and error that counts as none: below
+the digits of the answers that are published."""
+
+TOLERANCES = (0.10, 0.05, 0.02, 0.01, 0.005)
+
+Setting: TypeAlias = tuple[str, str, str]
+"""Model, parameter and setting; the last two empty where the model runs as it is."""
+
+
+def setting_of(row: Row) -> Setting:
+    """The setting that a row is about."""
+    return row["model"], row["parameter"], row["setting"]
+
+
+def label(setting: Setting) -> str:
+    """What a table or a chart calls a setting."""
+    model, parameter, value = setting
+    return f"{model}, {parameter} {value}" if parameter else model
+
+
+def percent(error: float) -> str:
+    """An error in per cent, with two digits that count."""
+    return "0 %" if error == 0 else "< 0.01 %" if error < EXACT else f"{100 * error:.2g} %"
+
+
+def times(ratio: float) -> str:
+    """A ratio with two digits that count."""
+    return "< 0.01" if ratio < 0.01 else f"{ratio:.2g}" if ratio < 100 else f"{ratio:.0f}"
+
+
+@dataclass(frozen=True)
+class Record:
+    """How one setting did on walls brought to collapse.
+
+    Rows with a number that can be judged, walls without a number, and walls whose answer it certified itself.
+    """
+
+    judged: Sequence[Row]
+    unanswered: Sequence[str]
+    own: Sequence[str]
+
+    def all(self, column: str) -> list[Any]:
+        """A column of the rows that are judged."""
+        return [row[column] for row in self.judged]
+
+    @property
+    def error(self) -> float:
+        """Largest error."""
+        return float(max(self.all("error")))
+
+    @property
+    def ratio(self) -> float:
+        """Median cost, in runs of `REFERENCE`."""
+        return float(statistics.median(self.all("ratio")))
+
+
+def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Record]:
+    """Record of each setting on walls brought to collapse, all of them or some; without a number it has none."""
+    of_setting: dict[Setting, list[Row]] = {}
+    for row in rows["accuracy"]:
+        # What took too long, or broke, tells nothing of its wall.
+        wanted = all_walls()[row["wall"]].question == "collapse" and row.get("status") != "not applicable"
+        if wanted and (walls is None or row["wall"] in walls):
+            of_setting.setdefault(setting_of(row), []).append(row)
+    result = {}
+    for setting, own in of_setting.items():
+        certified = [row for row in own if row.get("known") == "certified" and row["model"] == "limit-nonassociated"]
+        judged = [row for row in own if row not in certified and row.get("error") is not None and row.get("ratio")]
+        if judged:
+            silent = [row["wall"] for row in own if row.get("value") is None]
+            result[setting] = Record(judged, silent, [row["wall"] for row in certified])
+    return result
+
+
+def cheapest(
+    result: dict[Setting, Record], tolerance: float, walls: Sequence[str], models: Sequence[str]
+) -> Setting | None:
+    """The cheapest setting of some models whose error on every one of some walls is within a tolerance.
+
+    Where a model certified the answer itself, it counts as within.
+    """
+    good = [
+        (record.ratio, setting)
+        for setting, record in result.items()
+        if setting[0] in models and set(walls) <= {*record.all("wall"), *record.own} and record.error <= tolerance
+    ]
+    return min(good)[1] if good else None
+
+
+def models_table(rows: Rows) -> Sheet:
+    """Every model as it is, on the walls whose answer is known."""
+    body, result = [], records(rows)
+    for model in MODEL_LOOKS:
+        if (record := result.get((model, "", ""))) is None:
+            continue
+        errors, ratios = record.all("error"), record.all("ratio")
+        worst = record.all("wall")[errors.index(max(errors))]
+        missed = [row for row in record.judged if row["error"] > EXACT]
+        high = sum(row["value"] > row["answer_high"] for row in missed)
+        error = [percent(statistics.median(errors)), percent(max(errors)), worst, str(high), str(len(missed) - high)]
+        cost = [times(record.ratio), f"{times(min(ratios))} – {times(max(ratios))}", ", ".join(record.unanswered)]
+        body.append([QUESTIONS[model], model, str(len(errors)), *error, *cost])
+    heads = ["wanted", "model", "walls", "median error", "largest error", "on", "too high", "too low"]
+    heads += [f"times {REFERENCE}", "from – to", "no number on"]
+    return Sheet("Models as they are, on walls brought to collapse", heads, body)
+
+
+def parameters_table(rows: Rows) -> Sheet:
+    """Every parameter that was varied on walls brought to collapse, beside its model as it is on the same walls."""
+    body, everywhere = [], records(rows)
+    for setting, record in everywhere.items():
+        plain = (setting[0], "", "")
+        both = [wall for wall in record.all("wall") if plain in everywhere and wall in everywhere[plain].all("wall")]
+        if setting[1] and both:
+            one, other = (records(rows, both)[which] for which in (setting, plain))
+            costs = zip(one.all("ratio"), other.all("ratio"), strict=True)
+            dearer = statistics.median(a / b for a, b in costs)
+            effect = _effect(max(one.error, EXACT) / max(other.error, EXACT), dearer)
+            numbers = (str(len(both)), percent(one.error), percent(other.error), times(dearer))
+            body.append([*setting, *numbers, effect, ", ".join(record.unanswered)])
+    heads = ["model", "parameter", "setting", "walls", "largest error", "as it is", "cost, times as it is"]
+    return Sheet("Parameters, one changed at a time", [*heads, "what it changes", "no number on"], body)
+
+
+def _effect(change: float, dearer: float) -> str:
+    if not 1 / CHANGED < change < CHANGED:
+        return "costs accuracy" if change > 1 else "buys accuracy"
+    return "" if 1 / DEARER < dearer < DEARER else "cost alone"
+
+
+def cheapest_table(rows: Rows) -> Sheet:
+    """What is cheapest within a tolerance on all walls on which parameters are varied."""
+    body, result = [], records(rows, VARIED)
+    for tolerance in TOLERANCES if result else ():
+        for kind, models in KINDS.items():
+            setting = cheapest(result, tolerance, VARIED, models)
+            cells = ["none", "", ""]
+            if setting is not None:
+                cells = [label(setting), times(result[setting].ratio), percent(result[setting].error)]
+            body.append([f"{100 * tolerance:g} %", kind, *cells])
+    heads = ["within", "kind", "cheapest", f"times {REFERENCE}", "largest error"]
+    return Sheet(f"Cheapest setting within a tolerance on each of {', '.join(VARIED)}", heads, body)
+
+
+def others_table(rows: Rows) -> Sheet:
+    """Elastic cells and the block that has turned far."""
+    body = []
+    for row in rows["accuracy"]:
+        if row.get("question") not in ("collapse", None) and row.get("error") is not None:
+            numbers = f"{row['value']:.6g}", f"{row['answer_low']:.6g}", percent(row["error"])
+            body.append([row["wall"], row["question"], label(setting_of(row)), *numbers])
+    heads = ["scene", "question", "model", "value", "exact", "error"]
+    return Sheet("Other known answers: moduli of a periodic cell [Pa], and λ of a block turned by 0.1", heads, body)
+
+
+def growth(rows: Rows) -> dict[str, list[Row]]:
+    """Rows of the growth study that were timed, by model, in order of size."""
+    timed = sorted((row for row in rows["growth"] if row.get("cpu_s") is not None), key=lambda row: int(row["blocks"]))
+    return {model: own for model in MODEL_LOOKS if (own := [row for row in timed if row["model"] == model])}
+
+
+def exponent(rows: Sequence[Row]) -> float | None:
+    """Exponent p of cpu ∝ blocks^p, by least squares of the logarithms; None of a single size."""
+    if len(rows) < 2:
+        return None
+    size, cost = ([row[name] for row in rows] for name in ("blocks", "cpu_s"))
+    return float(np.polyfit(np.log(size), np.log(cost), 1)[0])
+
+
+def growth_table(rows: Rows) -> Sheet:
+    """Processor seconds against the number of blocks."""
+    walls = list(dict.fromkeys(row["wall"] for row in rows["growth"]))
+    body = []
+    for model, timed in growth(rows).items():
+        own = {row["wall"]: row for row in rows["growth"] if row["model"] == model}
+        power, memory = exponent(timed), timed[-1]["memory_mb"]
+        cells = [_seconds(own.get(wall, {})) for wall in walls]
+        body.append([model, *cells, "" if power is None else f"{power:.2f}", f"{memory:.1f}"])
+    sizes = [f"{all_walls()[wall].blocks} blocks" for wall in walls]
+    heads = ["model", *sizes, "exponent", "memory of the largest [MB]"]
+    return Sheet("Processor seconds against the number of blocks: median (least – most)", heads, body)
+
+
+def _seconds(row: Row) -> str:
+    if row.get("cpu_s") is None:
+        return "left out: too long" if row.get("status") == TOO_LONG else row.get("status", "")
+    spread = f" ({row['cpu_s_min']:.2g} – {row['cpu_s_max']:.2g})" if row["runs"] > 1 else ""
+    undecided = "" if row["status"] == "collapse" else f", {row['status']}"
+    return f"{row['cpu_s']:.2g}{spread}{undecided}"
+
+
+def stiffness(rows: Rows) -> tuple[dict[float, float], dict[float, float], float | None]:
+    """Processor seconds a physical second by Young's modulus [Pa], masses scaled and not, and of rigid blocks."""
+    result: tuple[dict[float, float], dict[float, float]] = {}, {}
+    rigid = None
+    for row in rows["stiffness"]:
+        if row["model"] == "dem-dynamic":
+            rigid = row.get("value")
+        elif row.get("value") is not None:
+            result[row["parameter"] != ""][float(row["wall"].removeprefix("stiff-"))] = row["value"]
+    return *result, rigid
+
+
+def stiffness_table(rows: Rows) -> Sheet:
+    """What a physical second costs where blocks are ever stiffer."""
+    scaled, plain, rigid = stiffness(rows)
+    body = []
+    for young, cost in scaled.items():
+        unscaled = [f"{plain[young]:.2g}", times(plain[young] / cost)] if young in plain else ["", ""]
+        body.append([f"{young / 1e9:g}", f"{cost:.2g}", *unscaled, times(cost / rigid) if rigid else ""])
+    heads = ["E [GPa]", "fem, masses scaled", "not scaled", "ratio", "scaled, times dem-dynamic"]
+    return Sheet("Processor seconds a physical second", heads, body)
+
+
+def tables(rows: Rows) -> list[Sheet]:
+    """All tables that have a row."""
+    makers = (cheapest_table, models_table, parameters_table, others_table, growth_table, stiffness_table)
+    return [sheet for sheet in (make(rows) for make in makers) if sheet.rows]
+
+
+def fits(rows: Rows) -> list[Edge]:
+    """Rigid blocks are too stiff under compression by k_n a / E."""
+    edges = []
+    for row in rows["accuracy"]:
+        if row["model"] == "homog" and row.get("question") == "compression" and row.get("error") is not None:
+            scene = all_walls()[row["wall"]].scene
+            assert scene.bond is not None
+            theory = joint_stiffness(scene.joint).normal * scene.bond.height / (scene.block.young or 0.0)
+            edges.append(Edge(f"rigid blocks too stiff by, {row['wall']}", row["error"], theory, 1e-6))
+    return edges

@@ -1,0 +1,87 @@
+"""A case in a process of its own, on one thread, which ends when it has worked too long or the study is stopped.
+
+``python -m runningbond.studies.apart MODULE FUNCTION CASE`` prints what a function measures of a case, as JSON.
+"""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from importlib import import_module
+from pathlib import Path
+from threading import Event
+
+from .study import Case, Row
+
+LONGEST = 60
+"""Processor seconds after which a run is ended, from `limit_time` on."""
+
+TOO_LONG = "too long"
+"""Status of a case whose run took more than `LONGEST`."""
+
+POLL = 0.2
+"""Seconds between two looks at a process."""
+
+
+class Ended(Exception):
+    """A process ended without an answer."""
+
+
+def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = None) -> Row:
+    """Measure a case in a fresh process.
+
+    Parameters
+    ----------
+    measure
+        A function of a module.
+    case
+        Its arguments, which JSON has words for.
+    stop
+        Ends the process when it is set.
+
+    Raises
+    ------
+    Ended
+        If the process ends without an answer.
+    """
+    command = [sys.executable, "-m", __name__, measure.__module__, measure.__name__, json.dumps(case)]
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    path = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]))
+    environment, pipe = {**os.environ, **threads, "PYTHONPATH": path}, subprocess.PIPE
+    process = subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True)
+    try:
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                printed, complaint = process.communicate(timeout=POLL)
+                break
+            if stop is not None and stop.is_set():
+                raise KeyboardInterrupt
+    finally:
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
+    if process.returncode == -signal.SIGXCPU:
+        return {"status": TOO_LONG, "message": f"more than {LONGEST} s of the processor"}
+    if process.returncode:
+        last = (complaint.strip().splitlines() or [f"signal {-process.returncode}"])[-1]
+        raise Ended(f"its process ended without an answer: {last}")
+    row: Row = json.loads(printed.splitlines()[-1])
+    return row
+
+
+def limit_time() -> None:
+    """Let the system end this process once it has worked `LONGEST` seconds more."""
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    resource.setrlimit(resource.RLIMIT_CPU, (int(used.ru_utime + used.ru_stime) + LONGEST, hard))
+
+
+if __name__ == "__main__":
+    # The study ends this process; a model that is interrupted would end with what it has, as if that were its answer.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    module, function, words = sys.argv[1:]
+    print(json.dumps(getattr(import_module(module), function)(*json.loads(words))))

@@ -1,0 +1,49 @@
+"""How charts look in all studies: colours and markers of models and of other things, and series of rows."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
+
+from matplotlib.axes import Axes
+
+from runningbond.compare.figures import COLOURS, OURS
+
+from .study import Row
+
+MODEL_LOOKS = OURS
+"""Colour and marker of each model."""
+
+Looks: TypeAlias = Mapping[Any, tuple[str, str]]
+"""Colour and marker by the entries of a column."""
+
+LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))
+"""Colours and markers of other things."""
+
+
+def looks_of(names: Sequence[Any]) -> Looks:
+    """`LOOKS` by names."""
+    return dict(zip(names, LOOKS, strict=False))
+
+
+def series(
+    axes: Axes, rows: Sequence[Row], x: str, y: str | Callable[[Row], float | None], by: str, looks: Looks, **style: Any
+) -> None:
+    """Plot one column of rows over another, a series for each entry of a third; rows without a number are left out."""
+    for name, (colour, marker) in looks.items():
+        value = y if callable(y) else lambda row: row.get(y)
+        points = [(row[x], value(row)) for row in rows if row[by] == name and value(row) is not None]
+        if points:
+            axes.plot(*zip(*points, strict=True), **{"marker": marker, "color": colour, "label": str(name)} | style)
+
+
+def level(axes: Axes, y: float, text: str, x: float = 0.98, **style: Any) -> None:
+    """A dashed line at a level, its name above it at a share of the axes' width."""
+    axes.axhline(y, color="0.5", lw=0.9, ls="--", zorder=0)
+    where: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 8, "color": "0.4"} | style
+    axes.annotate(text, (x, y), xycoords=("axes fraction", "data"), **where)
+
+
+def bracket(axes: Axes, x: float, row: Row, colour: str, **style: Any) -> None:
+    """A bracket of λ as an upright bar, paler where it is no collapse."""
+    paler = 1.0 if row["status"] == "collapse" else 0.4
+    bar: dict[str, Any] = {"color": colour, "lw": 4, "alpha": paler, "solid_capstyle": "butt"} | style
+    axes.plot([x, x], [row["λ lower"], row["λ upper"]], **bar)

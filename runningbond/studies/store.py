@@ -1,0 +1,179 @@
+"""The table of a study: a row is kept as soon as it is measured, and taken again while nothing it depends on changes.
+
+``NAME.csv`` is written whole or not at all. Each row carries a key, the digest of all that it depends on, and a seal,
+the digest of the row itself.
+"""
+
+import csv
+import hashlib
+import io
+import json
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import cache
+from pathlib import Path
+from threading import Event
+from typing import Any, TypeAlias
+
+from runningbond.compare.fingerprint import code_digest
+from runningbond.results import write_atomically
+
+from .apart import measure_apart
+from .study import FAILURE, Case, Row, Rows, Study
+
+Where: TypeAlias = tuple[str, Case]
+"""The name of a part, and one of its cases."""
+
+
+def run_study(
+    study: Study, folder: Path, *, jobs: int = 1, progress: Callable[[str], None] = lambda case: None
+) -> dict[str, list[Row]]:
+    """Measure what is not in the table yet; every row, by the names of the study's parts.
+
+    Parameters
+    ----------
+    study, folder
+        The study, and where its table is kept.
+    jobs
+        Cases measured side by side.
+    progress
+        Called with each case that is done, in words.
+    """
+    kept = kept_rows(study, folder)
+
+    def tell(where: Where) -> None:
+        progress(", ".join([study.name, *(str(entry) for entry in where[1] if entry != "")]))
+
+    for where in kept:
+        tell(where)
+    for where, row in _measured(study, [where for where in study.cases if where not in kept], jobs):
+        kept[where] = row
+        write_atomically(table_path(study, folder), csv_text(study, kept).encode())
+        tell(where)
+    return {name: [kept[name, case] for case in part.cases] for name, part in study.parts.items()}
+
+
+def failures(rows: Rows) -> list[str]:
+    """Cases that ended in an error, and its words."""
+    return [", ".join(map(str, row.values())) for own in rows.values() for row in own if FAILURE in row]
+
+
+def is_complete(study: Study, folder: Path) -> bool:
+    """Whether every case is in the table."""
+    return len(kept_rows(study, folder)) == len(study.cases)
+
+
+def table_path(study: Study, folder: Path) -> Path:
+    """The table's file."""
+    return folder / f"{study.name}.csv"
+
+
+def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
+    """Rows of the table that are still good; what ended in an error is tried again."""
+    try:
+        rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}
+    kept = {}
+    for where in study.cases:
+        row, case = rows.get(_key(study, where)), _case(study, where)
+        if row is not None and FAILURE not in row:
+            kept[where] = case | row | case
+    return kept
+
+
+def csv_text(study: Study, rows: dict[Where, Row]) -> str:
+    """The table as CSV, in the order of the study; `kept_rows` has the same rows again, to the last bit."""
+    columns = list(dict.fromkeys(column for row in rows.values() for column in row))
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(["part", *columns, "key", "seal"])
+    for where in study.cases:
+        if where in rows:
+            case = study.parts[where[0]].columns
+            entries = [_text(rows[where].get(column), plain=column in case) for column in columns]
+            cells = [where[0], *entries, _key(study, where)]
+            writer.writerow([*cells, _seal(cells)])
+    return buffer.getvalue()
+
+
+def read_csv(text: str) -> dict[str, Row]:
+    """Rows of a table by their keys; damaged ones are left out."""
+    reader, rows = csv.reader(io.StringIO(text)), {}
+    heads = next(reader, [])
+    for cells in reader:
+        if len(cells) == len(heads) and cells[-1] == _seal(cells[:-1]):
+            entries = zip(heads[1:-2], cells[1:-2], strict=True)
+            rows[cells[-2]] = {head: _value(cell) for head, cell in entries if cell}
+    return rows
+
+
+def _text(value: object, *, plain: bool) -> str:
+    """An entry as a cell: words as they are if they are known anyway or read as what they are, all else as JSON."""
+    if value is None or value == "":
+        return ""
+    if isinstance(value, str) and (plain or value == _value(value)):
+        return value
+    return json.dumps(value, default=_plain)
+
+
+def _value(cell: str) -> object:
+    try:
+        return json.loads(cell)
+    except ValueError:
+        return cell
+
+
+def _plain(number: Any) -> object:
+    """A number of NumPy as one of Python."""
+    return number.item()
+
+
+def _seal(cells: Sequence[str]) -> str:
+    return hashlib.sha256("\0".join(cells).encode()).hexdigest()[:16]
+
+
+def _key(study: Study, where: Where) -> str:
+    """Digest of all that the row of a case depends on."""
+    depends = f"{code_digest()} {sources_digest(tuple(study.sources))} {where!r} {study.depends(where[1])}"
+    return hashlib.sha256(depends.encode()).hexdigest()
+
+
+@cache
+def sources_digest(sources: tuple[Path, ...]) -> str:
+    """Digest of files, and of all code and scenes in folders."""
+    digest = hashlib.sha256()
+    for source in sources:
+        for path in sorted(source.rglob("*")) if source.is_dir() else [source]:
+            if path.suffix in (".py", ".toml"):
+                digest.update(f"{path.relative_to(source.parent)}\n".encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _measured(study: Study, cases: Sequence[Where], jobs: int) -> Iterator[tuple[Where, Row]]:
+    """Rows as they come: one after another in this thread, or from threads that each wait for a process."""
+    stop = Event()
+    if jobs == 1:
+        for where in cases:
+            yield where, _row(study, where, stop)
+        return
+    with ThreadPoolExecutor(jobs) as threads:
+        tasks = {threads.submit(_row, study, where, stop): where for where in cases}
+        try:
+            for task in as_completed(tasks):
+                yield tasks[task], task.result()
+        finally:
+            stop.set()
+            threads.shutdown(cancel_futures=True)
+
+
+def _case(study: Study, where: Where) -> Row:
+    return dict(zip(study.parts[where[0]].columns, where[1], strict=True))
+
+
+def _row(study: Study, where: Where, stop: Event) -> Row:
+    measure, row = study.parts[where[0]].measure, _case(study, where)
+    try:
+        return row | (measure_apart(measure, where[1], stop) if study.apart else measure(*where[1]))
+    except Exception as error:  # a defect in one case must not lose the others
+        return row | {FAILURE: f"{type(error).__name__}: {error}"}

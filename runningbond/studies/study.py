@@ -1,0 +1,153 @@
+"""What a study is: cases, what is measured of each, the edges that come of it, and charts.
+
+A study has parts. A part has cases, tuples of words and numbers, and a function that measures one of them. A case and
+what was measured of it are a row of the study's table; tables, edges and charts are made of rows and of nothing else.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from matplotlib.figure import Figure
+
+from runningbond.compare.table import Sheet
+
+Case: TypeAlias = tuple[Any, ...]
+"""Words and numbers that tell what is measured."""
+
+Row: TypeAlias = dict[str, Any]
+"""A case and what was measured of it, by columns: words, numbers, None, and lists, which only charts read."""
+
+Rows: TypeAlias = Mapping[str, Sequence[Row]]
+"""Rows of a study, by the names of its parts."""
+
+FAILURE = "failure"
+"""Column that holds the words of the error in which a case ended, if it did."""
+
+PACKAGE = Path(__file__).parents[1]
+
+
+@dataclass(frozen=True)
+class Edge:
+    """An edge beyond which a method fails.
+
+    Parameters
+    ----------
+    what
+        The edge, with its unit: ``largest ω dt with local damping 0.5``.
+    measured
+        Where the method began to fail.
+    theory
+        Where it must, by theory; None where there is none.
+    tolerance
+        Relative difference that the study allows itself; None without a theory.
+    """
+
+    what: str
+    measured: float
+    theory: float | None = None
+    tolerance: float | None = None
+
+    @property
+    def error(self) -> float | None:
+        """Relative difference of measurement and theory."""
+        return None if self.theory is None else abs(self.measured - self.theory) / abs(self.theory)
+
+    @property
+    def agrees(self) -> bool | None:
+        """Whether measurement and theory agree; None without a theory or a tolerance."""
+        if self.error is None or self.tolerance is None:
+            return None
+        return self.error <= self.tolerance
+
+
+@dataclass(frozen=True)
+class Part:
+    """Cases of one kind, in the order in which they are measured, and what their entries are called.
+
+    `measure` takes the entries of a case as its arguments, and returns what comes of it by columns.
+    """
+
+    columns: tuple[str, ...]
+    cases: Sequence[Case]
+    measure: Callable[..., Row]
+
+
+@dataclass(frozen=True)
+class Chart:
+    """A chart: name of its file without suffix, what it shows, and what draws it on an empty figure."""
+
+    name: str
+    caption: str
+    draw: Callable[[Figure, Rows], None]
+
+
+def all_rows(rows: Rows) -> list[Sheet]:
+    """Every part as a table: columns with a word or a number in any row, lists left to charts."""
+    sheets = []
+    for part, own in rows.items():
+        heads = [
+            head
+            for head in dict.fromkeys(head for row in own for head in row)
+            if any(row.get(head) is not None for row in own) and not isinstance(own[0].get(head), list)
+        ]
+        sheets.append(Sheet(part, heads, [[cell(row.get(head)) for head in heads] for row in own]))
+    return sheets
+
+
+def cell(value: object) -> str:
+    """An entry of a row, as tables print it."""
+    return "–" if value is None else f"{value:.5g}" if isinstance(value, float) else str(value)
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study.
+
+    Parameters
+    ----------
+    name, title
+        Its name on the command line and of its table, and what is studied, in a few words.
+    parts, charts
+        Its cases, by the names of its parts, and its charts.
+    trusted, beyond
+        Where the method may be trusted and what a user is told beyond, in fixed words; the numbers are edges.
+    fits
+        Edges that are read off several rows; a row that has a column `measured` is an edge itself, with `theory` and
+        `allowed` beside it where there is one.
+    tables
+        Tables of the page, from rows.
+    sources, depends
+        Files and folders beside the computing rooms in which a change makes rows invalid, and what else the row of a
+        case depends on, as words.
+    apart
+        Whether each case is measured in a process of its own.
+    """
+
+    name: str
+    title: str
+    parts: Mapping[str, Part]
+    charts: Sequence[Chart]
+    trusted: str = ""
+    beyond: str = ""
+    fits: Callable[[Rows], list[Edge]] = lambda rows: []
+    tables: Callable[[Rows], list[Sheet]] = all_rows
+    sources: Sequence[Path] = (PACKAGE,)
+    depends: Callable[[Case], str] = lambda case: ""
+    apart: bool = False
+
+    @property
+    def cases(self) -> list[tuple[str, Case]]:
+        """Every case, with the name of its part."""
+        return [(name, case) for name, part in self.parts.items() for case in part.cases]
+
+    def edges(self, rows: Rows) -> list[Edge]:
+        """Every edge: rows that are one, and those that are read off several rows."""
+        edges = []
+        for name, part in self.parts.items():
+            for row in rows[name]:
+                if row.get("measured") is not None:
+                    what = ", ".join(str(row[column]) for column in part.columns)
+                    edges.append(Edge(f"{name}: {what}", row["measured"], row.get("theory"), row.get("allowed")))
+        return [*edges, *self.fits(rows)]

@@ -1,0 +1,185 @@
+"""Walls that studies are done on: blocks and walls whose collapse load is known, and their vibrations.
+
+While a wall falls in one motion, its blocks' displacements u φ with the largest translation u, the loads drive it by
+(λ − λ_c) F, F = f_live · φ, against the inertia M = Σ m φ² of its blocks. Local damping takes a share α of every
+unbalanced force, and mass-proportional damping c M u̇ of the driving one:
+
+    (M / F) ü = (1 − α) ((λ − λ_c) − c (M / F) u̇).                                                            (1)
+
+Friction follows the pressure, and the pressure the inertia of what moves; (1) leaves that out. It is exact for a
+block, whose pressure does not change.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
+
+import numpy as np
+from scipy.linalg import eigh
+
+from dem import limit_nonassociated
+from dem.rigid_system import rigid_system
+from runningbond.compare.published import published_scene
+from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.results import Outcome
+from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
+
+from .study import Row
+
+INSET = 0.02
+"""Distance of contacts from the ends of the joints [m] with which the load multiplier of W1 to W3 is unique."""
+
+RAMP = 4
+"""Length of a ramp to a load, in times that the wall took to rest under its weight."""
+
+SLIDES, TOPPLES = 0.4, 0.5
+"""tan φ of the block that slides, and b/h of the one that topples."""
+
+HOLDS = 1e15
+"""Cohesion and tensile strength [Pa] that no motion of a study comes near."""
+
+
+def one_block(width: float, height: float, friction: float, stiffness: float) -> Scene:
+    """A dry block of 1800 kg/m³ on rigid ground, 0.12 m thick, pushed at its centroid by λ times its weight.
+
+    Parameters
+    ----------
+    width, height
+        Of the block [m].
+    friction
+        tan φ of the joint under it.
+    stiffness
+        Of that joint, normal and shear [Pa/m].
+    """
+    outline = np.array([[0, 0], [width, 0], [width, height], [0, height]])
+    joint = JointMaterial(friction, elasticity=Stiffness(stiffness, stiffness))
+    return build_scene(
+        "a block", [outline], thickness=0.12, block=BlockMaterial(1800.0, 1e12, 0.0), joint=joint, load=Load()
+    )
+
+
+def inset_wall(name: str) -> Scene:
+    """A published wall with its contacts `INSET` from the ends of the joints."""
+    scene = published_scene(name)
+    return replace(scene, joint=replace(scene.joint, inset=INSET))
+
+
+def bonded(scene: Scene) -> Scene:
+    """The same wall with joints that neither open nor slide."""
+    return replace(scene, joint=replace(scene.joint, cohesion=HOLDS, tensile_strength=HOLDS))
+
+
+def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
+    """Stiffness of the modes that move, blocks and closed joints together, ``(n, n)`` [N/m], and their masses ``(n,)``.
+
+    Assembled from the jumps that each mode makes, one after another.
+    """
+    moving, one = np.flatnonzero(np.isfinite(system.mass)), np.eye(len(system.mass))
+    jump = np.zeros((len(moving), 2, system.interface.law.points))
+    for row, mode in zip(jump, moving, strict=True):
+        system.interface.gather(one[mode], system.interface.geometry, *row)
+    springs = system.interface.area * np.stack(
+        [system.interface.law.normal_stiffness, system.interface.law.shear_stiffness]
+    )
+    joints = np.einsum("idp,dp,jdp->ij", jump, springs, jump, optimize=True)
+    return joints + np.diag(system.stiffness[moving]), system.mass[moving]
+
+
+def vibrations(system: BlockSystem) -> tuple[Array, Array]:
+    """Frequencies ω [1/s] of a system in ascending order, ``(n,)``, and their shapes, mass-normalised ``(nd, n)``."""
+    stiffness, mass = elastic_stiffness(system)
+    root = 1 / np.sqrt(mass)
+    square, vectors = eigh(stiffness * root[:, None] * root)
+    shapes = np.zeros((len(system.mass), len(mass)))
+    shapes[np.isfinite(system.mass)] = root[:, None] * vectors
+    return np.sqrt(np.maximum(square, 0.0)), shapes
+
+
+def outcome_row(outcome: Outcome) -> Row:
+    """What a user is told of a collapse, as columns of a table."""
+    bracket = {"λ": outcome.multiplier, "λ lower": outcome.lower, "λ upper": outcome.upper}
+    return {"status": outcome.status, **bracket, "steps": outcome.steps, "message": outcome.message}
+
+
+@dataclass(frozen=True, eq=False)
+class KnownWall:
+    """A wall under its weight and a lateral load, with the load that brings it down.
+
+    Parameters
+    ----------
+    scene
+        The wall.
+    multiplier
+        λ at which it falls.
+    motion : (nb, 3) float
+        The motion in which it falls, to any scale [m, m, rad].
+    """
+
+    scene: Scene
+    multiplier: float
+    motion: Array
+
+    @cached_property
+    def system(self) -> BlockSystem:
+        """Its rigid blocks."""
+        return rigid_system(self.scene)
+
+    @property
+    def is_block(self) -> bool:
+        """Whether it is a single block, for which (1) is exact."""
+        return len(self.scene.blocks) == 2
+
+    @property
+    def far(self) -> float:
+        """Displacement [m] by which the suite judges whether it falls."""
+        return U_CRIT * self.scene.block_size
+
+    @cached_property
+    def mechanism(self) -> Array:
+        """φ, the motion with a largest translation of one, ``(nd,)``."""
+        phi = np.zeros(len(self.system.mass))
+        phi[self.system.rigid] = self.motion / np.abs(self.motion[:, :2]).max()
+        return phi
+
+    @cached_property
+    def inertia(self) -> float:
+        """M / F of (1) [s²/m]: what the wall weighs in its motion, for each newton that drives it."""
+        system, phi = self.system, self.mechanism
+        moving = np.isfinite(system.mass)
+        return float((system.mass[moving] * phi[moving] ** 2).sum() / (system.live @ phi))
+
+    @cached_property
+    def unbalanced(self) -> float:
+        """Largest unbalanced force, in the system's units, for each unit of λ − λ_c."""
+        system, phi = self.system, self.mechanism
+        moving = np.isfinite(system.mass)
+        return system.measure(np.where(moving, np.where(moving, system.mass, 0.0) * phi / self.inertia, 0.0))
+
+    @cache  # noqa: B019 - there are as many walls as names
+    def rest(self, local: float = LOCAL, viscous: float = VISCOUS) -> tuple[Run, State]:
+        """Its blocks at rest under their weight; the state is to be copied."""
+        run = Run(self.system, local=local, viscous=viscous)
+        state = State.at_rest(self.system)
+        assert settle(run, state, 0.0, Criteria(collapse=self.far)) == "stable"
+        return run, state
+
+
+SLIDING, TOPPLING, W1, W2 = KNOWN = ("block that slides", "block that topples", "rounded W1", "rounded W2")
+"""Names of walls whose load is known: a block twice as long as high with λ = tan φ, one twice as high as long with
+λ = b/h, and walls with rounded corners, whose one collapse load limit analysis certifies."""
+
+
+@cache
+def known_wall(name: str) -> KnownWall:
+    """A wall of `KNOWN`."""
+    exact = {SLIDING: SLIDES, TOPPLING: TOPPLES}.get(name)
+    if name == SLIDING:
+        scene = one_block(0.24, 0.12, SLIDES, 1e10)
+    elif name == TOPPLING:
+        scene = one_block(0.12, 0.12 / TOPPLES, 0.9, 1e10)
+    else:
+        scene = inset_wall(f"wall-{name.split()[-1].lower()}")
+    certified = limit_nonassociated(scene)
+    assert certified.multiplier is not None
+    return KnownWall(scene, exact or certified.multiplier, certified.motion)

@@ -1,0 +1,182 @@
+"""A campaign on a cluster gives the table that it gives here, whatever becomes of the workers."""
+
+import json
+import os
+import signal
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from runningbond.commands.command_line import command
+from runningbond.compare import Campaign, published_scene, run_campaign, run_model
+from runningbond.compare.model import Model
+from runningbond.compare.tasks import Cell
+from runningbond.results import Outcome
+from runningbond.scene import Scene
+from tests.walls import courses, panel
+
+distributed = pytest.importorskip("distributed")
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+
+
+@pytest.fixture(scope="module")
+def local_cluster() -> Iterator[Any]:
+    """A scheduler in this process and a worker in one of its own, started again when it dies."""
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=50
+    ) as cluster:
+        yield cluster
+
+
+def connected(local_cluster: Any) -> Any:
+    return distributed.Client(local_cluster.scheduler_address, set_as_default=False)
+
+
+@pytest.fixture
+def client(local_cluster: Any) -> Iterator[Any]:
+    """A connection with which a test looks at two workers, and disturbs them."""
+    local_cluster.scale(2)
+    with connected(local_cluster) as client:
+        client.wait_for_workers(2, timeout=120)
+        yield client
+        client.run(restore, on_error="ignore")  # a worker may have died meanwhile, and is then as new
+
+
+def scheduler(client: Any) -> str:
+    return str(client.scheduler.address)
+
+
+def table(campaign: Campaign) -> dict[Cell, dict[str, Any] | str]:
+    """Everything that a campaign found but how long it took."""
+    found = {cell: outcome.summary() | {"seconds": None} for cell, outcome in campaign.outcomes.items()}
+    return found | campaign.inapplicable
+
+
+def spoil(changes: dict[str, Any]) -> None:
+    """Change names of modules in a worker's process, and remember what they were."""
+    from importlib import import_module
+
+    for name, value in changes.items():
+        module, attribute = name.split(":")
+        before = import_module(module)
+        SPOILT.append((before, attribute, getattr(before, attribute)))
+        setattr(before, attribute, value)
+
+
+SPOILT: list[tuple[Any, str, Any]] = []
+
+
+def restore() -> None:
+    for module, attribute, value in SPOILT:
+        setattr(module, attribute, value)
+    SPOILT.clear()
+
+
+def deadly(model: Model, scene: Scene, tolerance: float) -> Outcome:
+    """A model that takes all the memory of one wall's worker, and the kernel ends that."""
+    if scene.title == "too large":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return model.solve(scene, tolerance)
+
+
+def other_sources() -> str:
+    return "others"
+
+
+def test_a_worker_with_other_sources_is_noticed(
+    local_cluster: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also where it is the only one, with one core, for which joblib alone would compute in this process."""
+    with connected(local_cluster) as client:
+        client.run(spoil, {"runningbond.compare.fingerprint:code_digest": other_sources})
+        line = ["compare", "panel-04", "--models", "limit", "--out", str(tmp_path), "--cluster", scheduler(client)]
+        assert command(line) == 3
+        client.run(restore, on_error="ignore")  # a worker may have died meanwhile, and is then as new
+    printed = capsys.readouterr()
+    assert "other sources or libraries" in printed.err
+    assert "0 of 1 cases are kept" in printed.err
+    assert not list(tmp_path.glob("*/*"))
+
+
+def dies_once(model: Model, scene: Scene, tolerance: float, *, note: str) -> Outcome:
+    """`run_model` in a process that is killed when the first wall in motion bears some of its load."""
+
+    def die(run: object, state: object, multiplier: float) -> None:
+        if multiplier > 0 and not Path(note).exists():
+            Path(note).write_text("killed")
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    return run_model(model, scene, tolerance, die if model.name == "dem-dynamic" else None)
+
+
+def test_a_killed_worker_changes_nothing(client: Any, tmp_path: Path) -> None:
+    """One of two workers dies in the middle of a wall in motion; the table is that of a campaign without a cluster."""
+    scenes = {
+        "wall-w1": published_scene("wall-w1"),
+        "stack": courses([[1], [1]], width=0.2, height=0.2, joint__mortar=MORTAR),
+    }
+    models = ["homog", "limit", "limit-nonassociated", "dem-dynamic"]
+    here, there, note = tmp_path / "here", tmp_path / "there", tmp_path / "note"
+    expected = table(run_campaign(scenes, models, folder=here, jobs=1))
+    kept = {path.parent.relative_to(here).parts for path in here.glob("*/*/outcome.json")}
+    assert set(expected) - kept == {("stack", "homog")}, "says nothing about a stack"
+    done: list[Cell] = []
+
+    def look(cell: Cell) -> None:
+        done.append(cell)
+        assert (there.joinpath(*cell) / "outcome.json").exists() == (cell in kept), "is kept as soon as it is there"
+
+    client.run(spoil, {"runningbond.compare.tasks:run_model": partial(dies_once, note=str(note))})
+    found = run_campaign(scenes, models, folder=there, cluster=scheduler(client), progress=look)
+    assert note.exists()
+    assert sorted(done) == sorted(expected)
+    assert table(found) == expected
+    # What the cluster found is found again here.
+    assert run_campaign(scenes, models, folder=there, jobs=1).reused == kept
+
+
+def test_a_wall_that_kills_its_workers_is_given_up_and_no_other(
+    client: Any, local_cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(local_cluster.scheduler, "allowed_failures", 0)
+    client.run(spoil, {"runningbond.compare.tasks:run_model": deadly})
+    scenes = {"large": panel(title="too large"), "small": panel()}
+    campaign = run_campaign(scenes, ["limit"], folder=tmp_path, cluster=scheduler(client))
+    assert campaign.outcomes["small", "limit"].status == "collapse"
+    assert campaign.outcomes["large", "limit"].status == "failed"
+    assert "killed" in campaign.outcomes["large", "limit"].message
+    assert not (tmp_path / "large").exists()
+
+
+def test_a_cluster_is_named_by_its_file_too(client: Any, tmp_path: Path) -> None:
+    file = tmp_path / "scheduler.json"
+    file.write_text(json.dumps({"type": "Scheduler", "address": scheduler(client)}))
+    campaign = run_campaign({"wall": panel()}, ["limit"], folder=tmp_path, cluster=str(file))
+    assert campaign.outcomes["wall", "limit"].status == "collapse"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--cluster", "tcp://127.0.0.1:9"], "--cluster = 'tcp://127.0.0.1:9': is neither"),
+        (["--cluster", "no such file"], "is neither the address of a Dask scheduler nor its file"),
+        (["--cluster", __file__], "is neither the address of a Dask scheduler nor its file"),
+        (["--cluster", "tcp://127.0.0.1:9", "--jobs", "2"], "--jobs = 2: does not go with --cluster"),
+    ],
+)
+def test_what_is_no_cluster_is_refused(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr("runningbond.compare.cluster.PATIENCE", 1)
+    assert command(["compare", "panel-04", "--models", "limit", "--out", str(tmp_path), *arguments]) == 2
+    printed = capsys.readouterr()
+    assert said in printed.err
+    assert printed.out == ""

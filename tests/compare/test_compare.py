@@ -1,0 +1,436 @@
+"""Campaigns resume, tables say what was found, and the command line keeps its contract."""
+
+import csv
+import inspect
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+import pytest
+
+from dem.dynamic import dem_dynamic
+from dem.static import dem_static
+from fem_interface.model import fem
+from runningbond.commands.command_line import command
+from runningbond.compare import MODELS, PUBLISHED, published_scene, run_campaign, run_model
+from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
+from runningbond.compare.fingerprint import fingerprint
+from runningbond.compare.model import Model
+from runningbond.compare.table import corrected_homo
+from runningbond.results import Outcome, load_outcome
+from runningbond.scene import Scene, SceneError
+from tests.walls import content, courses, panel, write_toml
+
+FAST = ["panel-04", "panel-08", "wall-w3", "point-load-quarter"]
+SCRIPT = str(Path(sys.executable).parent / "runningbond")
+CONTRACT = ["scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message"]
+
+
+# --- one scene -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_json_is_one_object_with_the_keys_of_the_contract(model: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["run", "panel-04", "--model", model, "--json"]) == 0
+    printed = capsys.readouterr()
+    found = json.loads(printed.out)
+    assert list(found) == CONTRACT
+    assert found["status"] == "collapse"
+    assert found["model"] == model
+    assert printed.err == ""
+
+
+def test_an_undecided_run_leaves_with_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("runningbond.limit.nonassociated.PROGRAM_BUDGET", 1)
+    assert command(["run", "panel-04", "--model", "limit-nonassociated"]) == 3
+
+
+def test_a_kept_run_can_be_read_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["run", "panel-04", "--model", "limit", "--out", str(tmp_path / "kept"), "--json"]) == 0
+    outcome, _ = load_outcome(tmp_path / "kept")
+    assert outcome.summary() == json.loads(capsys.readouterr().out)
+    assert outcome.motion.shape == (len(published_scene("panel-04").blocks), 3)
+
+
+def test_help_names_both_commands(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["--help"]) == 0
+    printed = capsys.readouterr().out
+    assert "run" in printed
+    assert "compare" in printed
+
+
+def test_the_five_lines_of_the_readme() -> None:
+    from runningbond.limit import limit
+    from runningbond.scene import read_scene
+
+    wall = read_scene(PUBLISHED[0].path)
+    outcome = limit(wall)
+    assert (outcome.status, round(outcome.lower or 0, 4)) == ("collapse", 0.6)
+
+
+def test_unknown_models_are_refused_in_python_too() -> None:
+    with pytest.raises(SceneError, match=r"^model = 'limt': .* did you mean \"limit\"\?"):
+        run_model("limt", panel())
+
+
+def test_a_tolerance_is_refused_by_the_name_that_it_has_in_python() -> None:
+    for run in (run_model, lambda *arguments: run_campaign({}, folder=Path(), tolerance=arguments[2])):
+        with pytest.raises(SceneError, match=r"^tolerance = 2: must be"):
+            run("limit", panel(), 2)
+
+
+# --- models --------------------------------------------------------------------------------------------------
+
+
+def rigid_block(scene: Scene, tolerance: float) -> Outcome:
+    """A model of one's own: a single block slides at tan φ or turns over at b / h."""
+    width, height = np.ptp(scene.blocks.vertices[scene.blocks.owner == 0], axis=0)
+    multiplier = min(scene.joint.friction, float(width / height))
+    return Outcome(scene.title, "toppling", "collapse", multiplier, message="closed form")
+
+
+READS = frozenset({"block.density", "joint.friction"})
+TOPPLING = Model("toppling", "one rigid block in closed form", rigid_block, READS)
+
+
+@pytest.mark.parametrize(("friction", "exact"), [(0.3, 0.3), (3.0, 0.5)])
+def test_a_model_of_ones_own_is_run_as_it_is(friction: float, exact: float) -> None:
+    scene = courses([[1]], width=0.2, height=0.4, joint__friction=friction)
+    outcome = run_model(TOPPLING, scene)
+    assert outcome.multiplier == pytest.approx(exact, rel=1e-12)
+    assert outcome.multiplier == pytest.approx(run_model("limit", scene).multiplier, rel=1e-6)
+
+
+def test_a_model_of_ones_own_stands_in_a_comparison(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Put into `MODELS`, it is in the tables beside the others, also of processes that have never heard of it."""
+    monkeypatch.setitem(MODELS, "toppling", TOPPLING)
+    tall = content(wall__length=None, wall__height=None, wall__courses=[[1]], wall__block_width=0.2)
+    tall["wall"]["block_height"] = 0.4
+    path = write_toml(tall, tmp_path / "block.toml")
+    line = ["compare", str(path), "--models", "limit,toppling", "--out", str(tmp_path / "out"), "--jobs", "2"]
+    assert command(line) == 0
+    assert "| block | panel | 0.5000 | 0.5000 |" in (tmp_path / "out" / "table.md").read_text()
+    assert "toppling" in (tmp_path / "out" / "report.html").read_text()
+    assert command(line) == 0
+    assert "2 of them already in" in capsys.readouterr().out
+
+
+def test_changed_code_of_a_model_of_ones_own_is_another_key() -> None:
+    namespace: dict[str, Any] = {"__name__": "notebook"}
+    exec("def solve(scene, tolerance):\n    return 1\ndef changed(scene, tolerance):\n    return 2", namespace)
+    solvers = (rigid_block, namespace["solve"], namespace["changed"])
+    keys = [fingerprint(panel(), replace(TOPPLING, solve=solve), 0.01) for solve in solvers]
+    assert len(set(keys)) == 3
+    assert fingerprint(panel(), MODELS["limit"], 0.01) == fingerprint(panel(), "limit", 0.01)
+
+
+def test_the_parameters_of_a_model_are_those_that_it_takes() -> None:
+    solvers: dict[str, Callable[..., Outcome]] = {"dem-static": dem_static, "dem-dynamic": dem_dynamic, "fem": fem}
+    for name, model in MODELS.items():
+        taken = inspect.signature(solvers.get(name, model.solve)).parameters.values()
+        own = {parameter.name for parameter in taken if parameter.kind == parameter.KEYWORD_ONLY}
+        assert set(model.parameters) == own - {"observe", "locks"}
+    with pytest.raises(SceneError, match="model limit: modes = 3: is no parameter"):
+        run_model("limit", panel(), modes=3)
+
+
+def test_an_outcome_names_the_keys_that_its_model_does_not_know() -> None:
+    glued = {"cohesion": 1e4, "fracture_energy_1": 5.0, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    scene = panel(block__young=1e10, joint__friction=0.6, **{f"joint__{key}": value for key, value in glued.items()})
+    stiffness, energy = ["joint.normal_stiffness", "joint.shear_stiffness"], ["joint.fracture_energy_1"]
+    unread = {name: model.unread(scene) for name, model in MODELS.items()}
+    assert unread["limit"] == unread["limit-nonassociated"] == ["block.young", *stiffness, *energy]
+    assert unread["dem-static"] == ["block.young", *energy]
+    assert unread["dem-dynamic"] == ["block.young"]
+    assert unread["fem"] == []
+    assert run_model("limit", scene).message.endswith("not taken into account: " + ", ".join(unread["limit"]))
+    assert "taken into account" not in run_model("limit", panel()).message
+
+
+# --- campaigns -----------------------------------------------------------------------------------------------
+
+
+def test_a_campaign_reuses_what_is_there_and_only_that(tmp_path: Path) -> None:
+    scenes = {name: published_scene(name) for name in FAST}
+    models = ["homog", "limit"]
+    first = run_campaign(scenes, models, folder=tmp_path, jobs=1)
+    assert len(first) == 8
+    assert not first.reused
+    assert set(first.inapplicable) == {("wall-w3", "homog"), ("point-load-quarter", "homog")}
+    second = run_campaign(scenes, models, folder=tmp_path, jobs=1)
+    assert second.reused == set(first.outcomes)
+    assert {c: o.summary() for c, o in second.outcomes.items()} == {c: o.summary() for c, o in first.outcomes.items()}
+    assert not run_campaign(scenes, models, folder=tmp_path, jobs=1, fresh=True).reused
+
+
+def test_another_scene_tolerance_or_model_is_another_key() -> None:
+    keys = {
+        fingerprint(scene, model, tolerance)
+        for scene in (panel(), panel(joint__friction=0.61), panel(wall__height=0.78), panel(title="other"))
+        for model in ("limit", "homog")
+        for tolerance in (0.01, 0.02)
+    }
+    assert len(keys) == 16
+    assert fingerprint(panel(), "limit", 0.01) in keys
+
+
+def test_a_damaged_result_is_computed_again(tmp_path: Path) -> None:
+    scenes = {"panel-04": published_scene("panel-04")}
+    whole = run_campaign(scenes, ["limit"], folder=tmp_path, jobs=1).outcomes["panel-04", "limit"]
+    for path in sorted((tmp_path / "panel-04" / "limit").iterdir()):
+        path.write_bytes(path.read_bytes()[:-20])
+        again = run_campaign(scenes, ["limit"], folder=tmp_path, jobs=1)
+        assert not again.reused
+        assert again.outcomes["panel-04", "limit"].multiplier == whole.multiplier
+
+
+def test_a_model_that_breaks_on_one_scene_does_not_lose_the_others(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    limit = MODELS["limit"]
+
+    def fragile(scene: Scene, tolerance: float) -> Outcome:
+        if scene.title == "broken":
+            raise ZeroDivisionError("division by zero")
+        return limit.solve(scene, tolerance)
+
+    monkeypatch.setitem(MODELS, "limit", replace(limit, solve=fragile))
+    scenes = {"good": panel(), "bad": panel(title="broken")}
+    campaign = run_campaign(scenes, ["limit"], folder=tmp_path, jobs=1)
+    assert campaign.outcomes["good", "limit"].status == "collapse"
+    assert campaign.outcomes["bad", "limit"].status == "failed"
+    assert "ZeroDivisionError" in campaign.outcomes["bad", "limit"].message
+    assert not (tmp_path / "bad").exists()
+
+
+def start(out: Path, *arguments: str) -> "subprocess.Popen[str]":
+    return subprocess.Popen(
+        [SCRIPT, "compare", *arguments, "--out", str(out)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_path: Path) -> None:
+    """Stopped after its first result, by Ctrl-C or by force, in the middle of one that takes half a minute."""
+    models = ["limit", "limit-nonassociated"]
+    process = start(tmp_path, "panel-11", *FAST, "--models", ",".join(models))
+    deadline = time.monotonic() + 60
+    while not list(tmp_path.glob("*/*/outcome.json")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    os.killpg(process.pid, how)
+    _, errors = process.communicate(timeout=60)
+    if how == signal.SIGINT:
+        assert process.returncode == 130
+        assert "the same command goes on" in errors
+        assert "Traceback" not in errors
+    assert not (tmp_path / "table.csv").exists()
+    kept = {path.parent.relative_to(tmp_path) for path in tmp_path.glob("*/*/outcome.json")}
+    assert kept
+
+    assert Path("panel-11", "limit-nonassociated") not in kept
+
+    scenes = {name: published_scene(name) for name in FAST}
+    campaign = run_campaign(scenes, models, folder=tmp_path, jobs=2)
+    assert len(campaign.outcomes) == len(models) * len(scenes)
+    assert {Path(*cell) for cell in campaign.reused} == {path for path in kept if path.parts[0] in scenes}
+
+
+@pytest.mark.parametrize("work", [0.1, 4.0])
+def test_ctrl_c_with_tasks_waiting_says_one_thing(work: float, tmp_path: Path) -> None:
+    """More tasks than the workers' queue takes, while workers load and when each is at a task: the hint and no more."""
+    process = start(tmp_path, "--models", "fem", "--jobs", "2", "--fresh")
+    deadline, workers = time.monotonic() + 60, psutil.Process(process.pid)
+    while time.monotonic() < deadline:
+        busy = [child for child in workers.children() if "LokyProcess" in " ".join(child.cmdline())]
+        if len(busy) > 1 and all(sum(child.cpu_times()[:2]) > work for child in busy):
+            break
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1].endswith("the same command without --fresh goes on.")
+    assert "Traceback" not in errors
+    assert "KeyError" not in errors
+
+
+def test_a_run_stopped_by_ctrl_c_leaves_what_it_had_found(tmp_path: Path) -> None:
+    """Exit 130, one JSON object, and a readable result that no comparison takes for the answer."""
+    folder = tmp_path / "panel-12" / "dem-dynamic"
+    line = [SCRIPT, "run", "panel-12", "--model", "dem-dynamic", "--json", "--tolerance", "1e-6"]
+    line += ["--out", str(folder)]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    # At rest under its dead load, and far from its end.
+    while not (folder / "blocks.pvd").exists() and process.poll() is None:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    printed, errors = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "Traceback" not in errors
+    assert json.loads(printed)["status"] == "undecided"
+    outcome, key = load_outcome(folder)
+    assert outcome.status == "undecided"
+    assert key == ""
+
+
+# --- tables and charts ---------------------------------------------------------------------------------------
+
+
+def test_comparison_writes_every_case_with_printed_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["compare", *FAST[:3], "--out", str(tmp_path)]) == 0
+    with (tmp_path / "table.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 3 * len(MODELS)
+    row = next(row for row in rows if (row["scene"], row["model"]) == ("panel-04", "limit"))
+    assert (row["printed FEM/DEM"], row["printed DEM"], row["printed HOMO"]) == ("0.31", "0.16", "0.134")
+    assert float(row["printed HOMO corrected, tan 30°"]) == pytest.approx(0.1343, abs=5e-5)
+    assert float(row["multiplier"]) == pytest.approx(0.1865, abs=5e-5)
+    assert (row["dofs"], row["status"]) == ("219", "collapse")
+    unfit = next(row for row in rows if (row["scene"], row["model"]) == ("wall-w3", "homog"))
+    assert unfit["status"] == "not applicable"
+    assert "running bond" in unfit["message"] or "rectangular" in unfit["message"]
+    markdown = (tmp_path / "table.md").read_text()
+    printed = capsys.readouterr().out
+    for text in (markdown, printed):
+        assert all(name in text for name in FAST[:3])
+        assert "0.1865" in text
+    assert (tmp_path / "figure-6.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_published_walls_are_the_sixteen_panels_and_three_walls() -> None:
+    assert len(PUBLISHED) == 19
+    assert len({case.name for case in PUBLISHED}) == 19
+    for case in PUBLISHED[:12]:
+        low, high = published_scene(case.name).blocks.extent(published_scene(case.name).wall)
+        assert (high - low)[0] == pytest.approx(1.44)
+
+
+@pytest.mark.parametrize(
+    ("row", "blocks"),
+    # Baraldi, Reccia & Cecchi, Table 1: blocks along and courses up, half blocks counted by every second course.
+    [
+        (1, (6, 12)),
+        (2, (12, 12)),
+        (3, (24, 12)),
+        (4, (24, 3)),
+        (5, (6, 24)),
+        (8, (24, 6)),
+        (9, (6, 48)),
+        (12, (24, 12)),
+    ],
+)
+def test_panels_have_the_blocks_of_table_1(row: int, blocks: tuple[int, int]) -> None:
+    along, up = blocks
+    assert published_scene(f"panel-{row:02d}").wall.sum() == along * up + up // 2
+
+
+def test_figure_6_holds_the_homogenised_multiplier_of_every_panel() -> None:
+    slenderness, multiplier = figure_6_data()
+    for i, case in enumerate(PUBLISHED[:12]):
+        outcome = run_model("homog", published_scene(case.name))
+        r, texture = SLENDERNESS[i // 4][1], i % 4
+        assert np.interp(r, slenderness, multiplier[:, texture]) == pytest.approx(outcome.multiplier)
+    assert len(TEXTURES) == multiplier.shape[1] == 4
+
+
+def test_corrected_column_is_not_the_stated_friction() -> None:
+    scene = published_scene("panel-05")
+    assert corrected_homo(scene) == pytest.approx(0.5336, abs=5e-5)
+    assert run_model("homog", scene).multiplier == pytest.approx(0.5420, abs=5e-5)
+
+
+def test_your_own_wall_is_yours_whatever_its_file_is_called(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A changed copy of a published scene, under its name, with a title that looks like markup."""
+    own = PUBLISHED[0].path.read_text().replace('"flush"', '"toothed"').replace("H/L = 0.5, b/a = 4", "my [/b] wall")
+    (tmp_path / "panel-01.toml").write_text(own)
+    arguments = ["compare", str(tmp_path / "panel-01.toml"), "--models", "limit", "--out", str(tmp_path / "out")]
+    assert command(arguments) == 0
+    printed = capsys.readouterr().out
+    assert "Your scenes" in printed
+    assert "my [/b] wall" in printed
+    assert "0.570" not in printed
+    assert not (tmp_path / "out" / "figure-6.png").exists()
+
+
+def test_results_lying_about_do_not_hide_a_published_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for _ in range(2):
+        assert command(["compare", "panel-04", "--models", "limit", "--out", "."]) == 0
+    assert command(["run", "panel-04", "--model", "homog"]) == 0
+
+
+def test_a_killed_process_loses_one_case_and_no_more(tmp_path: Path) -> None:
+    """As the kernel does to one that takes all the memory: its case is run again, the others stay."""
+    process = start(tmp_path, "panel-11", *FAST, "--models", "limit,limit-nonassociated")
+    deadline = time.monotonic() + 60
+    while not list(tmp_path.glob("*/*/outcome.json")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    workers = [child for child in psutil.Process(process.pid).children() if "LokyProcess" in " ".join(child.cmdline())]
+    busiest = max(workers, key=lambda child: sum(child.cpu_times()[:2]))
+    busiest.kill()
+    waiting = time.monotonic() + 120
+    while not (tmp_path / "wall-w3" / "limit" / "outcome.json").exists() and time.monotonic() < waiting:
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert (tmp_path / "wall-w3" / "limit" / "outcome.json").exists()
+    assert process.returncode == 130
+    assert "Traceback" not in errors
+
+
+def test_a_scene_file_whose_name_is_no_text_is_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    tables = content(wall__length=0.48, wall__height=0.24)
+    del tables["title"]
+    os.rename(write_toml(tables, tmp_path / "wall.toml"), os.fsencode(tmp_path) + b"/w\xe9nd.toml")
+    path = os.fsdecode(os.fsencode(tmp_path) + b"/w\xe9nd.toml")
+    assert command(["compare", path, "--models", "limit", "--out", str(tmp_path / "out"), "--jobs", "1"]) == 0
+    for name in ("table.csv", "table.md", "report.html"):
+        assert "w\ufffdnd" in (tmp_path / "out" / name).read_text(encoding="utf-8")
+    assert command(["run", path, "--model", "limit", "--out", str(tmp_path / "run")]) == 0
+
+
+def no_file_may_grow() -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+
+
+@pytest.mark.parametrize("line", ["compare panel-04 --models limit --out", "run panel-04 --model limit --out"])
+def test_where_no_file_may_grow_that_is_one_line(line: str, tmp_path: Path) -> None:
+    """`ulimit -f 0`: found out before anything is computed; and the exit code is right if nothing can be said."""
+    words = [SCRIPT, *line.split(), str(tmp_path)]
+    said = subprocess.run(words, capture_output=True, text=True, check=False, preexec_fn=no_file_may_grow)
+    assert said.returncode == 2
+    assert said.stderr == f"runningbond: {tmp_path}: File too large\n"
+    assert said.stdout == ""
+    with (tmp_path / "silent").open("wb") as silent:
+        done = subprocess.run(words, stdout=silent, stderr=silent, check=False, preexec_fn=no_file_may_grow)
+    assert done.returncode == 2
+
+
+def test_a_backend_that_is_none_is_bad_input() -> None:
+    wrong = os.environ | {"MPLBACKEND": "nonsense"}
+    line = [SCRIPT, "compare", "panel-04", "--models", "limit"]
+    said = subprocess.run(line, capture_output=True, text=True, check=False, env=wrong)
+    assert said.returncode == 2
+    assert said.stderr.startswith("runningbond: MPLBACKEND = 'nonsense': is no backend of matplotlib")
+    assert said.stderr.count("\n") == 1
+
+
+def test_a_broken_pipe_is_no_complaint() -> None:
+    line = f"{SCRIPT} run panel-04 --model limit | true; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")

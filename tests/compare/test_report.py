@@ -1,0 +1,246 @@
+"""The report of a comparison is one page that holds everything, and opens in a browser without a complaint."""
+
+import base64
+import csv
+import io
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from runningbond.commands.command_line import command
+from runningbond.compare import MODELS, PUBLISHED, Campaign, published_scene
+from runningbond.compare.figures import draw_figures, table_2
+from runningbond.compare.plates import draw_plates, plates
+from runningbond.compare.report import report_html
+from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
+from runningbond.pictures.captions import is_force
+from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.pictures.vtk_safety import vtk_errors_raised
+from runningbond.results import Outcome, fastest_corner_by_one
+from runningbond.scene import Scene
+from tests.walls import content, write_toml
+
+
+@pytest.fixture(autouse=True)
+def no_error_of_vtk() -> Iterator[None]:
+    """What VTK reports as an error fails the test."""
+    with vtk_errors_raised():
+        yield
+
+
+NAMES = ("limit", "dem-static", "dem-dynamic", "fem")
+BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def outcome(scene: Scene, model: str) -> Outcome:
+    """A mechanism that every wall has: what lies above the lowest third of it moves along by one metre."""
+    low, high = scene.blocks.extent(scene.wall)
+    above = scene.wall & (scene.blocks.centroid[:, 1] > low[1] + (high - low)[1] / 3) & ~scene.fixed
+    motion = fastest_corner_by_one(scene.blocks, above[:, None] * np.array([1.0, 0.0, 0.0]))
+    return Outcome(scene.title, model, "collapse", 0.5, 0.4, 0.6, 100, 10, 0.1, "", motion)
+
+
+@pytest.fixture(scope="module")
+def comparison() -> Comparison:
+    scenes = {case.name: published_scene(case.name) for case in PUBLISHED}
+    outcomes = {(name, model): outcome(scene, model) for name, scene in scenes.items() for model in NAMES}
+    del outcomes["panel-03", "fem"]
+    outcomes["panel-02", "limit"] = Outcome("", "limit", "unbounded")
+    models = [MODELS[name] for name in NAMES]
+    return Comparison(scenes, models, Campaign(outcomes), {case.name: case for case in PUBLISHED})
+
+
+@pytest.fixture(scope="module")
+def drawn(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Charts, and plates where this machine can draw them."""
+    folder = tmp_path_factory.mktemp("plates")
+    charts = [path for path in draw_figures(comparison, folder) if path.suffix == ".png"]
+    return charts + ([] if why_not_drawn() else draw_plates(comparison, folder))
+
+
+@pytest.fixture(scope="module")
+def page(comparison: Comparison, drawn: list[Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("report") / "report.html"
+    path.write_text(report_html(comparison, drawn, 0.01), encoding="utf-8")
+    return path
+
+
+class Reader(HTMLParser):
+    """What a page has in its tables, and what it loads."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tables: dict[str, list[list[str]]] = {}
+        self.images: list[str] = []
+        self.linked: list[str] = []
+        self._rows: list[list[str]] = []
+        self._cell = False
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        found = dict(attrs)
+        self.linked += [value for key, value in attrs if key in ("src", "href", "action", "srcset") and value]
+        if tag == "img":
+            self.images.append(found["src"] or "")
+        if tag == "table":
+            self._rows = self.tables.setdefault(found["data-title"] or "", [])
+        if tag == "tr":
+            self._rows.append([])
+        if tag == "td":
+            self._rows[-1].append("")
+        self._cell = tag == "td"
+
+    def handle_data(self, data: str) -> None:
+        if self._cell:
+            self._rows[-1][-1] += data
+
+    def handle_endtag(self, tag: str) -> None:
+        self._cell = False
+
+
+def read(page: Path) -> Reader:
+    reader = Reader()
+    reader.feed(page.read_text(encoding="utf-8"))
+    reader.close()
+    return reader
+
+
+def test_every_published_figure_of_mechanisms_has_its_plate(comparison: Comparison) -> None:
+    """Figures 8 to 10 are H/L = 1/2, 1 and 2 of the four textures, Figure 12 the concentrated load."""
+    found = {plate.name: plate for plate in plates(comparison)}
+    assert list(found) == ["figure-8", "figure-9", "figure-10", "figure-12", "mechanisms-ferris"]
+    for name, slenderness in (("figure-8", 0.5), ("figure-9", 1.0), ("figure-10", 2.0), ("figure-12", 1.0)):
+        scenes = [comparison.scenes[wall] for wall in found[name].walls]
+        sizes = [np.subtract(*scene.blocks.extent(scene.wall)[::-1]) for scene in scenes]
+        assert [h / length for length, h in sizes] == pytest.approx([slenderness] * 4, rel=0.05)
+        bonds = [scene.bond for scene in scenes]
+        assert [bond.width / bond.height for bond in bonds if bond] == pytest.approx([4, 2, 1, 0.25])
+        assert list(found[name].walls.values()) == ["b/a = 4", "b/a = 2", "b/a = 1", "b/a = 1/4"]
+
+
+def test_a_plate_has_a_wall_in_every_cell(drawn: list[Path]) -> None:
+    """Under each model's name a wall slides in every row: in each column and row there is green, if only faint."""
+    if why_not_drawn():
+        pytest.skip(why_not_drawn())
+    image = np.asarray(Image.open(next(path for path in drawn if path.stem == "figure-9")).convert("RGB")).astype(int)
+    red, green, blue = image[: -int(0.05 * len(image))].transpose(2, 0, 1)
+    there = (green > red + 25) & (green > blue + 12)
+    rows = np.array_split(there[int(0.05 * len(image)) :, int(0.09 * image.shape[1]) :], 4)
+    for row in rows:
+        for cell in np.array_split(row, 4, axis=1):
+            assert cell.sum() > 20
+
+
+def test_a_report_needs_nothing_from_anywhere(page: Path) -> None:
+    reader = read(page)
+    assert all(link.startswith("data:") for link in reader.linked)
+    assert not re.search(r"https?://|url\(|@import", page.read_text(encoding="utf-8"))
+
+
+def test_the_pictures_of_a_report_are_whole(page: Path, drawn: list[Path]) -> None:
+    reader = read(page)
+    assert len(reader.images) == len(drawn)
+    for source, path in zip(reader.images, drawn, strict=True):
+        content = base64.b64decode(source.removeprefix("data:image/png;base64,"), validate=True)
+        assert content == path.read_bytes()
+        with Image.open(io.BytesIO(content)) as image:
+            image.load()
+            assert min(image.size) > 500
+
+
+def test_the_tables_have_the_sixteen_published_panels(page: Path, comparison: Comparison) -> None:
+    tables = read(page).tables
+    paper = [title for title in tables if title.startswith("Baraldi") and "seconds" not in title]
+    names = [row[0] for title in paper for row in tables[title][1:]]
+    assert names == [case.name for case in PUBLISHED if not case.name.startswith("wall")]
+    assert len(names) == 16
+    rows = tables[paper[0]][1:]
+    row = rows[0]
+    assert row[1:5] == [comparison.scenes["panel-01"].title, "0.500", "0.570", "0.537"]
+    assert row[-4:] == ["0.4000 – 0.6000"] * 4
+    assert rows[2][-1] == "not run"
+    assert rows[1][-4] == "unbounded"
+    versions = dict(row for row in tables["Versions"][1:])
+    assert {"runningbond", "Python", "numpy", "vtk", "pyvista", "tolerance"} <= set(versions)
+
+
+def test_multipliers_and_loads_in_newtons_stand_apart(comparison: Comparison) -> None:
+    """In no table and no row of the CSV file λ and newtons are mixed up, nor among walls of one's own."""
+    scenes = {**comparison.scenes, "mine": published_scene("panel-01"), "yours": published_scene("point-load-1")}
+    mixed = replace(comparison, scenes=scenes)
+    for sheet in (*multiplier_sheets(mixed), *cost_sheets(mixed)):
+        loaded = {is_force(scenes[row[0]]) for row in sheet.rows}
+        assert len(loaded) == 1
+        assert ("[N]" in sheet.title) == loaded.pop()
+    rows = csv.DictReader(io.StringIO(csv_text(mixed)))
+    assert {(row["scene"], row["unit"]) for row in rows} == {
+        (name, "N" if is_force(scene) else "1") for name, scene in scenes.items()
+    }
+
+
+def test_a_model_without_an_answer_is_drawn_hollow(comparison: Comparison) -> None:
+    """In the chart of Table 2: undecided with a bound, and with nothing known at all; decided ones are solid."""
+    outcomes = dict(comparison.campaign.outcomes)
+    outcomes["panel-05", "dem-static"] = Outcome("", "dem-static", "undecided", upper=0.3)
+    figure = table_2(replace(comparison, campaign=Campaign(outcomes)))
+    hollow = [
+        [(line.get_color(), line.get_ydata()) for line in axes.lines if line.get_markerfacecolor() == "white"]
+        for axes in figure.axes
+    ]
+    limit, static = MODELS["limit"].colour, MODELS["dem-static"].colour
+    assert hollow == [[(limit, [0.0])], [(static, [0.3])], []]
+    assert any("hollow" in text.get_text() for text in figure.legends[0].get_texts())
+
+
+def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:
+    """Headless Chromium: every picture has loaded, sixteen panels stand in the table, the console is silent."""
+    if BROWSER is None:
+        pytest.skip("no Chromium on this machine")
+    probe = """<script>addEventListener("load", () => {
+        const loaded = [...document.images].filter(image => image.complete && image.naturalWidth > 500).length;
+        const rows = [...document.querySelectorAll("td:first-child")].map(cell => cell.textContent);
+        const panels = new Set(rows.filter(name => /^(panel|point-load)-/.test(name))).size;
+        document.title = `loaded ${loaded} of ${document.images.length}, panels ${panels}`; });</script>"""
+    copy = page.parent / "probed.html"
+    copy.write_text(page.read_text(encoding="utf-8").replace("<body>", probe + "<body>"), encoding="utf-8")
+    seen = subprocess.run(
+        [
+            BROWSER,
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--no-first-run",
+            f"--user-data-dir={page.parent / 'profile'}",
+            "--enable-logging=stderr",
+            "--virtual-time-budget=10000",
+            "--dump-dom",
+            copy.as_uri(),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert seen.returncode == 0, seen.stderr
+    count = len(read(page).images)
+    assert f"<title>loaded {count} of {count}, panels 16</title>" in seen.stdout
+    assert "CONSOLE" not in seen.stderr
+
+
+def test_compare_writes_a_report_of_walls_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write_toml(content(wall__length=0.48, wall__height=0.24, title="<mine> & yours"), tmp_path / "mine.toml")
+    out = tmp_path / "out"
+    assert command(["compare", str(path), "--models", "homog,limit", "--out", str(out), "--jobs", "1"]) == 0
+    capsys.readouterr()
+    reader = read(out / "report.html")
+    assert reader.tables["Your scenes"][1][:2] == ["mine", "<mine> & yours"]
+    if not why_not_drawn():
+        assert len(reader.images) == 1
+        assert (out / "mechanisms.png").is_file()

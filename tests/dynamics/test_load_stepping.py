@@ -1,0 +1,148 @@
+"""The search by steps of constant load, whatever the wall says to each of them."""
+
+from collections.abc import Callable
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dem.rigid_system import rigid_system
+from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
+from runningbond.dynamics.collapse import HeldLoad, Verdict
+from runningbond.dynamics.load_stepping import RESOLVED, _raise
+from tests.fem_interface.walls import MORTAR
+from tests.walls import panel
+
+FIRST = 0.05
+SIZE = {"wall__length": 0.24, "wall__height": 0.06, "joint__mortar": MORTAR}
+BLOCK = Run(rigid_system(panel(**SIZE)))
+PRESSED = {"gravity": 0.0, "live": {"kind": "point", "at": [0.12, 0.06], "force": [0, -1]}}
+WEIGHTLESS = Run(rigid_system(panel(**SIZE, load=PRESSED)))
+
+
+def searched(answer: Callable[[float], Verdict], tolerance: float = 0.005) -> tuple[LoadSteps, list[float]]:
+    """Search on a wall that gives an answer to each load, and the loads that were tried."""
+    tried: list[float] = []
+
+    def hold_load(run: Run, state: object, multiplier: float, *_: object) -> HeldLoad:
+        tried.append(multiplier)
+        assert len(tried) < 500, "no end"
+        return HeldLoad(answer(multiplier))
+
+    module = "runningbond.dynamics.load_stepping"
+    settle = patch(f"{module}.settle", return_value="stable")
+    with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
+        return load_steps(BLOCK, FIRST, tolerance, Criteria(collapse=1.0), most=10.0), tried
+
+
+def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
+    """Panel 11 neither rested nor fell at 0.25, fell just above it and just below it; that was tried for ever."""
+
+    def answer(multiplier: float) -> Verdict:
+        if round(multiplier, 6) == 0.25:
+            return "undecided"
+        return "stable" if multiplier < 0.24 else "collapse"
+
+    found, tried = searched(answer)
+    assert 0.25 in [round(multiplier, 6) for multiplier in tried]
+    assert found.lower is not None
+    assert found.upper is not None
+    assert found.lower < 0.24 <= found.upper
+    assert found.upper - found.lower <= 0.005 * found.upper
+
+
+def test_the_bracket_closes_in_on_loads_without_an_answer() -> None:
+    """Loads about the collapse neither hold nor fall: the bracket is theirs, and no answer."""
+
+    def answer(multiplier: float) -> Verdict:
+        return "stable" if multiplier < 0.422 else "collapse" if multiplier > 0.427 else "undecided"
+
+    found, tried = searched(answer)
+    assert found.verdict == "undecided"
+    assert found.lower is not None
+    assert found.upper is not None
+    assert 0.42 < found.lower < 0.422
+    assert 0.427 < found.upper < 0.43
+    assert sum(answer(multiplier) == "undecided" for multiplier in tried) <= 4
+
+
+def test_a_narrow_band_without_an_answer_is_none_though_the_last_load_gave_one() -> None:
+    """Closed in on from both sides, to a quarter of the tolerance."""
+    band = 0.317, 0.317 * 1.004
+
+    def answer(multiplier: float) -> Verdict:
+        return "stable" if multiplier < band[0] else "collapse" if multiplier > band[1] else "undecided"
+
+    found, tried = searched(answer)
+    assert answer(tried[-1]) != "undecided"
+    assert found.verdict == "undecided"
+    assert found.upper is not None
+    assert found.lower is not None
+    unanswered = [multiplier for multiplier in tried if answer(multiplier) == "undecided"]
+    assert len(unanswered) < 4
+    assert max(min(unanswered) - found.lower, found.upper - max(unanswered)) <= 0.005 / 4 * found.upper
+
+
+@given(pauses=st.lists(st.booleans(), min_size=1, max_size=30), stop=st.floats(0.06, 3.0))
+@settings(max_examples=200, deadline=None)
+def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: list[bool], stop: float) -> None:
+    """Paused or not: it comes to the load itself, or to less where it falls on the way."""
+    answers = iter(pauses)
+    state = State.at_rest(WEIGHTLESS.system)
+    with (
+        patch("runningbond.dynamics.load_stepping.ramp"),
+        patch("runningbond.dynamics.load_stepping._pauses", lambda *_: next(answers, True)),
+    ):
+        reached = _raise(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
+    assert reached <= stop
+    assert (reached == stop) == all(pauses[:-1])
+
+
+def test_a_wall_that_never_answers_costs_two_budgets() -> None:
+    found, tried = searched(lambda multiplier: "undecided")
+    assert (found.lower, found.upper, found.verdict, len(tried)) == (0.0, None, "undecided", 2)
+
+
+@given(st.data(), st.sampled_from([0.0005, 0.005, 0.05, 0.5]))
+@settings(max_examples=300, deadline=None)
+def test_a_search_ends_whatever_the_answers(data: st.DataObject, tolerance: float) -> None:
+    """Each load that is tried lies inside the bracket so far, which never widens."""
+    lower, upper = 0.0, float("inf")
+
+    def answer(multiplier: float) -> Verdict:
+        nonlocal lower, upper
+        assert lower < multiplier < upper
+        verdict: Verdict = data.draw(st.sampled_from(("stable", "collapse", "undecided")))
+        if verdict == "stable":
+            lower = multiplier
+        elif verdict == "collapse":
+            upper = multiplier
+        return verdict
+
+    found, _ = searched(answer, tolerance)
+    assert found.lower == lower
+    assert found.upper == (upper if upper < float("inf") else None)
+    if found.verdict != "undecided" and found.upper is not None:
+        narrowest = RESOLVED * 1e-5 / BLOCK.system.measure(BLOCK.system.live)
+        assert upper - lower <= max(tolerance * upper, narrowest)
+
+
+def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farther() -> None:
+    """Rests move the block by ten times what falls do: the live load does positive work on it all the same."""
+    push = np.sign(BLOCK.system.live)
+
+    def hold_load(run: Run, state: State, multiplier: float, *_: object) -> HeldLoad:
+        if multiplier < 0.3:
+            state.motion += 0.01 * push
+            return HeldLoad("stable")
+        halfway = state.motion + 0.0005 * push
+        state.motion += 0.001 * push
+        return HeldLoad("collapse", halfway)
+
+    scene, module = panel(**SIZE), "runningbond.dynamics.load_stepping"
+    settle = patch(f"{module}.settle", return_value="stable")
+    with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
+        outcome = collapse_by_steps(scene, "", BLOCK, 0.005, point_order=np.arange(2), is_self_locking=lambda: False)
+    assert outcome.motion[0] == pytest.approx([1.0, 0.0, 0.0])

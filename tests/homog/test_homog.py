@@ -1,0 +1,138 @@
+"""Closed forms of running bond as a continuum."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from homog import StrengthDomain, crack_slope, elastic_moduli, homog, lateral_multiplier
+from runningbond.scene import Bond, JointMaterial, SceneError
+from tests.walls import courses, panel
+
+TEXTURES = {(0.24, 0.06): 4, (0.12, 0.06): 2, (0.06, 0.06): 1, (0.06, 0.24): 0.25}
+
+
+@given(slope=st.floats(0.05, 20))
+def test_the_two_branches_meet_in_value_and_slope(slope: float) -> None:
+    """At r = s both give 1 / (2 s) with no slope; the printed exponent −1/2 makes them jump."""
+    sliding = 1e9
+    step = 1e-4
+    at = lateral_multiplier(slope, slope, sliding)
+    beyond = lateral_multiplier(slope * (1 + step), slope, sliding)
+    assert at == pytest.approx(1 / (2 * slope))
+    assert abs(beyond - at) < 3 * step**2 * at
+
+
+@given(slenderness=st.floats(0.01, 10), slope=st.floats(0.05, 20))
+@settings(max_examples=40)
+def test_multiplier_is_the_worst_crack_of_its_family(slenderness: float, slope: float) -> None:
+    """Turning the wedge above a straight crack of slope z ≤ s: λ = (moment of weight) / (moment of push).
+
+    Independent of the closed form: the wedge is integrated as a polygon and z minimised on a grid.
+    """
+    r, s = slenderness, slope
+    best = math.inf
+    for z in np.linspace(1e-3, s, 801):
+        if z <= r:  # the crack leaves through the side: trapezium with corners (0,0), (1,z), (1,r), (0,r), mirrored
+            sx, sy = _first_moments([(0, 0), (0, r), (-1, r), (-1, z)])
+        else:
+            sx, sy = _first_moments([(0, 0), (0, r), (-r / z, r)])
+        best = min(best, -sx / sy)
+    assert lateral_multiplier(r, s, 1e9) == pytest.approx(best, rel=2e-3)
+
+
+def _first_moments(polygon: list[tuple[float, float]]) -> tuple[float, float]:
+    x, y = np.array(polygon).T
+    xn, yn = np.roll(x, -1), np.roll(y, -1)
+    cross = x * yn - xn * y
+    sign = math.copysign(1.0, cross.sum())
+    return sign * float(((x + xn) * cross).sum()) / 6, sign * float(((y + yn) * cross).sum()) / 6
+
+
+def test_multiplier_never_exceeds_sliding_and_vanishes_without_friction() -> None:
+    assert lateral_multiplier(0.5, 0.1, 0.6) == 0.6
+    assert lateral_multiplier(2.0, crack_slope(0.24, 0.06, 0.0), 0.0) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("slenderness", "printed"),
+    [
+        # Baraldi, Reccia & Cecchi, Table 2, λ_HOMO; row 5 (r = 1, b/a = 4) prints 0.537 from the wrong branch.
+        (0.5, (0.537, 0.380, 0.269, 0.134)),
+        (1.0, (0.534, 0.380, 0.269, 0.134)),
+        (2.0, (0.372, 0.328, 0.267, 0.134)),
+    ],
+)
+def test_the_papers_column_is_the_corrected_formula_with_tan_30(slenderness: float, printed: tuple[float, ...]) -> None:
+    friction = math.tan(math.radians(30))
+    for (width, height), value in zip(TEXTURES, printed, strict=True):
+        slope = crack_slope(width, height, friction)
+        assert lateral_multiplier(slenderness, slope, friction) == pytest.approx(value, abs=5.1e-4)
+
+
+@pytest.mark.parametrize(
+    ("block", "expected"),
+    # Recomputed for this project: k_nh, k_th, k_nv, k_tv = 80, 30, 50, 20.
+    [((240.0, 60.0), (19200, 4800, 1674.4186)), ((60.0, 240.0), (3112.5, 19200, 1241.3793))],
+)
+def test_elastic_moduli(block: tuple[float, float], expected: tuple[float, float, float]) -> None:
+    moduli = elastic_moduli(*block, bed_normal=80, bed_shear=30, head_normal=50, head_shear=20)
+    assert (moduli.a1111, moduli.a2222, moduli.a1212) == pytest.approx(expected, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("block", "oblique", "across"),
+    # tan φ = 0.6, c = 1; recomputed for this project as limit analysis of one periodic cell.
+    [((240.0, 60.0), 1.527778, 3.666667), ((60.0, 60.0), 1.203704, 2.166667), ((60.0, 240.0), 0.779570, 1.791667)],
+)
+def test_strength_domain(block: tuple[float, float], oblique: float, across: float) -> None:
+    domain = StrengthDomain(Bond(*block), JointMaterial(0.6, 1.0, 1 / 0.6))
+    assert domain.strength((1, 0, 0)) == pytest.approx(across, abs=1e-6)
+    assert domain.strength((0, 1, 0)) == pytest.approx(1 / 0.6)
+    assert domain.strength((0, 0, 1)) == pytest.approx(1)
+    assert domain.strength((1, -1, 1)) == pytest.approx(oblique, abs=1e-6)
+    assert domain.strength((-1, -1, 1)) == pytest.approx(2.5)
+    assert domain.strength((-1, 0, 0)) == math.inf
+
+
+def test_strength_domain_has_its_apex_at_c_cot_phi() -> None:
+    domain = StrengthDomain(Bond(0.24, 0.06), JointMaterial(0.6, 3.0, 5.0))
+    assert domain.strength((1, 1, 0)) == pytest.approx(5.0)
+
+
+def test_strength_domain_grows_with_cohesion_and_shrinks_with_a_cut_off() -> None:
+    bond = Bond(0.24, 0.06)
+    whole = StrengthDomain(bond, JointMaterial(0.6, 1.0, 1 / 0.6)).strength((1, -1, 1))
+    assert StrengthDomain(bond, JointMaterial(0.6, 2.0, 2 / 0.6)).strength((1, -1, 1)) == pytest.approx(2 * whole)
+    assert StrengthDomain(bond, JointMaterial(0.6, 1.0, 0.2)).strength((0, 1, 0)) == pytest.approx(0.2)
+    assert StrengthDomain(bond, JointMaterial(0.6)).strength((0, 0, 1)) == 0
+
+
+def test_model_reads_the_panel_from_its_geometry() -> None:
+    """The same wall, as length and height or as courses; a fixed course does not count."""
+    by_size = homog(panel(wall__height=1.44)).multiplier
+    pattern: list[list[float]] = [[1] * 6, [0.5, 1, 1, 1, 1, 1, 0.5]] * 12
+    assert homog(courses(pattern, 0.24, 0.06)).multiplier == by_size == pytest.approx(0.5420, abs=1e-4)
+    assert homog(panel(wall__height=1.5, support__kind="fixed-first-course")).multiplier == by_size
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"wall__ends": "toothed"}, "full rectangular panel"),
+        ({"joint__cohesion": 1e3}, "dry joints"),
+        ({"support__kind": "corners"}, "support.kind"),
+        ({"load__live": {"kind": "point", "at": [0.72, 0.72], "force": [1, 0]}}, "lateral"),
+    ],
+)
+def test_model_says_which_assumption_a_scene_breaks(changes: dict[str, object], reason: str) -> None:
+    with pytest.raises(SceneError, match=reason):
+        homog(panel(**changes))
+
+
+@pytest.mark.parametrize("pattern", [[[1, 1, 1], [1, 1, 1]], [[1, 1], [0.5, -1, 0.5], [1, 1]], [[1, 2], [2, 1]]])
+def test_model_refuses_what_is_no_running_bond(pattern: list[list[float]]) -> None:
+    with pytest.raises(SceneError, match="running bond|rectangular"):
+        homog(courses(pattern))

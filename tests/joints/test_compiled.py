@@ -1,0 +1,155 @@
+"""Compiled kernels are kept for other processes, and never mistaken for one another."""
+
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numba
+import pytest
+from numba.core.caching import IndexDataCacheFile
+
+from runningbond.joints.compiled import SharedCache, kernel
+
+ROOT = Path(__file__).parents[2]
+
+
+@kernel
+def doubled(x: float) -> float:
+    return 2.0 * x
+
+
+@kernel
+def tripled(x: float) -> float:
+    return 3.0 * x
+
+
+def plus_one(law: Callable[[float], float]) -> Any:
+    """A kernel closed over another, as a loop over a law is."""
+
+    @kernel
+    def loop(x: float) -> float:
+        return law(x) + 1.0
+
+    return loop
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    return tmp_path
+
+
+def test_a_kernel_closed_over_another_is_found_by_the_next_process(tmp_path: Path) -> None:
+    """Two processes, two laws in one loop: the second compiles neither anew, and gets each right."""
+    program = """
+from tests.test_compiled import doubled, plus_one, tripled
+loops = plus_one(doubled), plus_one(tripled)
+print([loop(5.0) for loop in loops], sum(len(loop.stats.cache_misses) for loop in loops))
+"""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    line = [sys.executable, "-c", program]
+    printed = [subprocess.run(line, env=environment, capture_output=True, text=True).stdout for _ in range(2)]
+    assert printed == ["[11.0, 16.0] 2\n", "[11.0, 16.0] 0\n"]
+
+
+def test_two_that_save_at_once_do_not_share_a_file(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each dwells where it has read the index and not yet written its own: left alone, both would choose one name."""
+    loops = plus_one(doubled), plus_one(tripled)
+    for loop in loops:
+        loop._cache.disable()
+        loop(1.0)
+    met = threading.Barrier(2, timeout=0.5)
+
+    def dwelling(self: IndexDataCacheFile, overloads: Any) -> None:
+        with suppress(threading.BrokenBarrierError):
+            met.wait()
+        save(self, overloads)
+
+    save = IndexDataCacheFile._save_index
+    monkeypatch.setattr(IndexDataCacheFile, "_save_index", dwelling)
+    caches = [SharedCache(loop.py_func) for loop in loops]
+    compiled = [next(iter(loop.overloads.values())) for loop in loops]
+    savers = [
+        threading.Thread(target=shared.save_overload, args=(code.signature, code))
+        for shared, code in zip(caches, compiled, strict=True)
+    ]
+    for saver in savers:
+        saver.start()
+    for saver in savers:
+        saver.join()
+    assert len(set(caches[0]._cache_file._load_index().values())) == 2
+    assert len(list(cache.rglob("*.nbc"))) == 2
+
+
+def test_a_damaged_or_full_cache_costs_a_compilation(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert plus_one(doubled)(5.0) == 11.0
+    for path in cache.rglob("*.nb?"):
+        path.write_bytes(path.read_bytes()[:-5])
+    again = plus_one(doubled)
+    assert again(5.0) == 11.0
+    assert again.stats.cache_misses
+    assert not plus_one(doubled).stats.cache_misses, "is mended"
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(IndexDataCacheFile, "_save_data", full)
+    assert plus_one(tripled)(5.0) == 16.0
+
+
+def test_where_nothing_can_be_kept_kernels_are_compiled_all_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "file"))
+    monkeypatch.setattr(
+        "numba.core.caching._CacheLocator.ensure_cache_path", lambda self: (_ for _ in ()).throw(OSError)
+    )
+    assert plus_one(doubled)(5.0) == 11.0
+
+
+def test_a_law_of_a_users_own_that_has_changed_is_compiled_anew(tmp_path: Path) -> None:
+    """The loop over it stands in another file, which has not; nor has the law's, where a number beside it has."""
+    program = "from mine import law\nfrom tests.test_compiled import plus_one\nprint(plus_one(law)(5.0))"
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": f"{ROOT}:{tmp_path}"}
+    text = "from runningbond.joints.compiled import kernel\nK = {}\n@kernel\ndef law(x):\n    return {} * x\n"
+    printed = []
+    for k, code in ((1.0, "2.0"), (1.0, "3.0"), (4.0, "K"), (5.0, "K")):
+        (tmp_path / "mine.py").write_text(text.format(k, code))
+        line = [sys.executable, "-B", "-c", program]
+        printed.append(subprocess.run(line, env=environment, capture_output=True, text=True).stdout)
+    assert printed == ["11.0\n", "16.0\n", "21.0\n", "26.0\n"]
+
+
+def test_a_user_without_a_home_has_kernels_and_scenes_and_no_drawing(tmp_path: Path) -> None:
+    """No HOME and no entry in the password file: whatever wants a folder of the user's says so or does without."""
+    program = """
+import pwd
+pwd.getpwuid = lambda uid: {}[uid]
+from pathlib import Path
+from runningbond.scene import SceneError, scene_from_dict
+from tests.test_compiled import doubled
+from tests.walls import content
+scene_from_dict(content())
+Path("wall.dxf").write_text("")
+try:
+    scene_from_dict(content(wall={"drawing": "wall.dxf", "units": "mm", "thickness": 0.1}))
+except SceneError as error:
+    print(doubled(2.0), str(error).splitlines()[0])
+"""
+    variables = {"HOME", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "NUMBA_CACHE_DIR"}
+    environment = {name: value for name, value in os.environ.items() if name not in variables}
+    done = subprocess.run(
+        [sys.executable, "-c", program],
+        env=environment | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
+    assert done.stdout.startswith("4.0 wall.drawing = 'wall.dxf': "), done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["wall.dxf"]

@@ -1,0 +1,106 @@
+"""Joint points, the truncated Coulomb cone and joint stiffness."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from runningbond.joints import gauss, joint_points, joint_stiffness, lobatto, point_strength
+from runningbond.scene import JointMaterial, Joints, Mortar, SceneError, Stiffness
+from tests.walls import panel
+
+
+@pytest.mark.parametrize("n", [2, 3, 4, 5, 8])
+def test_rules_integrate_the_polynomials_they_should(n: int) -> None:
+    """Lobatto with n points is exact to degree 2n − 3, Gauss to 2n − 1."""
+    for rule, degree in ((lobatto(n), 2 * n - 3), (gauss(n), 2 * n - 1)):
+        for power in range(degree + 1):
+            exact = 2 / (power + 1) if power % 2 == 0 else 0.0
+            assert rule.weights @ rule.nodes**power == pytest.approx(exact, abs=1e-13)
+        missed = rule.weights @ rule.nodes ** (degree + 1) - 2 / (degree + 2)
+        assert abs(missed) > 1e-6
+
+
+def test_lobatto_points_are_the_joint_ends_and_simpson_its_middle() -> None:
+    assert lobatto(2).nodes.tolist() == [-1, 1]
+    assert lobatto(3).weights == pytest.approx([1 / 3, 4 / 3, 1 / 3])
+
+
+def test_points_stand_for_the_whole_joint_and_stay_on_it() -> None:
+    scene = panel()
+    for rule in (lobatto(), lobatto(4), gauss(2)):
+        points = joint_points(scene.joints, scene.thickness, rule)
+        area = np.bincount(points.joint, points.area)
+        assert area == pytest.approx(scene.joints.length * scene.thickness)
+        start, stop = scene.joints.ends[points.joint].transpose(1, 0, 2)
+        from_ends = np.hypot(*(points.position - start).T) + np.hypot(*(points.position - stop).T)
+        assert from_ends == pytest.approx(scene.joints.length[points.joint])
+
+
+@given(st.floats(-math.pi, math.pi), st.floats(0, 0.9))
+def test_frame_is_right_handed_and_inset_moves_points_inwards(angle: float, inset: float) -> None:
+    """t = (−n_y, n_x); two points of a joint of length 2 stand 2 − 2 · inset apart."""
+    end = [2 * math.cos(angle), 2 * math.sin(angle)]
+    points = joint_points(Joints(np.array([[0, 1]]), np.array([[[0.0, 0.0], end]])), 1.0, inset=inset)
+    n, t = points.normal[0], points.tangent[0]
+    assert t == pytest.approx([-n[1], n[0]])
+    assert math.hypot(*(points.position[1] - points.position[0])) == pytest.approx(2 - 2 * inset)
+
+
+def test_mortar_stiffness_is_that_of_a_confined_layer() -> None:
+    """The paper's 1 GPa with ν = 0.2 and 10 mm: 1.041667e11 and 4.166667e10 Pa/m."""
+    stiffness = joint_stiffness(JointMaterial(0.6, elasticity=Mortar(1e9, 0.2, 0.01)))
+    assert stiffness.normal == pytest.approx(1e9 / (0.01 * 0.96))
+    assert stiffness.shear == pytest.approx(1e9 / (2 * 1.2 * 0.01))
+    given = Stiffness(1e10, 2e9)
+    assert joint_stiffness(JointMaterial(0.6, elasticity=given)) == given
+
+
+def test_stiffness_that_nobody_gave_is_refused() -> None:
+    with pytest.raises(SceneError, match=r"joint\.mortar"):
+        joint_stiffness(JointMaterial(0.6))
+
+
+def up_to(most: float) -> st.SearchStrategy[float]:
+    """Numbers that a material may have: nothing, or not so little that it drowns."""
+    return st.one_of(st.just(0.0), st.floats(1e-6, most))
+
+
+@given(
+    friction=up_to(3),
+    cohesion=up_to(10),
+    cut=up_to(1),
+    sigma=st.floats(-20, 20),
+    tau=st.floats(-20, 20),
+)
+def test_cone_from_its_vertex_is_mohr_coulomb_with_a_cut_off(
+    friction: float, cohesion: float, cut: float, sigma: float, tau: float
+) -> None:
+    """Same set as |τ| ≤ c − σ tan φ and σ ≤ f_t."""
+    tension = cut * (cohesion / friction if friction > 1e-3 else cohesion)
+    strength = point_strength(JointMaterial(friction, cohesion, tension), np.ones(1))
+    violation = strength.violation(np.array([sigma]), np.array([tau]))[0]
+    expected = max(sigma - tension, abs(tau) - (cohesion - sigma * friction))
+    assert violation == pytest.approx(expected, abs=1e-9)
+
+
+@given(
+    friction=st.floats(0.01, 3),
+    cohesion=up_to(10),
+    cut=up_to(1),
+    slip=st.floats(-5, 5),
+    extra=st.floats(0, 5),
+    pressure=st.floats(0, 50),
+    share=st.floats(-1, 1),
+)
+def test_no_admissible_force_does_more_work_than_the_dissipation(
+    friction: float, cohesion: float, cut: float, slip: float, extra: float, pressure: float, share: float
+) -> None:
+    strength = point_strength(JointMaterial(friction, cohesion, cut * cohesion / friction), np.ones(1))
+    opening = friction * abs(slip) + extra
+    normal = strength.tension - pressure
+    tangential = share * (strength.shear + friction * pressure)
+    work = normal * opening + tangential * slip
+    assert (work <= strength.dissipation(np.array([opening]), np.array([slip])) + 1e-9 * (1 + abs(work))).all()

@@ -1,0 +1,124 @@
+"""A law of one's own, written here: it runs in the models without a line of the package being touched."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from dem.dynamic import dem_dynamic
+from dem.rigid_system import contact_points, rigid_system
+from dem.static import dem_static
+from runningbond.compare.fingerprint import fingerprint
+from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.joints import KernelLaw, Law, joint_stiffness
+from runningbond.joints.compiled import kernel
+from runningbond.joints.coulomb import COULOMB
+from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE, Parameters
+from runningbond.joints.softening import SOFTENING
+from runningbond.joints.wall_law import kernel_law
+from runningbond.scene import Array, JointMaterial, Scene, SceneError, Stiffness
+from tests.walls import courses
+
+
+@kernel
+def springs(
+    opening: Array,
+    slip: Array,
+    parameters: Parameters,
+    history: Array,
+    viscosity: float,
+    normal: Array,
+    tangential: Array,
+) -> None:
+    """σ = k_n δ_n, τ = k_t δ_t, with a dashpot beside each."""
+    segments, constants = parameters
+    for segment in range(constants.shape[0]):
+        k_n, k_t = constants[segment, 0], constants[segment, 1]
+        for i in range(segments[segment], segments[segment + 1]):
+            change_n, change_t = opening[i] - history[OPENING_BEFORE, i], slip[i] - history[SLIP_BEFORE, i]
+            damped_n, damped_t = viscosity * k_n * change_n, viscosity * k_t * change_t
+            history[DAMPED_WORK, i] += damped_n * change_n + damped_t * change_t
+            history[OPENING_BEFORE, i], history[SLIP_BEFORE, i] = opening[i], slip[i]
+            normal[i], tangential[i] = k_n * opening[i] + damped_n, k_t * slip[i] + damped_t
+
+
+def constants_of_springs(material: JointMaterial) -> tuple[float, ...]:
+    stiffness = joint_stiffness(material)
+    return stiffness.normal, stiffness.shear, np.inf
+
+
+def stored_in_springs(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
+    stored: Array = normal**2 / (2 * points.normal_stiffness) + tangential**2 / (2 * points.shear_stiffness)
+    return stored
+
+
+SPRINGS = Law("springs", constants_of_springs, springs, COMMON_ROWS, stored_in_springs)
+MATERIAL = JointMaterial(0.6, elasticity=Stiffness(1e9, 4e8), law=SPRINGS)
+PLASTIC = replace(MATERIAL, law=None)
+
+
+def tower(**joint: object) -> Scene:
+    """Two blocks of 0.24 × 0.12 m, one on the other on a base, 0.12 m thick."""
+    glue = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8, **joint}
+    return courses([[1], [1]], width=0.24, height=0.12, joint=glue)
+
+
+def test_springs_never_give_way_and_slip_by_force_over_stiffness() -> None:
+    """Pushed by five times its weight, a joint under a weight G slips by 5 G / (k_t A) and settles by G / (k_n A)."""
+    scene = tower(law=SPRINGS)
+    run = Run(rigid_system(scene))
+    state = State.at_rest(run.system)
+    assert settle(run, state, 5.0, Criteria(collapse=1.0)) == "stable"
+    opening, slip, _, _ = run.tractions(state)
+    joint = contact_points(scene).joint
+    above = np.array([scene.mass[:-1][scene.blocks.centroid[:-1, 1] > y].sum() for y in scene.joints.ends[:, 0, 1]])
+    length = scene.joints.length * scene.thickness
+    for k, weight in enumerate(9.81 * above):
+        assert np.abs(slip[joint == k]) == pytest.approx(5 * weight / (4e8 * length[k]), rel=1e-4)
+        assert opening[joint == k].mean() == pytest.approx(-weight / (1e9 * length[k]), rel=1e-4)
+    ledger = run.ledger(state)
+    assert abs(ledger.residual) < 1e-3 * ledger.external
+    assert dem_dynamic(tower()).status == "collapse"
+
+
+def test_a_model_that_cannot_use_a_law_says_which() -> None:
+    with pytest.raises(SceneError, match=r'joint\.law: "springs" has no response with a tangent, which dem-static'):
+        dem_static(tower(law=SPRINGS))
+    with pytest.raises(SceneError, match='"springs" keeps no "plastic slip" in its history'):
+        SPRINGS.row("plastic slip")
+
+
+def test_laws_that_do_not_go_together_are_named() -> None:
+    of_point = np.zeros(1, dtype=np.int64)
+    with pytest.raises(SceneError, match=r'joint\.law: .* "Coulomb" and "springs"'):
+        kernel_law([PLASTIC, MATERIAL], of_point)
+    soft = replace(PLASTIC, fracture_energy_1=1.0, fracture_energy_2=1.0)
+    assert kernel_law([PLASTIC, soft], of_point).law == SOFTENING
+    assert kernel_law([PLASTIC], of_point).law == COULOMB
+    assert kernel_law([replace(soft, law=COULOMB)], of_point).law == COULOMB
+
+
+def test_what_is_no_law_is_refused_in_files_and_in_python() -> None:
+    with pytest.raises(SceneError, match=r"joint\.law = 'brittle': must be a law of joints"):
+        tower(law="brittle")
+    with pytest.raises(SceneError, match=r"joint\.law = 'brittle': must be a law of joints"):
+        JointMaterial(0.6, law="brittle")
+
+
+def test_what_is_kept_of_a_wall_is_kept_for_its_law_in_every_process() -> None:
+    """The fingerprint of an outcome tells laws apart, and is the same in another process."""
+    program = """
+from runningbond.compare.fingerprint import fingerprint
+from tests.test_laws import SPRINGS, tower
+print(fingerprint(tower(law=SPRINGS), "limit", 0.01))
+"""
+    environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
+    own = fingerprint(tower(law=SPRINGS), "limit", 0.01)
+    assert done.stdout.strip() == own
+    other = replace(SPRINGS, constants=lambda material: (1.0, 1.0, np.inf))
+    assert len({own, *(fingerprint(tower(law=law), "limit", 0.01) for law in (None, other))}) == 3

@@ -1,0 +1,253 @@
+"""Nothing is lost: not by Ctrl-C and SIGKILL, on full and read-only disks, to a second writer or to damaged files."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+import pytest
+
+from runningbond.commands.command_line import command, main
+from runningbond.compare.published import find_scene
+from runningbond.compare.recording import StaticRecorder
+from runningbond.limit import limit
+from runningbond.pictures.mechanism import mechanism_frame
+from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.pictures.time_series import frame_files
+from runningbond.results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
+from tests.walls import courses
+
+from .commands import COMMANDS, COMPARE, MESH, RENDER, TITLE, WALL, Command
+from .disk import disk_trials_apart
+from .faults import at_once, damage, interrupt
+from .trial import LOST, NOT_TRIED, REDONE, REFUSED, Scratch, call
+
+
+def what_commands_need(home: Path) -> dict[str, Path]:
+    """Folders with what some commands need: a scene, and the result of a run."""
+    needed = {"compare": home / "scene", "render": home / "result"}
+    needed["compare"].mkdir()
+    # Under a title of its own, or the charts of the published walls would be drawn each time.
+    (needed["compare"] / "wall.toml").write_text(find_scene(WALL).read_text().replace(TITLE, "wall"))
+    call(["run", WALL, "--model", "limit", "--out", str(needed["render"])])
+    return needed
+
+
+@pytest.fixture(scope="module")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folders in which mesh, compare and render have been called undisturbed."""
+    home = tmp_path_factory.mktemp("machine")
+    needed = what_commands_need(home)
+    for each in (MESH, COMPARE, *([] if why_not_drawn() else [RENDER])):
+        Scratch(each, home).prepare(needed.get(each.name))
+    return home
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_a_mesh_broken_off_is_written_whole_when_asked_for_again(how: signal.Signals, home: Path) -> None:
+    trial = interrupt(Scratch(MESH, home), home / f"mesh-{how}", how, how.name)
+    assert (trial.verdict, trial.kept) == (REDONE, 0)
+    assert trial.message == ("runningbond: interrupted; every file is whole, or as it was before" if how == 2 else "")
+
+
+def test_pictures_broken_off_are_drawn_when_asked_for_again(home: Path) -> None:
+    if why_not_drawn():
+        pytest.skip("nothing can be drawn here")
+    trial = interrupt(Scratch(RENDER, home), home / "pictures", signal.SIGINT, "Ctrl-C")
+    assert (trial.verdict, trial.code) == (REDONE, 130)
+    assert (trial.kept, trial.pieces) == (1, 2)
+
+
+def test_disks_that_take_no_more_are_told_of_and_nothing_is_lost(home: Path) -> None:
+    """On a small disk that is full after the first case, and on one that has become read-only."""
+    found = {(trial.command, trial.fault): trial for trial in disk_trials_apart(home, ["mesh", "compare"])}
+    assert [trial.verdict for trial in found.values() if trial.fault == "full disk"] == [REDONE, REDONE]
+    read_only = [trial for trial in found.values() if trial.fault == "read-only folder"]
+    assert {trial.verdict for trial in read_only} <= {REFUSED, NOT_TRIED}
+    full = found["compare", "full disk"]
+    assert "of 4 cases are kept in OUT; the same command goes on." in full.message
+    assert f"{full.kept} of 4 cases" in full.message
+    for trial in read_only:
+        if trial.verdict == REFUSED:
+            assert trial.message.startswith("runningbond: OUT")
+            assert (trial.code, trial.kept) == (2, 0)
+
+
+def test_a_trial_that_leaves_something_else_is_lost(home: Path, tmp_path: Path) -> None:
+    """Also a traceback, a second line and another exit code are."""
+    scratch = Scratch(MESH, home)
+    folder = scratch.fresh(tmp_path / "mesh")
+    assert scratch.trial("fault", folder, 2, "a line", REFUSED).verdict == REFUSED
+    assert scratch.trial("fault", folder, 2, "two\nlines", REFUSED).verdict == LOST
+    assert scratch.trial("fault", folder, 2, "Traceback: line", REFUSED).verdict == LOST
+    (folder / "wall.msh").write_bytes((scratch.done / "wall.msh").read_bytes()[:-1])
+    assert scratch.trial("fault", folder, 2, "a line", REFUSED).verdict == LOST
+
+
+def outcome(multiplier: float) -> Outcome:
+    return Outcome("wall", "limit", "collapse", multiplier, motion=np.full((4, 3), multiplier))
+
+
+def test_two_writers_into_one_folder_leave_one_whole_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second comes when the first has written its arrays and not yet the record that vouches for them."""
+    writers: list[threading.Thread] = []
+
+    def interrupted(path: Path, content: bytes) -> None:
+        if path.name == "outcome.json" and not writers:
+            writers.append(threading.Thread(target=save_outcome, args=(outcome(0.6), tmp_path, "second")))
+            writers[0].start()
+            writers[0].join(timeout=0.5)
+        write_atomically(path, content)
+
+    monkeypatch.setattr("runningbond.results.store.write_atomically", interrupted)
+    save_outcome(outcome(0.5), tmp_path, "first")
+    writers[0].join()
+    found, key = load_outcome(tmp_path)
+    assert (found.multiplier, key) == (0.6, "second")
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_what_a_killed_writer_leaves_is_cleared_away(tmp_path: Path) -> None:
+    for name in (".outcome.json.k3", ".arrays-0123.npz.k3", "arrays-0123.npz"):
+        (tmp_path / name).write_text("half")
+    save_outcome(outcome(0.5), tmp_path)
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".json", ".npz"]
+
+
+def test_a_folder_that_takes_no_files_is_named_before_anything_is_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(28, "No space left on device", "some temporary name")
+
+    monkeypatch.setattr("tempfile.TemporaryFile", full)
+    with pytest.raises(OSError, match="No space") as error:
+        make_folder(tmp_path)
+    assert error.value.filename == str(tmp_path)
+    for line in (["run", "panel-04", "--model", "limit"], ["compare", "panel-04"]):
+        assert command([*line, "--out", str(tmp_path)]) == 2
+        printed = capsys.readouterr()
+        assert printed.out == ""
+        assert printed.err == f"runningbond: {tmp_path}: No space left on device\n"
+
+
+def test_a_file_that_cannot_be_written_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(OSError, match="No space") as error:
+        write_atomically(tmp_path / "table.csv", b"content")
+    assert error.value.filename == str(tmp_path / "table.csv")
+
+
+def test_a_new_series_does_not_stand_beside_the_outcome_of_another_run(tmp_path: Path) -> None:
+    """A run that is killed after its first moment leaves no outcome, rather than that of the run before."""
+    scene = courses([[1]])
+    found = limit(scene)
+    save_outcome(found, tmp_path, "key", scene)
+    frame = mechanism_frame(scene, found)
+    assert frame is not None
+    StaticRecorder(scene, tmp_path).keep(frame)
+    assert len(frame_files(tmp_path, "blocks")) == 1
+    with pytest.raises(StoreError, match="holds no outcome"):
+        load_outcome(tmp_path)
+
+
+def _halve(path: Path) -> None:
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+
+
+@pytest.mark.parametrize("content", [b"", b"<VTKFile", bytes(range(256)), b"<VTKFile><DataSet/></VTKFile>"])
+def test_a_damaged_list_of_moments_is_named(content: bytes, tmp_path: Path) -> None:
+    (tmp_path / "blocks.pvd").write_bytes(content)
+    with pytest.raises(StoreError, match="blocks.pvd: is damaged"):
+        frame_files(tmp_path, "blocks")
+
+
+@pytest.fixture
+def shown(home: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    if why_not_drawn():
+        pytest.skip("nothing can be drawn here")
+    monkeypatch.setattr("runningbond.pictures.render.has_mechanism", lambda *_: False)
+    return Scratch(RENDER, home).fresh(tmp_path / "shown")
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda folder: _halve(folder / "frames" / "blocks-0003.vtu"),
+        lambda folder: (folder / "frames" / "joints-0003.vtu").unlink(),
+        lambda folder: (folder / "frames" / "blocks-0003.vtu").write_bytes(b""),
+        lambda folder: (folder / "frames" / "joints-0003.vtu").replace(folder / "frames" / "blocks-0003.vtu"),
+    ],
+)
+def test_a_damaged_moment_is_named(damage: Any, shown: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    damage(shown)
+    assert command(["render", str(shown)]) == 2
+    said = capfd.readouterr().err
+    assert said == (
+        f"runningbond: {shown}/frames/blocks-0003.vtu, joints-0003.vtu: are damaged or of another wall; "
+        "another run replaces them\n"
+    )
+
+
+def test_ctrl_c_is_no_traceback_where_a_library_makes_another_error_of_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As VTK does within its import: the module that it was looking for is then not found."""
+
+    def importing(_: object) -> int:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            threading.Event().wait(1)
+        except KeyboardInterrupt:
+            raise ImportError("No module named vtkmodules.vtkIOXMLParser") from None
+        return 0
+
+    monkeypatch.setattr("runningbond.commands.command_line.command", importing)
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        with pytest.raises(SystemExit) as left:
+            main([])
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert left.value.code == 130
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_ctrl_c_while_the_suite_is_loading_is_no_traceback() -> None:
+    line = [sys.executable, "-m", "runningbond", "run", "panel-04", "--model", "limit"]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while psutil.Process(process.pid).cpu_times().user < 0.3:  # Python itself has started, and imports what it needs
+        time.sleep(0.005)
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=60) == ("", "")
+    assert process.returncode == -signal.SIGINT
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("tried", COMMANDS, ids=lambda tried: str(tried.name))
+def test_nothing_is_lost_whatever_happens_to_whichever_command(tried: Command, tmp_path: Path) -> None:
+    """Ctrl-C, SIGKILL, a second writer, damaged results, full and read-only disks; some disks need a mount."""
+    if tried is RENDER and why_not_drawn():
+        pytest.skip("nothing can be drawn here")
+    scratch = Scratch(tried, tmp_path)
+    scratch.prepare(what_commands_need(tmp_path).get(tried.name))
+    trials = [
+        interrupt(scratch, tmp_path / "interrupted", signal.SIGINT, "Ctrl-C"),
+        interrupt(scratch, tmp_path / "killed", signal.SIGKILL, "SIGKILL"),
+        at_once(scratch, tmp_path / "twice"),
+        damage(scratch, tmp_path / "damaged"),
+        *disk_trials_apart(tmp_path, [tried.name]),
+    ]
+    assert [trial.fault for trial in trials] == [
+        *("Ctrl-C", "SIGKILL", "two at once", "damaged result", "full disk", "read-only folder")
+    ]
+    assert not [trial for trial in trials if trial.verdict == LOST]

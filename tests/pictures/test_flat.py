@@ -1,0 +1,167 @@
+"""Flat drawings hold what they are of, as vectors, without VTK."""
+
+import io
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+from PIL import Image
+
+from runningbond.limit import limit
+from runningbond.pictures.captions import to_png, to_svg
+from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of
+from runningbond.pictures.joint_state import JointState
+from runningbond.pictures.mechanism import mechanism_shape
+from runningbond.pictures.style import DRAWN, STATE_COLOURS
+from runningbond.results import Outcome
+from runningbond.scene import Scene
+from tests.walls import courses, panel
+
+POINT = {"kind": "point", "at": [0.72, 0.72], "force": [0.0, -1.0]}
+CRACK = {"friction": 0.6, "cohesion": 3e5, "tensile_strength": 1e5}
+
+
+def of_kind(figure: Figure, kind: Any) -> list[Any]:
+    return [drawn for drawn in figure.axes[0].collections if isinstance(drawn, kind)]
+
+
+def texts(figure: Figure) -> str:
+    axes = figure.axes[0]
+    legend = axes.get_legend()
+    key = [] if legend is None else [text.get_text() for text in legend.get_texts()]
+    return "\n".join([*(text.get_text() for text in axes.texts), *key])
+
+
+def test_a_wall_is_drawn_block_by_block() -> None:
+    """The polygons are the wall's own, and what is said below is what there is of them."""
+    scene = panel()
+    figure = figure_of(scene)
+    (blocks,) = of_kind(figure, PolyCollection)
+    drawn = [path.vertices[:-1] for path in blocks.get_paths()]
+    assert len(drawn) == scene.wall.sum()
+    for block, polygon in zip(np.flatnonzero(scene.wall), drawn, strict=True):
+        assert polygon == pytest.approx(scene.blocks.polygon(int(block)), abs=1e-12)
+    assert "1.44 × 0.72 m, 78 blocks, 204 joints" in texts(figure)
+    assert "tan φ = 0.6" in texts(figure)
+
+
+def test_joints_are_drawn_by_material() -> None:
+    """Mortar joints and potential cracks in two colours, every joint once, along its own line."""
+    scene = panel(inner_joint=CRACK)
+    figure = figure_of(scene)
+    lines = of_kind(figure, LineCollection)
+    assert len(lines) == 2
+    for inner, drawn in enumerate(lines):
+        ends = scene.joints.ends[scene.joints.inner == bool(inner)]
+        assert np.array(drawn.get_segments()) == pytest.approx(ends, abs=1e-12)
+    first, second = (drawn.get_color()[0] for drawn in lines)
+    assert tuple(first) != tuple(second)
+    assert "c = 0.3 MPa, fₜ = 0.1 MPa" in texts(figure)
+
+
+def test_a_mechanism_is_drawn_where_it_moves_to() -> None:
+    """The fastest corner is drawn to move by `DRAWN` sizes of the wall; the undeformed wall is behind."""
+    scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], height=0.2)
+    outcome = limit(scene)
+    figure = figure_of(scene, outcome)
+    ghost, blocks = of_kind(figure, PolyCollection)[:2]
+    still, moved = (np.concatenate([path.vertices[:-1] for path in drawn.get_paths()]) for drawn in (ghost, blocks))
+    assert np.hypot(*(moved - still).T).max() == pytest.approx(DRAWN * np.sqrt(1.2 * 0.6), rel=1e-9)
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    assert moved == pytest.approx(shape.placed, abs=1e-12)
+    said = texts(figure)
+    assert f"limit: λ = {outcome.multiplier:.4f}" in said
+    assert "drawn to move 0.1 m" in said
+
+
+def test_what_joints_do_is_told_apart_without_colour() -> None:
+    """Lines of joints that slide are dashed, of those that open solid; each lies on joints in that state."""
+    scene = panel()
+    outcome = limit(scene)
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    assert shape.states == [JointState.SLIDE, JointState.OPEN]
+    figure = figure_of(scene, outcome)
+    lines = {tuple(np.round(255 * drawn.get_color()[0][:3])): drawn for drawn in of_kind(figure, LineCollection)}
+    found = {
+        state: lines[tuple(int(colour[i : i + 2], 16) for i in (1, 3, 5))]
+        for state, colour in STATE_COLOURS.items()
+        if state in shape.states
+    }
+    dashes = {state: drawn.get_linestyle()[0][1] for state, drawn in found.items()}
+    assert dashes[JointState.OPEN] is None
+    assert dashes[JointState.SLIDE] is not None
+    assert len(found[JointState.SLIDE].get_segments()) == (shape.state == JointState.SLIDE).sum()
+    assert len(found[JointState.OPEN].get_segments()) == 2 * (shape.state == JointState.OPEN).sum()
+
+
+def test_a_hinge_is_marked_where_a_block_turns() -> None:
+    """A block twice as high as wide topples about the lower corner on the far side."""
+    scene = courses([[1]], width=0.2, height=0.4)
+    figure = figure_of(scene, limit(scene))
+    (hinge,) = [line for line in figure.axes[0].lines if line.get_marker() == "o"]
+    assert np.array(hinge.get_xydata()) == pytest.approx(np.array([[0.2, 0.0]]), abs=1e-6)
+    assert "hinge" in texts(figure)
+
+
+def test_a_motion_that_is_no_mechanism_is_not_drawn_and_said() -> None:
+    scene = panel()
+    backwards = replace(limit(scene), motion=-limit(scene).motion)
+    figure = figure_of(scene, backwards)
+    _, blocks = of_kind(figure, PolyCollection)
+    moved = np.concatenate([path.vertices[:-1] for path in blocks.get_paths()])
+    assert moved == pytest.approx(scene.blocks.vertices[scene.wall[scene.blocks.owner]], abs=1e-12)
+    assert "mechanism not drawn: the live load does negative work on this motion" in texts(figure)
+    assert "slides" not in texts(figure)
+    assert "no mechanism" in texts(figure_of(scene, Outcome("", "limit", "unbounded")))
+
+
+@pytest.mark.parametrize("kind", ["base", "fixed-first-course", "corners", "pinned-corners"])
+def test_nothing_runs_out_of_the_figure(kind: str) -> None:
+    """With every support and load, and a title that is too long for a line; something is drawn beside the wall."""
+    scene = panel(support__kind=kind, load__live=POINT if "corners" in kind else {"kind": "lateral"})
+    scene = replace(scene, title="A title that is a good deal longer than the picture is wide, and has to be broken up")
+    for figure in (figure_of(scene), figure_of(scene, replace(limit(scene), scene=scene.title))):
+        image = np.asarray(Image.open(io.BytesIO(to_png(figure))).convert("L")).astype(int)
+        for edge in (image[:4], image[-4:]):
+            assert (edge > 250).all()
+        box = figure.axes[0].get_window_extent()
+        captions = np.concatenate([image[: int(len(image) - box.y1)], image[int(len(image) - box.y0) + 1 :]])
+        assert (captions < 150).any()
+        assert (captions[:, [0, 1, 2, -3, -2, -1]] > 250).all()
+
+
+def test_an_svg_file_is_of_vectors_and_always_the_same() -> None:
+    scene = panel()
+    content = to_svg(figure_of(scene, limit(scene)))
+    root = ET.fromstring(content)
+    assert not list(root.iter("{http://www.w3.org/2000/svg}image"))
+    assert len(list(root.iter("{http://www.w3.org/2000/svg}path"))) > scene.wall.sum()
+    assert content == to_svg(figure_of(scene, limit(scene)))
+
+
+def test_axes_of_ones_own_are_drawn_into() -> None:
+    figure = Figure()
+    left, right = figure.subplots(1, 2)
+    scene: Scene = panel()
+    draw_wall(left, scene)
+    draw_mechanism(right, scene, limit(scene))
+    assert to_png(figure, 100)[1:4] == b"PNG"
+
+
+def test_flat_drawings_do_without_vtk() -> None:
+    program = (
+        "import sys; from tests.walls import panel; from runningbond.limit import limit;"
+        "from runningbond.pictures.flat import figure_of; from runningbond.pictures.captions import to_svg;"
+        "to_svg(figure_of(panel(), limit(panel()))); print([name for name in sys.modules if 'vtk' in name and "
+        "not name.startswith('runningbond') or name == 'pyvista'])"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.stdout.strip() == "[]", done.stderr

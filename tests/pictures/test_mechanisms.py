@@ -1,0 +1,127 @@
+"""A motion is drawn as a mechanism only if its loads can drive it; what its joints do is read from their jumps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from runningbond.compare.models import run_model
+from runningbond.compare.published import published_scene
+from runningbond.joints import wall_points
+from runningbond.limit import limit
+from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.pictures.joint_state import VISIBLE, JointState
+from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape, mechanism_warning, outcome_check
+from runningbond.results import Outcome, check_mechanism
+from runningbond.results.mechanism import MAX_OVERLAP
+from runningbond.scene import Array, Scene
+from tests.walls import courses, panel
+
+POINT = {"kind": "point", "at": [0.2, 0.35], "force": [0.0, -1.0]}
+
+
+@pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static"])
+@pytest.mark.parametrize("name", ["panel-01", "panel-04", "point-load-4", "wall-w1", "wall-w2", "wall-w3"])
+def test_loads_drive_the_mechanisms_of_published_walls(name: str, model: str) -> None:
+    """The live load does positive work, and all loads together what friction takes: none or more. Nothing overlaps."""
+    scene = published_scene(name)
+    outcome = run_model(model, scene, 0.01)
+    check = outcome_check(scene, outcome)
+    assert check is not None
+    assert check.live is not None
+    assert check.live > 0
+    assert check.total >= -1e-6 * check.scale
+    assert check.overlap < 1e-6
+    assert check.warning == ""
+    backwards = replace(outcome, motion=-outcome.motion)
+    assert mechanism_shape(scene, backwards) is None
+    assert mechanism_warning(scene, backwards) == "mechanism not drawn: the live load does negative work on this motion"
+
+
+def moving(scene: Scene, x: float, y: float, spin: float = 0.0) -> Array:
+    """Motion of the highest block alone."""
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[int(np.argmax(scene.blocks.centroid[:, 1] * scene.wall))] = x, y, spin
+    return motion
+
+
+def test_works_and_overlap_are_those_of_a_block_by_hand() -> None:
+    """A block of 0.4 × 0.2 × 0.12 m and 1800 kg/m³ moves aside by 0.6 m and sinks by 0.8 m into the one below."""
+    scene = courses([[1], [1]], height=0.2)
+    weight = 0.4 * 0.2 * 0.12 * 1800 * 9.81
+    check = check_mechanism(scene, 5 * moving(scene, 0.6, -0.8), dead_load(scene), live_load(scene), 0.5)
+    assert check.live == pytest.approx(0.6 * weight, rel=1e-12)
+    assert check.total == pytest.approx((0.8 + 0.5 * 0.6) * weight, rel=1e-12)
+    assert check.overlap == pytest.approx(0.8, rel=1e-12)
+    assert check.is_driven
+    assert check.warning == "blocks overlap by up to 80% of the largest displacement"
+    lifted = check_mechanism(scene, moving(scene, 0.1, 1.0), dead_load(scene), live_load(scene), 0.5)
+    assert lifted.warning == "the loads do negative work on this motion"
+
+
+def test_an_overlap_is_said_and_a_small_one_is_not() -> None:
+    scene = courses([[1], [1]])
+    for depth, drawn in ((0.9 * MAX_OVERLAP, ""), (0.1, "blocks overlap by up to 10% of the largest displacement")):
+        outcome = Outcome("", "a model", "collapse", 0.6, motion=moving(scene, 1.0, -depth))
+        assert mechanism_shape(scene, outcome) is not None
+        assert mechanism_warning(scene, outcome) == drawn
+
+
+def test_a_load_that_does_no_work_drives_nothing() -> None:
+    scene = courses([[1], [1]], load__live=POINT)
+    outcome = Outcome("", "a model", "collapse", 1.0, motion=moving(scene, 1.0, 0.0))
+    assert mechanism_warning(scene, outcome) == "mechanism not drawn: the live load does no work on this motion"
+
+
+def test_a_wall_that_falls_under_its_dead_load_is_not_asked_of_the_live_one() -> None:
+    scene = courses([[1], [1]])
+    falling = Outcome("", "a model", "infeasible", motion=moving(scene, -0.6, -0.01))
+    check = outcome_check(scene, falling)
+    assert check is not None
+    assert check.live is None
+    assert check.is_driven
+
+
+def states(scene: Scene, x: float, y: float) -> set[int]:
+    """States of the joint under the highest block."""
+    frame = mechanism_frame(scene, Outcome("", "a model", "collapse", 0.6, motion=moving(scene, x, y)))
+    assert frame is not None
+    upper = np.argmax(scene.blocks.centroid[:, 1] * scene.wall)
+    return set(frame.state[(wall_points(scene).block == upper).any(axis=1)].tolist())
+
+
+def test_a_joint_that_visibly_opens_is_open_however_far_it_slides() -> None:
+    """Friction is 0.6. Without dilatancy a joint that opens by 0.2 while it slides by 0.8 is open."""
+    scene = courses([[1], [1]])
+    assert states(scene, 0.8, 0.2) == {JointState.OPEN}
+    assert states(scene, 0.8, 0.5 * VISIBLE) == {JointState.SLIDE}
+    assert states(scene, 0.5 * VISIBLE, 0.0) == {JointState.STICK}
+
+
+def test_a_joint_with_associated_flow_slides_where_it_opens_by_its_dilatancy() -> None:
+    scene = courses([[1], [1]])
+    assert states(scene, 0.8, 0.6 * 0.8) == {JointState.SLIDE}
+    assert states(scene, 0.5, 0.8) == {JointState.OPEN}
+
+
+@pytest.mark.parametrize("name", ["panel-01", "panel-04", "wall-w3"])
+def test_in_limit_analysis_what_opens_by_its_dilatancy_slides(name: str) -> None:
+    """In the others no joint slides that a picture shows open: least opening of an open joint, largest of a sliding."""
+    scene = published_scene(name)
+    associated = mechanism_frame(scene, limit(scene))
+    other = mechanism_frame(scene, run_model("limit-nonassociated", scene, 0.01))
+    assert associated is not None
+    assert other is not None
+    slides = associated.state == JointState.SLIDE
+    assert slides.any()
+    assert associated.opening[slides] == pytest.approx(
+        scene.joint.friction * np.abs(associated.slip[slides]), abs=0.011
+    )
+    assert (other.opening[other.state == JointState.SLIDE] <= VISIBLE).all()
+    assert (other.opening[other.state == JointState.OPEN] > VISIBLE).all()
+
+
+def test_an_outcome_without_a_mechanism_is_not_checked() -> None:
+    scene = panel()
+    assert outcome_check(scene, Outcome("", "homog", "collapse", 0.5)) is None
+    assert mechanism_warning(scene, Outcome("", "homog", "collapse", 0.5)) == ""

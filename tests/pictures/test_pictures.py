@@ -1,0 +1,384 @@
+"""Pictures show what the arrays say, and a machine that cannot draw says so in a line."""
+
+import io
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from runningbond.commands.command_line import command
+from runningbond.joints import wall_points
+from runningbond.limit import limit
+from runningbond.pictures.captions import is_force, multiplier_text, to_png
+from runningbond.pictures.deformed_shape import DeformedShape, Extent, outline, undeformed_shape
+from runningbond.pictures.joint_state import JointState, joint_states
+from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape
+from runningbond.pictures.offscreen import PROBE, why_not_drawn
+from runningbond.pictures.pyvista_figure import mechanism_figure
+from runningbond.pictures.pyvista_painter import Painter, square_around
+from runningbond.pictures.render import render_folder
+from runningbond.pictures.style import AT_REST, FASTEST, HELD, STATE_COLOURS
+from runningbond.pictures.vtk_safety import uninterrupted_imports, vtk_errors_raised
+from runningbond.results import Outcome, load_outcome, save_outcome
+from runningbond.results.mechanism import carried
+from runningbond.results.outcome import number
+from runningbond.scene import Scene
+from tests.walls import content, courses, panel, write_toml
+
+
+@pytest.fixture(autouse=True)
+def no_error_of_vtk() -> Iterator[None]:
+    """What VTK reports as an error fails the test."""
+    with vtk_errors_raised():
+        yield
+
+
+BLIND = {"__EGL_VENDOR_LIBRARY_DIRS": "/nonexistent", "DISPLAY": "", "WAYLAND_DISPLAY": ""}
+"""Surroundings in which no driver for drawing without a screen is found."""
+
+drawing = pytest.mark.usefixtures("able_to_draw")
+
+
+@pytest.fixture(scope="module")
+def able_to_draw() -> None:
+    if why_not_drawn():
+        pytest.skip(why_not_drawn())
+
+
+@pytest.fixture(scope="module")
+def painter(able_to_draw: None) -> Iterator[Painter]:
+    painter = Painter(600)
+    yield painter
+    painter.close()
+
+
+def paint(painter: Painter, shape: DeformedShape) -> tuple[Any, Extent]:
+    return painter.paint(shape, shape.extent).astype(int), square_around(shape.extent)
+
+
+def pixel(extent: Extent, image: Any, at: Any) -> tuple[Any, Any]:
+    """Row and column of points ``(n, 2)`` [m]."""
+    left, right, bottom, top = extent
+    x, y = np.asarray(at).T
+    column = (x - left) / (right - left) * image.shape[1]
+    row = (top - y) / (top - bottom) * image.shape[0]
+    return np.clip(row.astype(int), 0, image.shape[0] - 1), np.clip(column.astype(int), 0, image.shape[1] - 1)
+
+
+def of_colour(image: Any, colour: Any, within: int = 12) -> Any:
+    """Which pixels have a colour, given as ``#rrggbb`` or as shares of one."""
+    wanted = [int(colour[i : i + 2], 16) for i in (1, 3, 5)] if isinstance(colour, str) else 255 * np.asarray(colour)
+    return (np.abs(image - np.asarray(wanted)) <= within).all(axis=-1)
+
+
+def mechanism(scene: Scene, outcome: Outcome) -> DeformedShape:
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    return shape
+
+
+@drawing
+def test_an_undeformed_wall_fills_its_outline_and_nothing_else(painter: Painter) -> None:
+    """Blocks from edge to edge of the wall to the pixel, white around it, and no joint coloured."""
+    scene = panel()
+    image, extent = paint(painter, undeformed_shape(scene))
+    coloured = (image < 250).any(axis=-1)
+    rows, columns = np.flatnonzero(coloured.any(axis=1)), np.flatnonzero(coloured.any(axis=0))
+    corner_rows, corner_columns = pixel(extent, image, np.array(scene.blocks.extent(scene.wall)))
+    assert [rows.max(), rows.min()] == pytest.approx(corner_rows, abs=2)
+    assert [columns.min(), columns.max()] == pytest.approx(corner_columns, abs=2)
+    inside = image[rows.min() : rows.max(), columns.min() : columns.max()]
+    assert (inside < 250).any(axis=-1).all()
+    assert of_colour(inside, AT_REST).mean() > 0.7
+    for colour in STATE_COLOURS.values():
+        assert not of_colour(image, colour, 40).any()
+
+
+@drawing
+def test_open_and_sliding_joints_are_seen_where_the_arrays_say(painter: Painter) -> None:
+    """At both faces of every open joint the colour of opening is near, and nowhere far from one; as for sliding."""
+    scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], width=0.4, height=0.2)
+    outcome = limit(scene)
+    frame = mechanism_frame(scene, outcome)
+    assert frame is not None
+    shape = mechanism(scene, outcome)
+    image, extent = paint(painter, shape)
+    points = wall_points(scene)
+    drawn = joint_states(frame.state.reshape(-1, 2))
+    assert {JointState.OPEN, JointState.SLIDE} & set(drawn)
+    for state in (JointState.OPEN, JointState.SLIDE):
+        there = of_colour(image, STATE_COLOURS[state], 25)
+        assert there.any() == (state in drawn)
+        near = np.zeros_like(there)
+        for joint in np.flatnonzero(drawn == state):
+            for side in scene.joints.block[joint]:
+                ends = scene.joints.ends[joint]
+                face = ends + shape.scale * carried(scene.blocks, np.array([side, side]), ends, frame.motion)
+                along = face[0] + np.linspace(0, 1, 200)[:, None] * (face[1] - face[0])
+                row, column = pixel(extent, image, along)
+                middle_row, middle_column = row[100], column[100]
+                window = there[middle_row - 3 : middle_row + 4, middle_column - 3 : middle_column + 4]
+                # An open joint's colour is drawn over a sliding one's, where their faces cross.
+                assert window.any() or state == JointState.SLIDE
+                for r, c in zip(row, column, strict=True):
+                    near[max(r - 4, 0) : r + 5, max(c - 4, 0) : c + 5] = True
+        assert not (there & ~near).any()
+    assert len(points) == 2 * len(scene.joints)
+
+
+@drawing
+def test_blocks_have_the_colour_of_their_motion(painter: Painter) -> None:
+    """The upper of two blocks slides off: it alone moves, has the colour of the fastest, and is where it moved to."""
+    scene = courses([[1], [1]], width=0.4, height=0.1, joint__cohesion=0.0)
+    motion = np.zeros((3, 3))
+    upper = int(np.argmax(scene.blocks.centroid[:, 1]))
+    motion[upper, 0] = 1.0
+    shape = mechanism(scene, Outcome("two blocks", "limit", "collapse", 0.6, motion=motion))
+    image, extent = paint(painter, shape)
+    centre = scene.blocks.centroid + shape.scale * motion[:, :2]
+    lower = int(np.flatnonzero(scene.wall & (np.arange(3) != upper))[0])
+    rows, columns = pixel(extent, image, centre[[upper, lower]])
+    colours = image[rows, columns]
+    assert np.abs(colours - 255 * np.array([FASTEST, AT_REST])).max() < 2
+    left_behind = scene.blocks.vertices[scene.blocks.first[upper]] + [0.3 * shape.scale, 0.05]
+    row, column = pixel(extent, image, left_behind[None])
+    assert (image[row[0], column[0]] > 250).all()
+
+
+@drawing
+def test_held_blocks_are_grey_and_courses_alternate(painter: Painter) -> None:
+    scene = panel(support__kind="fixed-first-course")
+    shape = undeformed_shape(scene)
+    image, extent = paint(painter, replace(shape, colouring="course"))
+    middle = np.array([[0.6, 0.03], [0.66, 0.09], [0.6, 0.15], [0.66, 0.21]]) + [0.05, 0.01]
+    rows, columns = pixel(extent, image, middle)
+    first, second, third, fourth = image[rows, columns]
+    assert np.abs(first - 255 * np.array(HELD)).max() < 2
+    assert (second == fourth).all()
+    assert np.abs(second - third).max() > 10
+
+
+@drawing
+def test_one_picture_leaves_no_trace_in_the_next(painter: Painter) -> None:
+    scene = courses([[1, 1], [0.5, 1, 0.5]])
+    before, _ = paint(painter, undeformed_shape(scene))
+    paint(painter, mechanism(scene, limit(scene)))
+    after, _ = paint(painter, undeformed_shape(scene))
+    assert np.array_equal(before, after)
+
+
+@drawing
+def test_drawing_changes_nothing_that_is_drawn(painter: Painter) -> None:
+    scene = courses(
+        [[1, 1], [0.5, 1, 0.5]],
+        support__kind="corners",
+        load__live={"kind": "point", "at": [0.4, 0.35], "force": [0.0, -1.0]},
+    )
+    shape = mechanism(scene, Outcome("", "limit", "collapse", 1.0, motion=-np.ones((len(scene.blocks), 3))))
+    first, _ = paint(painter, shape)
+    again, _ = paint(painter, shape)
+    assert np.array_equal(first, again)
+
+
+def test_the_outline_goes_round_openings() -> None:
+    """A wall of 4 × 3 blocks with a hole of one: perimeter 2 (1.6 + 0.6) + 2 (0.4 + 0.2) m."""
+    scene = courses([[1, 1, 1, 1], [1, -1, 1, 1], [1, 1, 1, 1]], width=0.4, height=0.2)
+    length = sum(np.hypot(*np.diff(ring, axis=0).T).sum() for ring in outline(scene))
+    assert length == pytest.approx(5.6, rel=1e-3)
+
+
+def test_brackets_are_told_as_they_are() -> None:
+    lateral = panel()
+    pushed = panel(load__live={"kind": "point", "at": [0.72, 0.72], "force": [0.0, -1.0]}, support__kind="corners")
+    assert is_force(pushed)
+    assert not is_force(lateral)
+    assert multiplier_text(lateral, Outcome("", "", "collapse", 0.27, 0.26, 0.28)) == ("λ = 0.2700", "[0.2600, 0.2800]")
+    assert multiplier_text(lateral, Outcome("", "", "collapse", 0.27, 0.27, 0.2700001)) == ("λ = 0.2700", "")
+    assert multiplier_text(lateral, Outcome("", "", "undecided", upper=0.28)) == ("undecided", "λ ≤ 0.2800")
+    assert multiplier_text(pushed, Outcome("", "", "collapse", 52345.6)) == ("P = 52,346 N", "")
+    assert number(0.00123456) == "0.00123"
+
+
+@drawing
+@pytest.mark.parametrize("kind", ["base", "fixed-first-course", "corners", "pinned-corners"])
+def test_every_support_and_load_has_its_sign(painter: Painter, kind: str) -> None:
+    """Around the wall something is drawn where supports and loads are, and no text runs out of the picture."""
+    point = {"kind": "point", "at": [0.72, 0.72], "force": [0.0, -1.0]}
+    scene = panel(support__kind=kind, load__live=point if "corners" in kind else {"kind": "lateral"})
+    outcome = Outcome(
+        "A title that is a good deal longer than the picture is wide, so that it has to be broken up",
+        "limit",
+        "undecided",
+    )
+    figure = mechanism_figure(scene, outcome, painter)
+    content = to_png(figure)
+    image = np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(int)
+    margin = 4
+    for edge in (image[:margin], image[-margin:]):
+        assert (edge > 250).all()
+    axes = figure.axes[0]
+    box = axes.get_window_extent()
+    scale = image.shape[1] / figure.bbox.width
+    low, high = scene.blocks.extent(scene.wall)
+    (x0, y0), (x1, y1) = (axes.transData.transform(corner) * scale for corner in (low, high))
+    below = image[int(image.shape[0] - y0) + 4 : int(image.shape[0] - box.y0 * scale)]
+    assert (below < 150).any()
+    if "corners" in kind:
+        above = image[int(image.shape[0] - box.y1 * scale) : int(image.shape[0] - y1) - 4, int(x0) : int(x1)]
+        assert (above < 150).any()
+    else:
+        beside = image[int(image.shape[0] - y1) : int(image.shape[0] - y0), : int(x0) - 4]
+        assert (beside < 150).any()
+
+
+# Folders and the command line
+
+
+@drawing
+def test_a_result_folder_is_drawn_from_what_it_holds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = write_toml(content(wall__length=0.48, wall__height=0.24), tmp_path / "wall.toml")
+    folder = tmp_path / "result"
+    assert command(["run", str(path), "--model", "limit", "--out", str(folder), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["status"] == "collapse"
+    assert (folder / "mechanism.png").is_file()
+    assert (folder / "blocks.pvd").is_file()
+    path.unlink()
+    assert command(["render", str(folder), "--colour", "course"]) == 0
+    written = capsys.readouterr().out.split()
+    assert written == [str(folder / "mechanism.png"), str(folder / "film.gif")]
+    with Image.open(folder / "film.gif") as film:
+        assert film.n_frames == 8  # type: ignore[attr-defined]
+        first = np.asarray(film.convert("RGB")).astype(int)
+        film.seek(7)
+        last = np.asarray(film.convert("RGB")).astype(int)
+    assert not of_colour(first, STATE_COLOURS[JointState.OPEN], 40)[60:-60].any()
+    assert (np.abs(first - last).max(axis=-1) > 50).mean() > 0.01
+
+
+def test_a_series_that_cannot_be_written_costs_no_answer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Where a file stands in the way of the frames, the run goes on, its outcome is kept, and one line is said."""
+    path = write_toml(
+        content(wall__length=0.48, wall__height=0.12, joint__normal_stiffness=1e9, joint__shear_stiffness=4e8),
+        tmp_path / "wall.toml",
+    )
+    folder = tmp_path / "result"
+    folder.mkdir()
+    (folder / "frames").write_text("in the way")
+    assert command(["run", str(path), "--model", "dem-dynamic", "--out", str(folder), "--json"]) == 2
+    said = capsys.readouterr()
+    assert json.loads(said.out)["status"] == "collapse"
+    assert said.err.count("\n") == 1
+    assert str(folder / "frames") in said.err
+    assert load_outcome(folder)[0].status == "collapse"
+
+
+@drawing
+def test_an_outcome_without_a_mechanism_is_no_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    save_outcome(Outcome("wall", "limit", "unbounded"), tmp_path, scene=panel())
+    assert render_folder(tmp_path) == []
+    assert command(["render", str(tmp_path)]) == 0
+    assert "no mechanism" in capsys.readouterr().out
+
+
+def test_a_folder_without_an_outcome_is_refused_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["render", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "holds no outcome" in error
+
+
+def test_a_window_needs_a_screen(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not sys.platform.startswith("linux"):
+        pytest.skip("screens are told by DISPLAY on Linux alone")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    save_outcome(Outcome("wall", "limit", "unbounded"), tmp_path, scene=panel())
+    assert command(["render", str(tmp_path), "--view"]) == 2
+    assert "--view" in capsys.readouterr().err
+
+
+def test_a_machine_that_cannot_draw_says_so_and_keeps_the_numbers(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a driver VTK ends the process: the one that tries, and a line is all that is seen of it."""
+    for name, value in BLIND.items():
+        monkeypatch.setenv(name, value)
+    why_not_drawn.cache_clear()
+    try:
+        if not why_not_drawn():
+            pytest.skip("this machine draws even so")
+        assert command(["run", "panel-01", "--model", "limit", "--out", str(tmp_path)]) == 0
+        error = capfd.readouterr().err
+        assert error.count("\n") == 1
+        assert "cannot draw off-screen" in error
+        assert load_outcome(tmp_path)[0].status == "collapse"
+        assert (tmp_path / "blocks.pvd").is_file()
+        assert not (tmp_path / "mechanism.png").exists()
+        assert command(["render", str(tmp_path)]) == 3
+        assert command(["compare", "panel-01", "--models", "limit", "--out", str(tmp_path / "all"), "--jobs", "1"]) == 0
+        assert "cannot draw off-screen" in (tmp_path / "all" / "report.html").read_text()
+    finally:
+        why_not_drawn.cache_clear()
+
+
+@drawing
+@pytest.mark.parametrize("display", ["", ":77"])
+def test_drawing_needs_no_display(display: str) -> None:
+    """With DISPLAY empty, or naming a screen that is not there."""
+    assert (
+        subprocess.run(
+            [sys.executable, "-c", PROBE], env={**os.environ, "DISPLAY": display}, capture_output=True
+        ).returncode
+        == 0
+    )
+
+
+@drawing
+def test_drawing_works_with_a_display() -> None:
+    if shutil.which("Xvfb") is None:
+        pytest.skip("no Xvfb to make a screen with")
+    read, write = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write)], pass_fds=[write], stderr=subprocess.DEVNULL)
+    os.close(write)
+    try:
+        with os.fdopen(read) as numbers:
+            display = f":{numbers.readline().strip()}"
+        probe = subprocess.run(
+            [sys.executable, "-c", PROBE], env={**os.environ, "DISPLAY": display}, capture_output=True
+        )
+        assert probe.returncode == 0
+    finally:
+        server.terminate()
+        server.wait()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_waits_until_an_import_is_whole(number: signal.Signals) -> None:
+    """Broken off, those of VTK end the process."""
+    done: list[int] = []
+
+    def imports() -> None:
+        with uninterrupted_imports():
+            signal.raise_signal(number)
+            done.append(1)
+
+    before = signal.signal(number, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            imports()
+        assert done
+        assert signal.getsignal(number) is signal.default_int_handler
+    finally:
+        signal.signal(number, before)

@@ -1,0 +1,168 @@
+"""Loads: several of them, of a user's own, and what a file and Python may say of them."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dem.dynamic import dem_dynamic
+from dem.rigid_system import rigid_system
+from fem_interface.system import fem_system
+from homog import homog
+from runningbond.limit import limit
+from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.results import Outcome
+from runningbond.results.store import load_scene, save_outcome
+from runningbond.scene import Action, Body, Forces, Lateral, Load, PointLoad, Scene, SceneError
+from tests.walls import courses, panel
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+DOWN = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1e3]}
+
+
+@dataclass(frozen=True)
+class Wind(Action):
+    """A pressure [Pa] on the left side of the wall: a load of one's own, which nothing in the package knows of."""
+
+    pressure: float
+
+    def forces(self, scene: Scene) -> Forces:
+        """The pressure on the left end of each course, at its middle."""
+        low, _ = scene.blocks.extent(scene.wall)
+        ends = [(scene.blocks.extent(int(block)), block) for block in np.flatnonzero(scene.wall)]
+        left = [(block, (a + b) / 2, b[1] - a[1]) for (a, b), block in ends if a[0] < low[0] + 1e-9]
+        return Forces.on(
+            scene,
+            block=[block for block, _, _ in left],
+            at=[(low[0], middle[1]) for _, middle, _ in left],
+            force=[(self.pressure * scene.thickness * height, 0.0) for _, _, height in left],
+        )
+
+
+def tower(**changes: Any) -> Scene:
+    """Three blocks of 0.24 × 0.12 × 0.12 m on each other."""
+    joint = {"friction": 2.0, "mortar": MORTAR}
+    return courses([[1], [1], [1]], width=0.24, height=0.12, joint=joint, **changes)
+
+
+def test_a_load_of_ones_own_runs_in_every_model() -> None:
+    """Wind on a tower b wide and h high of weight G: p h t h/2 = G b/2, whichever model is asked."""
+    scene = tower(load__live=Wind(1.0))
+    exact = scene.mass[scene.wall].sum() * 9.81 * 0.24 / (0.36**2 * 0.12)
+    assert limit(scene).multiplier == pytest.approx(exact, rel=1e-8)
+    outcome = dem_dynamic(scene)
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower <= exact * (1 + 1e-3)
+    assert outcome.upper >= exact * (1 - 1e-3)
+    assert homog_says(scene).startswith("model homog: has no closed form for this scene: it needs load.live.kind")
+    held = tower(load__live=Wind(1.0), support__kind="fixed-first-course")
+    assert live_load(held)[0::3] == pytest.approx([0.0, 0.0144, 0.0144])
+    assert held.control_point[1].tolist() == pytest.approx([0.0, 0.18])
+    _, at, direction = scene.control_point
+    assert (at.tolist(), direction.tolist()) == ([0.0, 0.06], [1.0, 0.0])
+    assert len(scene.load.live[0].arrows(scene)) == 3
+
+
+def homog_says(scene: Scene) -> str:
+    with pytest.raises(SceneError) as refused:
+        homog(scene)
+    return str(refused.value)
+
+
+def test_a_result_keeps_the_forces_of_a_load_of_ones_own(tmp_path: Path) -> None:
+    scene = tower(load__live=Wind(2.0), load__dead=[Wind(1.0), Lateral((0.0, 1.0))])
+    save_outcome(Outcome("tower", "limit", "undecided"), tmp_path, scene=scene)
+    again = load_scene(tmp_path)
+    assert np.array_equal(live_load(again), live_load(scene))
+    assert np.array_equal(dead_load(again), dead_load(scene))
+
+
+def test_live_loads_share_one_multiplier_and_dead_ones_have_none() -> None:
+    """A lateral load and as much body force are two, which half the multiplier takes; a dead load is no live one."""
+    halves = [{"kind": "lateral"}, {"kind": "body", "acceleration": [9.81, 0.0]}]
+    both = panel(load__live=halves)
+    one, two = limit(panel()).multiplier, limit(both).multiplier
+    assert one is not None
+    assert two == pytest.approx(one / 2, rel=1e-8)
+    assert live_load(both) == pytest.approx(2 * live_load(panel()))
+    pressed = panel(load__dead=[DOWN])
+    assert np.array_equal(live_load(pressed), live_load(panel()))
+    assert (dead_load(pressed) - dead_load(panel()))[1::3].sum() == pytest.approx(-1e3)
+    alone = panel(load__dead=DOWN)
+    assert np.array_equal(dead_load(alone), dead_load(pressed))
+
+
+@pytest.mark.parametrize("to", ["right", "left", [3.0, 4.0], [0.0, -2.0]])
+def test_a_lateral_load_has_any_direction(to: Any) -> None:
+    scene = panel(load__live={"kind": "lateral", "direction": to})
+    x, y = (-1.0 if to == "left" else 1.0, 0.0) if isinstance(to, str) else to
+    unit = np.array([x, y]) / np.hypot(x, y)
+    assert scene.load.live == (Lateral((x, y)),)
+    assert live_load(scene).reshape(-1, 3)[:, :2] == pytest.approx(9.81 * scene.mass[:, None] * unit)
+
+
+def test_a_wall_pushed_to_the_left_is_the_mirror_image_of_one_pushed_to_the_right() -> None:
+    right, left = (limit(panel(load__live={"kind": "lateral", "direction": to})).multiplier for to in ("right", "left"))
+    assert left == pytest.approx(right, rel=1e-8)
+
+
+def test_a_direction_that_is_no_unit_vector_is_one_in_python_too() -> None:
+    assert Lateral((1.0, 1.0)).direction == pytest.approx((0.5**0.5, 0.5**0.5))
+
+
+def test_gravity_may_be_a_vector() -> None:
+    assert panel(load__gravity=[0.0, -9.81]).load == panel().load
+    with pytest.raises(SceneError, match=r"load\.gravity = \[0, nan\]"):
+        panel(load__gravity=[0, float("nan")])
+
+
+def test_forces_are_the_same_to_rigid_and_to_deformable_blocks() -> None:
+    """Resultants of every kind of force, block by block; a moment too."""
+    loads = (PointLoad((0.12, 0.36), (3.0, -4.0)), Body((1.0, -2.0)), Moments(5.0))
+    scene = tower(block__young=1e9)
+    scene = replace(scene, load=Load(scene.load.gravity, loads))
+    rigid, deformable = rigid_system(scene), fem_system(scene)
+    for system in (rigid, deformable):
+        moved = system.live[system.rigid]
+        assert moved[:-1] == pytest.approx(live_load(scene).reshape(-1, 3)[:-1], rel=1e-9, abs=1e-9)
+
+
+@dataclass(frozen=True)
+class Moments(Action):
+    """A moment [N m] on every block."""
+
+    moment: float
+
+    def forces(self, scene: Scene) -> Forces:
+        """The same on each."""
+        return Forces.on(scene, moment=self.moment)
+
+
+@pytest.mark.parametrize(
+    ("live", "said"),
+    [
+        ([DOWN, {"kind": "point", "at": [9, 9], "force": [0, -1]}], "load.live[1].at = [9.0, 9.0]: touches no block"),
+        ([DOWN, {"kind": "point", "at": [0, 0], "force": [0, 0]}], "load.live[1].force = [0.0, 0.0]: must not be zero"),
+        ([], "load.live = (): must be a load, or some"),
+        ("lateral", "load.live = 'lateral': must be a table"),
+        ({"kind": "latteral"}, 'did you mean "lateral"?'),
+        ({"kind": "lateral", "direction": "up"}, 'load.live.direction = \'up\': must be one of "right", "left"'),
+        ({"kind": "lateral", "direction": [0, 0]}, "load.live.direction = [0.0, 0.0]: must not be zero"),
+        ({"kind": "body"}, "load.live.acceleration: is missing"),
+        (Moments(0.0), "load.live = Moments(moment=0.0): must put finite forces on the blocks, not all of them zero"),
+        (Moments(float("nan")), "must put finite forces on the blocks"),
+    ],
+)
+def test_loads_that_are_none(live: Any, said: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        panel(load__live=live)
+    assert said in str(refused.value)
+
+
+def test_what_is_no_load_is_refused_in_python() -> None:
+    with pytest.raises(SceneError, match=r"load\.live"):
+        Load(live=(3,))  # type: ignore[arg-type]
+    assert Load(live=Lateral()) == Load()  # type: ignore[arg-type]

@@ -1,0 +1,192 @@
+"""Bad input: one clear line on standard error, exit code 2, nothing written, nothing on standard output."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from runningbond.commands.command_line import command
+from tests.walls import content, write_toml
+
+from .test_scene import drawing
+
+POINT = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1]}
+FREE = {"wall__length": None, "wall__height": None}
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"wall__thicknes": 0.1}, 'wall.thicknes = 0.1: is not a key of [wall]; did you mean "thickness"?'),
+        ({"color": "red"}, "color = 'red': is not a key of a scene file"),
+        ({"load__live__angle": 3}, "load.live.angle = 3: is not a key of [load.live]"),
+        ({"wall__thickness": None}, "wall.thickness: is missing; it must be a number above 0"),
+        ({"block__density": None, "block__densty": 1}, "is block.densty a misspelling of it?"),
+        ({"support": None}, "support: is missing"),
+        ({"support": 3}, "support = 3: must be a table"),
+        ({"joint__friction": -0.6}, "joint.friction = -0.6: must be a number at least 0"),
+        ({"joint__friction": "rough"}, "joint.friction = 'rough': must be a number"),
+        ({"joint__friction": True}, "joint.friction = True: must be a number"),
+        (
+            {"joint__friction": 1e-9},
+            "joint.friction = 1e-09: must be 0, for joints without friction, or such that tan φ ≥ 1e-06",
+        ),
+        ({"joint__fracture_energy_2": 5.0}, "joint.fracture_energy_1: is missing"),
+        ({"joint": {"friction_angle": 1e-9}}, "joint.friction_angle = 1e-09: must be 0"),
+        (
+            {"load__live": {"kind": "point", "at": [0.72, 0.72], "force": [1e-9, -1.0]}},
+            "load.live.force = [1e-09, -1.0]: must have components that are 0 or at least 1e-06 of each other",
+        ),
+        ({"joint__friction": float("nan")}, "joint.friction = nan: must be a number"),
+        ({"block__density": float("inf")}, "block.density = inf: must be a number"),
+        ({"block__density": 10**400}, "block.density"),
+        ({"wall__thickness": 0}, "wall.thickness = 0: must be a number above 0"),
+        ({"wall__length": 1.5}, "wall.length = 1.5: must be a whole number of half blocks"),
+        ({"wall__length": 1e9}, "wall.length = 1000000000.0"),
+        ({"wall__height": 1e-9}, "wall.height = 1e-09: must be a whole number of courses"),
+        ({"wall__ends": "rough"}, 'wall.ends = \'rough\': must be one of "flush", "toothed"'),
+        ({"wall__ends": "toothed", "wall__length": 0.24}, "wall.length = 0.24: toothed ends"),
+        ({"wall__first_course": "ful"}, 'did you mean "full"?'),
+        ({**FREE, "wall__courses": []}, "wall.courses = []: has no course"),
+        ({**FREE, "wall__courses": [[1, 1], []]}, "wall.courses[1] = []: is an empty course"),
+        ({**FREE, "wall__courses": [[1, 1], [-1, -1]]}, "wall.courses[1] = [-1.0, -1.0]: is an empty course"),
+        ({**FREE, "wall__courses": [[1, 0, 1]]}, "wall.courses[0] = [1.0, 0.0, 1.0]: has a width of 0"),
+        ({**FREE, "wall__courses": [[1, -0.3, 0.7]]}, "wall.courses[0][1] = -0.3: is an opening off the lattice"),
+        ({**FREE, "wall__courses": [[0.7, -1, 0.3]]}, "wall.courses[0][1] = -1.0: is an opening off the lattice"),
+        ({**FREE, "wall__courses": [1, 1]}, "wall.courses[0] = 1: must be a list of finite numbers"),
+        ({**FREE, "wall__courses": "many"}, "wall.courses = 'many': must be a list of courses"),
+        ({"wall__courses": [[1, 1]]}, "wall.length: does not go with wall.courses; describe the wall in one way"),
+        ({"wall__length": None, "wall__courses": [[1, 1]]}, "wall.height: does not go with wall.courses"),
+        ({"wall__drawing": "wall.dxf"}, "wall.length: does not go with wall.drawing"),
+        ({"wall__units": "mm"}, "wall.units: does not go with wall.length"),
+        ({**FREE, "wall__courses": [[1, 1], [1, -1], [-1, 1]]}, "is a floating block"),
+        ({"joint__friction_angle": 30}, "joint.friction_angle = 30.0: does not go with joint.friction"),
+        ({"joint": {"friction_angle": 90}}, "joint.friction_angle = 90: must be a number"),
+        ({"joint__tensile_strength": 1e4}, "joint.tensile_strength = 10000.0: must be at most"),
+        ({"joint": {"friction": 0, "cohesion": 1e3}}, "joint.tensile_strength: is missing"),
+        ({"joint__inset": 0.03}, "joint.inset = 0.03: must be less than half the shortest joint, 0.06 m long"),
+        ({"joint__mortar": {"young": 1e9, "poisson": 0.2}}, "joint.mortar.thickness: is missing"),
+        ({"joint__normal_stiffness": 1e9}, "joint.shear_stiffness: is missing"),
+        ({"support__kind": "rollers"}, "support.kind = 'rollers': must be one of"),
+        ({"support__kind": "fixed-first-course", "wall__height": 0.06}, "holds every block"),
+        ({"load__gravity": 0}, "load.gravity = 0.0: leaves a lateral load nothing to push with"),
+        ({"load__live": {"kind": "lateral", "at": [0, 0]}}, "load.live.at = [0, 0]: is not a key"),
+        ({"load__live": POINT | {"at": [5, 5]}}, "load.live.at = [5.0, 5.0]: touches no block that can move"),
+        ({"load__live": POINT | {"force": [0, 0]}}, "load.live.force = [0.0, 0.0]: must not be zero"),
+        ({"load__live": POINT | {"at": [1, 2, 3]}}, "load.live.at = [1, 2, 3]: must be a pair of finite numbers"),
+        ({"title": 5}, "title = 5: must be a string"),
+        ({"wall": {"drawing": "no.dxf", "units": "mm", "thickness": 0.1}}, "wall.drawing"),
+        ({"wall": {"drawing": "no.dxf", "units": "miles", "thickness": 0.1}}, "wall.units = 'miles'"),
+    ],
+)
+def test_a_scene_that_is_no_wall(
+    changes: dict[str, Any], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    scene = write_toml(content(**changes), tmp_path / "wall.toml")
+    out = tmp_path / "out"
+    for arguments in (["run", "--model", "limit"], ["compare"]):
+        assert command([*arguments, str(scene), "--out", str(out)]) == 2
+        printed = capsys.readouterr()
+        assert printed.out == ""
+        assert said in printed.err
+        assert printed.err.count("\n") == 1
+        assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (b"this is no TOML", "is no valid TOML"),
+        (b"", "wall: is missing"),
+        (b"\xff\xfe\x00", "is not UTF-8 text"),
+        (b"x = " + b"[" * 5000, "is no valid TOML"),
+        (b"x = " + b"9" * 5000, "is no valid TOML"),
+    ],
+)
+def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "wall.toml"
+    scene.write_bytes(text)
+    assert command(["run", str(scene), "--model", "limit"]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["run", "nowhere.toml", "--model", "limit"], "there is no such file"),
+        (["run", ".", "--model", "limit"], "it is a folder"),
+        (["run", "panel-01"], "--model"),
+        (["run", "panel-01", "--model", "limt"], 'did you mean "limit"?'),
+        (["run", "panel-01", "--model", "fern"], "must be one of homog, limit, limit-nonassociated, dem-static, dem-d"),
+        (["run", "panel-01", "--model", "limit", "--tolerance", "nan"], "--tolerance"),
+        (["run", "panel-01", "--model", "limit", "--tolerance", "2"], "--tolerance"),
+        (["run", "panel-01", "--model", "limit", "--tolerance", "small"], "--tolerance"),
+        (["run", "panel-01", "--model", "limit", "--colour"], "--colour"),
+        (["run", "point-load-4", "--model", "homog"], "it needs load.live.kind"),
+        (["compare", "panel-01", "--models", "limit,dem"], "--models"),
+        (["compare", "panel-01", "panel-01"], "second scene"),
+        (["compare", "panel-01", "--jobs", "0"], "--jobs"),
+        (["collapse", "panel-01"], "Unknown command"),
+    ],
+)
+def test_a_command_that_is_none(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert command(arguments) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert said in printed.err
+    assert printed.err.count("\n") == 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_output_folder_that_cannot_be_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "file").write_text("")
+    for arguments in (["run", "panel-01", "--model", "limit"], ["compare", "panel-01"]):
+        assert command([*arguments, "--out", str(tmp_path / "file" / "folder")]) == 2
+        printed = capsys.readouterr()
+        assert printed.out == ""
+        assert printed.err.count("\n") == 1
+
+
+def test_the_installed_command_leaves_with_the_same_code(tmp_path: Path) -> None:
+    """Through the console script, as a script outside the project would call it."""
+    script = Path(sys.executable).parent / "runningbond"
+    done = subprocess.run([script, "run", "panel-01", "--model", "homog"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    refused = subprocess.run([script, "run", "x", "--model", "homog"], capture_output=True, text=True, check=False)
+    assert refused.returncode == 2
+    assert "Traceback" not in refused.stderr
+
+
+@pytest.mark.parametrize(
+    ("outlines", "said"),
+    [
+        ([[(0, 0), (200, 0), (200, 100), (0, 100)], [(100, 50), (300, 50), (300, 150), (100, 150)]], "overlaps"),
+        ([[(0, 0), (200, 0), (200, 100), (100, 20), (0, 100)]], "is not convex"),
+        ([[(0, 40), (200, 40), (200, 100), (0, 100)]], "is a floating block"),
+        ([], "needs the ground and at least one block"),
+    ],
+)
+def test_a_drawing_that_is_no_wall(
+    outlines: list[list[tuple[float, float]]], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ground = [(-500.0, -50.0), (700.0, -50.0), (700.0, 0.0), (-500.0, 0.0)]
+    drawing(tmp_path / "wall.dxf", [ground, *outlines])
+    wall = {"drawing": "wall.dxf", "units": "mm", "thickness": 0.12}
+    scene = write_toml(content(wall=wall), tmp_path / "wall.toml")
+    assert command(["run", str(scene), "--model", "limit", "--out", str(tmp_path / "out")]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert said in printed.err
+    assert printed.err.count("\n") == 1
+    assert not (tmp_path / "out").exists()

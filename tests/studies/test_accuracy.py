@@ -1,0 +1,333 @@
+"""The study of accuracy against cost: its known answers, its tables, its charts and its page."""
+
+import inspect
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from matplotlib.image import imread
+
+from runningbond.commands.command_line import command
+from runningbond.joints import joint_stiffness
+from runningbond.studies import Row, Rows
+from runningbond.studies.accuracy.charts import pareto_front
+from runningbond.studies.accuracy.measure import machine, measure
+from runningbond.studies.accuracy.parameters import PARAMETERS, VARIED, settings_of
+from runningbond.studies.accuracy.questions import MODELS, ask
+from runningbond.studies.accuracy.study import STUDY, page
+from runningbond.studies.accuracy.tables import (
+    cheapest,
+    cheapest_table,
+    exponent,
+    fits,
+    growth,
+    growth_table,
+    label,
+    models_table,
+    parameters_table,
+    records,
+    tables,
+)
+from runningbond.studies.accuracy.walls import Wall, accuracy_walls, all_walls, error, growth_walls, stiffness_walls
+from runningbond.studies.apart import TOO_LONG, measure_apart
+from runningbond.studies.page import draw_charts, write_page
+
+ROOT = Path(__file__).parents[2]
+
+
+# --- errors --------------------------------------------------------------------------------------------------
+
+
+@given(st.floats(0.01, 10), st.floats(0, 1), st.floats(0.01, 10))
+def test_error_is_the_distance_from_the_interval(low: float, width: float, value: float) -> None:
+    """Zero inside, relative to the nearer end outside, and the same when everything is scaled."""
+    high = low * (1 + width)
+    found = error(value, (low, high))
+    if low <= value <= high:
+        assert found == 0
+    else:
+        nearer = min(low, high, key=lambda end: abs(end - value))
+        assert found == pytest.approx(abs(value / nearer - 1))
+    assert error(4 * value, (4 * low, 4 * high)) == found
+
+
+def test_errors_of_panels_are_from_the_interval_that_limit_analysis_certifies() -> None:
+    wall = accuracy_walls()["panel-02"]
+    certified = ask("collapse", "limit-nonassociated", wall.scene, {})
+    assert certified.status == "collapse"
+    assert wall.interval() == (certified.lower, certified.upper)
+    assert Wall(wall.scene).interval() is None
+
+
+# --- the measurement -----------------------------------------------------------------------------------------
+
+
+def test_a_measurement_has_its_answer_its_seconds_and_its_memory() -> None:
+    row = measure_apart(measure, ("stack-of-5", "dem-static", "", ""))
+    assert row["value"] == pytest.approx(0.46, rel=1e-6)
+    assert (row["blocks"], row["known"], row["runs"]) == (5, "exact", 3)
+    assert row["error"] < 1e-6
+    for name in ("wall_s", "cpu_s", "ratio"):
+        assert 0 < row[f"{name}_min"] <= row[name] <= row[f"{name}_max"]
+    assert 0 <= row["memory_mb"] < 200
+    assert row["machine"] == machine()
+    assert not any(part in row["machine"] for part in (os.uname().nodename, str(Path.home())))
+
+
+def test_memory_is_what_a_run_takes_beyond_what_was_held() -> None:
+    script = (
+        "from runningbond.studies.accuracy import measure\nimport numpy as np\nlarge = np.ones(20_000_000); del large\n"
+        "held = measure.start_of_memory(); found = np.ones(5_000_000); print(measure.most_memory() - held)"
+    )
+    taken = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True)
+    if Path("/proc/self/clear_refs").exists():
+        assert float(taken.stdout) == pytest.approx(40e6, rel=0.05)
+
+
+# --- known answers -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["block-topples", "block-slides", "stack-of-5"])
+def test_limit_analysis_finds_the_exact_multipliers(name: str) -> None:
+    wall = accuracy_walls()[name]
+    found = ask("collapse", "limit", wall.scene, {})
+    assert wall.answer is not None
+    assert found.value == pytest.approx(wall.answer[0], rel=1e-9)
+    assert {"block-topples": 0.23 / 0.36, "block-slides": 0.497, "stack-of-5": 0.46}[name] == wall.answer[0]
+
+
+@pytest.mark.parametrize("name", ["wall-w1-inset", "wall-w2-inset", "wall-w3-inset"])
+def test_published_multipliers_are_certified_to_their_last_digit(name: str) -> None:
+    """With contacts moved in, the interval of certified loads is a point, and rounds to what was published."""
+    wall = accuracy_walls()[name]
+    found = ask("collapse", "limit-nonassociated", wall.scene, {})
+    assert found.value is not None
+    assert found.upper == pytest.approx(found.lower, rel=1e-6)
+    assert wall.answer is not None
+    assert error(found.value, wall.answer) == 0
+
+
+@pytest.mark.parametrize("name", [name for name, wall in accuracy_walls().items() if name.startswith("cell-1e")])
+def test_a_compressed_cell_is_blocks_and_joints_in_series(name: str) -> None:
+    """Six modes and more are exact; rigid blocks are too stiff by k_n a / E."""
+    wall = accuracy_walls()[name]
+    assert wall.answer is not None
+    assert wall.scene.bond is not None
+    excess = joint_stiffness(wall.scene.joint).normal * wall.scene.bond.height / (wall.scene.block.young or 0.0)
+    for modes in (6, 10, "all"):
+        assert ask("compression", "fem", wall.scene, {"modes": modes}).value == pytest.approx(wall.answer[0], rel=1e-9)
+    for model, settings in (("homog", {}), ("dem-static", {}), ("fem", {"modes": 3})):
+        found = ask("compression", model, wall.scene, settings)
+        assert found.value == pytest.approx(wall.answer[0] * (1 + excess), rel=1e-9)
+
+
+def test_a_sheared_cell_of_rigid_blocks_has_the_closed_form() -> None:
+    wall = accuracy_walls()["cell-shear"]
+    assert wall.answer is not None
+    for model, settings in (("dem-static", {}), ("fem", {"modes": 3}), ("fem", {"modes": 3, "cells": 2})):
+        assert ask("shear", model, wall.scene, settings).value == pytest.approx(wall.answer[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+def test_a_block_turned_far_bears_the_tangent_and_small_displacements_do_not_know(model: str) -> None:
+    wall = accuracy_walls()["turned-block"]
+    assert wall.answer is not None
+    assert ask("turned block", model, wall.scene, {"speed": 4e-3}).value == pytest.approx(wall.answer[0], rel=1e-3)
+    assert ask("turned block", model, wall.scene, {"drive": 100_000}).value == pytest.approx(0.1 / 0.4, rel=1e-3)
+
+
+def test_the_slower_a_wall_is_driven_the_nearer_it_comes() -> None:
+    wall = accuracy_walls()["stack-of-5"]
+    errors = [
+        ask("collapse", "dem-dynamic", wall.scene, {"drive": steps}).value / 0.46 - 1  # type: ignore[operator]
+        for steps in (25_000, 100_000, 400_000)
+    ]
+    assert errors == sorted(errors, reverse=True)
+    assert 0 < errors[-1] < 0.01
+
+
+def test_a_physical_second_of_stiff_blocks_takes_fewer_steps_with_scaled_masses() -> None:
+    """More than ten times fewer at 1000 GPa, and nearly as few as rigid blocks take."""
+    wall = stiffness_walls()["stiff-1e12"]
+    unscaled = {"mass_scaling": False}
+    found = [
+        ask("physical second", model, wall.scene, settings)
+        for model, settings in (("fem", {}), ("fem", unscaled), ("dem-dynamic", {}))
+    ]
+    scaled, plain, rigid = (float(one.message.split()[2]) for one in found)
+    assert scaled > 10 * plain
+    assert scaled == pytest.approx(rigid, rel=0.05)
+    for one in found:
+        assert one.value is not None
+        assert one.lower is not None
+        assert one.upper is not None
+        assert 0 < one.lower <= one.value <= one.upper
+
+
+# --- what there is to measure --------------------------------------------------------------------------------
+
+
+def test_every_case_is_measured_once_and_can_be() -> None:
+    assert len(set(STUDY.cases)) == len(STUDY.cases) > 150
+    for _, (name, model, parameter, setting) in STUDY.cases:
+        wall, settings = all_walls()[name], settings_of(model, parameter, setting)
+        assert bool(settings) == bool(parameter)
+        if wall.question == "collapse" and "drive" not in settings:
+            inspect.signature(MODELS[model]).bind(wall.scene, **settings)
+
+
+def test_every_parameter_is_varied_somewhere() -> None:
+    varied = {case[1:] for _, case in STUDY.cases}
+    for parameter in PARAMETERS:
+        for model in parameter.models:
+            assert {(model, parameter.name, setting) for setting in parameter.settings} <= varied
+    with pytest.raises(KeyError, match="limit has no parameter"):
+        settings_of("limit", "cells", "2")
+
+
+def test_walls_grow_four_times_at_a_time() -> None:
+    blocks = [wall.blocks for wall in growth_walls().values()]
+    assert np.diff(np.log2(blocks)) == pytest.approx(2, abs=0.2)
+    assert (blocks[0], blocks[-1]) == (21, 1176)
+
+
+# --- tables --------------------------------------------------------------------------------------------------
+
+points = st.lists(st.tuples(st.sampled_from([0.1, 0.2, 0.5, 1, 2]), st.sampled_from([0, 0.01, 0.1, 1])), min_size=1)
+
+
+@given(points)
+def test_nothing_beats_the_pareto_front_and_it_beats_everything_else(found: Sequence[tuple[float, float]]) -> None:
+    cost, error = zip(*found, strict=True)
+    front = pareto_front(cost, error)
+    assert all(np.diff([cost[i] for i in front]) > 0)
+    assert all(np.diff([error[i] for i in front]) < 0)
+    for j in range(len(found)):
+        beaten = [i for i in front if cost[i] <= cost[j] and error[i] <= error[j]]
+        assert beaten
+        if j in front:
+            assert beaten == [j]
+
+
+def made_up(part: str, case: tuple[str, str, str, str]) -> Row:
+    """A row: cost and error by model and parameter, growth with the power 1.5."""
+    name, model, parameter, setting = case
+    wall, place = all_walls()[name], list(MODELS).index(model)
+    seconds = (
+        1e-4 * 4.0**place * wall.blocks**1.5 if part == "growth" else 0.01 * 4.0**place * (1.5 if parameter else 1)
+    )
+    off = 0.2 / 3.0**place * (4.0 if setting == "Gauss 2" else 1.0)
+    low, high = wall.answer or ((0.5, 0.5) if wall.known else (None, None))
+    row: Row = {"wall": name, "model": model, "parameter": parameter, "setting": setting, "machine": machine()}
+    row |= {"blocks": wall.blocks, "question": wall.question, "known": wall.known, "status": "collapse", "runs": 3}
+    row |= {"value": seconds if low is None else low * (1 + off), "error": None if low is None else off}
+    row |= {"answer_low": low, "answer_high": high, "dofs": 3 * wall.blocks * (1 + place), "memory_mb": 1.0}
+    return row | {"cpu_s": seconds, "cpu_s_min": 0.9 * seconds, "cpu_s_max": 1.2 * seconds, "ratio": seconds / 0.04}
+
+
+def table() -> dict[str, list[Row]]:
+    """A whole table made up."""
+    return {name: [made_up(name, case) for case in part.cases] for name, part in STUDY.parts.items()}
+
+
+def changed(rows: Rows, part: str, which: tuple[str, str, str], **entries: object) -> dict[str, list[Row]]:
+    """The rows, with other entries in that of a wall, a model and a parameter."""
+    return {
+        name: [
+            row | entries if name == part and (row["wall"], row["model"], row["parameter"]) == which else row
+            for row in own
+        ]
+        for name, own in rows.items()
+    }
+
+
+def test_the_cheapest_within_a_tolerance_is_found() -> None:
+    """Errors 0.067, 0.022, 0.0074, … at ever greater cost; the model that certified a panel counts as within there."""
+    found = records(table(), VARIED)
+    everything = tuple(MODELS)
+    for tolerance, expected in ((0.1, "limit"), (0.05, "limit-nonassociated"), (0.01, "dem-static")):
+        assert cheapest(found, tolerance, VARIED, everything) == (expected, "", "")
+    assert cheapest(found, 0.01, VARIED, ("fem",)) == ("fem", "", "")
+    assert cheapest(found, 1e-9, VARIED, everything) is None
+    assert found["limit-nonassociated", "", ""].own == ["panel-02"]
+    assert "panel-02" not in found["limit-nonassociated", "", ""].all("wall")
+    assert ["1 %", "follows a path", "dem-static", "16", "0.74 %"] in cheapest_table(table()).rows
+
+
+@pytest.mark.parametrize("status", ["undecided", TOO_LONG])
+def test_a_wall_without_a_number_is_named_and_keeps_a_model_from_being_cheapest(status: str) -> None:
+    rows = changed(table(), "accuracy", ("wall-w3-inset", "limit", ""), status=status, value=None, error=None)
+    assert records(rows)["limit", "", ""].unanswered == ["wall-w3-inset"]
+    assert cheapest(records(rows, VARIED), 0.1, VARIED, ("limit",)) is None
+
+
+def test_growth_has_its_power() -> None:
+    for rows in growth(table()).values():
+        assert exponent(rows) == pytest.approx(1.5, abs=1e-9)
+
+
+def test_tables_say_what_the_rows_do() -> None:
+    models = {row[1]: row for row in models_table(table()).rows}
+    assert models["limit"][3:5] == ["6.7 %", "6.7 %"]
+    assert models["limit"][6:8] == [str(models["limit"][2]), "0"]  # all of them too high
+    parameters = {tuple(row[:3]): row[3:] for row in parameters_table(table()).rows}
+    assert parameters["fem", "joint rule", "Gauss 2"] == ["4", "0.33 %", "0.082 %", "1.5", "costs accuracy", ""]
+    assert parameters["fem", "cells", "2"][4] == "cost alone"
+    halved = {
+        name: [row | {"error": row["error"] and row["error"] / 2} for row in own] for name, own in table().items()
+    }
+    assert {row[1]: row for row in models_table(halved).rows}["limit"][3] == "3.3 %"
+    assert len(tables(table())) == 6
+    assert tables({name: [] for name in STUDY.parts}) == []
+
+
+def test_cases_left_out_are_said_to_be() -> None:
+    rows = changed(table(), "growth", ("square-48", "fem", ""), status=TOO_LONG, cpu_s=None)
+    assert {row[0]: row[4] for row in growth_table(rows).rows}["fem"] == "left out: too long"
+
+
+def test_rigid_blocks_are_too_stiff_by_the_ratio_of_joint_and_block() -> None:
+    """k_n a / E: 62.5, 6.25 and 0.625 %."""
+    edges = fits(table())
+    assert [edge.theory for edge in edges] == pytest.approx([0.625, 0.0625, 0.00625])
+
+
+# --- the page ------------------------------------------------------------------------------------------------
+
+
+def test_charts_are_not_blank(tmp_path: Path) -> None:
+    pictures = draw_charts(STUDY, table(), tmp_path)
+    assert [path.stem for path in sorted(tmp_path.iterdir())] == sorted(chart.name for chart in STUDY.charts)
+    assert len(pictures) == 4
+    for path in tmp_path.iterdir():
+        image = imread(path)[:, :, :3]
+        assert min(image.shape[:2]) > 600
+        assert 0.01 < (image.min(axis=2) < 0.95).mean() < 0.5
+        assert len(np.unique(image.reshape(-1, 3), axis=0)) > 100
+    assert draw_charts(STUDY, {name: [] for name in STUDY.parts}, tmp_path / "none") == []
+
+
+def test_the_page_tells_all_of_the_study(tmp_path: Path) -> None:
+    rows = table()
+    written = write_page("study", page(rows, tmp_path), tmp_path, STUDY.name)
+    text, html = (path.read_text() for path in written[:2])
+    for path in written[2:]:
+        assert f"]({path.name})" in text
+    assert [path.name for path in written[:2]] == ["study.md", "report.html"]
+    assert "http" not in html
+    assert html.count("<img") == len(STUDY.charts)
+    assert f"Measured on {machine()}: {len(STUDY.cases)} of {len(STUDY.cases)} cases." in text
+    for sheet in tables(rows):
+        assert sheet.markdown() in text
+    assert label(("fem", "cells", "2")) == "fem, cells 2"
+
+
+def test_a_study_in_no_process_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["study", "--jobs", "0"]) == 2
+    assert "--jobs" in capsys.readouterr().err

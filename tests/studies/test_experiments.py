@@ -1,0 +1,33 @@
+"""Every experiment: its edges lie where theory has them, and its chart is there."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from runningbond.studies.page import draw
+from runningbond.studies.stability import EXPERIMENTS, experiment
+from runningbond.studies.store import failures, run_study
+
+
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_every_case_is_measured_once(name: str) -> None:
+    study = experiment(name)
+    assert study.name == name
+    assert len(set(study.cases)) == len(study.cases)
+    for part in study.parts.values():
+        assert {len(case) for case in part.cases} == {len(part.columns)}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", EXPERIMENTS)
+def test_every_edge_lies_where_theory_has_it(name: str, tmp_path: Path) -> None:
+    study = experiment(name)
+    rows = run_study(study, tmp_path)
+    assert not failures(rows)
+    assert not [edge for edge in study.edges(rows) if edge.agrees is False]
+    for chart in study.charts:
+        image = imread(draw(chart, rows, tmp_path))[:, :, :3]
+        assert 0.01 < (image.min(axis=2) < 0.95).mean() < 0.9
+        assert len(np.unique(image.reshape(-1, 3), axis=0)) > 100

@@ -1,0 +1,86 @@
+"""The stiffness of joints: what does not depend on it, and what outcomes say where something does."""
+
+from typing import Any
+
+import pytest
+
+from dem.dynamic import dem_dynamic
+from dem.rigid_system import rigid_system
+from dem.static import dem_static
+from fem_interface.model import fem
+from runningbond.compare import published_scene, run_model
+from runningbond.dynamics import Run
+from runningbond.joints import stiffness_note
+from runningbond.joints.stiffness_range import EPSILON, SOFT, STIFF
+from runningbond.studies.stability.joint_stiffness import OVERLAP, at_rest, condition, overlap, wall
+from runningbond.studies.stability.joint_stiffness import stiffness_note as said_in
+
+EXACT = 0.58558
+"""λ of W1 with joints inset by 20 mm, certified by linear programs."""
+
+Model = Any
+
+
+@pytest.mark.parametrize("normal", [1e7, 1e9, 1e12])
+def test_blocks_overlap_by_the_weight_above_them(normal: float) -> None:
+    """ρ g H / k_n at the base of a wall as wide above as below: 1800 · 9.81 · 1.05 / k_n."""
+    depth = at_rest(normal)[OVERLAP]
+    assert overlap(wall(normal), normal) * 0.175 == pytest.approx(1800 * 9.81 * 1.05 / normal, rel=1e-9)
+    assert depth == pytest.approx(overlap(wall(normal), normal), rel=1e-6)
+
+
+def test_the_conditioning_of_the_static_equations_does_not_depend_on_the_stiffness() -> None:
+    assert condition(wall(1e14)) == pytest.approx(condition(wall(1e8)), rel=1e-9)
+
+
+@pytest.mark.parametrize("normal", [1e9, 1e11])
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic, fem])
+def test_inside_the_window_nothing_is_said_and_the_multiplier_stays(model: Model, normal: float) -> None:
+    outcome = model(wall(normal))
+    assert outcome.status == "collapse"
+    assert outcome.multiplier == pytest.approx(EXACT, rel=0.005)
+    assert not said_in(outcome.message)
+
+
+@pytest.mark.parametrize(("normal", "deep"), [(1e7, "1.1 %"), (1e6, "11 %")])
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic, fem])
+def test_soft_joints_are_said_so(model: Model, normal: float, deep: str) -> None:
+    """Blocks sink into each other by a per cent of their size and more; λ hardly minds, but another wall's might."""
+    outcome = model(wall(normal))
+    assert outcome.status == "collapse"
+    assert outcome.multiplier == pytest.approx(EXACT, rel=0.01)
+    assert f"joints are too soft: blocks overlap by {deep} of their size" in outcome.message
+
+
+def test_a_wall_that_sinks_into_itself_is_not_said_to_fall() -> None:
+    """The wall stands: linear programs balance its weight, and slower methods bring it to rest."""
+    outcome = dem_dynamic(wall(1e5))
+    assert outcome.status == "undecided"
+    assert "moves as far under its dead load as counts as collapse" in outcome.message
+    assert "joints are too soft" in outcome.message
+    assert dem_static(wall(1e5)).multiplier == pytest.approx(EXACT, rel=0.01)
+
+
+def test_a_budget_that_ends_before_the_fall_says_how_long_it_followed() -> None:
+    outcome = dem_dynamic(wall(1e15), budget=20_000)
+    assert outcome.status == "undecided"
+    followed = 20_000 * Run(rigid_system(wall(1e15))).dt
+    assert f"each load was followed for at most {followed:.2g} s" in outcome.message
+
+
+def test_the_note_turns_where_overlap_and_rounding_pass_their_shares() -> None:
+    size, collapse, unit = 0.2, 0.01, 100.0
+    depth, stiffness = SOFT * collapse, STIFF * unit / (EPSILON * collapse)
+    assert stiffness_note(0.999 * depth, collapse, size, 0.999 * stiffness, unit) == ""
+    assert "too soft: blocks overlap by 0.1 % of" in stiffness_note(1.001 * depth, collapse, size, 1.0, unit)
+    assert "too stiff: in displacements" in stiffness_note(0.0, collapse, size, 1.001 * stiffness, unit)
+
+
+def test_rounding_in_too_stiff_joints_is_said() -> None:
+    assert "joints are too stiff" in dem_static(wall(1e18)).message
+
+
+@pytest.mark.parametrize("name", ["panel-04", "wall-w3", "point-load-quarter"])
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+def test_nothing_is_said_of_published_walls(name: str, model: str) -> None:
+    assert not said_in(run_model(model, published_scene(name), 0.05).message)

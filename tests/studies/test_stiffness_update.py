@@ -1,0 +1,89 @@
+"""The stiffness update as published: exact on one block, lost on walls, and honest about it."""
+
+import numpy as np
+import pytest
+
+from dem.stiffness_update import load_step, resultant_wall
+from runningbond.compare.published import published_scene
+from runningbond.limit import limit
+from runningbond.studies import Row
+from runningbond.studies.stability.stiffness_update import (
+    BLOCKS,
+    BORNE,
+    ENDED,
+    INCREMENTS,
+    OUTSIDE,
+    block_row,
+    collapse_load,
+    loaded,
+    measure,
+)
+from runningbond.studies.walls import one_block
+
+WALLS = ("panel-02", "panel-04", "wall-w2", "wall-w3")
+
+
+def test_one_block_is_borne_to_its_exact_collapse() -> None:
+    """b/h, μ, and 2 b/h with l_c the whole length of the joint, to 1e-3."""
+    rows = [block_row(what) for what in BLOCKS]
+    assert [row["theory"] for row in rows] == [1.0, 1.0, 2.0]
+    assert [row["measured"] for row in rows] == pytest.approx([1.0, 1.0, 2.0], rel=1e-3)
+
+
+def test_a_block_beyond_its_collapse_is_singular_and_what_follows_is_not_reached() -> None:
+    """Loaded up to 1.25 b/h in ten steps: eight of them are borne."""
+    row = loaded(one_block(0.5, 2.0, 0.6, 1e11), 1.25 * 0.25, 0.5, 10)
+    assert row["fates"] == ["converged"] * 8 + ["singular", "unreached"]
+    assert row[BORNE] == pytest.approx(0.8)
+    assert row[ENDED] == "singular"
+
+
+@pytest.fixture(scope="module")
+def found() -> dict[tuple[str, int], Row]:
+    return {(wall, steps): measure(wall, 0.5, steps) for wall in WALLS for steps in INCREMENTS}
+
+
+def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(found: dict[tuple[str, int], Row]) -> None:
+    """A load below the one that limit analysis allows, which `dem_static` bears."""
+    for (wall, _), row in found.items():
+        associated = limit(published_scene(wall)).upper
+        assert associated is not None
+        assert collapse_load(wall) <= associated * (1 + 1e-6)
+        assert row[ENDED] in ("cycle", "singular", "wandering")
+        assert row[BORNE] < 0.8
+
+
+def test_finer_steps_do_not_help(found: dict[tuple[str, int], Row]) -> None:
+    """In a hundred steps panel-02 gets less far than in ten, and panel-04 and W3 nowhere in either."""
+    borne = {which: row[BORNE] for which, row in found.items()}
+    assert borne["panel-02", 100] < borne["panel-02", 10]
+    assert borne["panel-04", 100] == borne["panel-04", 10] == 0.0
+    assert borne["wall-w3", 100] == borne["wall-w3", 10] < 0.0
+
+
+def test_every_tenth_of_the_load_has_its_fate(found: dict[tuple[str, int], Row]) -> None:
+    """A run in steps ends once; what lies beyond is never told as borne."""
+    for (_, steps), row in found.items():
+        fates = row["fates"]
+        assert len(fates) == 10
+        if steps > 1:
+            end = fates.index(row[ENDED])
+            assert set(fates[:end]) <= {"converged", "outside"}
+            assert set(fates[end + 1 :]) <= {"unreached"}
+            assert end <= 10 * max(row[BORNE], 0.0) + 1e-9 <= end + 1
+
+
+def test_a_step_may_converge_on_forces_that_break_the_law() -> None:
+    """Equilibrium is kept, and Eq. 3 is not: it was asked of other forces than those that are kept. W1, up to .45."""
+    wall = resultant_wall(published_scene("wall-w1"))
+    force = 0.0 * wall.law.stiffness
+    excess = []
+    for multiplier in np.arange(8) * 0.064:
+        load = wall.dead + multiplier * wall.live
+        step = load_step(wall, force, load)
+        assert step.status == "converged"
+        force = step.force
+        assert wall.jump.T @ force.T.ravel() == pytest.approx(load, abs=1e-9 * np.abs(load).max())
+        excess.append(wall.excess(force))
+    assert excess[0] < 1e-9
+    assert max(excess) > 10 * OUTSIDE

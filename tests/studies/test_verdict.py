@@ -1,0 +1,88 @@
+"""Criteria of the verdict, too tight and too loose, against walls whose load is known."""
+
+import numpy as np
+import pytest
+
+from dem import limit_nonassociated
+from dem.rigid_system import rigid_system
+from runningbond.compare.published import published_scene
+from runningbond.dynamics import Criteria, Run, load_steps
+from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics.collapse_load import FIRST_STEP
+from runningbond.dynamics.load_stepping import LOADING_WEIGHTLESS
+from runningbond.studies import Rows
+from runningbond.studies.stability.verdict import (
+    DEFAULT,
+    FAR,
+    INTERVAL,
+    PART,
+    REST,
+    WEIGHTLESS,
+    WIDTH,
+    believed,
+    plateau,
+    search,
+    sweep,
+)
+from runningbond.studies.walls import SLIDING, TOPPLING, W1, W2, known_wall
+
+
+def swept(wall: str, criterion: str, values: tuple[float, ...]) -> Rows:
+    """Searches with one criterion changed, as rows of the study."""
+    case = {"wall": wall, "criterion": criterion}
+    return {PART: [case | {"value": value} | search(wall, criterion, value) for value in values]}
+
+
+@pytest.mark.parametrize("wall", [SLIDING, TOPPLING, W1])
+@pytest.mark.parametrize("criterion", [REST, FAR, INTERVAL])
+def test_the_suites_criteria_stand_on_a_plateau(wall: str, criterion: str) -> None:
+    """Half and twice each of them find the same λ, which is the one known."""
+    default = DEFAULT[criterion]
+    rows = sweep(swept(wall, criterion, (default / 2, default, 2 * default)), wall, criterion)
+    assert plateau(rows) == (default / 2, 2 * default)
+    assert rows[1]["λ"] == pytest.approx(known_wall(wall).multiplier, rel=WIDTH)
+
+
+@pytest.mark.parametrize("wall", [SLIDING, TOPPLING, W1])
+def test_a_threshold_of_rest_too_loose_takes_walls_for_standing_up_to_the_load_that_theory_has(wall: str) -> None:
+    """λ_c + r / w: false stability, 5 to 10 % above the load with r = 0.03."""
+    rest = DEFAULT[REST]
+    rows = sweep(swept(wall, REST, (rest, 0.01, 0.03)), wall, REST)
+    assert [row["λ"] for row in rows[1:]] == pytest.approx([believed(wall, r) for r in (0.01, 0.03)], rel=WIDTH)
+    assert rows[2]["λ"] > 1.04 * known_wall(wall).multiplier
+    assert plateau(rows) == (rest, rest)
+
+
+def test_a_threshold_of_rest_below_rounding_is_never_met() -> None:
+    assert search(SLIDING, REST, 1e-16)["answer"] == "undecided"
+
+
+def test_a_displacement_too_small_takes_settlement_for_a_fall() -> None:
+    assert search(W1, FAR, 1e-7)["answer"] == "infeasible"
+
+
+def test_a_displacement_too_small_takes_a_slip_for_a_fall() -> None:
+    """W2 at a hundred-thousandth of a block: false collapse some 2 % below the load, where a thousandth is right."""
+    known = known_wall(W2).multiplier
+    assert (search(W2, FAR, 1e-5).get("λ") or 0.0) < 0.985 * known
+    assert search(W2, FAR, 1e-3)["λ"] == pytest.approx(known, rel=WIDTH)
+
+
+def test_a_wall_without_weight_pauses_and_bears_the_same_at_any_speed() -> None:
+    """A quarter of the time to come to each load, and four times it, find one λ to 1 %."""
+    scene = published_scene(WEIGHTLESS)
+    run = Run(rigid_system(scene))
+    first, criteria = FIRST_STEP / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
+    loadings = (LOADING_WEIGHTLESS / 4, LOADING_WEIGHTLESS, 4 * LOADING_WEIGHTLESS)
+    found = [load_steps(run, first, WIDTH, criteria, loading=loading) for loading in loadings]
+    assert found[0].lower == pytest.approx(found[1].lower, rel=0.01)
+    assert found[2].lower == pytest.approx(found[1].lower, rel=0.01)
+
+
+@pytest.mark.long
+def test_without_weight_the_suite_follows_it_far_enough() -> None:
+    """Twice as far finds the same λ, inside the interval that is certified."""
+    rows = sweep(swept(WEIGHTLESS, FAR, (U_CRIT, 2 * U_CRIT)), WEIGHTLESS, FAR)
+    certified = limit_nonassociated(published_scene(WEIGHTLESS))
+    assert plateau(rows) == (U_CRIT, 2 * U_CRIT)
+    assert (certified.lower or np.inf) <= rows[0]["λ"] <= (certified.upper or 0.0)
