@@ -1,1 +1,37 @@
-"""Masonry walls from their description to their collapse."""
+"""Masonry walls from their description to their collapse: ``import runningbond as rb``.
+
+Everything here is imported when it is first used, so that the import itself costs nothing.
+"""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .path_states import PathState
+    from .run_result import Result
+    from .scene import SceneError
+    from .sweeps import sweep
+    from .wall import Wall, read
+else:
+    _MODULES = {
+        "PathState": "path_states",
+        "Result": "run_result",
+        "SceneError": "scene",
+        "Wall": "wall",
+        "read": "wall",
+        "sweep": "sweeps",
+    }
+
+    def __getattr__(name):
+        """Import what is asked for (PEP 562)."""
+        if name not in _MODULES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from importlib import import_module
+
+        globals()[name] = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+        return globals()[name]
+
+    def __dir__():
+        return sorted({*globals(), *_MODULES})
+
+
+__all__ = ["PathState", "Result", "SceneError", "Wall", "read", "sweep"]

@@ -37,7 +37,7 @@ def advise(
     json
         Print one JSON object and nothing else.
     """
-    check_tolerance(tolerance)
+    check_tolerance(tolerance, "--tolerance")
     advice = Advice(Knowledge(read_scene(find_scene(scene)), tolerance, finite))
     if not json:
         print(f"{advice.known.scene.title}: λ to {100 * tolerance:g} %", flush=True)

@@ -55,7 +55,7 @@ def compare(
     """
     names = list(MODELS) if models is None else [name.strip() for name in models.split(",")]
     chosen = [find_model(name, "--models") for name in dict.fromkeys(names)]
-    check_tolerance(tolerance)
+    check_tolerance(tolerance, "--tolerance")
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
     if cluster is not None and jobs != -1:

@@ -43,8 +43,8 @@ def run(
     out
         Folder in which to keep the result, its time series for ParaView and a picture of its mechanism.
     """
-    chosen = find_model(model)
-    check_tolerance(tolerance)
+    chosen = find_model(model, "--model")
+    check_tolerance(tolerance, "--tolerance")
     wall = read_scene(find_scene(scene))
     if out is not None:
         make_folder(out)

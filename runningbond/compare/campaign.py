@@ -91,7 +91,7 @@ def run_campaign(
         On Ctrl-C, where the folder takes no more or the cluster is lost, with what there is. Running the same
         campaign again goes on from there.
     """
-    chosen = [find_model(model, "--models") for model in models or MODELS]
+    chosen = [find_model(model, "models") for model in models or MODELS]
     check_tolerance(tolerance)
     largest_first = sorted(scenes, key=lambda name: -len(scenes[name].blocks))
     # Dear models stand last in the registry; started first, they do not leave one process working alone.

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from runningbond.joints import Law
-from runningbond.scene import Scene
+from runningbond.scene import Action, Scene
 
 from .model import Model
 
@@ -29,17 +29,19 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
     """Digest under which the outcome of a model, or one of the package's own by its name, on a scene is kept."""
     digest = hashlib.sha256(code_digest().encode())
     if isinstance(model, Model):
-        digest.update(_own_code(model.solve))
+        own = _own_code(model.solve)
+        loads = (*scene.load.live, *scene.load.dead) if own else ()  # of which it may read whatever it likes
+        digest.update(own + b"".join(_own_code(type(load)) for load in loads))
         model = model.name
     digest.update(f"{model} {tolerance!r} ".encode())
-    for value in (scene, scene.dead_forces, scene.live_forces):  # of a user's own load, what it does as well
-        _feed(digest, value)
+    for value in (scene, scene.dead_forces, scene.live_forces, scene.control_point):
+        _feed(digest, value)  # of a user's own load, what it does as well
     return digest.hexdigest()
 
 
-def _own_code(solve: Callable[..., Any]) -> bytes:
-    """The file that a user's model stands in, or its compiled code where there is none; nothing for the package's."""
-    function: Any = getattr(solve, "func", solve)
+def _own_code(given: Callable[..., Any]) -> bytes:
+    """The file of a user's function or class, or its compiled code where there is none; nothing for the package's."""
+    function: Any = getattr(given, "func", given)
     if function.__module__.split(".")[0] in {room.split(".")[0] for room in COMPUTING_ROOMS}:
         return b""
     try:
@@ -61,14 +63,21 @@ def code_digest() -> str:
 
 
 def _feed(digest: "hashlib._Hash", value: object) -> None:
+    """Add a value to a digest: what it says, never where it lies in memory."""
     if isinstance(value, Law):
         digest.update(repr(value.identity).encode())
-    elif is_dataclass(value):
-        digest.update(type(value).__name__.encode())
-        for entry in fields(value):
-            digest.update(entry.name.encode())
-            _feed(digest, getattr(value, entry.name))
     elif isinstance(value, np.ndarray):
         digest.update(f"{value.dtype}{value.shape}".encode() + value.tobytes())
+    elif isinstance(value, (list, tuple)):
+        digest.update(f"{len(value)} ".encode())
+        for entry in value:
+            _feed(digest, entry)
+    elif is_dataclass(value) or isinstance(value, Action):
+        digest.update(type(value).__name__.encode())
+        for name in [entry.name for entry in fields(value)] if is_dataclass(value) else sorted(vars(value)):
+            digest.update(name.encode())
+            _feed(digest, getattr(value, name))
+    elif type(value).__repr__ is object.__repr__ or callable(value):  # in a load, which is known by what it does
+        digest.update(f"{type(value).__name__} {getattr(value, '__qualname__', '')}".encode())
     else:
         digest.update(repr(value).encode())

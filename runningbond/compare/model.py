@@ -1,10 +1,11 @@
 """What a model is: how a scene becomes an outcome, and what tables, charts and `advise` need to know of it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal, Protocol, TypeAlias
 
+from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Mortar, Scene
 
@@ -27,7 +28,15 @@ class Cost:
 
 
 class Recorder(Protocol):
-    """Observes a run of its model, and in the end writes what it saw."""
+    """Observes a run of its model, and in the end has written what it saw, or has it in `frames` without a folder."""
+
+    @property
+    def discretisation(self) -> Discretisation:
+        """The wall as it is observed."""
+
+    @property
+    def frames(self) -> Sequence[Frame]:
+        """What was seen, where there is no folder."""
 
     def __call__(self, *args: Any, **kwargs: Any) -> None:
         """Look at a state, as the model shows it."""
@@ -52,7 +61,7 @@ class Model:
     reads: frozenset[str]
     kind: Kind = "estimate"  # what its multiplier is worth
     parameters: tuple[str, ...] = ()  # names of its own settings
-    observer: Callable[[Scene, Path], Recorder] | None = None  # records a run in a folder, if it passes through states
+    observer: Callable[[Scene, Path | None], Recorder] | None = None  # records a run in a folder, or in memory
     interruptible: bool = False  # whether it ends with what it has found so far on KeyboardInterrupt
     cost: Cost | None = None  # `advise` runs no model without
     pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed

@@ -65,13 +65,13 @@ def _fem_pushover(scene: Scene, distance: float, speed: float) -> Array:
     return fem_pushover(scene, distance, speed=speed)
 
 
-def _static_recorder(scene: Scene, folder: Path) -> Recorder:
+def _static_recorder(scene: Scene, folder: Path | None) -> Recorder:
     from .recording import StaticRecorder
 
     return StaticRecorder(scene, folder)
 
 
-def _motion_recorder(scene: Scene, folder: Path) -> Recorder:
+def _motion_recorder(scene: Scene, folder: Path | None) -> Recorder:
     from .recording import MotionRecorder
 
     return MotionRecorder(scene, folder)
@@ -143,27 +143,27 @@ TOLERANCE = 0.01
 """Relative width of the bracket where none is asked for."""
 
 
-def find_model(model: str | Model, option: str = "--model") -> Model:
+def find_model(model: str | Model, key: str = "model") -> Model:
     """The model of a name; a model itself is given back as it is.
 
     Raises
     ------
     SceneError
-        For a name that is no model's; it names the option.
+        For a name that is no model's; it names the key, on the command line an option.
     """
     if isinstance(model, Model):
         return model
     if model not in MODELS:
         likely = difflib.get_close_matches(model, MODELS, n=1)
         hint = f'; did you mean "{likely[0]}"?' if likely else ""
-        raise SceneError(option, f"must be one of {', '.join(MODELS)}{hint}", model)
+        raise SceneError(key, f"must be one of {', '.join(MODELS)}{hint}", model)
     return MODELS[model]
 
 
-def check_tolerance(tolerance: float) -> None:
-    """Refuse a tolerance that is no relative width."""
+def check_tolerance(tolerance: float, key: str = "tolerance") -> None:
+    """Refuse a tolerance that is no relative width, by its key or option."""
     if not (math.isfinite(tolerance) and 0 < tolerance < 1):
-        raise SceneError("--tolerance", "must be a number above 0 and below 1", tolerance)
+        raise SceneError(key, "must be a number above 0 and below 1", tolerance)
 
 
 def run_model(

@@ -31,20 +31,34 @@ MECHANISM_FRAMES = 8
 """Moments in which a mechanism, where there is nothing else, grows to a size that is seen."""
 
 
-class SeriesRecorder:
-    """Writes moments of a wall into a folder. One that cannot be written does not end the run; see `finish`."""
+class FrameList(list[Frame]):
+    """A time series in memory."""
 
-    def __init__(self, discretisation: Discretisation, folder: Path) -> None:
-        self.discretisation = discretisation
-        self._series = TimeSeries(discretisation, folder)
+    add = list[Frame].append
+
+
+class SeriesRecorder:
+    """Writes moments of a wall into a folder, or keeps them in `frames` where there is none.
+
+    One that cannot be written does not end the run; see `finish`.
+    """
+
+    def __init__(self, discretisation: Discretisation, folder: Path | None) -> None:
         self._folder = folder
         self._error: OSError | VtkError | None = None
+        self._begin(discretisation)
+
+    def _begin(self, discretisation: Discretisation) -> None:
+        """Begin a series of a wall."""
+        self.discretisation = discretisation
+        self.frames = FrameList()
+        self._series = self.frames if self._folder is None else TimeSeries(discretisation, self._folder)
 
     def keep(self, frame: Frame) -> None:
         """Write a moment."""
         if self._error is None:
             try:
-                if not len(self._series):  # an outcome that is there is of another run
+                if self._folder and not len(self._series):  # an outcome that is there is of another run
                     (self._folder / RECORD).unlink(missing_ok=True)
                 self._series.add(frame)
             except (OSError, VtkError) as error:
@@ -61,7 +75,7 @@ class SeriesRecorder:
 class StaticRecorder(SeriesRecorder):
     """Writes every equilibrium that `dem.static` finds."""
 
-    def __init__(self, scene: Scene, folder: Path) -> None:
+    def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(Discretisation.of_rigid_blocks(scene), folder)
 
     def __call__(self, system: StaticSystem, state: StaticState) -> None:
@@ -82,7 +96,7 @@ class MotionRecorder(SeriesRecorder):
     Blocks and joint points are those of the run that is observed, whatever its mesh.
     """
 
-    def __init__(self, scene: Scene, folder: Path) -> None:
+    def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(Discretisation(scene, contact_points(scene)), folder)
         self._wall: ModalWall | None = None
         self._multiplier = np.nan
@@ -111,8 +125,7 @@ class MotionRecorder(SeriesRecorder):
         """Turn to the mesh of a run; the pieces of blocks that may crack are blocks of their own there."""
         self._wall = wall
         triangles = Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
-        self.discretisation = Discretisation(wall.scene, wall.elements.points, triangles)
-        self._series = TimeSeries(self.discretisation, self._folder)
+        self._begin(Discretisation(wall.scene, wall.elements.points, triangles))
 
     def _next_load(self, multiplier: float) -> None:
         if multiplier == 0.0 and len(self._series):  # the search begins anew, more slowly

@@ -4,7 +4,7 @@ from .arrays import Array, Indices, Mask, frozen
 from .blocks import Blocks
 from .bond import Bond, course_pattern, running_bond
 from .errors import SceneError
-from .file import read_scene, scene_from_dict
+from .file import read_description, read_scene, scene_from_dict
 from .forces import Arrow, Forces
 from .loads import Action, Body, GivenForces, Lateral, Load, PointLoad
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
@@ -40,6 +40,7 @@ __all__ = [
     "find_joints",
     "free_motions",
     "frozen",
+    "read_description",
     "read_scene",
     "running_bond",
     "scene_from_dict",

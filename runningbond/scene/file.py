@@ -33,15 +33,19 @@ def read_scene(path: str | Path) -> Scene:
         the value and what would be right.
     """
     path = Path(path)
+    return scene_from_dict(read_description(path), folder=path.parent, default_title=plain_stem(path))
+
+
+def read_description(path: Path) -> dict[str, Any]:
+    """The tables of a scene file as nested dictionaries, unchecked; errors as of `read_scene`."""
     try:
-        content = tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
         raise SceneError(str(path), "is no scene file: it is not UTF-8 text") from error
     except (RecursionError, ValueError) as error:
         raise SceneError(str(path), f"is no valid TOML: {error}") from error
-    return scene_from_dict(content, folder=path.parent, default_title=plain_stem(path))
 
 
 def plain_stem(path: Path) -> str:

@@ -79,8 +79,14 @@ def test_the_five_lines_of_the_readme() -> None:
 
 
 def test_unknown_models_are_refused_in_python_too() -> None:
-    with pytest.raises(SceneError, match="--model"):
+    with pytest.raises(SceneError, match=r"^model = 'limt': .* did you mean \"limit\"\?"):
         run_model("limt", panel())
+
+
+def test_a_tolerance_is_refused_by_the_name_that_it_has_in_python() -> None:
+    for run in (run_model, lambda *arguments: run_campaign({}, folder=Path(), tolerance=arguments[2])):
+        with pytest.raises(SceneError, match=r"^tolerance = 2: must be"):
+            run("limit", panel(), 2)
 
 
 # --- models --------------------------------------------------------------------------------------------------

@@ -1,0 +1,34 @@
+"""A model of one's own: the wall as one block that slides on the ground or topples about its corner."""
+
+import time
+
+import runningbond as rb
+from runningbond.compare.model import Model
+from runningbond.results import Outcome
+from runningbond.scene import Scene, SceneError
+
+
+def monolith(scene: Scene, tolerance: float = 0.01) -> Outcome:
+    """Collapse of a wall under lateral load if none of its own joints gave way: no true load is above it."""
+    start = time.perf_counter()
+    if scene.joint.cohesion > 0:
+        raise SceneError("model monolith", "has no answer for this scene: it needs dry joints, joint.cohesion = 0")
+    free = ~scene.fixed
+    (_, low), (right, _) = scene.blocks.extent(free)
+    x, y = scene.mass[free] @ scene.blocks.centroid[free] / scene.mass[free].sum()
+    topples, slides = (right - x) / (y - low), scene.joint.friction
+    multiplier = float(min(topples, slides))
+    message = "topples" if topples < slides else "slides"
+    seconds = time.perf_counter() - start
+    return Outcome(
+        scene.title, "monolith", "collapse", multiplier, upper=multiplier, seconds=seconds, message=f"{message} as one"
+    )
+
+
+READS = frozenset({"block.density", "joint.friction"})
+MONOLITH = Model(name="monolith", title="the wall as one block", solve=monolith, reads=READS)
+
+if __name__ == "__main__":
+    panels = [rb.read(f"panel-{number:02d}") for number in (1, 5, 9)]
+    for panel in panels:
+        print(panel, panel.run(MONOLITH).upper, panel.run("limit").upper)

@@ -1,0 +1,139 @@
+"""What a run of a wall returns: the outcome with its tables, its picture and the states on the way."""
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from .compare.model import Model
+from .compare.models import find_model, run_model
+from .joints import wall_points
+from .path_states import PathState, collected
+from .pictures.captions import to_png, to_svg
+from .pictures.flat import draw_mechanism, figure_of
+from .results import Outcome, Status
+from .results.mechanism import rigid_jumps
+from .results.outcome import number
+from .scene import Array
+from .tables import Table, table
+from .wall import Wall, new_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Result:
+    """What a model says of a wall.
+
+    Parameters
+    ----------
+    wall
+        The wall.
+    outcome
+        The outcome; its scalars are attributes of the result as well, and are documented there.
+    states
+        The states that the wall passed through; None where they were not collected.
+    """
+
+    model: str
+    status: Status
+    multiplier: float | None
+    lower: float | None
+    upper: float | None
+    dofs: int | None
+    steps: int | None
+    seconds: float
+    message: str
+    motion: Array
+
+    def __init__(self, wall: Wall, outcome: Outcome, states: list[PathState] | None = None) -> None:
+        self.wall = wall
+        self.outcome = outcome
+        self._states = states
+
+    def __getattr__(self, name: str) -> Any:
+        if name in Result.__annotations__:
+            return getattr(self.outcome, name)
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *Result.__annotations__})
+
+    @property
+    def states(self) -> list[PathState]:
+        """States at rest in the order in which they were found, then the fall; none of a model that follows no path."""
+        if self._states is None:
+            raise ValueError(f"states were not collected; ask for them: wall.run({self.model!r}, states=True)")
+        return self._states
+
+    @cached_property
+    def curve(self) -> Table:
+        """Pushover curve: ``displacement`` of the control point along the live load [m] and ``multiplier``."""
+        displacement, multiplier = self.outcome.curve.T
+        return table({"displacement": displacement, "multiplier": multiplier})
+
+    @cached_property
+    def blocks(self) -> Table:
+        """Blocks, the ground last.
+
+        ``x``, ``y`` of the centroid [m], ``area`` [m²], ``mass`` [kg], ``fixed``, and ``u``, ``v`` [m], ``rotation``
+        [rad] of the mechanism, its fastest corner moving by one metre; not a number without one.
+        """
+        scene = self.wall.scene
+        (x, y), (u, v, rotation) = scene.blocks.centroid.T, self._mechanism().T
+        size = {"x": x, "y": y, "area": scene.blocks.area, "mass": scene.mass, "fixed": scene.fixed}
+        return table({**size, "u": u, "v": v, "rotation": rotation})
+
+    @cached_property
+    def joints(self) -> Table:
+        """Joint points, two a joint, in the sense of its tangent.
+
+        ``joint``, blocks ``a`` and ``b``, ``x``, ``y`` [m], ``area`` [m²], ``normal_force`` and ``shear_force`` [N],
+        tension positive, and ``opening`` and ``slip`` [m] of the mechanism. Not a number is what the model does not
+        say: forces on other points than these, of finer meshes, are in ``outcome.force``.
+        """
+        scene = self.wall.scene
+        points, force = wall_points(scene), self.outcome.force
+        if len(force) != len(points):
+            force = np.full((len(points), 2), np.nan)
+        opening, slip = rigid_jumps(scene.blocks, points, self._mechanism())
+        (a, b), (x, y) = points.block.T, points.position.T
+        place = {"joint": points.joint, "a": a, "b": b, "x": x, "y": y, "area": points.area}
+        forces = {"normal_force": force[:, 0], "shear_force": force[:, 1]}
+        return table({**place, **forces, "opening": opening, "slip": slip})
+
+    def plot(self, what: Literal["mechanism", "curve"] | None = None, axes: "Axes | None" = None) -> "Axes":
+        """Draw the mechanism, the curve where there is no mechanism, or what is asked for, into axes."""
+        axes = axes or new_axes()
+        if what == "mechanism" or (what is None and (len(self.motion) or not len(self.outcome.curve))):
+            draw_mechanism(axes, self.wall.scene, self.outcome)
+            return axes
+        axes.plot(*self.outcome.curve.T, marker=".")
+        axes.set(xlabel="displacement of the control point [m]", ylabel="λ", title=self.outcome.scene)
+        return axes
+
+    def _mechanism(self) -> Array:
+        shape = (len(self.wall.scene.blocks), 3)
+        return self.motion if self.motion.shape == shape else np.full(shape, np.nan)
+
+    def __repr__(self) -> str:
+        names = {"λ": self.multiplier, "lower": self.lower, "upper": self.upper}
+        bracket = ", ".join(f"{name} {number(value)}" for name, value in names.items() if value is not None)
+        return f"<Result of {self.model} on {self.outcome.scene!r}: {self.status}{': ' + bracket if bracket else ''}>"
+
+    def _repr_svg_(self) -> str:
+        return to_svg(figure_of(self.wall.scene, self.outcome)).decode()
+
+    def _repr_png_(self) -> bytes:
+        return to_png(figure_of(self.wall.scene, self.outcome))
+
+
+def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, parameters: dict[str, Any]) -> Result:
+    """Run a model on a wall, as `Wall.run` says."""
+    model = find_model(model)
+    recorder = model.observer(wall.scene, None) if states and model.observer else None
+    outcome = run_model(model, wall.scene, tolerance, recorder, **parameters)
+    if recorder is None:
+        return Result(wall, outcome, [] if states else None)
+    recorder.finish(outcome)
+    return Result(wall, outcome, collected(recorder))

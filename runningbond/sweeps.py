@@ -1,0 +1,89 @@
+"""Sweeps: one model on every combination of changes of a wall."""
+
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack
+from itertools import product
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from .compare.campaign import Campaign, Interrupted, run_campaign
+from .compare.fingerprint import fingerprint
+from .compare.model import Model
+from .compare.models import TOLERANCE, find_model
+from .scene import Scene, SceneError
+from .tables import Table, table
+from .wall import Wall
+
+ANSWER = ("multiplier", "lower", "upper", "status", "seconds", "message")
+"""Columns of a sweep's table after the keys that vary."""
+
+
+def sweep(
+    wall: Wall,
+    changes: Mapping[str, Iterable[Any]],
+    model: str | Model,
+    *,
+    tolerance: float = TOLERANCE,
+    folder: str | Path | None = None,
+    jobs: int = -1,
+) -> Table:
+    """Run a model on every combination of changes of a wall.
+
+    Parameters
+    ----------
+    wall
+        The wall.
+    changes
+        Values of each key that varies, by its full name: ``{"joint.friction": [0.4, 0.6]}``.
+    model
+        Name of a model, or a `Model` of one's own.
+    tolerance
+        Relative width of the brackets asked for.
+    folder
+        Where outcomes are kept; a sweep with the same folder computes only what is not there. None keeps nothing.
+    jobs
+        Number of processes; −1 is one a core.
+
+    Returns
+    -------
+    Table
+        A row a combination, the last key varying fastest: the values of the keys, then `ANSWER`. Combinations that
+        describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
+    """
+    model = find_model(model)
+    for key, values in changes.items():
+        if not isinstance(values, Iterable) or isinstance(values, (str, Mapping)):
+            raise SceneError(key, "must be a list of the values that it is to take", values)
+    cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
+    scenes: dict[str, Scene] = {}
+    names: list[str] = []
+    refusals: dict[tuple[str, str], str] = {}
+    for number, case in enumerate(cases):
+        try:
+            scene = wall.with_(case).scene
+        except SceneError as refusal:
+            names.append(f"case {number}")
+            refusals[names[-1], model.name] = str(refusal)
+        else:  # named after what it is computed from, an outcome is used again when keys or values are added
+            names.append(fingerprint(scene, model, tolerance)[:16])
+            scenes[names[-1]] = scene
+    campaign = _campaign(scenes, model, tolerance, folder, jobs)
+    answers = {cell: outcome.summary() for cell, outcome in campaign.outcomes.items()}
+    for cell, message in (refusals | campaign.inapplicable).items():
+        answers[cell] = {"status": "refused", "message": message}
+    rows = [{**answers[name, model.name], **case} for name, case in zip(names, cases, strict=True)]
+    return table({key: [row.get(key) for row in rows] for key in (*changes, *ANSWER)})
+
+
+def _campaign(
+    scenes: dict[str, Scene], model: Model, tolerance: float, folder: str | Path | None, jobs: int
+) -> Campaign:
+    with ExitStack() as stack:
+        where = Path(folder if folder is not None else stack.enter_context(TemporaryDirectory()))
+        try:
+            return run_campaign(scenes, [model], folder=where, tolerance=tolerance, jobs=jobs)
+        except Interrupted as stopped:
+            if stopped.reason:
+                raise
+            raise KeyboardInterrupt from None

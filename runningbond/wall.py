@@ -1,0 +1,266 @@
+"""A wall in Python: the tables of a scene file, checked like one, changed by copies, run and drawn."""
+
+from collections.abc import Mapping, Sequence
+from difflib import get_close_matches
+from functools import cached_property
+from os.path import relpath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .scene import Scene, SceneError, read_description, scene_from_dict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from .compare.model import Model
+    from .run_result import Result
+
+TABLES = {
+    "block": ("density", "young", "poisson"),
+    "joint": (
+        *("friction", "friction_angle", "cohesion", "tensile_strength", "mortar", "normal_stiffness"),
+        *("shear_stiffness", "inset", "fracture_energy_1", "fracture_energy_2", "law"),
+    ),
+    "load": ("gravity", "live"),
+}
+"""Keys of a scene file's tables that `Wall.running_bond` and `Wall.courses` take as keywords of their own."""
+
+DEFAULTS: dict[str, Any] = {
+    "block": {},
+    "joint": {},
+    "support": {"kind": "base"},
+    "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+}
+"""Support and loads of a wall built in Python unless others are given."""
+
+
+class Wall:
+    """A wall with its joints, support and loads, ready to be run.
+
+    Parameters
+    ----------
+    description
+        What a scene file says, as nested dictionaries (docs/scene-file.md). Tuples and arrays count as lists. Where
+        the file knows a kind of load or a law by its name, a Python object may stand.
+    folder
+        Where drawings are looked up.
+
+    Raises
+    ------
+    SceneError
+        For a description of no wall: one line that names the key, the value and what would be right.
+    """
+
+    def __init__(self, description: Mapping[str, Any], folder: str | Path = ".") -> None:
+        self._description: dict[str, Any] = _as_in_a_file(description)
+        self.folder = Path(folder)
+        self.scene  # noqa: B018 - built at once, so that what is wrong is said where it is written
+
+    @classmethod
+    def from_dict(cls, description: Mapping[str, Any], folder: str | Path = ".") -> "Wall":
+        """The wall that nested dictionaries describe, as a scene file would."""
+        return cls(description, folder)
+
+    @classmethod
+    def running_bond(
+        cls, *, length: float, height: float, block_width: float, block_height: float, thickness: float, **keys: Any
+    ) -> "Wall":
+        """A panel of running bond.
+
+        Parameters
+        ----------
+        length, height
+            Size of the panel [m]: whole half blocks long, whole blocks high.
+        block_width, block_height, thickness
+            Size of a block [m].
+        keys
+            The other keys of a scene file: those of ``[block]``, ``[joint]`` and ``[load]`` by their names
+            (``density=1800.0, friction=0.6``), ``first_course`` and ``ends``, whole tables and what stands at the
+            file's top level (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that needs no
+            more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load
+            lateral unless given.
+        """
+        block = {"block_width": block_width, "block_height": block_height, "thickness": thickness}
+        return cls._built("running bond", {"length": length, "height": height, **block}, keys)
+
+    @classmethod
+    def courses(
+        cls,
+        courses: Sequence[Sequence[float]],
+        *,
+        block_width: float,
+        block_height: float,
+        thickness: float,
+        **keys: Any,
+    ) -> "Wall":
+        """A wall given course by course, with the other parameters of `running_bond`.
+
+        Parameters
+        ----------
+        courses
+            Bottom to top; each a list of widths in blocks, left to right, negative for an opening.
+        block_width, block_height, thickness, keys
+            As of `running_bond`.
+        """
+        block = {"block_width": block_width, "block_height": block_height, "thickness": thickness}
+        return cls._built("courses", {"courses": courses, **block}, keys)
+
+    @classmethod
+    def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
+        table_of = {key: table for table, its_keys in TABLES.items() for key in its_keys}
+        table_of |= dict.fromkeys(("first_course", "ends"), "wall")
+        description = {"title": title, "wall": wall, **DEFAULTS}
+        for key, value in keys.items():
+            if isinstance(value, (int, float)) and key not in table_of:
+                likely = get_close_matches(key, table_of, n=1)
+                hint = f'; did you mean "{likely[0]}"?' if likely else ""
+                raise SceneError(key, f"is not a key of a wall{hint}", value)
+            named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
+            description = _merged(description, {table_of[key]: {key: named}} if key in table_of else {key: named})
+        return cls(description)
+
+    def with_(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Wall":
+        """A copy with some keys changed, checked anew.
+
+        Parameters
+        ----------
+        changes
+            Values by the keys' full names: ``{"joint.friction": 0.7}``. None takes a key out.
+        tables
+            Keys by table: ``joint={"friction": 0.7}``. Tables are merged with those that are there, but one that
+            names its ``kind`` takes the place of the old one.
+        """
+        description = self._description
+        for name, value in (changes or {}).items():
+            nested = value
+            for part in reversed(name.split(".")):
+                nested = {part: nested}
+            description = _merged(description, nested)
+        return Wall(_merged(description, tables), self.folder)
+
+    @property
+    def description(self) -> dict[str, Any]:
+        """A copy of what a scene file would say, as nested dictionaries."""
+        copy: dict[str, Any] = _as_in_a_file(self._description)
+        return copy
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The wall as models see it: blocks, joints, materials, support and loads."""
+        return scene_from_dict(self.description, folder=self.folder)
+
+    def run(
+        self, model: "str | Model", *, tolerance: float = 0.01, states: bool = False, **parameters: Any
+    ) -> "Result":
+        """Find the collapse of the wall.
+
+        Parameters
+        ----------
+        model
+            Name of a model, for example ``"limit"`` or ``"dem-static"``, or a `Model` of one's own.
+        tolerance
+            Relative width of the bracket asked for.
+        states
+            Collect the states that the wall passes through, for `Result.states`.
+        parameters
+            Parameters of the model, by its own names.
+
+        Raises
+        ------
+        SceneError
+            For an unknown model, or one that does not apply to the wall.
+        """
+        from .run_result import run_wall
+
+        return run_wall(self, model, tolerance, states, parameters)
+
+    def plot(self, axes: "Axes | None" = None) -> "Axes":
+        """Draw the wall with its support and loads into axes, new ones where none are given."""
+        from .pictures.flat import draw_wall
+
+        axes = axes or new_axes()
+        draw_wall(axes, self.scene)
+        return axes
+
+    def to_toml(self, path: str | Path) -> None:
+        """Write the wall as a scene file, from which `read` makes the same wall.
+
+        Raises
+        ------
+        SceneError
+            Where a law or a load is an object of Python, which no file can hold.
+        """
+        from .results import write_atomically
+        from .scene_writer import toml
+
+        description, path = self.description, Path(path)
+        if "drawing" in description["wall"]:
+            description["wall"]["drawing"] = relpath(self.folder / description["wall"]["drawing"], path.parent)
+        write_atomically(path, toml(description).encode())
+
+    def __repr__(self) -> str:
+        low, high = self.scene.blocks.extent(self.scene.wall)
+        length, height = high - low
+        return f"<Wall {self.scene.title!r}: {self.scene.wall.sum()} blocks, {length:.4g} × {height:.4g} m>"
+
+    def _repr_svg_(self) -> str:
+        from .pictures.captions import to_svg
+        from .pictures.flat import figure_of
+
+        return to_svg(figure_of(self.scene)).decode()
+
+    def _repr_png_(self) -> bytes:
+        from .pictures.captions import to_png
+        from .pictures.flat import figure_of
+
+        return to_png(figure_of(self.scene))
+
+
+def read(wall: str | Path) -> Wall:
+    """Read a wall from a scene file, or a published one by its name, for example ``"panel-01"``.
+
+    Raises
+    ------
+    SceneError
+        Where there is no such file, or it describes no wall.
+    """
+    from .compare.published import find_scene
+
+    path = find_scene(str(wall))
+    return Wall({"title": path.stem, **read_description(path)}, path.parent)
+
+
+def new_axes() -> "Axes":
+    """Axes of a figure that matplotlib's pyplot shows."""
+    from matplotlib.pyplot import subplots
+
+    return subplots()[1]
+
+
+def _as_in_a_file(value: Any) -> Any:
+    """A copy of nested values in the types of a TOML file, which has no None; objects of other types as they are."""
+    if isinstance(value, Mapping):
+        return {str(key): _as_in_a_file(inner) for key, inner in value.items() if inner is not None}
+    if isinstance(value, (list, tuple)):
+        return [_as_in_a_file(inner) for inner in value]
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    return str(value) if isinstance(value, Path) else value
+
+
+def _merged(old: Mapping[str, Any], new: Mapping[str, Any], name: str = "") -> dict[str, Any]:
+    """A table with the keys of another one put in or, where they are None, taken out."""
+    merged = dict(old)
+    for key, value in new.items():
+        before, full_name = merged.get(key), f"{name}{key}"
+        if isinstance(value, Mapping) and "kind" not in value:
+            if isinstance(before, list):
+                raise SceneError(full_name, "is a list, which is changed as a whole", before)
+            merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, f"{full_name}.")
+        elif value is None:
+            merged.pop(key, None)
+        else:
+            merged[key] = value
+    return merged

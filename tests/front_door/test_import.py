@@ -1,0 +1,105 @@
+"""The face of the package: lazy, listed, and safe beside a user's own files."""
+
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from setuptools import find_packages
+
+import runningbond as rb
+
+ROOT = Path(__file__).parents[2]
+DRAWING = {"matplotlib", "pyvista", "vtkmodules"}
+HEAVY = {"numpy", "scipy", "numba", "gmsh", "joblib", "shapely", "ezdxf", "pandas"} | DRAWING
+METHODS = {"dem", "fem_interface", "homog", "meshing"}
+
+FIVE_LINES = """
+import runningbond as rb
+mortar = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+wall = rb.Wall.courses([[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2,
+                       density=1800.0, friction=0.4, mortar=mortar)
+result = wall.run("dem-static")
+print(result.status, result.lower)
+from dem import limit
+print(limit(wall.scene).status)
+"""
+
+
+def python(*arguments: str, cwd: Path | None = None) -> str:
+    """What a fresh interpreter prints."""
+    surroundings = {**os.environ, "PYTHONPATH": str(ROOT)}
+    answer = subprocess.run([sys.executable, *arguments], cwd=cwd, env=surroundings, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stderr
+    return answer.stdout
+
+
+def test_import_loads_no_library_and_no_room() -> None:
+    loaded = python("-c", "import sys, runningbond; print(*sys.modules)").split()
+    assert not HEAVY & {name.split(".")[0] for name in loaded}
+    assert [name for name in loaded if name.startswith("runningbond")] == ["runningbond"]
+    assert not METHODS & set(loaded)
+
+
+def test_a_wall_is_built_without_models_compilers_and_pictures() -> None:
+    lines = FIVE_LINES.split("result =")[0]
+    loaded = python("-c", f"{lines}\nimport sys; print(*sys.modules)").split()
+    assert not (DRAWING | {"numba", "gmsh", "joblib"}) & set(loaded)
+
+
+def test_every_name_is_listed_and_there() -> None:
+    assert set(rb.__all__) <= set(dir(rb))
+    assert all(hasattr(rb, name) for name in rb.__all__)
+
+
+def test_a_name_that_is_not_there_is_refused() -> None:
+    with pytest.raises(AttributeError, match="Wal"):
+        getattr(rb, "Wal")  # noqa: B009 - mypy sees that it is not there
+
+
+@pytest.fixture
+def strangers(tmp_path: Path) -> Path:
+    """A folder of files of a user's own, named like rooms, which nothing of the package may import."""
+    rooms = ("scene", "results", "joints", "compare", "dynamics", "limit", "pictures", "studies", "commands")
+    for name in (*rooms, "wall", "sweeps", "tables", "dem_test"):
+        (tmp_path / f"{name}.py").write_text(f"raise ImportError('{name}.py of the user was imported')\n")
+    return tmp_path
+
+
+def test_five_lines_run_beside_files_named_like_rooms(strangers: Path) -> None:
+    (strangers / "script.py").write_text(FIVE_LINES)
+    assert [line.split()[0] for line in python("script.py", cwd=strangers).splitlines()] == ["collapse", "collapse"]
+
+
+def test_commands_run_beside_files_named_like_rooms(strangers: Path) -> None:
+    answer = python("-m", "runningbond", "run", "panel-01", "--model", "limit", "--json", cwd=strangers)
+    assert '"status": "collapse"' in answer
+    (strangers / "wall.toml").write_text(_block("toml"))
+    lines = "\n".join(f"assert command({line.split()!r}) == 0" for line in _commands())
+    python("-c", f"from runningbond.commands.command_line import command\n{lines}", cwd=strangers)
+
+
+def test_lines_of_the_readme_run_beside_files_named_like_rooms(strangers: Path) -> None:
+    (strangers / "wall.toml").write_text(_block("toml"))
+    (strangers / "script.py").write_text("import matplotlib\nmatplotlib.use('Agg')\n" + _block("python"))
+    assert python("script.py", cwd=strangers).startswith("collapse")
+
+
+def _block(language: str) -> str:
+    return (ROOT / "README.md").read_text().split(f"```{language}\n")[1].split("```")[0]
+
+
+def _commands() -> list[str]:
+    """Commands of the README that need no screen and take no minute."""
+    start = ".venv/bin/runningbond "
+    readme = (ROOT / "README.md").read_text().splitlines()
+    lines = [line.removeprefix(start) for line in readme if line.startswith(start)]
+    return [line for line in lines if line.split()[0] in ("advise", "mesh") or line.endswith("--model limit")]
+
+
+def test_the_top_level_of_the_distribution_is_the_package_and_the_four_methods() -> None:
+    with (ROOT / "pyproject.toml").open("rb") as file:
+        packages = find_packages(str(ROOT), **tomllib.load(file)["tool"]["setuptools"]["packages"]["find"])
+    assert {package.split(".")[0] for package in packages} == {"runningbond", *METHODS}

@@ -1,0 +1,153 @@
+"""Results: tables that add up, pictures, and the states along the path."""
+
+import math
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+import runningbond as rb
+from fem_interface.element_order import modal_wall
+from runningbond.results import Outcome
+from runningbond.run_result import Result
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+MATERIAL: dict[str, Any] = {"density": 1800.0, "young": 1e10, "friction": 0.4, "mortar": MORTAR, "title": "small"}
+WALL = rb.Wall.courses([[1, 1], [0.5, 1, 0.5], [1, 1]], block_width=0.4, block_height=0.2, thickness=0.2, **MATERIAL)
+
+
+@pytest.fixture(params=["structured arrays", "pandas"], autouse=True)
+def tables(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tables with and without pandas."""
+    if request.param == "pandas":
+        pytest.importorskip("pandas")
+    else:
+        monkeypatch.setitem(sys.modules, "pandas", None)
+
+
+def test_scalars_are_the_outcomes() -> None:
+    result = WALL.run("limit")
+    for name, value in result.outcome.summary().items():
+        if name != "scene":
+            assert getattr(result, name) == value
+    assert {"status", "multiplier", "curve"} <= set(dir(result))
+    with pytest.raises(AttributeError, match="mutliplier"):
+        result.mutliplier  # noqa: B018 - refused where it is read
+
+
+def test_forces_on_the_ground_bear_weight_and_push() -> None:
+    """Vertical forces of the joints with the ground add up to the weight, shear forces to λ times it."""
+    result = WALL.run("limit")
+    ground, weight = len(WALL.scene.blocks) - 1, 9.81 * WALL.scene.mass[WALL.scene.wall].sum()
+    joints = result.joints
+    at_ground = np.asarray(joints["b"]) == ground
+    assert -joints["normal_force"][at_ground].sum() == pytest.approx(weight, rel=1e-6)
+    assert abs(joints["shear_force"][at_ground].sum()) == pytest.approx(result.multiplier * weight, rel=1e-6)
+
+
+def test_a_low_block_slides_by_one_metre_and_dilates_by_its_friction() -> None:
+    """Exact, associated: u = cos φ, v = sin φ of a block that moves by 1 m, and opening = tan φ · slip at its base."""
+    block = rb.Wall.courses([[2]], block_width=0.4, block_height=0.2, thickness=0.2, **MATERIAL)
+    result = block.run("limit")
+    phi = math.atan(0.4)
+    assert np.asarray(result.blocks["u"]) == pytest.approx([math.cos(phi), 0.0])
+    assert np.asarray(result.blocks["v"]) == pytest.approx([math.sin(phi), 0.0])
+    assert np.asarray(result.blocks["fixed"]).tolist() == [False, True]
+    assert np.asarray(result.joints["opening"]) == pytest.approx(0.4 * abs(np.asarray(result.joints["slip"])))
+
+
+def test_curve_is_the_outcomes() -> None:
+    result = WALL.run("dem-static")
+    assert np.array_equal(result.curve["displacement"], result.outcome.curve[:, 0])
+    assert np.array_equal(result.curve["multiplier"], result.outcome.curve[:, 1])
+
+
+def test_what_a_model_does_not_say_is_not_a_number() -> None:
+    empty = Result(WALL, Outcome("small", "mine", "undecided"))
+    assert len(empty.curve) == 0
+    for column in ("u", "v", "rotation"):
+        assert np.isnan(empty.blocks[column]).all()
+    for column in ("normal_force", "shear_force", "opening", "slip"):
+        assert np.isnan(empty.joints[column]).all()
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
+def test_states_end_in_the_bracket_and_begin_at_rest_under_the_weight(model: str) -> None:
+    """Each state at rest is in equilibrium at the ground; the largest multiplier at rest is `lower`."""
+    result = WALL.run(model, states=True)
+    states, scene = result.states, WALL.scene
+    assert states[0].multiplier == 0.0
+    assert {result.lower} <= {state.multiplier for state in states}
+    weight = 9.81 * scene.mass[scene.wall].sum()
+    for state in states:
+        if state.multiplier <= (result.lower or 0.0) and not np.abs(state.velocity).max() > 1e-6:
+            ground = state.points.block[:, 1] == len(scene.blocks) - 1
+            assert -state.force[ground, 0].sum() == pytest.approx(weight, rel=1e-3)
+            assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
+    assert (np.diff(states[0].points.joint) >= 0).all()
+
+
+def test_states_of_a_finer_mesh_are_on_its_points() -> None:
+    """The run's own points, and forces on them that bear the weight; at `lower` the push as well."""
+    result = WALL.run("fem", states=True, tolerance=0.1, cells=2, modes=6)
+    points = modal_wall(WALL.scene, 2, 6).elements.points
+    weight = 9.81 * WALL.scene.mass[WALL.scene.wall].sum()
+    first = result.states[0]
+    assert len(points) > len(result.joints)
+    for name in ("position", "area"):
+        seen, there = (np.asarray(getattr(each, name)) for each in (first.points, points))
+        assert np.sort(seen, axis=0) == pytest.approx(np.sort(there, axis=0))
+    last = next(state for state in result.states if state.multiplier == result.lower)
+    for state in (first, last):
+        ground = state.points.block[:, 1] == len(WALL.scene.blocks) - 1
+        assert -state.force[ground, 0].sum() == pytest.approx(weight, rel=1e-3)
+        assert abs(state.force[ground, 1].sum()) == pytest.approx(state.multiplier * weight, rel=1e-2, abs=1e-2)
+
+
+def test_forces_of_the_last_rest_stand_in_the_order_of_the_joints() -> None:
+    result = WALL.run("dem-dynamic", states=True)
+    last = next(state for state in result.states if state.multiplier == result.lower)
+    assert last.force[:, 0] == pytest.approx(np.asarray(result.joints["normal_force"]), rel=1e-6, abs=1e-6)
+    assert last.points.position[:, 0] == pytest.approx(np.asarray(result.joints["x"]))
+
+
+def test_states_are_only_there_when_they_were_asked_for() -> None:
+    with pytest.raises(ValueError, match=r"states=True"):
+        WALL.run("limit").states  # noqa: B018 - refused where it is read
+    assert WALL.run("limit", states=True).states == []
+
+
+def test_a_result_says_what_it_is_in_a_line() -> None:
+    result = WALL.run("limit")
+    assert repr(result) == "<Result of limit on 'small': collapse: λ 0.4000, lower 0.4000, upper 0.4000>"
+    stuck = Result(WALL, Outcome("small", "mine", "undecided", upper=1.0))
+    assert repr(stuck) == "<Result of mine on 'small': undecided: upper 1.0000>"
+
+
+def test_a_notebook_is_shown_a_picture() -> None:
+    result = WALL.run("limit")
+    assert "<svg" in result._repr_svg_()
+    assert result._repr_png_().startswith(b"\x89PNG")
+
+
+def test_mechanism_and_curve_are_drawn_into_axes() -> None:
+    from matplotlib.figure import Figure
+
+    result = WALL.run("dem-static")
+    figure = Figure()
+    mechanism, curve = figure.subplots(1, 2)
+    assert result.plot(axes=mechanism) is mechanism
+    assert mechanism.has_data()
+    result.plot("curve", curve)
+    assert np.array_equal(curve.lines[0].get_xdata(), result.outcome.curve[:, 0])
+
+
+def test_an_unknown_model_is_refused_with_what_there_is() -> None:
+    with pytest.raises(rb.SceneError, match='did you mean "limit"?'):
+        WALL.run("limt")
+
+
+def test_a_model_that_does_not_apply_says_why() -> None:
+    with pytest.raises(rb.SceneError, match="mortar"):
+        WALL.with_({"joint.mortar": None}).run("dem-static")

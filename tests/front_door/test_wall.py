@@ -1,0 +1,162 @@
+"""Walls built in Python: the same wall and the same refusals as a file's, changed by copies, written and read."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import runningbond as rb
+from runningbond.compare.fingerprint import fingerprint
+from runningbond.compare.published import PUBLISHED, published_scene
+from runningbond.scene import Scene
+
+PANEL: dict[str, Any] = {
+    "length": 1.44,
+    "height": 0.72,
+    "block_width": 0.24,
+    "block_height": 0.06,
+    "thickness": 0.12,
+    "density": 1800.0,
+    "friction": 0.6,
+}
+
+
+def same(one: Scene, other: Scene) -> bool:
+    """Whether models see the same wall."""
+    return fingerprint(one, "limit", 0.01) == fingerprint(other, "limit", 0.01)
+
+
+@pytest.mark.parametrize("name", [case.name for case in PUBLISHED])
+def test_published_walls_survive_being_written_and_read(name: str, tmp_path: Path) -> None:
+    wall = rb.read(name)
+    assert same(wall.scene, published_scene(name))
+    wall.to_toml(tmp_path / "copy.toml")
+    assert same(rb.read(tmp_path / "copy.toml").scene, wall.scene)
+
+
+def test_words_of_any_letters_survive_being_written_and_read(tmp_path: Path) -> None:
+    title = 'é "quoted" \\ back, ✓ 🧱 and a \x7f that TOML wants escaped'
+    wall = rb.Wall.running_bond(**PANEL, title=title)
+    wall.to_toml(tmp_path / "wall.toml")
+    assert rb.read(tmp_path / "wall.toml").description == wall.description
+
+
+def test_keywords_make_the_wall_that_tables_make() -> None:
+    mortar = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+    by_words = rb.Wall.running_bond(**PANEL, ends="toothed", mortar=mortar, support="fixed-first-course", title="x")
+    size = {key: PANEL[key] for key in ("length", "height", "block_width", "block_height", "thickness")}
+    by_tables = rb.Wall.from_dict(
+        {
+            "title": "x",
+            "wall": {**size, "ends": "toothed"},
+            "block": {"density": 1800.0},
+            "joint": {"friction": 0.6, "mortar": mortar},
+            "support": {"kind": "fixed-first-course"},
+            "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+        }
+    )
+    assert same(by_words.scene, by_tables.scene)
+
+
+def test_tuples_and_arrays_count_as_lists() -> None:
+    size = {key: PANEL[key] for key in ("block_width", "block_height", "thickness", "density", "friction")}
+    by_lists = rb.Wall.courses([[1, 1], [0.5, 1, 0.5]], **size)
+    mixed: Any = ((1, 1), np.array([0.5, 1, 0.5]))
+    assert same(rb.Wall.courses(mixed, **size).scene, by_lists.scene)
+    assert by_lists.with_({"joint.friction": np.float32(0.5)}).scene.joint.friction == 0.5
+
+
+def test_a_copy_is_changed_and_the_wall_is_not() -> None:
+    wall = rb.Wall.running_bond(**PANEL)
+    by_name, by_table = wall.with_({"joint.friction": 0.7}), wall.with_(joint={"friction": 0.7})
+    assert wall.scene.joint.friction == 0.6
+    assert same(by_name.scene, by_table.scene)
+    assert by_name.scene.joint.friction == 0.7
+    assert by_name.scene.block.density == 1800.0
+    wall.description["joint"]["friction"] = 0.1
+    assert wall.description["joint"]["friction"] == 0.6
+
+
+def test_none_takes_a_key_out() -> None:
+    wall = rb.Wall.running_bond(**PANEL).with_({"joint.friction": None, "joint.friction_angle": 45.0})
+    assert wall.scene.joint.friction == pytest.approx(1.0)
+    assert "mortar" not in rb.Wall.running_bond(**PANEL, mortar=None).description["joint"]
+    assert "title" not in rb.Wall.from_dict({**wall.description, "title": None}).description
+
+
+def test_a_table_of_another_kind_takes_the_place_of_the_old_one() -> None:
+    point = rb.Wall.running_bond(**PANEL, live={"kind": "point", "at": (0.72, 0.72), "force": (0, -1)})
+    back = point.with_({"load.live": {"kind": "lateral"}})
+    assert back.scene.load.gravity == point.scene.load.gravity
+    assert same(back.scene, rb.Wall.running_bond(**PANEL).scene)
+    assert isinstance(rb.read("panel-01").with_({"load.live": {"kind": "lateral"}}).description["load"]["live"], dict)
+
+
+REFUSED: list[tuple[dict[str, Any], str]] = [
+    ({"density": -1.0}, "block.density = -1.0: must be a number above 0"),
+    ({"friction": -0.1}, "joint.friction = -0.1: must be a number at least 0"),
+    ({"length": 1.0}, "wall.length = 1.0: must be a whole number of half blocks"),
+    ({"frction": 0.5}, 'frction = 0.5: is not a key of a wall; did you mean "friction"?'),
+    ({"joint": {"cohesoin": 1.0}}, 'joint.cohesoin = 1.0: is not a key of [joint]; did you mean "cohesion"?'),
+    ({"support": "bsae"}, 'did you mean "base"?'),
+    ({"live": "laterl"}, 'did you mean "lateral"?'),
+    ({"mortar": {"young": 1e9}}, "joint.mortar.poisson: is missing"),
+]
+
+
+@pytest.mark.parametrize(("keys", "said"), REFUSED, ids=[next(iter(keys)) for keys, _ in REFUSED])
+def test_what_a_file_may_not_say_python_may_not_say(keys: dict[str, Any], said: str) -> None:
+    with pytest.raises(rb.SceneError, match=re.escape(said)) as refusal:
+        rb.Wall.running_bond(**{**PANEL, **keys})
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"joint.friction": "rough"}, "joint.friction = 'rough': must be a number"),
+        ({"joint.frction": 0.4}, 'did you mean "friction"?'),
+        ({"wall.length.x": 1.0}, "wall.length"),
+        ({"wall": None}, "wall: is missing"),
+        ({"wall.courses.0": 1.0}, "wall.courses"),
+    ],
+)
+def test_every_change_is_checked(changes: dict[str, Any], said: str) -> None:
+    size = {key: PANEL[key] for key in ("block_width", "block_height", "thickness", "density", "friction")}
+    for wall in (rb.Wall.running_bond(**PANEL), rb.Wall.courses([[1, 1]], **size)):
+        if set(changes) != {"wall.length.x"} or "length" in wall.description["wall"]:
+            with pytest.raises(rb.SceneError, match=re.escape(said)):
+                wall.with_(changes)
+
+
+def test_a_wall_that_is_no_plain_data_is_not_written(tmp_path: Path) -> None:
+    wall = rb.Wall.running_bond(**PANEL)
+    wall._description["joint"]["law"] = object()
+    with pytest.raises(rb.SceneError, match=re.escape("joint.law")):
+        wall.to_toml(tmp_path / "wall.toml")
+    assert not (tmp_path / "wall.toml").exists()
+
+
+def test_a_file_that_is_not_there_is_refused() -> None:
+    with pytest.raises(rb.SceneError, match="no such file, nor a published scene"):
+        rb.read("panel-99")
+
+
+def test_a_wall_says_what_it_is_in_a_line() -> None:
+    assert repr(rb.Wall.running_bond(**PANEL, title="panel")) == "<Wall 'panel': 78 blocks, 1.44 × 0.72 m>"
+
+
+def test_a_notebook_is_shown_a_picture() -> None:
+    wall = rb.Wall.running_bond(**PANEL)
+    assert "<svg" in wall._repr_svg_()
+    assert wall._repr_png_().startswith(b"\x89PNG")
+
+
+def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
+    from matplotlib.figure import Figure
+
+    axes = Figure().add_subplot()
+    assert rb.Wall.running_bond(**PANEL).plot(axes) is axes
+    assert axes.has_data()
