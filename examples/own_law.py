@@ -4,11 +4,11 @@ import math
 from typing import Any
 
 import numpy as np
-from runningbond.joints.law import COMMON_ROWS
 
 import runningbond as rb
 from runningbond.joints import Law, joint_stiffness
 from runningbond.joints.compiled import kernel
+from runningbond.joints.law import COMMON_ROWS
 from runningbond.scene import Array, JointMaterial
 
 POLISHED, DISTANCE = 0.5, 1e-4  # share of friction that is left, and slip [m] over which it goes
