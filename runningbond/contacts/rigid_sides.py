@@ -218,8 +218,8 @@ def far_arcs(
 @kernel
 def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force: Array) -> None:
     """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
-    freedom, turned = geometry.corners.freedom, geometry.placed.blocks
-    ends, area, contact = geometry.ends, geometry.area, geometry.contact
+    corners, _, _, ends, _, _, area, placed, contact = geometry
+    freedom, turned = corners.freedom, placed.blocks
     for k in range(normal.size):
         if normal[k] == 0.0:
             continue

@@ -1,7 +1,7 @@
 """A run: a system brought forward in time, at small or at finite displacements, with its energy ledger."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -96,8 +96,11 @@ class Run:
         self.safe_step = stable_step(interface.frequency_squared, self.viscous, self.local)
         self.dt = self._given_step or self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(interface.frequency_squared) / self.dt
-        self._kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._arrays = (interface.geometry, interface.law.parameters, self._modes, tuple(self.system.restraint))
+        kernels = (interface.gather, interface.law.kernel, interface.scatter)
+        self._hold, self._drive = stepper(*kernels, driven=False), stepper(*kernels, driven=True)
+        # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
+        restraint = tuple(self.system.restraint)
+        self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
         self._work = work_arrays(len(self.system.mass), interface.law.points)
 
     def _return_to(self, state: State) -> None:
@@ -105,11 +108,8 @@ class Run:
         if self._update is not None and self._contacts is not (contacts := contacts_of(state)):
             self._take_up(self._update.interface_on(contacts), contacts)
 
-    def _pieces(self, state: State, steps: int) -> Iterable[int]:
+    def _pieces(self, state: State, steps: int, update: ContactUpdate) -> Iterator[int]:
         """Numbers of steps to take one after the other, on contacts that are good for so many."""
-        return (steps,) if self._update is None else self._pieces_on_contacts(state, steps, self._update)
-
-    def _pieces_on_contacts(self, state: State, steps: int, update: ContactUpdate) -> Iterator[int]:
         while steps > 0:
             self._return_to(state)
             if update.is_due(state):
@@ -149,15 +149,15 @@ class Run:
     def _advance(self, state: State, load: Array, speed: float | None, steps: int, given: float) -> float:
         """Take steps under a constant load, driven besides where there is a speed; the sum of the multipliers."""
         total = 0.0
-        for piece in self._pieces(state, steps):
-            step = stepper(*self._kernels, speed is not None)
-            before = float(load @ state.motion)
+        for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
+            step = self._hold if speed is None else self._drive
+            before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             coefficients = (piece, self.dt, self.local, self._viscosity, load, self.system.live, speed or 0.0)
             taken, stable, multipliers, work = step(*coefficients, *self._arrays, arrays, self._work, watch)
             total += multipliers
-            state.external += float(load @ state.motion) - before + work
+            state.external += float(load.dot(state.motion)) - before + work
             state.steps += taken
             state.time += taken * self.dt
             if not stable:
