@@ -37,22 +37,13 @@ def dem_dynamic(
     ----------
     scene
         The scene; its joints need a stiffness, on which the collapse load hardly depends.
-    tolerance
-        Relative width of the bracket.
-    collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes.
-    first_step
-        First load step; steps grow while they are borne and are bisected once one is not.
-    budget
-        Time steps after which a load is left undecided.
-    observe
-        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
+    tolerance, collapse, first_step, budget, observe
+        As in `collapse_by_steps`.
 
     Returns
     -------
     Outcome
-        `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `curve` has every state at rest, and ends in the fall.
+        As of `collapse_by_steps`.
     """
     start = time.perf_counter()
     outcome = collapse_by_steps(

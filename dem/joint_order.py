@@ -17,29 +17,17 @@ RESOLUTION = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class JointOrder:
-    """Blocks and joints in the order of the kernels.
+    """Blocks and joints in the order of the kernels."""
 
-    Parameters
-    ----------
-    block : (nb,) int
-        Place of each block.
-    joint : (nj,) int
-        The joint that stands at each place.
-    start : (nr + 1,) int
-        First place of each run of joints, then their number.
-    first, second : (nr,) int
-        Place of the blocks a and b of each run's first joint.
-    shape : (nr, 7) float
-        What is the same for all joints of a run: normal n_x, n_y, half length [m] between the two points, and lever
-        arms [m] of normal and tangential force at the joint's middle about the centroids: normal_a, normal_b,
-        tangent_a, tangent_b.
-    """
-
-    block: Indices
-    joint: Indices
-    start: Indices
+    block: Indices  # (nb,) place of each block
+    joint: Indices  # (nj,) the joint that stands at each place
+    start: Indices  # (nr + 1,) first place of each run of joints, then their number
+    # (nr,) place of the blocks a and b of each run's first joint
     first: Indices
     second: Indices
+    # (nr, 7) what is the same for all joints of a run: normal n_x, n_y, half length [m] between the two points, and
+    # lever arms [m] of normal and tangential force at the joint's middle about the centroids: normal_a, normal_b,
+    # tangent_a, tangent_b
     shape: Array
 
 

@@ -33,24 +33,12 @@ ATTEMPTS = ((1.0, False), (0.25, False), (1.0, True))
 
 @dataclass(frozen=True, eq=False)
 class StaticState:
-    """A state of rest.
+    """A state of rest."""
 
-    Parameters
-    ----------
-    x : (n,) float
-        Unknowns (q, r, λ) of the `StaticSystem`.
-    plastic_slip : (np,) float
-        History of the joint points after it.
-    force : (np, 2) float
-        Normal and tangential forces of the joint points.
-    displacement : float
-        Displacement f_live · q of the live load.
-    """
-
-    x: Array
-    plastic_slip: Array
-    force: Array
-    displacement: float
+    x: Array  # (n,) unknowns (q, r, λ) of the `StaticSystem`
+    plastic_slip: Array  # (np,) history of the joint points after it
+    force: Array  # (np, 2) normal and tangential forces of the joint points
+    displacement: float  # displacement f_live · q of the live load
 
     @property
     def multiplier(self) -> float:
@@ -68,33 +56,15 @@ def no_observer(system: StaticSystem, state: StaticState) -> None:
 
 @dataclass(eq=False)
 class LoadPath:
-    """The path of a wall to its collapse, as far as it was followed.
+    """The path of a wall to its collapse, as far as it was followed."""
 
-    Parameters
-    ----------
-    system
-        The static equations.
-    far : float
-        Motion of a freedom that counts as a fall, in units of the system.
-    budget : int
-        Linear systems that may still be solved.
-    rests
-        States of rest under growing loads, the dead load's first.
-    upper : float or None
-        Smallest load under which the wall fell.
-    fall : (nd,) float or None
-        How it was moving when it had fallen far enough.
-    observe
-        Called with every state of rest under a load that is pushed for.
-    """
-
-    system: StaticSystem
-    far: float
-    budget: int
-    rests: list[StaticState]
-    upper: float | None = None
-    fall: Array | None = None
-    observe: StaticObserver = no_observer
+    system: StaticSystem  # the static equations
+    far: float  # motion of a freedom that counts as a fall, in units of the system
+    budget: int  # linear systems that may still be solved
+    rests: list[StaticState]  # states of rest under growing loads, the dead load's first
+    upper: float | None = None  # smallest load under which the wall fell
+    fall: Array | None = None  # (nd,) how it was moving when it had fallen far enough
+    observe: StaticObserver = no_observer  # called with every state of rest under a load that is pushed for
 
     @property
     def lower(self) -> float:

@@ -18,32 +18,16 @@ FASTEST_OPENING = math.sqrt(5)
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Ends of facing sides, each array a row an end.
+    """Ends of facing sides, each array a row an end."""
 
-    Parameters
-    ----------
-    motion : (3 nb,) float
-        Motion of the blocks when these contacts were found.
-    margin : float
-        Distance up to which they were sought [m].
-    ends : (n, 6) uint
-        Corner of block b and of block a, far corners of their sides, and the sides (their first corners); b > a.
-    inwards : (n,) float
-        1 where inwards is along the tangent of a's side, −1 where it is against it.
-    tilt : (n,) float
-        Tilt of side against side, less the turns of the blocks [rad].
-    area : (n,) float
-        Area [m²] the end stands for.
-    glued : (n,) bool
-        Whether the end is of a joint of the undeformed wall and has not been lost since; none is when first found.
-    """
-
-    motion: Array
-    margin: float
+    motion: Array  # (3 nb,) motion of the blocks when these contacts were found
+    margin: float  # distance up to which they were sought [m]
+    # (n, 6) corner of block b and of block a, far corners of their sides, and the sides (their first corners); b > a
     ends: NDArray[np.uint64]
-    inwards: Array
-    tilt: Array
-    area: Array
+    inwards: Array  # (n,) 1 where inwards is along the tangent of a's side, −1 where it is against it
+    tilt: Array  # (n,) tilt of side against side, less the turns of the blocks [rad]
+    area: Array  # (n,) area [m²] the end stands for
+    # (n,) whether the end is of a joint of the undeformed wall and has not been lost since; none is when first found
     glued: Mask
 
     def __len__(self) -> int:

@@ -25,41 +25,22 @@ Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
 
 @dataclass(frozen=True)
 class Criteria:
-    """When a held load has been borne, and when it has brought the wall down.
+    """When a held load has been borne, and when it has brought the wall down."""
 
-    Parameters
-    ----------
-    rest
-        Unbalanced force, in the system's units, below which the wall is at rest.
-    collapse : float or (n,) float
-        Displacement [m] of any body, or of each, since the load was raised: the unit in which `CollapseDetector`
-        measures whether a wall that does not slow down is in collapse.
-    budget
-        Steps after which the question is left undecided.
-    interval
-        Steps between two looks.
-    """
-
+    # displacement [m] of any body, or ``(n,)`` of each, since the load was raised: the unit in which
+    # `CollapseDetector` measures whether a wall that does not slow down is in collapse
     collapse: float | Array
-    rest: float = 1e-5
-    budget: int = 2_000_000
-    interval: int = 200
+    rest: float = 1e-5  # unbalanced force, in the system's units, below which the wall is at rest
+    budget: int = 2_000_000  # steps after which the question is left undecided
+    interval: int = 200  # steps between two looks
 
 
 @dataclass(frozen=True)
 class HeldLoad:
-    """What a wall does under a load.
+    """What a wall does under a load."""
 
-    Parameters
-    ----------
-    verdict
-        Whether it rests or falls.
-    halfway : (nd,) float or None
-        Where it was half the way before it counted as falling.
-    """
-
-    verdict: Verdict
-    halfway: Array | None = None
+    verdict: Verdict  # whether it rests or falls
+    halfway: Array | None = None  # (nd,) where it was half the way before it counted as falling
 
 
 def settle(

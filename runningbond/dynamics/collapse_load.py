@@ -73,7 +73,7 @@ def collapse_by_steps(
     budget
         Time steps after which a load is left undecided.
     observe
-        Called every so many steps.
+        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
 
     Returns
     -------

@@ -25,24 +25,12 @@ def ramp(run: Run, state: State, start: float, stop: float, steps: int, interval
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """A wall pushed at a prescribed speed.
+    """A wall pushed at a prescribed speed."""
 
-    Parameters
-    ----------
-    curve : (n, 2) float
-        Displacement of the control point [m] and mean multiplier, piece by piece.
-    peak
-        Largest multiplier of the curve.
-    rate_error
-        Change of the peak when the speed was last halved; inf if it never settled.
-    state
-        The wall at the end.
-    """
-
-    curve: Array
-    peak: float
-    rate_error: float
-    state: State
+    curve: Array  # (n, 2) displacement of the control point [m] and mean multiplier, piece by piece
+    peak: float  # largest multiplier of the curve
+    rate_error: float  # change of the peak when the speed was last halved; inf if it never settled
+    state: State  # the wall at the end
 
 
 def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Drive:

@@ -47,38 +47,22 @@ DOUBLED_BEYOND = 200
 
 @dataclass(eq=False)
 class LoadSteps:
-    """Result of a search by steps of constant load.
+    """Result of a search by steps of constant load."""
 
-    Parameters
-    ----------
-    lower, upper
-        Largest multiplier that the wall bore at rest, smallest that brought it down; None where none did.
-    verdict
-        Of the last load tried, or ``undecided`` where undecided loads ended the search; ``stable`` without `upper`
-        where it ended beyond the largest load or displacement.
-    borne
-        State at rest under `lower`; None if not even the dead load was borne.
-    fallen
-        State in the collapse under `upper`, or under the dead load.
-    fall_starts : list of (nd,) float
-        Where the wall was on its way to that collapse, the latest first: half the way before, then each rest.
-    rests : list of (multiplier, State)
-        Every state at rest, in order of load.
-    steps
-        Steps taken, on every path.
-    interrupted
-        Whether Ctrl-C ended it.
-    """
-
+    # largest multiplier that the wall bore at rest, smallest that brought it down; None where none did
     lower: float | None = None
     upper: float | None = None
+    # of the last load tried, or ``undecided`` where undecided loads ended the search; ``stable`` without `upper`
+    # where it ended beyond the largest load or displacement
     verdict: Verdict = "undecided"
-    borne: State | None = None
-    fallen: State | None = None
+    borne: State | None = None  # state at rest under `lower`; None if not even the dead load was borne
+    fallen: State | None = None  # state in the collapse under `upper`, or under the dead load
+    # (nd,) where the wall was on its way to that collapse, the latest first: half the way before, then each rest
     fall_starts: list[Array] = field(default_factory=list)
+    # every state at rest and its multiplier, in order of load
     rests: list[tuple[float, State]] = field(default_factory=list)
-    steps: int = 0
-    interrupted: bool = False
+    steps: int = 0  # steps taken, on every path
+    interrupted: bool = False  # whether Ctrl-C ended it
 
     def add(self, trial: float, state: State, held: HeldLoad) -> None:
         """Take note of a load and of the wall under it."""
@@ -94,13 +78,7 @@ class LoadSteps:
 
 @dataclass(frozen=True)
 class UndecidedLoads:
-    """Undecided loads inside the bracket.
-
-    Parameters
-    ----------
-    loads
-        The loads.
-    """
+    """Undecided loads inside the bracket."""
 
     loads: tuple[float, ...] = ()
 
