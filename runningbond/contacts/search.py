@@ -36,12 +36,7 @@ class Contacts:
     def chosen(self, rows: Mask | Indices) -> "Contacts":
         """Some of these."""
         return replace(
-            self,
-            ends=self.ends[rows],
-            inwards=self.inwards[rows],
-            tilt=self.tilt[rows],
-            area=self.area[rows],
-            glued=self.glued[rows],
+            self, **{name: getattr(self, name)[rows] for name in ("ends", "inwards", "tilt", "area", "glued")}
         )
 
     @property

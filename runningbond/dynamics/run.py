@@ -187,14 +187,6 @@ class Run:
         law.kernel(opening, slip, law.parameters, state.history.copy(), 0.0, normal, tangential)
         return opening, slip, normal, tangential
 
-    def motion_of_blocks(self, state: State) -> Array:
-        """Translation and rotation of each block, ``(nb, 3)`` [m, m, rad]."""
-        return self.system.motion_of_blocks(state.motion)
-
-    def velocity_of_blocks(self, state: State) -> Array:
-        """Velocity and spin of each block half a step ago, ``(nb, 3)`` [m/s, m/s, rad/s]."""
-        return self.system.motion_of_blocks(state.velocity)
-
     def ledger(self, state: State) -> Ledger:
         """Account for the work of the loads so far."""
         opening, _, normal, tangential = self.tractions(state)
