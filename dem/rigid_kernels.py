@@ -24,8 +24,9 @@ class RigidJoints(NamedTuple):
     # wraps round, and comes out right in a sum all the same
     first: NDArray[np.uint64]
     second: NDArray[np.uint64]
-    # (nr, 8) of each run the normal n_x, n_y, half length [m], lever arms [m] normal_a, normal_b, tangent_a and
-    # tangent_b (`JointOrder`) and the area [m²] of a point
+    # (nr, 8) what is the same for all joints of a run: normal n_x, n_y, half length [m] between the two points, lever
+    # arms [m] of normal and tangential force at the joint's middle about the centroids: normal_a, normal_b, tangent_a,
+    # tangent_b, and the area [m²] of a point
     shape: Array
 
 
