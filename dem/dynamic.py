@@ -71,11 +71,9 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
     ----------
     scene
         The scene: dry joints with a stiffness, on a base or a fixed first course.
-    distance
-        Displacement of the control point at which to stop [m].
-    speed
-        Mean speed of the blocks along the live load [m/s]. What moves faster than it falls into place is borne by
-        its inertia: halve the speed until the curve settles. Softer joints allow longer steps.
+    distance, speed
+        As in `pushover_curve`. What moves faster than it falls into place is borne by its inertia: halve the speed
+        until the curve settles. Softer joints allow longer steps.
     local
         Local damping; less than at rest, for it drags on what moves.
 

@@ -27,7 +27,8 @@ class Outline:
     radius: Array  # (nv,) radius of each corner's arc [m]
     centre: Array  # (nv, 2) its centre, from the centroid of its block [m]
     normal: Array  # (nv, 2) outward normal of the side that starts at the corner
-    straight: Array  # (nv,) length of that side between its arcs [m]
+    length: Array  # (nv,) length of that side [m],
+    straight: Array  # (nv,) and between its arcs
     exterior: Array  # (nv,) angle by which the outline turns at the corner [rad]
     thickness: float  # out-of-plane thickness [m]
     held: Mask  # (nb,) blocks between which nothing can happen
@@ -57,7 +58,7 @@ class Outline:
         if (straight < 0).any():
             raise SceneError("joint.inset", "must be less than half the shortest side of a block", scene.joint.inset)
         centre = start + inset[:, None] * run - radius[:, None] * normal - blocks.centroid[blocks.owner]
-        return cls(blocks, radius, centre, normal, straight, exterior, scene.thickness, scene.fixed)
+        return cls(blocks, radius, centre, normal, length, straight, exterior, scene.thickness, scene.fixed)
 
     @property
     def margin(self) -> float:

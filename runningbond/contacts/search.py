@@ -131,9 +131,7 @@ def _area(outline: Outline, e: Indices, f: Indices) -> Array:
     Sides that meet later are given half the shorter one as a joint, which is what running bond gives them from the
     start. The area sets a penalty stiffness, on which a dry wall's resistance hardly depends.
     """
-    start, stop = outline.blocks.vertices, outline.blocks.vertices[outline.blocks.successor]
-    length = np.hypot(*(stop - start).T)
-    overlap = overlaps(outline, e, f)
+    length, overlap = outline.length, overlaps(outline, e, f)
     shared: Array = np.where(overlap > 0, overlap, np.minimum(length[e], length[f]) / 2)
     return shared * outline.thickness / 2
 
@@ -142,9 +140,8 @@ def overlaps(outline: Outline, e: Indices, f: Indices) -> Array:
     """Length of the joint that facing sides made on the undeformed wall, ``(n,)`` [m]; zero where they made none."""
     blocks = outline.blocks
     start, stop = blocks.vertices, blocks.vertices[blocks.successor]
-    run = stop - start
-    length = np.hypot(*run.T)
-    along = run[f] / length[f, None]
+    length = outline.length
+    along = (stop - start)[f] / length[f, None]
     first, last = (np.einsum("ij,ij->i", point[e] - start[f], along) for point in (stop, start))
     gap = np.abs([np.einsum("ij,ij->i", point[e] - start[f], outline.normal[f]) for point in (start, stop)])
     overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)

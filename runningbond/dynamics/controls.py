@@ -101,23 +101,10 @@ def _push(
     pace: tuple[int, int, int],
     measure: Callable[[Array], tuple[float, ...]],
 ) -> Array:
-    """Push a wall, in place, at a power of the live load, and follow its curve.
+    """Push a wall, in place, at a power of the live load at λ = 1 [W], until its first measure is a distance [m].
 
-    Parameters
-    ----------
-    distance
-        First measure [m] at which to stop.
-    power
-        Power of the live load at λ = 1 [W].
-    pace
-        Most rows of the curve, those over which the power is brought up, and steps to a row.
-    measure
-        What is measured of a motion ``(nd,)``, the displacement of the control point [m] first.
-
-    Returns
-    -------
-    (n, m + 1) float
-        The measures, and the mean multiplier since the last row.
+    The pace is most rows of the curve, those over which the power is brought up, and steps to a row. Returns what is
+    measured of the motion ``(nd,)`` in each row, and the mean multiplier since the last one, ``(n, m + 1)``.
     """
     rows, soft, steps = pace
     curve: list[tuple[float, ...]] = []

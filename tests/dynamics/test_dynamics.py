@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem import jump_operator, mass_matrix_diagonal, pin_operator
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import (
@@ -32,6 +31,7 @@ from runningbond.joints.compiled import kernel
 from runningbond.joints.law import FRICTION_WORK, KernelLaw
 from runningbond.joints.wall_law import kernel_law
 from runningbond.limit import limit
+from runningbond.limit.kinematics import jump_operator, mass_matrix_diagonal, pin_operator
 from runningbond.scene import Array, JointMaterial, Mortar, Scene, Stiffness
 from tests.limit.test_limit import pile, rectangle
 from tests.walls import panel
