@@ -32,7 +32,7 @@ def finite_system(scene: Scene) -> BlockSystem:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
     contacts = RigidContacts(scene)
     rigid = np.arange(3 * len(scene.blocks)).reshape(-1, 3)
-    return system_on(scene, contacts.interface(contacts.undeformed), rigid, contacts)
+    return system_on(scene, contacts.interface_on(contacts.undeformed), rigid, contacts)
 
 
 class RigidContacts:
@@ -49,11 +49,7 @@ class RigidContacts:
         """Contacts nearer than a margin [m] after a motion ``(3 nb,)``."""
         return find_contacts(self.outline, motion, margin)
 
-    def interface_on(self, contacts: Contacts, system: BlockSystem) -> Interface:
-        """The interface of a system's blocks on contacts."""
-        return self.interface(contacts)
-
-    def interface(self, contacts: Contacts) -> Interface:
+    def interface_on(self, contacts: Contacts, system: BlockSystem | None = None) -> Interface:
         """The interface of the blocks on contacts."""
         law = kernel_law((self._joint,), np.zeros(len(contacts), dtype=np.int64))
         geometry = contacts.geometry(self.outline)

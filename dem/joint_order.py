@@ -32,7 +32,8 @@ def joint_order(scene: Scene) -> JointOrder:
     points = wall_points(scene)
     half = np.hypot(*(points.position[1::2] - points.position[::2]).T) / 2
     place = np.argsort(scene.column_by_column)
-    shape = np.column_stack([*_normals(scene).T, half, *_arms(scene).T])
+    normal = points.normal[::2]
+    shape = np.column_stack([normal, half, _arms(scene, normal)])
     size = float(np.ptp(scene.blocks.extent(scene.wall), axis=0).max())
     rounded = np.rint(shape / [RESOLUTION, RESOLUTION, *[RESOLUTION * size] * 5]).astype(np.int64)
     kind = np.unique(np.column_stack([scene.material_of_joint, rounded]), axis=0, return_inverse=True)[1].ravel()
@@ -47,14 +48,8 @@ def joint_order(scene: Scene) -> JointOrder:
     return JointOrder(place, points.part(np.concatenate([2 * order, 2 * order + 1])), runs)
 
 
-def _normals(scene: Scene) -> Array:
-    run = scene.joints.ends[:, 1] - scene.joints.ends[:, 0]
-    return np.column_stack([run[:, 1], -run[:, 0]]) / scene.joints.length[:, None]
-
-
-def _arms(scene: Scene) -> Array:
+def _arms(scene: Scene, normal: Array) -> Array:
     """Lever arms of each joint's normal and tangential force about its two blocks' centroids, ``(nj, 4)`` [m]."""
-    normal = _normals(scene)
     middle = scene.joints.ends.mean(axis=1)
     arms = np.zeros((len(scene.joints), 4))
     for side, block in enumerate(scene.joints.block.T):

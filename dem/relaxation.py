@@ -84,8 +84,6 @@ def relax(
 
     Parameters
     ----------
-    system
-        The static equations.
     guess : (n,) float
         First unknowns; they should satisfy the control, or the first step is judged by forces it must disturb.
     plastic_slip : (np,) float

@@ -74,17 +74,9 @@ def _project(force: Array, freedom: Indices, basis: Array) -> None:
 
 
 @kernel
-def _update(
-    force: Array,
-    stiffness: Array,
-    viscosity: Array,
-    mobility: Array,
-    local: float,
-    dt: float,
-    motion: Array,
-    velocity: Array,
-    damped: Array,
-) -> None:
+def _update(modes: Modes, state: StateArrays, local: float, dt: float) -> None:
+    stiffness, viscosity, mobility = modes
+    motion, velocity, _, damped, force = state
     for i in range(motion.size):
         before = velocity[i]
         viscous = viscosity[i] * before
@@ -153,7 +145,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
         watch: Watch,
     ) -> tuple[int, bool, float, float]:
         stiffness, viscosity, mobility = modes
-        motion, velocity, history, damped, force = state
+        motion, velocity, history, _, force = state
         freedom, basis = restraint
         moved, opening, slip, normal, tangential = work
         already, given, most = watch
@@ -184,7 +176,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
                 multiplier = -pushed / response
                 for i in range(live.size):
                     force[i] += multiplier * live[i]
-            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+            _update(modes, state, local, dt)
             if driven:
                 # Local damping acts on the live load too; what it takes from the prescribed speed is given back.
                 after = 0.0
@@ -204,8 +196,3 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
         return steps, True, total, worked
 
     return step
-
-
-def work_arrays(n_modes: int, n_points: int) -> Work:
-    """Buffers for so many modes and points."""
-    return np.zeros(n_modes), np.zeros(n_points), np.zeros(n_points), np.zeros(n_points), np.zeros(n_points)

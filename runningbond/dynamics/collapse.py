@@ -35,14 +35,6 @@ class Criteria:
     interval: int = 200  # steps between two looks
 
 
-@dataclass(frozen=True)
-class HeldLoad:
-    """What a wall does under a load."""
-
-    verdict: Verdict  # whether it rests or falls
-    halfway: Array | None = None  # (nd,) where it was half the way before it counted as falling
-
-
 def settle(
     run: Run,
     state: State,
@@ -53,7 +45,7 @@ def settle(
     sudden: bool = False,
 ) -> Verdict:
     """Hold a load until the wall rests or falls, and say which; see `hold_load`."""
-    return hold_load(run, state, multiplier, criteria, observe, sudden=sudden).verdict
+    return hold_load(run, state, multiplier, criteria, observe, sudden=sudden)[0]
 
 
 def hold_load(
@@ -64,8 +56,8 @@ def hold_load(
     observe: Observer = no_observer,
     *,
     sudden: bool = False,
-) -> HeldLoad:
-    """Hold a load until the wall rests or falls.
+) -> tuple[Verdict, Array | None]:
+    """Hold a load until the wall rests or falls; of a fall, also the motion ``(nd,)`` when it had come half as far.
 
     It rests when the unbalanced force is below the threshold at `CALM` looks in a row. It falls when it has moved far
     and does not slow down (`CollapseDetector`), so that a wall that slips and is caught is not mistaken for one in
@@ -85,13 +77,13 @@ def hold_load(
         observe(run, state, multiplier)
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
         if calm == CALM:
-            return HeldLoad("stable")
+            return "stable", None
         marks = detector.marks
         if detector.goes_on(run.system.farthest(state.motion - start, criteria.collapse), state.steps):
-            return HeldLoad("collapse", halfway)
+            return "collapse", halfway
         if detector.marks > marks:
             halfway = state.motion.copy()
-    return HeldLoad("undecided")
+    return "undecided", None
 
 
 class CollapseDetector:

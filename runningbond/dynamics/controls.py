@@ -1,7 +1,7 @@
 """Load controls: a ramp, and work-conjugate displacement control; steps of constant load are in `load_stepping`."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -56,7 +56,7 @@ def settled_drive(
         fast, steps = slow, 2 * steps
         slow = drive(run, start, distance, steps)
         error = abs(fast.peak - slow.peak)
-        slow = Drive(slow.curve, slow.peak, error, slow.state)
+        slow = replace(slow, rate_error=error)
         if error <= tolerance * abs(slow.peak):
             break
     return slow
@@ -69,10 +69,8 @@ def pushover_curve(
 
     Parameters
     ----------
-    run
-        The blocks.
-    scene
-        Their wall.
+    run, scene
+        The blocks, and their wall.
     distance
         Displacement of the control point at which to stop [m].
     speed

@@ -11,7 +11,7 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array
 
-from .central_differences import stepper, work_arrays
+from .central_differences import stepper
 from .contact_update import ContactUpdate, contacts_of
 from .state import State
 from .system import BlockSystem, Interface
@@ -48,12 +48,7 @@ class Ledger:
 class Unstable(ArithmeticError):
     """A run that spent more energy than it was supplied with, as too long a time step makes out of nothing.
 
-    Parameters
-    ----------
-    steps
-        Steps after which that was found.
-    step, safe
-        Time step that was taken, and one that is safe [s].
+    It says after how many steps, and the time step that was taken and one that is safe [s].
     """
 
     def __init__(self, steps: int, step: float, safe: float) -> None:
@@ -101,7 +96,7 @@ class Run:
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
-        self._work = work_arrays(len(self.system.mass), interface.law.points)
+        self._work = (np.zeros(len(self.system.mass)), *(np.zeros(interface.law.points) for _ in range(4)))
 
     def _return_to(self, state: State) -> None:
         """Go on with the interface on the contacts of a state, which may be another one than before."""

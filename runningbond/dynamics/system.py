@@ -153,8 +153,6 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
 
     Parameters
     ----------
-    scene
-        The wall.
     block : (nd,) int
         Block of each mode.
     mass : (nd,) float
