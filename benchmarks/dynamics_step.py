@@ -11,10 +11,10 @@ from collections.abc import Callable
 import numpy as np
 from scipy.sparse import csr_array, diags_array
 
-from dem import jump_operator
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.compare import published_scene
 from runningbond.dynamics import Run, State
+from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Array, Scene, scene_from_dict
 
 RUNS = 7

@@ -14,24 +14,12 @@ from runningbond.scene import Array, Indices
 
 @dataclass(frozen=True, eq=False)
 class Band:
-    """Where the entries of a banded matrix go.
+    """Where the entries of a banded matrix go."""
 
-    Parameters
-    ----------
-    place : (n,) int
-        Row and column of each unknown in the band.
-    width : int
-        Entries on either side of the diagonal.
-    entry : (n_entries,) int
-        Where LAPACK wants each entry, in its columns one after the other.
-    slot : (n_terms,) int
-        Entry to which each term is added, the number of entries for terms that are none.
-    """
-
-    place: Indices
-    width: int
-    entry: Indices
-    slot: Indices
+    place: Indices  # (n,) row and column of each unknown in the band
+    width: int  # entries on either side of the diagonal
+    entry: Indices  # (n_entries,) where LAPACK wants each entry, in its columns one after the other
+    slot: Indices  # (n_terms,) entry to which each term is added, the number of entries for terms that are none
 
     def solve(self, terms: Array, right: Array) -> Array:
         """Sum the terms ``(n_terms,)`` up and solve for some right-hand sides ``(n, k)``.

@@ -37,22 +37,13 @@ def dem_dynamic(
     ----------
     scene
         The scene; its joints need a stiffness, on which the collapse load hardly depends.
-    tolerance
-        Relative width of the bracket.
-    collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes.
-    first_step
-        First load step; steps grow while they are borne and are bisected once one is not.
-    budget
-        Time steps after which a load is left undecided.
-    observe
-        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
+    tolerance, collapse, first_step, budget, observe
+        As in `collapse_by_steps`.
 
     Returns
     -------
     Outcome
-        `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `curve` has every state at rest, and ends in the fall.
+        As of `collapse_by_steps`.
     """
     start = time.perf_counter()
     outcome = collapse_by_steps(
@@ -80,11 +71,9 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
     ----------
     scene
         The scene: dry joints with a stiffness, on a base or a fixed first course.
-    distance
-        Displacement of the control point at which to stop [m].
-    speed
-        Mean speed of the blocks along the live load [m/s]. What moves faster than it falls into place is borne by
-        its inertia: halve the speed until the curve settles. Softer joints allow longer steps.
+    distance, speed
+        As in `pushover_curve`. What moves faster than it falls into place is borne by its inertia: halve the speed
+        until the curve settles. Softer joints allow longer steps.
     local
         Local damping; less than at rest, for it drags on what moves.
 

@@ -7,13 +7,12 @@ import numpy as np
 from runningbond.contacts.outline import Outline
 from runningbond.contacts.rigid_sides import RigidSides, gather_sides, scatter_sides
 from runningbond.contacts.search import Contacts, find_contacts, resting
-from runningbond.dynamics import BlockSystem, Interface, block_frequency_squared, force_unit, joint_shares
-from runningbond.joints import wall_points, wall_strength
+from runningbond.dynamics import BlockSystem, Interface, block_frequency_squared, joint_shares
 from runningbond.joints.law import KernelLaw
 from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Array, Indices, Scene, SceneError
 
-from .rigid_system import loads_and_masses
+from .rigid_system import held_masses, system_on
 
 
 def finite_system(scene: Scene) -> BlockSystem:
@@ -31,54 +30,31 @@ def finite_system(scene: Scene) -> BlockSystem:
         raise SceneError("joint.cohesion", "finite displacements need dry joints", scene.joint.cohesion)
     if scene.inner_joint is not None:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
-    restraint, mass, dead, live, control = loads_and_masses(scene)
     contacts = RigidContacts(scene)
-    still, owner = np.zeros_like(mass), np.arange(len(scene.blocks))
-    return BlockSystem(
-        mass=mass,
-        stiffness=still,
-        viscosity=still,
-        dead=dead,
-        live=live,
-        control=control,
-        force_unit=force_unit(scene, np.repeat(owner, 3), mass, live, wall_strength(scene, wall_points(scene))),
-        rigid=np.arange(len(mass)).reshape(-1, 3),
-        owner=owner,
-        restraint=restraint,
-        interface=contacts.interface(contacts.undeformed, mass),
-        contacts=contacts,
-    )
+    rigid = np.arange(3 * len(scene.blocks)).reshape(-1, 3)
+    return system_on(scene, contacts.interface_on(contacts.undeformed), rigid, contacts)
 
 
 class RigidContacts:
-    """Contacts of the rigid blocks of a scene; see `runningbond.dynamics.ContactSearch`.
-
-    Parameters
-    ----------
-    scene
-        The scene: dry joints with a stiffness, on a base or a fixed first course.
-    """
+    """Contacts of a scene's rigid blocks, between dry joints; see `runningbond.dynamics.ContactSearch`."""
 
     def __init__(self, scene: Scene) -> None:
         self.outline = Outline.of(scene)
         # What a joint spends on its fracture does not matter to dry contacts.
         self._joint = replace(scene.joint, fracture_energy_1=None, fracture_energy_2=None)
+        self._mass = held_masses(scene)
         self.undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
 
     def find(self, motion: Array, margin: float) -> Contacts:
         """Contacts nearer than a margin [m] after a motion ``(3 nb,)``."""
         return find_contacts(self.outline, motion, margin)
 
-    def interface_on(self, contacts: Contacts, system: BlockSystem) -> Interface:
-        """The interface of a system's blocks on contacts."""
-        return self.interface(contacts, system.mass)
-
-    def interface(self, contacts: Contacts, mass: Array) -> Interface:
-        """The interface of blocks with modal masses ``(3 nb,)`` on contacts."""
+    def interface_on(self, contacts: Contacts, system: BlockSystem | None = None) -> Interface:
+        """The interface of the blocks on contacts."""
         law = kernel_law((self._joint,), np.zeros(len(contacts), dtype=np.int64))
         geometry = contacts.geometry(self.outline)
         gather_sides(contacts.motion, geometry, *np.zeros((2, len(contacts))))
-        bound = _frequency_squared(geometry, law, mass)
+        bound = _frequency_squared(geometry, law, self._mass)
         return Interface(law, contacts.area, gather_sides, scatter_sides, geometry, bound)
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
@@ -94,14 +70,7 @@ class RigidContacts:
 def _frequency_squared(geometry: RigidSides, law: KernelLaw, mass: Array) -> float:
     """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
 
-    Parameters
-    ----------
-    geometry
-        The sides as `gather_sides` placed them.
-    law
-        Law of the contacts.
-    mass : (3 nb,) float
-        Modal masses.
+    The sides are as `gather_sides` placed them, the masses modal ones ``(3 nb,)``.
     """
     centroid, contact = geometry.placed.blocks[:, 2:], geometry.contact
     n = contact[:, 2:]

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runningbond.joints import JointPoints, wall_points
 from runningbond.scene import Array, Indices, Scene
+
+from .rigid_kernels import RigidJoints
 
 RESOLUTION = 1e-9
 """Difference, in sizes of the wall, below which two joints are of one kind: far below the contact tolerance."""
@@ -17,42 +20,20 @@ RESOLUTION = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class JointOrder:
-    """Blocks and joints in the order of the kernels.
+    """Blocks, joints and their contact points in the order of the kernels."""
 
-    Parameters
-    ----------
-    block : (nb,) int
-        Place of each block.
-    joint : (nj,) int
-        The joint that stands at each place.
-    start : (nr + 1,) int
-        First place of each run of joints, then their number.
-    first, second : (nr,) int
-        Place of the blocks a and b of each run's first joint.
-    shape : (nr, 7) float
-        What is the same for all joints of a run: normal n_x, n_y, half length [m] between the two points, and lever
-        arms [m] of normal and tangential force at the joint's middle about the centroids: normal_a, normal_b,
-        tangent_a, tangent_b.
-    """
-
-    block: Indices
-    joint: Indices
-    start: Indices
-    first: Indices
-    second: Indices
-    shape: Array
+    block: Indices  # (nb,) place of each block
+    points: JointPoints  # two points a joint: all joints' first ones, then all second ones
+    runs: RigidJoints
 
 
-def joint_order(scene: Scene, half: Array) -> JointOrder:
-    """Number a scene's blocks and joints.
-
-    Parameters
-    ----------
-    half : (nj,) float
-        Half the distance [m] between the two points of each joint.
-    """
+def joint_order(scene: Scene) -> JointOrder:
+    """Number a scene's blocks and joints."""
+    points = wall_points(scene)
+    half = np.hypot(*(points.position[1::2] - points.position[::2]).T) / 2
     place = np.argsort(scene.column_by_column)
-    shape = np.column_stack([*_normals(scene).T, half, *_arms(scene).T])
+    normal = points.normal[::2]
+    shape = np.column_stack([normal, half, _arms(scene, normal)])
     size = float(np.ptp(scene.blocks.extent(scene.wall), axis=0).max())
     rounded = np.rint(shape / [RESOLUTION, RESOLUTION, *[RESOLUTION * size] * 5]).astype(np.int64)
     kind = np.unique(np.column_stack([scene.material_of_joint, rounded]), axis=0, return_inverse=True)[1].ravel()
@@ -61,18 +42,14 @@ def joint_order(scene: Scene, half: Array) -> JointOrder:
     a, b, kind = a[order], b[order], kind[order]
     goes_on = (np.diff(a) == 1) & (np.diff(b) == 1) & (np.diff(kind) == 0)
     begin = np.flatnonzero(np.append(len(order) > 0, ~goes_on))
-    start = np.append(begin, len(order))
-    return JointOrder(place, order, start, a[begin], b[begin], shape[order][begin])
+    first, second = ((of[begin] - begin).astype(np.uint64) for of in (a, b))
+    shape = np.column_stack([shape, points.area[::2]])[order][begin]
+    runs = RigidJoints(np.append(begin, len(order)).astype(np.uint64), first, second, shape)
+    return JointOrder(place, points.part(np.concatenate([2 * order, 2 * order + 1])), runs)
 
 
-def _normals(scene: Scene) -> Array:
-    run = scene.joints.ends[:, 1] - scene.joints.ends[:, 0]
-    return np.column_stack([run[:, 1], -run[:, 0]]) / scene.joints.length[:, None]
-
-
-def _arms(scene: Scene) -> Array:
+def _arms(scene: Scene, normal: Array) -> Array:
     """Lever arms of each joint's normal and tangential force about its two blocks' centroids, ``(nj, 4)`` [m]."""
-    normal = _normals(scene)
     middle = scene.joints.ends.mean(axis=1)
     arms = np.zeros((len(scene.joints), 4))
     for side, block in enumerate(scene.joints.block.T):

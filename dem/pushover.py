@@ -5,7 +5,7 @@ displacement f_live · q that does the live load's work is prescribed instead, a
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
@@ -33,24 +33,12 @@ ATTEMPTS = ((1.0, False), (0.25, False), (1.0, True))
 
 @dataclass(frozen=True, eq=False)
 class StaticState:
-    """A state of rest.
+    """A state of rest."""
 
-    Parameters
-    ----------
-    x : (n,) float
-        Unknowns (q, r, λ) of the `StaticSystem`.
-    plastic_slip : (np,) float
-        History of the joint points after it.
-    force : (np, 2) float
-        Normal and tangential forces of the joint points.
-    displacement : float
-        Displacement f_live · q of the live load.
-    """
-
-    x: Array
-    plastic_slip: Array
-    force: Array
-    displacement: float
+    x: Array  # (n,) unknowns (q, r, λ) of the `StaticSystem`
+    plastic_slip: Array  # (np,) history of the joint points after it
+    force: Array  # (np, 2) normal and tangential forces of the joint points
+    displacement: float  # displacement f_live · q of the live load
 
     @property
     def multiplier(self) -> float:
@@ -68,33 +56,16 @@ def no_observer(system: StaticSystem, state: StaticState) -> None:
 
 @dataclass(eq=False)
 class LoadPath:
-    """The path of a wall to its collapse, as far as it was followed.
+    """The path of a wall to its collapse, as far as it was followed."""
 
-    Parameters
-    ----------
-    system
-        The static equations.
-    far : float
-        Motion of a freedom that counts as a fall, in units of the system.
-    budget : int
-        Linear systems that may still be solved.
-    rests
-        States of rest under growing loads, the dead load's first.
-    upper : float or None
-        Smallest load under which the wall fell.
-    fall : (nd,) float or None
-        How it was moving when it had fallen far enough.
-    observe
-        Called with every state of rest under a load that is pushed for.
-    """
-
-    system: StaticSystem
-    far: float
-    budget: int
-    rests: list[StaticState]
-    upper: float | None = None
-    fall: Array | None = None
-    observe: StaticObserver = no_observer
+    system: StaticSystem  # the static equations
+    far: float  # motion of a freedom that counts as a fall, in units of the system
+    budget: int  # linear systems that may still be solved
+    rests: list[StaticState]  # states of rest under growing loads, the dead load's first
+    past: list[StaticState] = field(default_factory=list)  # states of rest past the largest load, under displacements
+    upper: float | None = None  # smallest load under which the wall fell
+    fall: Array | None = None  # (nd,) how it was moving when it had fallen far enough
+    observe: StaticObserver = no_observer  # called with every state of rest under a load that is pushed for
 
     @property
     def lower(self) -> float:
@@ -113,10 +84,10 @@ class LoadPath:
             self.upper, self.fall = multiplier, result.last
         return result
 
-    def follow(self, budget: int) -> list[StaticState]:
-        """States of rest at growing displacements after the last load's, until one falls or the budget is spent."""
+    def follow(self, budget: int) -> None:
+        """Find states of rest at ever larger displacements, from the last load's to a fall or the end of the budget."""
         if len(self.rests) < 2:
-            return []
+            return
         origin, before, last = self.rests[0].displacement, self.rests[-2], self.rests[-1]
         states, nd = [before, last], self.system.freedoms
         stride = STRIDE * (last.displacement - origin)
@@ -138,7 +109,7 @@ class LoadPath:
             stride = ahead
             states.append(state_of(self.system, result))
             stride = min(stride * lengthened(result.solves), STRIDE * (states[-1].displacement - origin))
-        return states[2:]
+        self.past = states[2:]
 
     def _relax(self, start: Array, plastic_slip: Array, control: Control, budget: int, creeps: bool = True) -> Rest:
         result = relax(self.system, start, plastic_slip, control, self.far, min(budget, self.budget), creeps=creeps)

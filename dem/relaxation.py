@@ -60,27 +60,14 @@ LONGEST = 5000
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """What became of a wall.
+    """What became of a wall."""
 
-    Parameters
-    ----------
-    verdict
-        ``rest`` in equilibrium, ``fall`` if it went farther than asked without slowing down, or ``undecided``.
-    x : (n,) float
-        Unknowns (q, r, λ) of the `StaticSystem`.
-    response
-        Answer of the joint points.
-    last : (nd,) float
-        Motion of the last time step.
-    solves : int
-        Linear systems solved.
-    """
-
+    # ``rest`` in equilibrium, ``fall`` if it went farther than asked without slowing down, or ``undecided``
     verdict: RestVerdict
-    x: Array
-    response: PointResponse
-    last: Array
-    solves: int
+    x: Array  # (n,) unknowns (q, r, λ) of the `StaticSystem`
+    response: PointResponse  # answer of the joint points
+    last: Array  # (nd,) motion of the last time step
+    solves: int  # linear systems solved
 
 
 def relax(
@@ -97,8 +84,6 @@ def relax(
 
     Parameters
     ----------
-    system
-        The static equations.
     guess : (n,) float
         First unknowns; they should satisfy the control, or the first step is judged by forces it must disturb.
     plastic_slip : (np,) float

@@ -17,23 +17,16 @@ kernel = compiled.kernel
 
 
 class RigidJoints(NamedTuple):
-    """Joints in runs.
+    """Joints in runs."""
 
-    Parameters
-    ----------
-    start : (nr + 1,) uint
-        First joint of each run, then the number of joints.
-    first, second : (nr,) uint
-        Place of the blocks a and b of each run's first joint, less the number of that joint; what is negative wraps
-        round, and comes out right in a sum all the same.
-    shape : (nr, 8) float
-        Of each run the normal n_x, n_y, half length [m], lever arms [m] normal_a, normal_b, tangent_a and tangent_b
-        (`JointOrder`) and the area [m²] of a point.
-    """
-
-    start: NDArray[np.uint64]
+    start: NDArray[np.uint64]  # (nr + 1,) first joint of each run, then the number of joints
+    # (nr,) place of the blocks a and b of each run's first joint, less the number of that joint; what is negative
+    # wraps round, and comes out right in a sum all the same
     first: NDArray[np.uint64]
     second: NDArray[np.uint64]
+    # (nr, 8) what is the same for all joints of a run: normal n_x, n_y, half length [m] between the two points, lever
+    # arms [m] of normal and tangential force at the joint's middle about the centroids: normal_a, normal_b, tangent_a,
+    # tangent_b, and the area [m²] of a point
     shape: Array
 
 

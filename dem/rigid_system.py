@@ -2,7 +2,15 @@
 
 import numpy as np
 
-from runningbond.dynamics import BlockSystem, Interface, Restraint, block_frequency_squared, force_unit, joint_shares
+from runningbond.dynamics import (
+    BlockSystem,
+    ContactSearch,
+    Interface,
+    Restraint,
+    block_frequency_squared,
+    force_unit,
+    joint_shares,
+)
 from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.joints.law import KernelLaw
 from runningbond.joints.wall_law import kernel_law
@@ -14,15 +22,15 @@ from runningbond.limit.kinematics import (
     mass_matrix_diagonal,
     pin_operator,
 )
-from runningbond.scene import Array, Scene, free_motions
+from runningbond.scene import Array, Indices, Scene, free_motions
 
-from .joint_order import JointOrder, joint_order
-from .rigid_kernels import RigidJoints, gather_rigid, scatter_rigid
+from .joint_order import joint_order
+from .rigid_kernels import gather_rigid, scatter_rigid
 
 
 def contact_points(scene: Scene) -> JointPoints:
     """Two contact points a joint in the order of the kernels: all joints' first ones, then all second ones."""
-    return _in_order(scene)[0]
+    return joint_order(scene).points
 
 
 def rigid_system(scene: Scene) -> BlockSystem:
@@ -33,38 +41,43 @@ def rigid_system(scene: Scene) -> BlockSystem:
     SceneError
         If the scene gives its joints no stiffness.
     """
-    points, order = _in_order(scene)
+    order = joint_order(scene)
+    points = order.points
     law = kernel_law(scene.joint_materials, scene.material_of_joint[points.joint])
-    restraint, mass, dead, live, control = loads_and_masses(scene)
-    rigid = order.block[:, None] + len(scene.blocks) * np.arange(3)
-    freedom = np.argsort(rigid.ravel())
-    still = np.zeros_like(mass)
     bound = largest_frequency_squared(scene, points, law)
-    return BlockSystem(
-        mass=mass[freedom],
-        stiffness=still,
-        viscosity=still,
-        dead=dead[freedom],
-        live=live[freedom],
-        control=control[freedom],
-        force_unit=force_unit(scene, freedom // 3, mass[freedom], live, wall_strength(scene, points)),
-        rigid=rigid,
-        owner=np.arange(len(scene.blocks)),
-        restraint=Restraint(rigid.ravel()[restraint.freedom], restraint.basis),
-        interface=Interface(law, points.area, gather_rigid, scatter_rigid, _geometry(order, points), bound),
-    )
+    interface = Interface(law, points.area, gather_rigid, scatter_rigid, order.runs, bound)
+    return system_on(scene, interface, order.block[:, None] + len(scene.blocks) * np.arange(3))
 
 
-def loads_and_masses(scene: Scene) -> tuple[Restraint, Array, Array, Array, Array]:
-    """Restraint of pinned blocks; mass, dead load, live load and control row, three freedoms a block ``(3 nb,)``."""
-    mass = np.where(np.repeat(scene.fixed, 3), np.inf, mass_matrix_diagonal(scene))
-    restraint, mass = _restraint(scene, mass)
+def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: ContactSearch | None = None) -> BlockSystem:
+    """The rigid blocks of a scene on an interface, with their freedoms where `rigid` ``(nb, 3)`` has them."""
+    restraint, mass = _restraint(scene, held_masses(scene))
     dead, live, control = dead_load(scene), live_load(scene), control_row(scene)
     for row in (dead, live, control):
         for freedom, basis in zip(restraint.freedom, restraint.basis, strict=True):
             row[freedom] = basis.T @ row[freedom]
     dead[np.isinf(mass)] = live[np.isinf(mass)] = 0.0
-    return restraint, mass, dead, live, control
+    order, still = np.argsort(rigid.ravel()), np.zeros_like(mass)
+    strength = wall_strength(scene, wall_points(scene))
+    return BlockSystem(
+        mass=mass[order],
+        stiffness=still,
+        viscosity=still,
+        dead=dead[order],
+        live=live[order],
+        control=control[order],
+        force_unit=force_unit(scene, order // 3, mass[order], live, strength),
+        rigid=rigid,
+        owner=np.arange(len(scene.blocks)),
+        restraint=Restraint(rigid.ravel()[restraint.freedom], restraint.basis),
+        interface=interface,
+        contacts=contacts,
+    )
+
+
+def held_masses(scene: Scene) -> Array:
+    """Masses of the blocks' freedoms ``(3 nb,)`` [kg, kg, kg m²], inf where a block is held."""
+    return np.where(np.repeat(scene.fixed, 3), np.inf, mass_matrix_diagonal(scene))
 
 
 def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw) -> float:
@@ -75,24 +88,8 @@ def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw)
     return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0)) or 1.0
 
 
-def _in_order(scene: Scene) -> tuple[JointPoints, JointOrder]:
-    """Contact points in the order of the kernels, and that order."""
-    points = wall_points(scene)
-    reach = points.position[1::2] - points.position[::2]
-    order = joint_order(scene, np.hypot(reach[:, 0], reach[:, 1]) / 2)
-    return points.part(np.concatenate([2 * order.joint, 2 * order.joint + 1])), order
-
-
-def _geometry(order: JointOrder, points: JointPoints) -> RigidJoints:
-    start = order.start[:-1]
-    shape = np.column_stack([order.shape, points.area[: len(order.joint)][start]])
-    first, second = ((place - start).astype(np.uint64) for place in (order.first, order.second))
-    return RigidJoints(order.start.astype(np.uint64), first, second, shape)
-
-
 def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
     """Coordinates of the pinned blocks in which their pins hold by themselves, and the masses of those."""
-    mass = mass.copy()
     rows = pin_operator(scene).toarray()
     blocks = np.unique(scene.pins.block)
     bases = np.zeros((len(blocks), 3, 3))

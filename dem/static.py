@@ -14,7 +14,7 @@ steps half as long make of each published wall, and what it costs.
 """
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -86,36 +86,24 @@ def dem_static(
     """
     start = time.perf_counter()
     system = static_system(scene)
-    # Bands are too narrow for a second thread to gain anything.
-    with threadpool_limits(limits=1, user_api="blas"):
-        result = _found(scene, system, tolerance, first_step, collapse, budget, past, observe)
-    return replace(result, seconds=time.perf_counter() - start)
-
-
-def _found(
-    scene: Scene,
-    system: StaticSystem,
-    tolerance: float,
-    first_step: float,
-    collapse: float,
-    budget: int,
-    past: int,
-    observe: StaticObserver,
-) -> Outcome:
-    result = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
+    outcome = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
     far = collapse * scene.lowest_block / system.length_unit
     nothing = np.zeros(len(system.law.normal_stiffness))
-    rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
-    if rest.verdict != "rest":
-        return _fallen(replace(result, steps=rest.solves), system)
-    path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-    observe(system, path.rests[0])
-    climb = _climb(path, first_step, tolerance, past)
-    for state in climb.past:
-        observe(system, state)
-    result = _judged(result, path, climb, tolerance)
-    message = "; ".join(part for part in (result.message, _window(path)) if part)
-    return replace(result, message=message, steps=budget - path.budget)
+    # Bands are too narrow for a second thread to gain anything.
+    with threadpool_limits(limits=1, user_api="blas"):
+        rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
+        if rest.verdict != "rest":
+            outcome = _fallen(replace(outcome, steps=rest.solves), system)
+        else:
+            path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
+            observe(system, path.rests[0])
+            undecided = _climb(path, first_step, tolerance, past)
+            for state in path.past:
+                observe(system, state)
+            outcome = _judge(outcome, path, undecided)
+            message = "; ".join(part for part in (outcome.message, _window(path)) if part)
+            outcome = replace(outcome, message=message, steps=budget - path.budget)
+    return replace(outcome, seconds=time.perf_counter() - start)
 
 
 def _window(path: LoadPath) -> str:
@@ -127,44 +115,35 @@ def _window(path: LoadPath) -> str:
     return stiffness_note(overlap, path.far * unit, size, spring * stiffest, equations.force_unit)
 
 
-@dataclass(frozen=True, eq=False)
-class Climb:
-    """How far a wall got: why it is `undecided`, if it is, and its states past the last load that it bore."""
-
-    undecided: str
-    past: list[StaticState]
-
-
-def _climb(path: LoadPath, first_step: float, tolerance: float, past: int) -> Climb:
-    """Load a wall until it has fallen, close enough to the last load at rest, and follow it from there."""
+def _climb(path: LoadPath, first_step: float, tolerance: float, past: int) -> str:
+    """Load a wall until it has fallen, close enough to the last load at rest, and follow it; why it is undecided."""
     step = first_step
     while path.upper is None or path.upper - path.lower > tolerance * max(path.upper, NOISE):
         held = path.push(path.lower + step if path.upper is None else (path.lower + path.upper) / 2)
         if held.verdict == "undecided":
-            return Climb("it neither rested nor fell", [])
+            return "it neither rested nor fell"
         step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
         if path.upper is None and path.lower > LARGEST_LOAD * first_step:
-            return Climb("it bore every load tried", [])
-    if not past:
-        return Climb("", [])
-    states = path.follow(past)
-    # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
-    closer = (1 + tolerance / 4) * _peak(path, states).multiplier
-    if closer < path.upper and path.push(closer, past).verdict == "rest":
-        states = path.follow(past)
-    return Climb("", states)
+            return "it bore every load tried"
+    if past:
+        path.follow(past)
+        # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
+        closer = (1 + tolerance / 4) * _peak(path).multiplier
+        if closer < path.upper and path.push(closer, past).verdict == "rest":
+            path.follow(past)
+    return ""
 
 
-def _peak(path: LoadPath, past: list[StaticState]) -> StaticState:
+def _peak(path: LoadPath) -> StaticState:
     """State of the largest λ in equilibrium that is none at which the wall fell."""
-    most = np.inf if path.upper is None else path.upper
-    return max((state for state in (*path.rests, *past) if state.multiplier < most), key=lambda state: state.multiplier)
+    most, states = np.inf if path.upper is None else path.upper, (*path.rests, *path.past)
+    return max((state for state in states if state.multiplier < most), key=lambda state: state.multiplier)
 
 
-def _judged(result: Outcome, path: LoadPath, climb: Climb, tolerance: float) -> Outcome:
+def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
     """Verdict on a climb, and its arrays."""
-    system, states = path.system, [*path.rests, *climb.past]
-    equations, peak = system.equilibrium, _peak(path, climb.past)
+    system, states = path.system, [*path.rests, *path.past]
+    equations, peak = system.equilibrium, _peak(path)
     unit, nd = equations.live_unit, system.freedoms
     row = control_row(equations.scene)[movable_freedoms(equations.scene)] * equations.scale * system.length_unit
     q = np.array([state.x[:nd] for state in states])
@@ -177,7 +156,7 @@ def _judged(result: Outcome, path: LoadPath, climb: Climb, tolerance: float) -> 
         motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
         force=equations.force_unit * peak.force,
     )
-    if not climb.undecided:
+    if not undecided:
         heights = path.far * system.length_unit / equations.scene.lowest_block
         message = (
             f"largest load at rest and smallest of a fall over {heights:.2g} block heights, small displacements; "
@@ -185,9 +164,9 @@ def _judged(result: Outcome, path: LoadPath, climb: Climb, tolerance: float) -> 
         )
         return replace(result, status="collapse", multiplier=result.lower, message=message)
     if path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
-        message = f"self-locking: {climb.undecided}, and joint forces balance any multiple of it"
+        message = f"self-locking: {undecided}, and joint forces balance any multiple of it"
         return replace(result, status="unbounded", lower=None, message=message)
-    return replace(result, message=f"no answer: {climb.undecided}")
+    return replace(result, message=f"no answer: {undecided}")
 
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:

@@ -32,21 +32,11 @@ class Control:
 
 @dataclass(frozen=True, eq=False)
 class StaticSystem:
-    """The static equations of a scene.
+    """The static equations of a scene."""
 
-    Parameters
-    ----------
-    equilibrium
-        Scaled equilibrium of its blocks.
-    law
-        Law of its joint points, scaled.
-    length_unit : float
-        Displacement [m] that counts as 1.
-    """
-
-    equilibrium: Equilibrium
-    law: PointLaw
-    length_unit: float
+    equilibrium: Equilibrium  # scaled equilibrium of its blocks
+    law: PointLaw  # law of its joint points, scaled
+    length_unit: float  # displacement [m] that counts as 1
 
     @property
     def freedoms(self) -> int:

@@ -48,24 +48,15 @@ SINGULAR = 1e9
 
 @dataclass(frozen=True, eq=False)
 class StiffnessUpdate:
-    """What the published algorithm came to.
+    """What the published algorithm came to."""
 
-    Parameters
-    ----------
-    curve : (n, 2) float
-        Displacement of the control point [m] and λ of the converged load steps, the dead load's first.
-    excess : (n,) float
-        Largest excess over Eq. 3 of the forces with which each of them converged, relative to its largest joint force.
-    status : tuple of str
-        How each load step ended; all but the last converged.
-    solves : int
-        Linear systems solved.
-    """
-
+    # (n, 2) displacement of the control point [m] and λ of the converged load steps, the dead load's first
     curve: Array
+    # (n,) largest excess over Eq. 3 of the forces with which each of them converged, relative to its largest joint
+    # force.
     excess: Array
-    status: tuple[UpdateStatus, ...]
-    solves: int
+    status: tuple[UpdateStatus, ...]  # how each load step ended; all but the last converged
+    solves: int  # linear systems solved
 
     @property
     def multiplier(self) -> float | None:
@@ -75,23 +66,13 @@ class StiffnessUpdate:
 
 @dataclass(frozen=True, eq=False)
 class ResultantWall:
-    """Rigid blocks joined by the resultants of their joints.
+    """Rigid blocks joined by the resultants of their joints."""
 
-    Parameters
-    ----------
-    law
-        Law of the joints.
-    jump : (3 nj, nd) sparse array
-        Opening, slip and relative rotation of the joints, all openings first, per movable freedom.
-    pins : (n_pins, nd) sparse array
-        Displacements that are held.
-    dead, live : (nd,) float
-        Loads [N, N, N m].
-    """
-
-    law: ResultantLaw
+    law: ResultantLaw  # law of the joints
+    # (3 nj, nd) opening, slip and relative rotation of the joints, all openings first, per movable freedom
     jump: csr_array
-    pins: csr_array
+    pins: csr_array  # (n_pins, nd) displacements that are held
+    # (nd,) loads [N, N, N m]
     dead: Array
     live: Array
 

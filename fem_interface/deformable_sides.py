@@ -318,9 +318,10 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
 @kernel
 def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSides, force: Array) -> None:
     """Subtract from forces ``(nd,)`` what the contacts' tractions ``(np,)`` do on the modes."""
-    rigid, _, owner, _, place, following, _, _ = geometry.nodes
-    turned, facets, _ = geometry.placed
-    area, contact, touched, nodal = geometry.area, geometry.contact, geometry.touched, geometry.tables.nodal
+    tables, nodes, _, _, _, area, placed, contact, touched = geometry
+    rigid, _, owner, _, place, following, _, _ = nodes
+    turned, facets, _ = placed
+    nodal = tables.nodal
     nodal[:] = 0.0
     for k in range(normal.size):
         if normal[k] == 0.0 and tangential[k] == 0.0:
@@ -348,4 +349,4 @@ def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSid
             nodal[place[after, 0]] -= c * hx + s * hy
             nodal[place[after, 1]] -= c * hy - s * hx
             fx, fy = -fx, -fy
-    to_modes(geometry.tables, force)
+    to_modes(tables, force)

@@ -10,9 +10,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from dem import limit_nonassociated
 from homog import homog
-from runningbond.limit import limit
+from runningbond.limit import limit, limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 

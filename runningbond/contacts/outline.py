@@ -21,36 +21,17 @@ FLAT = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """Blocks with rounded corners: arcs that touch their two sides an inset away from the corner.
+    """Blocks with rounded corners: arcs that touch their two sides an inset away from the corner."""
 
-    Parameters
-    ----------
-    blocks
-        The blocks, undeformed.
-    radius : (nv,) float
-        Radius of each corner's arc [m].
-    centre : (nv, 2) float
-        Its centre, from the centroid of its block [m].
-    normal : (nv, 2) float
-        Outward normal of the side that starts at the corner.
-    straight : (nv,) float
-        Length of that side between its arcs [m].
-    exterior : (nv,) float
-        Angle by which the outline turns at the corner [rad].
-    thickness : float
-        Out-of-plane thickness [m].
-    held : (nb,) bool
-        Blocks between which nothing can happen.
-    """
-
-    blocks: Blocks
-    radius: Array
-    centre: Array
-    normal: Array
-    straight: Array
-    exterior: Array
-    thickness: float
-    held: Mask
+    blocks: Blocks  # the blocks, undeformed
+    radius: Array  # (nv,) radius of each corner's arc [m]
+    centre: Array  # (nv, 2) its centre, from the centroid of its block [m]
+    normal: Array  # (nv, 2) outward normal of the side that starts at the corner
+    length: Array  # (nv,) length of that side [m],
+    straight: Array  # (nv,) and between its arcs
+    exterior: Array  # (nv,) angle by which the outline turns at the corner [rad]
+    thickness: float  # out-of-plane thickness [m]
+    held: Mask  # (nb,) blocks between which nothing can happen
 
     @classmethod
     def of(cls, scene: Scene) -> "Outline":
@@ -77,7 +58,7 @@ class Outline:
         if (straight < 0).any():
             raise SceneError("joint.inset", "must be less than half the shortest side of a block", scene.joint.inset)
         centre = start + inset[:, None] * run - radius[:, None] * normal - blocks.centroid[blocks.owner]
-        return cls(blocks, radius, centre, normal, straight, exterior, scene.thickness, scene.fixed)
+        return cls(blocks, radius, centre, normal, length, straight, exterior, scene.thickness, scene.fixed)
 
     @property
     def margin(self) -> float:

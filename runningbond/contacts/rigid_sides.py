@@ -27,73 +27,35 @@ ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 
 
 class Corners(NamedTuple):
-    """The corners of undeformed blocks, in the frame of the undeformed wall.
+    """The corners of undeformed blocks, in the frame of the undeformed wall."""
 
-    Parameters
-    ----------
-    centroid : (nb, 2) float
-        Centroid of each block [m].
-    freedom : (nv,) uint
-        First freedom of each corner's block.
-    centre : (nv, 2) float
-        Centre of each corner's arc, from the centroid [m].
-    normal : (nv, 2) float
-        Outward normal of the side that starts at the corner.
-    """
-
-    centroid: Array
-    freedom: NDArray[np.uint64]
-    centre: Array
-    normal: Array
+    centroid: Array  # (nb, 2) centroid of each block [m]
+    freedom: NDArray[np.uint64]  # (nv,) first freedom of each corner's block
+    centre: Array  # (nv, 2) centre of each corner's arc, from the centroid [m]
+    normal: Array  # (nv, 2) outward normal of the side that starts at the corner
 
 
 class Placed(NamedTuple):
-    """Where blocks and the arcs of their corners are in space.
+    """Where blocks and the arcs of their corners are in space."""
 
-    Parameters
-    ----------
-    blocks : (nb, 4) float
-        Cosine and sine of each block's rotation, and its centroid [m].
-    arcs : (nv, 4) float
-        Centre of each corner's arc [m] and outward normal of the side that starts there.
-    """
-
-    blocks: Array
-    arcs: Array
+    blocks: Array  # (nb, 4) cosine and sine of each block's rotation, and its centroid [m]
+    arcs: Array  # (nv, 4) centre of each corner's arc [m] and outward normal of the side that starts there
 
 
 class RigidSides(NamedTuple):
-    """What `gather_sides` and `scatter_sides` share.
+    """What `gather_sides` and `scatter_sides` share."""
 
-    Parameters
-    ----------
-    corners
-        The corners of the undeformed blocks.
-    radius, straight : (nv,) float
-        Radius of each corner's arc, and length of the side that starts there between its arcs [m].
-    ends : (np, 6) uint
-        Of each end of facing sides e and f the corners v and w, the far corners of e and f, and e and f.
-    inwards : (np,) float
-        1 where inwards is along the tangent of f, −1 where it is against it.
-    tilt : (np,) float
-        Tilt of e against f, less the turns of the blocks [rad].
-    area : (np,) float
-        Area the end stands for [m²].
-    placed
-        Written by `gather_sides`: the outlines in space.
-    contact : (np, 4) float
-        Written by `gather_sides`: point of contact [m] and normal of each end.
-    """
-
-    corners: Corners
+    corners: Corners  # the corners of the undeformed blocks
+    # (nv,) radius of each corner's arc, and length of the side that starts there between its arcs [m]
     radius: Array
     straight: Array
+    # (np, 6) of each end of facing sides e and f the corners v and w, the far corners of e and f, and e and f
     ends: NDArray[np.uint64]
-    inwards: Array
-    tilt: Array
-    area: Array
-    placed: Placed
-    contact: Array
+    inwards: Array  # (np,) 1 where inwards is along the tangent of f, −1 where it is against it
+    tilt: Array  # (np,) tilt of e against f, less the turns of the blocks [rad]
+    area: Array  # (np,) area the end stands for [m²]
+    placed: Placed  # written by `gather_sides`: the outlines in space
+    contact: Array  # (np, 4) written by `gather_sides`: point of contact [m] and normal of each end
 
 
 @kernel
@@ -218,8 +180,8 @@ def far_arcs(
 @kernel
 def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force: Array) -> None:
     """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
-    freedom, turned = geometry.corners.freedom, geometry.placed.blocks
-    ends, area, contact = geometry.ends, geometry.area, geometry.contact
+    corners, _, _, ends, _, _, area, placed, contact = geometry
+    freedom, turned = corners.freedom, placed.blocks
     for k in range(normal.size):
         if normal[k] == 0.0:
             continue

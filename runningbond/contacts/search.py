@@ -18,32 +18,16 @@ FASTEST_OPENING = math.sqrt(5)
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """Ends of facing sides, each array a row an end.
+    """Ends of facing sides, each array a row an end."""
 
-    Parameters
-    ----------
-    motion : (3 nb,) float
-        Motion of the blocks when these contacts were found.
-    margin : float
-        Distance up to which they were sought [m].
-    ends : (n, 6) uint
-        Corner of block b and of block a, far corners of their sides, and the sides (their first corners); b > a.
-    inwards : (n,) float
-        1 where inwards is along the tangent of a's side, −1 where it is against it.
-    tilt : (n,) float
-        Tilt of side against side, less the turns of the blocks [rad].
-    area : (n,) float
-        Area [m²] the end stands for.
-    glued : (n,) bool
-        Whether the end is of a joint of the undeformed wall and has not been lost since; none is when first found.
-    """
-
-    motion: Array
-    margin: float
+    motion: Array  # (3 nb,) motion of the blocks when these contacts were found
+    margin: float  # distance up to which they were sought [m]
+    # (n, 6) corner of block b and of block a, far corners of their sides, and the sides (their first corners); b > a
     ends: NDArray[np.uint64]
-    inwards: Array
-    tilt: Array
-    area: Array
+    inwards: Array  # (n,) 1 where inwards is along the tangent of a's side, −1 where it is against it
+    tilt: Array  # (n,) tilt of side against side, less the turns of the blocks [rad]
+    area: Array  # (n,) area [m²] the end stands for
+    # (n,) whether the end is of a joint of the undeformed wall and has not been lost since; none is when first found
     glued: Mask
 
     def __len__(self) -> int:
@@ -52,12 +36,7 @@ class Contacts:
     def chosen(self, rows: Mask | Indices) -> "Contacts":
         """Some of these."""
         return replace(
-            self,
-            ends=self.ends[rows],
-            inwards=self.inwards[rows],
-            tilt=self.tilt[rows],
-            area=self.area[rows],
-            glued=self.glued[rows],
+            self, **{name: getattr(self, name)[rows] for name in ("ends", "inwards", "tilt", "area", "glued")}
         )
 
     @property
@@ -152,9 +131,7 @@ def _area(outline: Outline, e: Indices, f: Indices) -> Array:
     Sides that meet later are given half the shorter one as a joint, which is what running bond gives them from the
     start. The area sets a penalty stiffness, on which a dry wall's resistance hardly depends.
     """
-    start, stop = outline.blocks.vertices, outline.blocks.vertices[outline.blocks.successor]
-    length = np.hypot(*(stop - start).T)
-    overlap = overlaps(outline, e, f)
+    length, overlap = outline.length, overlaps(outline, e, f)
     shared: Array = np.where(overlap > 0, overlap, np.minimum(length[e], length[f]) / 2)
     return shared * outline.thickness / 2
 
@@ -163,9 +140,8 @@ def overlaps(outline: Outline, e: Indices, f: Indices) -> Array:
     """Length of the joint that facing sides made on the undeformed wall, ``(n,)`` [m]; zero where they made none."""
     blocks = outline.blocks
     start, stop = blocks.vertices, blocks.vertices[blocks.successor]
-    run = stop - start
-    length = np.hypot(*run.T)
-    along = run[f] / length[f, None]
+    length = outline.length
+    along = (stop - start)[f] / length[f, None]
     first, last = (np.einsum("ij,ij->i", point[e] - start[f], along) for point in (stop, start))
     gap = np.abs([np.einsum("ij,ij->i", point[e] - start[f], outline.normal[f]) for point in (start, stop)])
     overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)

@@ -1,10 +1,10 @@
 """Bodies in motion: their system and its integration, load controls, rest and collapse."""
 
-from .collapse import U_CRIT, CollapseDetector, Criteria, Verdict, settle
+from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
 from .controls import Drive, drive, pushover_curve, ramp, settled_drive
 from .load_stepping import LoadSteps, load_steps
-from .run import Ledger, Observer, Run, Unstable, no_observer
+from .run import Observer, Run, Unstable, no_observer
 from .state import State
 from .system import BlockSystem, ContactSearch, Interface, Restraint, force_unit
 from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
@@ -12,19 +12,16 @@ from .time_step import block_frequency_squared, joint_shares, mass_factor, stabl
 __all__ = [
     "U_CRIT",
     "BlockSystem",
-    "CollapseDetector",
     "ContactSearch",
     "Criteria",
     "Drive",
     "Interface",
-    "Ledger",
     "LoadSteps",
     "Observer",
     "Restraint",
     "Run",
     "State",
     "Unstable",
-    "Verdict",
     "block_frequency_squared",
     "collapse_by_steps",
     "drive",

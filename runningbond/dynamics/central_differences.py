@@ -74,17 +74,9 @@ def _project(force: Array, freedom: Indices, basis: Array) -> None:
 
 
 @kernel
-def _update(
-    force: Array,
-    stiffness: Array,
-    viscosity: Array,
-    mobility: Array,
-    local: float,
-    dt: float,
-    motion: Array,
-    velocity: Array,
-    damped: Array,
-) -> None:
+def _update(modes: Modes, state: StateArrays, local: float, dt: float) -> None:
+    stiffness, viscosity, mobility = modes
+    motion, velocity, _, damped, force = state
     for i in range(motion.size):
         before = velocity[i]
         viscous = viscosity[i] * before
@@ -134,7 +126,6 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
         energy is spent than was supplied, the sum of the multipliers and the work of the live load. It looks at the
         energy every `LOOK` steps of the state's life, and stops where it does not add up.
     """
-    respond = _responder(gather, law, scatter)
 
     @kernel
     def step(
@@ -154,14 +145,29 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
         watch: Watch,
     ) -> tuple[int, bool, float, float]:
         stiffness, viscosity, mobility = modes
-        motion, velocity, history, damped, force = state
+        motion, velocity, history, _, force = state
+        freedom, basis = restraint
+        moved, opening, slip, normal, tangential = work
         already, given, most = watch
         response, total, worked, multiplier, before = 0.0, 0.0, 0.0, 0.0, 0.0
         if driven:
             for i in range(live.size):
                 response += live[i] * mobility[i] * live[i]
         for taken in range(steps):
-            respond(load, joint_viscosity, geometry, parameters, restraint, motion, history, force, work)
+            if freedom.size:
+                _restrained(motion, freedom, basis, moved)
+                gather(moved, geometry, opening, slip)
+            else:
+                gather(motion, geometry, opening, slip)
+            law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
+            if freedom.size:
+                force[:] = 0.0
+                scatter(normal, tangential, geometry, force)
+                _project(force, freedom, basis)
+                force += load
+            else:
+                force[:] = load
+                scatter(normal, tangential, geometry, force)
             if driven:
                 pushed, before = 0.0, 0.0
                 for i in range(live.size):
@@ -170,7 +176,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
                 multiplier = -pushed / response
                 for i in range(live.size):
                     force[i] += multiplier * live[i]
-            _update(force, stiffness, viscosity, mobility, local, dt, motion, velocity, damped)
+            _update(modes, state, local, dt)
             if driven:
                 # Local damping acts on the live load too; what it takes from the prescribed speed is given back.
                 after = 0.0
@@ -190,44 +196,3 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
         return steps, True, total, worked
 
     return step
-
-
-def _responder(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
-    """Compile what one step begins with: from motions to the forces on the modes."""
-
-    @kernel
-    def respond(
-        load: Array,
-        joint_viscosity: float,
-        geometry: Any,
-        parameters: Any,
-        restraint: tuple[Indices, Array],
-        motion: Array,
-        history: Array,
-        force: Array,
-        work: Work,
-    ) -> None:
-        """Write the forces on the modes: the load, less those of the joints' tractions."""
-        freedom, basis = restraint
-        moved, opening, slip, normal, tangential = work
-        if freedom.size:
-            _restrained(motion, freedom, basis, moved)
-            gather(moved, geometry, opening, slip)
-        else:
-            gather(motion, geometry, opening, slip)
-        law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
-        if freedom.size:
-            force[:] = 0.0
-            scatter(normal, tangential, geometry, force)
-            _project(force, freedom, basis)
-            force += load
-        else:
-            force[:] = load
-            scatter(normal, tangential, geometry, force)
-
-    return respond
-
-
-def work_arrays(n_modes: int, n_points: int) -> Work:
-    """Buffers for so many modes and points."""
-    return np.zeros(n_modes), np.zeros(n_points), np.zeros(n_points), np.zeros(n_points), np.zeros(n_points)

@@ -25,41 +25,14 @@ Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
 
 @dataclass(frozen=True)
 class Criteria:
-    """When a held load has been borne, and when it has brought the wall down.
+    """When a held load has been borne, and when it has brought the wall down."""
 
-    Parameters
-    ----------
-    rest
-        Unbalanced force, in the system's units, below which the wall is at rest.
-    collapse : float or (n,) float
-        Displacement [m] of any body, or of each, since the load was raised: the unit in which `CollapseDetector`
-        measures whether a wall that does not slow down is in collapse.
-    budget
-        Steps after which the question is left undecided.
-    interval
-        Steps between two looks.
-    """
-
+    # displacement [m] of any body, or ``(n,)`` of each, since the load was raised: the unit in which
+    # `CollapseDetector` measures whether a wall that does not slow down is in collapse
     collapse: float | Array
-    rest: float = 1e-5
-    budget: int = 2_000_000
-    interval: int = 200
-
-
-@dataclass(frozen=True)
-class HeldLoad:
-    """What a wall does under a load.
-
-    Parameters
-    ----------
-    verdict
-        Whether it rests or falls.
-    halfway : (nd,) float or None
-        Where it was half the way before it counted as falling.
-    """
-
-    verdict: Verdict
-    halfway: Array | None = None
+    rest: float = 1e-5  # unbalanced force, in the system's units, below which the wall is at rest
+    budget: int = 2_000_000  # steps after which the question is left undecided
+    interval: int = 200  # steps between two looks
 
 
 def settle(
@@ -72,7 +45,7 @@ def settle(
     sudden: bool = False,
 ) -> Verdict:
     """Hold a load until the wall rests or falls, and say which; see `hold_load`."""
-    return hold_load(run, state, multiplier, criteria, observe, sudden=sudden).verdict
+    return hold_load(run, state, multiplier, criteria, observe, sudden=sudden)[0]
 
 
 def hold_load(
@@ -83,8 +56,8 @@ def hold_load(
     observe: Observer = no_observer,
     *,
     sudden: bool = False,
-) -> HeldLoad:
-    """Hold a load until the wall rests or falls.
+) -> tuple[Verdict, Array | None]:
+    """Hold a load until the wall rests or falls; of a fall, also the motion ``(nd,)`` when it had come half as far.
 
     It rests when the unbalanced force is below the threshold at `CALM` looks in a row. It falls when it has moved far
     and does not slow down (`CollapseDetector`), so that a wall that slips and is caught is not mistaken for one in
@@ -104,13 +77,13 @@ def hold_load(
         observe(run, state, multiplier)
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
         if calm == CALM:
-            return HeldLoad("stable")
+            return "stable", None
         marks = detector.marks
         if detector.goes_on(run.system.farthest(state.motion - start, criteria.collapse), state.steps):
-            return HeldLoad("collapse", halfway)
+            return "collapse", halfway
         if detector.marks > marks:
             halfway = state.motion.copy()
-    return HeldLoad("undecided")
+    return "undecided", None
 
 
 class CollapseDetector:

@@ -73,7 +73,7 @@ def collapse_by_steps(
     budget
         Time steps after which a load is left undecided.
     observe
-        Called every so many steps.
+        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
 
     Returns
     -------
@@ -129,7 +129,10 @@ def _judge(
 ) -> Outcome:
     """Outcome of a search."""
     if result.borne is None:
-        return _never_at_rest(outcome, result)
+        if result.verdict == "collapse":
+            return replace(outcome, status="infeasible", message="collapses under its dead load")
+        why = "interrupted" if result.interrupted else "the budget ran out"
+        return replace(outcome, message=f"{why} before the wall came to rest under its dead load")
     curve, force = _curve(run, result), np.column_stack(run.forces(result.borne))[point_order]
     if result.interrupted:
         message = "interrupted: the bracket so far"
@@ -153,15 +156,6 @@ def _judge(
         message="largest load at rest and smallest in collapse, small displacements; "
         f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
     )
-
-
-def _never_at_rest(outcome: Outcome, result: LoadSteps) -> Outcome:
-    """Outcome of a wall that did not come to rest under its dead load."""
-    if result.interrupted:
-        return replace(outcome, message="interrupted before the wall came to rest under its dead load")
-    if result.verdict == "collapse":
-        return replace(outcome, status="infeasible", message="collapses under its dead load")
-    return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
 
 
 def _never_fallen(outcome: Outcome, result: LoadSteps, is_self_locking: Callable[[], bool]) -> Outcome:

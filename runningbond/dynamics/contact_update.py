@@ -22,15 +22,7 @@ MOST_STEPS = 1000
 
 
 class ContactUpdate:
-    """Keeps the contacts of states up to date as the bodies of a system move.
-
-    Parameters
-    ----------
-    system
-        The bodies.
-    search
-        How their contacts are found.
-    """
+    """Keeps the contacts of states up to date as the bodies of a system move."""
 
     def __init__(self, system: BlockSystem, search: ContactSearch) -> None:
         self._system, self._search = system, search
@@ -60,14 +52,7 @@ class ContactUpdate:
     def renew(self, state: State, interface: Interface, dt: float) -> Interface:
         """Find the contacts of a state anew, in place, hand their history on and return the interface on them.
 
-        Parameters
-        ----------
-        state
-            Its contacts are those of `interface`.
-        interface
-            The interface on the contacts so far.
-        dt
-            Time step [s].
+        The contacts so far are those of `interface`; steps are of `dt` [s].
         """
         search, before, history = self._search, contacts_of(state), state.history
         rested = search.resting(before, state.motion)

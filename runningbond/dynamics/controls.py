@@ -1,7 +1,7 @@
 """Load controls: a ramp, and work-conjugate displacement control; steps of constant load are in `load_stepping`."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -25,24 +25,12 @@ def ramp(run: Run, state: State, start: float, stop: float, steps: int, interval
 
 @dataclass(frozen=True, eq=False)
 class Drive:
-    """A wall pushed at a prescribed speed.
+    """A wall pushed at a prescribed speed."""
 
-    Parameters
-    ----------
-    curve : (n, 2) float
-        Displacement of the control point [m] and mean multiplier, piece by piece.
-    peak
-        Largest multiplier of the curve.
-    rate_error
-        Change of the peak when the speed was last halved; inf if it never settled.
-    state
-        The wall at the end.
-    """
-
-    curve: Array
-    peak: float
-    rate_error: float
-    state: State
+    curve: Array  # (n, 2) displacement of the control point [m] and mean multiplier, piece by piece
+    peak: float  # largest multiplier of the curve
+    rate_error: float  # change of the peak when the speed was last halved; inf if it never settled
+    state: State  # the wall at the end
 
 
 def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Drive:
@@ -68,7 +56,7 @@ def settled_drive(
         fast, steps = slow, 2 * steps
         slow = drive(run, start, distance, steps)
         error = abs(fast.peak - slow.peak)
-        slow = Drive(slow.curve, slow.peak, error, slow.state)
+        slow = replace(slow, rate_error=error)
         if error <= tolerance * abs(slow.peak):
             break
     return slow
@@ -81,10 +69,8 @@ def pushover_curve(
 
     Parameters
     ----------
-    run
-        The blocks.
-    scene
-        Their wall.
+    run, scene
+        The blocks, and their wall.
     distance
         Displacement of the control point at which to stop [m].
     speed
@@ -113,23 +99,10 @@ def _push(
     pace: tuple[int, int, int],
     measure: Callable[[Array], tuple[float, ...]],
 ) -> Array:
-    """Push a wall, in place, at a power of the live load, and follow its curve.
+    """Push a wall, in place, at a power of the live load at λ = 1 [W], until its first measure is a distance [m].
 
-    Parameters
-    ----------
-    distance
-        First measure [m] at which to stop.
-    power
-        Power of the live load at λ = 1 [W].
-    pace
-        Most rows of the curve, those over which the power is brought up, and steps to a row.
-    measure
-        What is measured of a motion ``(nd,)``, the displacement of the control point [m] first.
-
-    Returns
-    -------
-    (n, m + 1) float
-        The measures, and the mean multiplier since the last row.
+    The pace is most rows of the curve, those over which the power is brought up, and steps to a row. Returns what is
+    measured of the motion ``(nd,)`` in each row, and the mean multiplier since the last one, ``(n, m + 1)``.
     """
     rows, soft, steps = pace
     curve: list[tuple[float, ...]] = []

@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.scene import Array
 
-from .collapse import Criteria, HeldLoad, Verdict, hold_load, settle
+from .collapse import Criteria, Verdict, hold_load, settle
 from .controls import ramp
 from .run import Observer, Run, no_observer
 from .state import State
@@ -47,60 +47,38 @@ DOUBLED_BEYOND = 200
 
 @dataclass(eq=False)
 class LoadSteps:
-    """Result of a search by steps of constant load.
+    """Result of a search by steps of constant load."""
 
-    Parameters
-    ----------
-    lower, upper
-        Largest multiplier that the wall bore at rest, smallest that brought it down; None where none did.
-    verdict
-        Of the last load tried, or ``undecided`` where undecided loads ended the search; ``stable`` without `upper`
-        where it ended beyond the largest load or displacement.
-    borne
-        State at rest under `lower`; None if not even the dead load was borne.
-    fallen
-        State in the collapse under `upper`, or under the dead load.
-    fall_starts : list of (nd,) float
-        Where the wall was on its way to that collapse, the latest first: half the way before, then each rest.
-    rests : list of (multiplier, State)
-        Every state at rest, in order of load.
-    steps
-        Steps taken, on every path.
-    interrupted
-        Whether Ctrl-C ended it.
-    """
-
+    # largest multiplier that the wall bore at rest, smallest that brought it down; None where none did
     lower: float | None = None
     upper: float | None = None
+    # of the last load tried, or ``undecided`` where undecided loads ended the search; ``stable`` without `upper`
+    # where it ended beyond the largest load or displacement
     verdict: Verdict = "undecided"
-    borne: State | None = None
-    fallen: State | None = None
+    borne: State | None = None  # state at rest under `lower`; None if not even the dead load was borne
+    fallen: State | None = None  # state in the collapse under `upper`, or under the dead load
+    # (nd,) where the wall was on its way to that collapse, the latest first: half the way before, then each rest
     fall_starts: list[Array] = field(default_factory=list)
+    # every state at rest and its multiplier, in order of load
     rests: list[tuple[float, State]] = field(default_factory=list)
-    steps: int = 0
-    interrupted: bool = False
+    steps: int = 0  # steps taken, on every path
+    interrupted: bool = False  # whether Ctrl-C ended it
 
-    def add(self, trial: float, state: State, held: HeldLoad) -> None:
+    def add(self, trial: float, state: State, verdict: Verdict, halfway: Array | None) -> None:
         """Take note of a load and of the wall under it."""
-        self.verdict = held.verdict
+        self.verdict = verdict
         if self.verdict == "stable":
             self.lower, self.borne = trial, state
             self.rests.append((trial, state))
         elif self.verdict == "collapse":
             self.upper, self.fallen = trial, state
             rests = [rest.motion for _, rest in reversed(self.rests)]
-            self.fall_starts = rests if held.halfway is None else [held.halfway, *rests]
+            self.fall_starts = rests if halfway is None else [halfway, *rests]
 
 
 @dataclass(frozen=True)
 class UndecidedLoads:
-    """Undecided loads inside the bracket.
-
-    Parameters
-    ----------
-    loads
-        The loads.
-    """
+    """Undecided loads inside the bracket."""
 
     loads: tuple[float, ...] = ()
 
@@ -138,14 +116,10 @@ def load_steps(
 
     Parameters
     ----------
-    run
-        The system.
     first
         First step of the multiplier.
     tolerance
         Relative width of the bracket at which to stop; it stops as well where the criterion of rest sees no more.
-    criteria
-        When a load counts as borne.
     most
         Multiplier beyond which the search ends.
     farthest : float or (n,) float
@@ -153,8 +127,6 @@ def load_steps(
     loading
         Time in which the load grows by its first step, or by an eighth where that is more, in times that the wall
         takes to rest under the first step put on at once; `LOADING` or `LOADING_WEIGHTLESS` where none is given.
-    observe
-        Called at every look.
 
     Returns
     -------
@@ -209,11 +181,11 @@ def _search(
         growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
         share = (trial - result.lower) / max(first, growth * trial)
         trial = _raise(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
-        held = hold_load(run, state, trial, criteria, observe)
+        verdict, halfway = hold_load(run, state, trial, criteria, observe)
         taken = state.steps - result.borne.steps
         result.steps += taken
-        result.add(trial, state, held)
-        in_vain += taken if held.verdict == "undecided" else 0
+        result.add(trial, state, verdict, halfway)
+        in_vain += taken if verdict == "undecided" else 0
         if in_vain > UNDECIDED_BUDGETS * criteria.budget:
             return
         undecided = undecided.after(result, trial)
@@ -240,12 +212,9 @@ def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, toler
 
 
 def _raise(run: Run, state: State, start: float, stop: float, steps: float, pauses: float, criteria: Criteria) -> float:
-    """Raise the multiplier in some steps, in place; a wall without weight pauses, and falls where it cannot.
+    """Raise the multiplier in some steps, in place, and return what it reached.
 
-    Returns
-    -------
-    float
-        The multiplier that was reached.
+    A wall without weight pauses, and falls where it cannot.
     """
     if not run.system.weightless:
         ramp(run, state, start, stop, round(steps))

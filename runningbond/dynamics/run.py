@@ -1,7 +1,7 @@
 """A run: a system brought forward in time, at small or at finite displacements, with its energy ledger."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -11,7 +11,7 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array
 
-from .central_differences import stepper, work_arrays
+from .central_differences import stepper
 from .contact_update import ContactUpdate, contacts_of
 from .state import State
 from .system import BlockSystem, Interface
@@ -48,12 +48,7 @@ class Ledger:
 class Unstable(ArithmeticError):
     """A run that spent more energy than it was supplied with, as too long a time step makes out of nothing.
 
-    Parameters
-    ----------
-    steps
-        Steps after which that was found.
-    step, safe
-        Time step that was taken, and one that is safe [s].
+    It says after how many steps, and the time step that was taken and one that is safe [s].
     """
 
     def __init__(self, steps: int, step: float, safe: float) -> None:
@@ -96,20 +91,20 @@ class Run:
         self.safe_step = stable_step(interface.frequency_squared, self.viscous, self.local)
         self.dt = self._given_step or self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(interface.frequency_squared) / self.dt
-        self._kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._arrays = (interface.geometry, interface.law.parameters, self._modes, tuple(self.system.restraint))
-        self._work = work_arrays(len(self.system.mass), interface.law.points)
+        kernels = (interface.gather, interface.law.kernel, interface.scatter)
+        self._hold, self._drive = stepper(*kernels, driven=False), stepper(*kernels, driven=True)
+        # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
+        restraint = tuple(self.system.restraint)
+        self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
+        self._work = (np.zeros(len(self.system.mass)), *(np.zeros(interface.law.points) for _ in range(4)))
 
     def _return_to(self, state: State) -> None:
         """Go on with the interface on the contacts of a state, which may be another one than before."""
         if self._update is not None and self._contacts is not (contacts := contacts_of(state)):
             self._take_up(self._update.interface_on(contacts), contacts)
 
-    def _pieces(self, state: State, steps: int) -> Iterable[int]:
+    def _pieces(self, state: State, steps: int, update: ContactUpdate) -> Iterator[int]:
         """Numbers of steps to take one after the other, on contacts that are good for so many."""
-        return (steps,) if self._update is None else self._pieces_on_contacts(state, steps, self._update)
-
-    def _pieces_on_contacts(self, state: State, steps: int, update: ContactUpdate) -> Iterator[int]:
         while steps > 0:
             self._return_to(state)
             if update.is_due(state):
@@ -149,15 +144,15 @@ class Run:
     def _advance(self, state: State, load: Array, speed: float | None, steps: int, given: float) -> float:
         """Take steps under a constant load, driven besides where there is a speed; the sum of the multipliers."""
         total = 0.0
-        for piece in self._pieces(state, steps):
-            step = stepper(*self._kernels, speed is not None)
-            before = float(load @ state.motion)
+        for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
+            step = self._hold if speed is None else self._drive
+            before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             coefficients = (piece, self.dt, self.local, self._viscosity, load, self.system.live, speed or 0.0)
             taken, stable, multipliers, work = step(*coefficients, *self._arrays, arrays, self._work, watch)
             total += multipliers
-            state.external += float(load @ state.motion) - before + work
+            state.external += float(load.dot(state.motion)) - before + work
             state.steps += taken
             state.time += taken * self.dt
             if not stable:
@@ -186,14 +181,6 @@ class Run:
         # At rest: the viscosity, of no account then, would need the rate of a step that is not taken.
         law.kernel(opening, slip, law.parameters, state.history.copy(), 0.0, normal, tangential)
         return opening, slip, normal, tangential
-
-    def motion_of_blocks(self, state: State) -> Array:
-        """Translation and rotation of each block, ``(nb, 3)`` [m, m, rad]."""
-        return self.system.motion_of_blocks(state.motion)
-
-    def velocity_of_blocks(self, state: State) -> Array:
-        """Velocity and spin of each block half a step ago, ``(nb, 3)`` [m/s, m/s, rad/s]."""
-        return self.system.motion_of_blocks(state.velocity)
 
     def ledger(self, state: State) -> Ledger:
         """Account for the work of the loads so far."""

@@ -16,42 +16,22 @@ PLASTIC_SLIP = "plastic slip"
 
 @dataclass(eq=False)
 class State:
-    """Where a system is: brought forward in place by the integrator.
+    """Where a system is: brought forward in place by the integrator."""
 
-    Parameters
-    ----------
-    motion, velocity : (nd,) float
-        Modal displacement, and velocity half a step behind.
-    history : (rows, np) float
-        History of the joint points, as their law keeps it.
-    damped : (nd,) float
-        Work done against damping [J], mode by mode.
-    unbalanced : (nd,) float
-        Force of the last step.
-    contacts
-        The contacts that the history is of, a column each; None at small displacements, which know but one set.
-    external : float
-        Work of the loads [J].
-    steps : int
-        Steps taken.
-    time : float
-        Time since the start [s].
-    supplied : (1,) float
-        Largest energy that was supplied at any look at it [J].
-    friction, absorbed : float
-        Work spent on earlier contacts and on their viscosity [J], up to when the present ones were found.
-    """
-
+    # (nd,) modal displacement, and velocity half a step behind
     motion: Array
     velocity: Array
-    history: Array
-    damped: Array
-    unbalanced: Array
+    history: Array  # (rows, np) history of the joint points, as their law keeps it
+    damped: Array  # (nd,) work done against damping [J], mode by mode
+    unbalanced: Array  # (nd,) force of the last step
+    # the contacts that the history is of, a column each; None at small displacements, which know but one set
     contacts: Contacts | None = None
-    external: float = 0.0
-    steps: int = 0
-    time: float = 0.0
+    external: float = 0.0  # work of the loads [J]
+    steps: int = 0  # steps taken
+    time: float = 0.0  # time since the start [s]
+    # (1,) largest energy that was supplied at any look at it [J]
     supplied: Array = field(default_factory=lambda: np.zeros(1))
+    # work spent on earlier contacts and on their viscosity [J], up to when the present ones were found
     friction: float = 0.0
     absorbed: float = 0.0
 

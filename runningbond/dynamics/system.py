@@ -23,18 +23,10 @@ Kernel: TypeAlias = Callable[..., Any]
 
 
 class Restraint(NamedTuple):
-    """Bodies whose motion is restrained at points, in coordinates that leave the restraint satisfied.
+    """Bodies whose motion is restrained at points, in coordinates that leave the restraint satisfied."""
 
-    Parameters
-    ----------
-    freedom : (nr, 3) int
-        Freedoms of each such body.
-    basis : (nr, 3, 3) float
-        Motion of the body per coordinate, mass-orthogonal; columns that are not needed are zero.
-    """
-
-    freedom: Indices
-    basis: Array
+    freedom: Indices  # (nr, 3) freedoms of each such body
+    basis: Array  # (nr, 3, 3) motion of the body per coordinate, mass-orthogonal; columns that are not needed are zero
 
     @classmethod
     def none(cls) -> "Restraint":
@@ -44,28 +36,16 @@ class Restraint(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """Joint points between bodies.
+    """Joint points between bodies."""
 
-    Parameters
-    ----------
-    law
-        Law of the joint points.
-    area : (np,) float
-        Area that each joint point stands for [m²].
-    gather, scatter
-        Compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry,
-        force)``; the latter subtracts the forces of the joints' tractions from `force`.
-    geometry
-        The arrays that the two kernels share: a named tuple of the kernels' module.
-    frequency_squared : float
-        Largest ω² [1/s²] of any body against its share of its joints: an upper bound of the system's.
-    """
-
-    law: KernelLaw
-    area: Array
+    law: KernelLaw  # law of the joint points
+    area: Array  # (np,) area that each joint point stands for [m²]
+    # compiled kernels ``gather(motion, geometry, opening, slip)`` and ``scatter(normal, tangential, geometry,
+    # force)``; the latter subtracts the forces of the joints' tractions from `force`
     gather: Kernel
     scatter: Kernel
-    geometry: NamedTuple
+    geometry: NamedTuple  # the arrays that the two kernels share: a named tuple of the kernels' module
+    # largest ω² [1/s²] of any body against its share of its joints: an upper bound of the system's
     frequency_squared: float
 
     def jumps(self, motion: Array) -> tuple[Array, Array]:
@@ -99,52 +79,24 @@ class ContactSearch(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class BlockSystem:
-    """Bodies in motion, with an interface between them: blocks, or the pieces of blocks that may crack.
+    """Bodies in motion, with an interface between them: blocks, or the pieces of blocks that may crack."""
 
-    Parameters
-    ----------
-    mass : (nd,) float
-        Modal masses; inf where a mode is held.
-    stiffness : (nd,) float
-        Modal stiffness of the bodies themselves [N/m]; zero for rigid modes.
-    viscosity : (nd,) float
-        Modal viscous damping coefficient [N s/m].
-    dead, live : (nd,) float
-        Modal loads [N], the live one for λ = 1.
-    control : (nd,) float
-        Displacement of the control point along the live load, per modal motion.
-    force_unit : (nd,) float
-        Force of each mode against which its unbalanced one is measured; inf where a mode is held.
-    rigid : (n, 3) int
-        Where in the motion each body's translations along x and y [m] and its rotation [rad] stand.
-    owner : (n,) int
-        Block that each body is part of.
-    restraint
-        Bodies held at points.
-    interface
-        What holds them together: at finite displacements that of the undeformed contacts.
-    contacts
-        How contacts are found anew as bodies move; None at small displacements.
-    block_motion : (3 nb, 3 n) sparse array
-        Rigid motion of the blocks per rigid motion of the bodies; None where each body is a block.
-    source
-        What it was set up from, for observers: the wall in modal coordinates where blocks deform.
-    """
-
-    mass: Array
-    stiffness: Array
-    viscosity: Array
+    mass: Array  # (nd,) modal masses; inf where a mode is held
+    stiffness: Array  # (nd,) modal stiffness of the bodies themselves [N/m]; zero for rigid modes
+    viscosity: Array  # (nd,) modal viscous damping coefficient [N s/m]
+    # (nd,) modal loads [N], the live one for λ = 1
     dead: Array
     live: Array
-    control: Array
-    force_unit: Array
-    rigid: Indices
-    owner: Indices
-    restraint: Restraint
-    interface: Interface
-    contacts: ContactSearch | None = None
+    control: Array  # (nd,) displacement of the control point along the live load, per modal motion
+    force_unit: Array  # (nd,) force of each mode against which its unbalanced one is measured; inf where a mode is held
+    rigid: Indices  # (n, 3) where in the motion each body's translations along x and y [m] and its rotation [rad] stand
+    owner: Indices  # (n,) block that each body is part of
+    restraint: Restraint  # bodies held at points
+    interface: Interface  # what holds them together: at finite displacements that of the undeformed contacts
+    contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
+    # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
     block_motion: csr_array | None = None
-    source: object = None
+    source: object = None  # what it was set up from, for observers: the wall in modal coordinates where blocks deform
 
     @property
     def freedoms(self) -> int:
@@ -201,8 +153,6 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
 
     Parameters
     ----------
-    scene
-        The wall.
     block : (nd,) int
         Block of each mode.
     mass : (nd,) float

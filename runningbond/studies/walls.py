@@ -16,12 +16,12 @@ from functools import cache, cached_property
 import numpy as np
 from scipy.linalg import eigh
 
-from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.limit import limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
 

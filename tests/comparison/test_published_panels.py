@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dem import LimitState, limit_nonassociated, limit_state
 from runningbond.compare import published_scene
-from runningbond.limit import equilibrium, limit
+from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state
 from runningbond.limit.nonassociated import search
 from runningbond.scene import Scene, scene_from_dict
 from tests.walls import content

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from dem import limit_nonassociated, limit_state
 from runningbond.compare import published_scene
-from runningbond.limit import equilibrium
+from runningbond.limit import equilibrium, limit_nonassociated, limit_state
 
 WALLS = ("wall-w1", "wall-w2", "wall-w3")
 

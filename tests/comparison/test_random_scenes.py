@@ -13,10 +13,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from dem import dead_load, jump_operator, limit_nonassociated, live_load, movable_freedoms, pin_operator
 from runningbond.commands.command_line import command
 from runningbond.joints import joint_points, point_strength
-from runningbond.limit import limit
+from runningbond.limit import limit, limit_nonassociated
+from runningbond.limit.kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from tests.scenes import spoilt, walls
 from tests.walls import write_toml

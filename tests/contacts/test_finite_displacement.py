@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from dem import jump_operator, mass_matrix_diagonal
 from dem.dynamic import finite_pushover
 from dem.finite_system import finite_system
 from dem.rigid_system import contact_points, rigid_system
@@ -21,6 +20,7 @@ from runningbond.contacts.search import find_contacts, jumps
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.contact_update import contacts_of
 from runningbond.joints import joint_stiffness
+from runningbond.limit.kinematics import jump_operator, mass_matrix_diagonal
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
 from tests.dynamics.test_dynamics import GRAVITY, STIFF, block_on_base
 from tests.limit.test_limit import pile, rectangle

@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem import jump_operator, mass_matrix_diagonal, pin_operator
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import (
@@ -32,6 +31,7 @@ from runningbond.joints.compiled import kernel
 from runningbond.joints.law import FRICTION_WORK, KernelLaw
 from runningbond.joints.wall_law import kernel_law
 from runningbond.limit import limit
+from runningbond.limit.kinematics import jump_operator, mass_matrix_diagonal, pin_operator
 from runningbond.scene import Array, JointMaterial, Mortar, Scene, Stiffness
 from tests.limit.test_limit import pile, rectangle
 from tests.walls import panel
@@ -261,7 +261,7 @@ def test_pinned_corners_do_not_move(kind: str) -> None:
     run = Run(rigid_system(scene))
     state = State.at_rest(run.system)
     run.hold(state, 5000.0, 3000)
-    motion = run.motion_of_blocks(state)
+    motion = run.system.motion_of_blocks(state.motion)
     assert np.abs(motion).max() > 1e-6
     assert np.abs(pin_operator(scene) @ motion.ravel()).max() < 1e-12 * np.abs(motion).max() + 1e-18
 
@@ -289,14 +289,14 @@ def test_stick_and_slip_under_a_harmonic_force() -> None:
     assert settle(run, state, 0.8 * (1 - 1e-6), Criteria(collapse=1.0, rest=1e-9)) == "stable"
     state.velocity[:] = 0.0
     weight, interval = GRAVITY, 20
-    start = run.motion_of_blocks(state)[0, 0]
+    start = run.system.motion_of_blocks(state.motion)[0, 0]
     pieces = round(10 / (interval * run.dt))
     step = 10 / (pieces * interval)
     run = Run(rigid_system(scene), local=0.0, viscous=0.1, dt=step)
     for piece in range(pieces):
         t = (piece + 0.5) * interval * step
         run.hold(state, 8 * math.cos(t) / weight, interval)
-    assert run.motion_of_blocks(state)[0, 0] - start == pytest.approx(-0.00869717, abs=2e-8)
+    assert run.system.motion_of_blocks(state.motion)[0, 0] - start == pytest.approx(-0.00869717, abs=2e-8)
 
 
 def test_coulomb_oscillator_turns_at_the_known_points_and_sticks() -> None:
@@ -431,7 +431,7 @@ def test_observers_see_every_look_and_ctrl_c_leaves_what_was_found() -> None:
     seen: list[float] = []
 
     def stop(run: Run, state: State, multiplier: float) -> None:
-        assert run.motion_of_blocks(state).shape == (len(scene.blocks), 3)
+        assert run.system.motion_of_blocks(state.motion).shape == (len(scene.blocks), 3)
         seen.append(multiplier)
         if multiplier > 0.25:
             raise KeyboardInterrupt

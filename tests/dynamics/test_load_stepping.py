@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from dem.rigid_system import rigid_system
 from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
-from runningbond.dynamics.collapse import HeldLoad, Verdict
+from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.load_stepping import RESOLVED, _raise
+from runningbond.scene import Array
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
 
@@ -26,10 +27,10 @@ def searched(answer: Callable[[float], Verdict], tolerance: float = 0.005) -> tu
     """Search on a wall that gives an answer to each load, and the loads that were tried."""
     tried: list[float] = []
 
-    def hold_load(run: Run, state: object, multiplier: float, *_: object) -> HeldLoad:
+    def hold_load(run: Run, state: object, multiplier: float, *_: object) -> tuple[Verdict, Array | None]:
         tried.append(multiplier)
         assert len(tried) < 500, "no end"
-        return HeldLoad(answer(multiplier))
+        return answer(multiplier), None
 
     module = "runningbond.dynamics.load_stepping"
     settle = patch(f"{module}.settle", return_value="stable")
@@ -133,13 +134,13 @@ def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farthe
     """Rests move the block by ten times what falls do: the live load does positive work on it all the same."""
     push = np.sign(BLOCK.system.live)
 
-    def hold_load(run: Run, state: State, multiplier: float, *_: object) -> HeldLoad:
+    def hold_load(run: Run, state: State, multiplier: float, *_: object) -> tuple[Verdict, Array | None]:
         if multiplier < 0.3:
             state.motion += 0.01 * push
-            return HeldLoad("stable")
+            return "stable", None
         halfway = state.motion + 0.0005 * push
         state.motion += 0.001 * push
-        return HeldLoad("collapse", halfway)
+        return "collapse", halfway
 
     scene, module = panel(**SIZE), "runningbond.dynamics.load_stepping"
     settle = patch(f"{module}.settle", return_value="stable")

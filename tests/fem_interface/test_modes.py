@@ -146,4 +146,4 @@ def test_pinned_corners_do_not_move(kind: str, count: ModeCount) -> None:
         pinned = np.argmin(np.hypot(*(found.mesh.points[nodes] - point).T))
         assert abs(u[nodes][pinned] @ direction) < 1e-12 * np.abs(u).max()
     assert np.abs(u).max() > 0
-    assert run.motion_of_blocks(state).shape == (len(scene.blocks), 3)
+    assert run.system.motion_of_blocks(state.motion).shape == (len(scene.blocks), 3)

@@ -13,7 +13,6 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementTriP1, MeshTri
 
-from dem import jump_operator, mass_matrix_diagonal
 from dem.rigid_system import contact_points
 from fem_interface import joint_elements, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
 from fem_interface.element_order import modal_wall
@@ -21,6 +20,7 @@ from fem_interface.modes import rigid_motions
 from fem_interface.templates import nodes_of, triangles_of
 from meshing import wall_mesh
 from runningbond.joints import JointPoints, Rule, gauss, lobatto, wall_points
+from runningbond.limit.kinematics import jump_operator, mass_matrix_diagonal
 from runningbond.scene import Array, SceneError
 from tests.walls import courses, panel
 

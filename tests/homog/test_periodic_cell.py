@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
-from dem import jump_operator
 from homog import StrengthDomain, elastic_moduli
 from runningbond.joints import JointPoints, joint_points, lobatto, point_strength
+from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Array, Bond, JointMaterial, Joints
 from tests.walls import panel
 

@@ -10,20 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import approx_fprime
 
-from dem import (
+from runningbond.joints import joint_points
+from runningbond.limit import equilibrium, is_self_locking, limit, limit_nonassociated, limit_state
+from runningbond.limit.associated import GLUED
+from runningbond.limit.force_program import ForceSolution
+from runningbond.limit.kinematics import (
     dead_load,
     jump_operator,
-    limit_nonassociated,
-    limit_state,
     live_load,
     mass_matrix_diagonal,
     movable_freedoms,
     pin_operator,
 )
-from runningbond.joints import joint_points
-from runningbond.limit import equilibrium, is_self_locking, limit
-from runningbond.limit.associated import GLUED
-from runningbond.limit.force_program import ForceSolution
 from runningbond.limit.nonassociated import Certificate, certified_loads
 from runningbond.scene import (
     Array,

@@ -12,14 +12,13 @@ import pytest
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
-from dem import limit_nonassociated
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.model import fem
 from homog import homog
 from runningbond.commands.command_line import command
 from runningbond.compare.models import MODELS
-from runningbond.limit import equilibrium, limit
+from runningbond.limit import equilibrium, limit, limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError, read_scene
 from tests.scenes import drawn, outlines, small_walls, write_drawing

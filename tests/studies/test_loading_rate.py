@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, State, drive, load_steps, settle
@@ -11,6 +10,7 @@ from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING
 from runningbond.dynamics.run import LOCAL
+from runningbond.limit import limit_nonassociated
 from runningbond.scene import Array
 from runningbond.studies.stability.loading_rate import BRACKET, at_no_speed, excess, order, push_row, ramp_row, step_row
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall

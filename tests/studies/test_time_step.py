@@ -6,13 +6,13 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from dem import jump_operator
 from dem.rigid_system import contact_points, rigid_system
 from fem_interface.modes import ModeCount
 from fem_interface.system import fem_system
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
 from runningbond.dynamics.central_differences import LOOK
+from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Scene
 from runningbond.studies.stability.time_step import (
     GROWTH,

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, load_steps
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING_WEIGHTLESS
+from runningbond.limit import limit_nonassociated
 from runningbond.studies import Rows
 from runningbond.studies.stability.verdict import (
     DEFAULT,

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dem import jump_operator
 from dem.stiffness_update import resultant_wall
 from runningbond.joints import wall_points, wall_strength
 from runningbond.joints.stiffness import joint_stiffness
+from runningbond.limit.kinematics import jump_operator
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dem import jump_operator
 from fem_interface import ModeCount, nodal_jump
 from fem_interface.element_order import modal_wall
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
+from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Array, Indices, Scene
 
 RULE = lobatto(3)

@@ -9,7 +9,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem import limit_nonassociated
 from dem.dynamic import dem_dynamic, finite_pushover
 from dem.rigid_system import rigid_system
 from dem.static import dem_static
@@ -21,7 +20,7 @@ from homog import elastic_moduli, homog
 from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.joints import joint_stiffness
-from runningbond.limit import limit
+from runningbond.limit import limit, limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, Stiffness
 

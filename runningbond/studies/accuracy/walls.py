@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Literal, TypeAlias
 
-from dem import limit_nonassociated
 from homog import elastic_moduli
 from runningbond.compare.published import published_scene
 from runningbond.joints import joint_stiffness
+from runningbond.limit import limit_nonassociated
 from runningbond.scene import BlockMaterial, Scene, scene_from_dict
 from runningbond.studies.walls import inset_wall
 

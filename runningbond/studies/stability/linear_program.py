@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from dem import limit_nonassociated
 from runningbond.compare.published import published_scene
-from runningbond.limit import equilibrium, limit
+from runningbond.limit import equilibrium, limit, limit_nonassociated
 from runningbond.limit.associated import LimitState
 from runningbond.limit.force_program import coulomb, solve_forces
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene

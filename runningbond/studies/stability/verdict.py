@@ -15,12 +15,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dem import limit_nonassociated
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import Criteria, Run, load_steps, ramp, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
+from runningbond.limit import limit_nonassociated
 from runningbond.scene import Array, Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import looks_of
