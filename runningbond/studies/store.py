@@ -21,8 +21,7 @@ from runningbond.results import write_atomically
 from .apart import measure_apart
 from .study import FAILURE, Case, Row, Rows, Study
 
-Where: TypeAlias = tuple[str, Case]
-"""The name of a part, and one of its cases."""
+Where: TypeAlias = tuple[str, Case]  # the name of a part, and one of its cases
 
 
 def run_study(

@@ -13,17 +13,13 @@ from matplotlib.figure import Figure
 
 from runningbond.compare.table import Sheet
 
-Case: TypeAlias = tuple[Any, ...]
-"""Words and numbers that tell what is measured."""
+Case: TypeAlias = tuple[Any, ...]  # words and numbers that tell what is measured
 
 Row: TypeAlias = dict[str, Any]
 """A case and what was measured of it, by columns: words, numbers, None, and lists, which only charts read."""
 
-Rows: TypeAlias = Mapping[str, Sequence[Row]]
-"""Rows of a study, by the names of its parts."""
-
-FAILURE = "failure"
-"""Column that holds the words of the error in which a case ended, if it did."""
+Rows: TypeAlias = Mapping[str, Sequence[Row]]  # rows of a study, by the names of its parts
+FAILURE = "failure"  # column that holds the words of the error in which a case ended, if it did
 
 PACKAGE = Path(__file__).parents[1]
 

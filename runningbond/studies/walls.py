@@ -30,14 +30,9 @@ from .study import Row
 INSET = 0.02
 """Distance of contacts from the ends of the joints [m] with which the load multiplier of W1 to W3 is unique."""
 
-RAMP = 4
-"""Length of a ramp to a load, in times that the wall took to rest under its weight."""
-
-SLIDES, TOPPLES = 0.4, 0.5
-"""tan φ of the block that slides, and b/h of the one that topples."""
-
-HOLDS = 1e15
-"""Cohesion and tensile strength [Pa] that no motion of a study comes near."""
+RAMP = 4  # length of a ramp to a load, in times that the wall took to rest under its weight
+SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the block that slides, and b/h of the one that topples
+HOLDS = 1e15  # cohesion and tensile strength [Pa] that no motion of a study comes near
 
 
 def one_block(width: float, height: float, friction: float, stiffness: float) -> Scene:

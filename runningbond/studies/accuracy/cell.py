@@ -14,8 +14,7 @@ from fem_interface.element_order import modal_wall
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
 from runningbond.scene import Array, Indices, Scene
 
-RULE = lobatto(3)
-"""Exact for the squared jumps of rigid blocks."""
+RULE = lobatto(3)  # exact for the squared jumps of rigid blocks
 
 
 def rigid_cell(scene: Scene) -> tuple[Array, int]:

@@ -26,8 +26,7 @@ RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.
 
 LEGEND_ROWS = 3
 
-FREE = "homog"
-"""Model that is not drawn: a closed form costs nothing."""
+FREE = "homog"  # model that is not drawn: a closed form costs nothing
 
 DRIVEN = "driven, steps"
 

@@ -13,13 +13,13 @@ from runningbond.studies.walls import INSET
 
 from .charts import CHARTS
 from .measure import CHEAP, REFERENCE, RUNS, machine, measure
-from .parameters import COLLAPSE, PARAMETERS, settings_of
+from .parameters import COLLAPSE, IN_MOTION, PARAMETERS, settings_of
 from .tables import fits, tables
 from .walls import accuracy_walls, all_walls, growth_walls, stiffness_walls
 
 ASKED = {
     "collapse": ("homog", *COLLAPSE),
-    "turned block": ("dem-dynamic", "fem"),
+    "turned block": IN_MOTION,
     "compression": ("homog", "dem-static", "fem"),
     "shear": ("homog", "dem-static", "fem"),
 }
@@ -68,7 +68,7 @@ def _varied(wall: str, model: str) -> Iterator[Case]:
     for parameter in PARAMETERS:
         if model in parameter.models and wall in parameter.walls:
             for setting in parameter.settings:
-                if setting not in parameter.expensive or wall in parameter.cheap:
+                if setting not in parameter.expensive or wall in parameter.walls[:2]:
                     yield wall, model, parameter.name, setting
 
 

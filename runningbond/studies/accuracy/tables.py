@@ -7,21 +7,21 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from runningbond.compare.models import MODELS
 from runningbond.compare.table import Sheet
 from runningbond.joints import joint_stiffness
 from runningbond.studies import Edge, Row, Rows
 from runningbond.studies.apart import TOO_LONG
-from runningbond.studies.charts import MODEL_LOOKS
 
 from .measure import REFERENCE
-from .parameters import VARIED
+from .parameters import IN_MOTION, VARIED
 from .walls import all_walls
 
 KINDS = {
-    "any": tuple(MODEL_LOOKS),
+    "any": tuple(MODELS),
     "without a path": (REFERENCE, "limit-nonassociated"),
-    "follows a path": ("dem-static", "dem-dynamic", "fem"),
-    "in motion": ("dem-dynamic", "fem"),
+    "follows a path": ("dem-static", *IN_MOTION),
+    "in motion": IN_MOTION,
 }
 """Models of which the cheapest is looked for."""
 
@@ -128,7 +128,7 @@ def cheapest(
 def models_table(rows: Rows) -> Sheet:
     """Every model as it is, on the walls whose answer is known."""
     body, result = [], records(rows)
-    for model in MODEL_LOOKS:
+    for model in MODELS:
         if (record := result.get((model, "", ""))) is None:
             continue
         errors, ratios = record.all("error"), record.all("ratio")
@@ -194,7 +194,7 @@ def others_table(rows: Rows) -> Sheet:
 def growth(rows: Rows) -> dict[str, list[Row]]:
     """Rows of the growth study that were timed, by model, in order of size."""
     timed = sorted((row for row in rows["growth"] if row.get("cpu_s") is not None), key=lambda row: int(row["blocks"]))
-    return {model: own for model in MODEL_LOOKS if (own := [row for row in timed if row["model"] == model])}
+    return {model: own for model in MODELS if (own := [row for row in timed if row["model"] == model])}
 
 
 def exponent(rows: Sequence[Row]) -> float | None:

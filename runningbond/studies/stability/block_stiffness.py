@@ -78,8 +78,7 @@ def fits(rows: Rows) -> list[Edge]:
     ]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Step, λ and shift of frequencies against the blocks' stiffness."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(11, 4.8)
     steps, loads, shifts = figure.subplots(1, 3)
     looks, own = looks_of(SCALINGS), rows[PART]
@@ -114,6 +113,6 @@ STUDY = Study(
     beyond="many times as many steps without scaling; with one factor for all deformable modes blocks would vibrate in "
     "the band in which they move as wholes, and `fem` does not offer it",
     parts={PART: Part(("E [Pa]", "masses scaled"), [(E, kind) for E in YOUNG for kind in SCALINGS], measure)},
-    charts=[Chart("block-stiffness", "Time step, λ and lowest frequencies of blocks from soft to stiff", draw)],
+    charts=[Chart("block-stiffness", "Time step, λ and lowest frequencies of blocks from soft to stiff", _draw)],
     fits=fits,
 )

@@ -30,14 +30,12 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS, looks_of
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, known_wall
 
-LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)
-"""Local damping α."""
+LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)  # local damping α
 
 VISCOSITIES = (0.0, 0.01, 0.03, VISCOUS, 0.3, 1.0, 3.0)
 """Damping ratio ξ of the joints' viscosity at the highest frequency."""
 
-MASS_RATES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
-"""Rates c of mass-proportional damping [1/s]."""
+MASS_RATES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # rates c of mass-proportional damping [1/s]
 
 WALLS, BESIDE, BUDGET, SHORT, CLOSE = (SLIDING, W1), 0.02, 300_000, 20_000, 0.002
 """Walls of the maps; share of λ_c by which loads lie below and above it; steps after which a verdict is given up, and
@@ -177,8 +175,7 @@ def fits(rows: Rows) -> list[Edge]:
     return [*right, Edge("wrong verdicts with local damping and the joints' viscosity", wrong)]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Maps of steps until the verdict, and mass-proportional damping."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(10, 6)
     grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 0.95))
     norm = LogNorm(min(row["steps"] for row in rows[MAPS] if row["verdict"] == "right"), BUDGET)
@@ -243,7 +240,7 @@ STUDY = Study(
         ),
     },
     charts=[
-        Chart("damping", "Steps until the verdict over local and viscous damping, and over mass-proportional", draw)
+        Chart("damping", "Steps until the verdict over local and viscous damping, and over mass-proportional", _draw)
     ],
     fits=fits,
 )

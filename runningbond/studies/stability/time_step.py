@@ -30,11 +30,8 @@ STEPS, STEPS_DAMPED, PIECE = 4000, 100_000, 20
 SMALL, GROWN, CLOSE = 1e-20, 1e6, 1e-4
 """Size of a vibration at its start, growth by which it is told from one that beats, relative accuracy of an edge."""
 
-TIMES = (0.8, 0.9, 0.99, 1.001, 1.01, 1.03, 1.06, 1.1)
-"""Time steps at which growth is measured, in critical ones."""
-
-MUCH = 1.05
-"""Critical steps that a user's run is given."""
+TIMES = (0.8, 0.9, 0.99, 1.001, 1.01, 1.03, 1.06, 1.1)  # time steps at which growth is measured, in critical ones
+MUCH = 1.05  # critical steps that a user's run is given
 
 KINDS: dict[str, tuple[ModeCount, bool]] = {
     "rigid blocks, 3 modes": (3, True),
@@ -152,8 +149,7 @@ def run_row(model: str) -> Row:
     return outcome_row(run_beyond(model))
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Growth against the step, and the steps."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(10, 4.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
     times = np.linspace(min(TIMES), max(TIMES), 400)
@@ -187,5 +183,5 @@ STUDY = Study(
         MASS: Part(("what", "value"), [(what, x) for what in DAMPED for x in DAMPED[what]], mass_row),
         f"W1 at {MUCH} critical steps": Part(("model",), [("dem-dynamic",), ("fem",)], run_row),
     },
-    charts=[Chart("time-step", "Growth of a vibration a step, and the steps at which it begins", draw)],
+    charts=[Chart("time-step", "Growth of a vibration a step, and the steps at which it begins", _draw)],
 )
