@@ -27,16 +27,7 @@ class Ended(Exception):
 
 
 def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = None) -> Row:
-    """Measure a case in a fresh process.
-
-    Parameters
-    ----------
-    measure
-        A function of a module.
-    case
-        Its arguments, which JSON has words for.
-    stop
-        Ends the process when it is set.
+    """Measure a case, which JSON has words for, by a function of a module in a fresh process, until `stop` is set.
 
     Raises
     ------

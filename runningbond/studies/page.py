@@ -27,7 +27,6 @@ class Picture:
 
 
 Block: TypeAlias = str | Picture | Sheet  # a heading or a paragraph in Markdown, a chart, or a table
-
 Measured: TypeAlias = Sequence[tuple[Study, Rows]]  # experiments and their rows
 
 

@@ -27,16 +27,9 @@ Where: TypeAlias = tuple[str, Case]  # the name of a part, and one of its cases
 def run_study(
     study: Study, folder: Path, *, jobs: int = 1, progress: Callable[[str], None] = lambda case: None
 ) -> dict[str, list[Row]]:
-    """Measure what is not in the table yet; every row, by the names of the study's parts.
+    """Measure what is not in the table of a folder yet, some cases side by side; every row, by the study's parts.
 
-    Parameters
-    ----------
-    study, folder
-        The study, and where its table is kept.
-    jobs
-        Cases measured side by side.
-    progress
-        Called with each case that is done, in words.
+    `progress` is called with each case that is done, in words.
     """
     kept = kept_rows(study, folder)
 

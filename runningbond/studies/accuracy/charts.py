@@ -25,11 +25,8 @@ RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.
 """Models with three freedoms a block, and the ratio by which they stand apart."""
 
 LEGEND_ROWS = 3
-
 FREE = "homog"  # model that is not drawn: a closed form costs nothing
-
 DRIVEN = "driven, steps"
-
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
 MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))
 """Marks of the parameters; a model as it is has the first one, filled."""

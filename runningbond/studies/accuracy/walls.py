@@ -25,7 +25,6 @@ PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
 
 DIGITS = 5e-5  # half of the last digit that is published
 TURNED = 0.1  # rotation of the turned block [rad]
-
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 STIFF = 1e12  # Young's modulus of blocks where nothing else is said, the paper's [Pa]
 

@@ -23,7 +23,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from runningbond.dynamics import BlockSystem, Criteria, Run, State, ramp, settle
+from runningbond.dynamics import Criteria, Run, State, ramp, settle
 from runningbond.dynamics.collapse import CALM, CollapseDetector
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
@@ -54,7 +54,9 @@ def judged(
     Damped by local damping, the joints' viscous ratio and a mass-proportional rate [1/s], within a budget of steps.
     """
     wall = known_wall(name)
-    run = Run(_damped(wall.system, mass_rate), local=local, viscous=viscous)
+    drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)
+    system = replace(wall.system, viscosity=wall.system.viscosity + drag)
+    run = Run(system, local=local, viscous=viscous)
     state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget)
     verdict = settle(run, state, 0.0, criteria, sudden=True)
     if verdict == "collapse":
@@ -67,23 +69,17 @@ def judged(
     return {"verdict": "right" if right else "undecided" if verdict == "undecided" else "wrong", "steps": state.steps}
 
 
-def mass_row(name: str, rate: float) -> Row:
+def massive(name: str, rate: float) -> Row:
     """The same just above collapse with mass-proportional damping."""
     return judged(name, 1 + BESIDE, mass_rate=rate)
 
 
-def _damped(system: BlockSystem, mass_rate: float) -> BlockSystem:
-    return replace(
-        system, viscosity=system.viscosity + mass_rate * np.where(np.isfinite(system.mass), system.mass, 0.0)
-    )
-
-
-def least_local() -> Row:
+def least_local(name: str = SLIDING) -> Row:
     """Least local damping with which a block comes to rest under its weight in some steps, without viscosity.
 
     Steps a tenth as long as stable ones, for the theory is of a continuous motion.
     """
-    wall = known_wall(SLIDING)
+    wall = known_wall(name)
     system, criteria = wall.system, Criteria(collapse=wall.far, budget=SHORT, interval=20)
     dt = 0.1 * Run(system).dt
     omega = math.sqrt(
@@ -104,9 +100,9 @@ def least_local() -> Row:
     return {"measured": _bisected(rings, theory / 2, theory * 2), "theory": theory, "allowed": 0.03}
 
 
-def most_local() -> Row:
+def most_local(name: str = SLIDING) -> Row:
     """Least 1 − α with which the fall of a block is seen within some steps, by (3)."""
-    wall, load = known_wall(SLIDING), 1 + BESIDE
+    wall, load = known_wall(name), 1 + BESIDE
 
     def surplus(left: float) -> float:
         run, rest = wall.rest(1 - left)
@@ -114,7 +110,7 @@ def most_local() -> Row:
         return SHORT - (1 + RAMP) * rest.steps - time / run.dt
 
     def unseen(left: float) -> bool:
-        return bool(judged(SLIDING, load, 1 - left, budget=SHORT)["verdict"] != "right")
+        return bool(judged(name, load, 1 - left, budget=SHORT)["verdict"] != "right")
 
     return {"measured": _bisected(unseen, 1e-3, 0.5), "theory": float(brentq(surplus, 1e-3, 0.5)), "allowed": 0.03}
 
@@ -144,9 +140,7 @@ def most_mass_rate(name: str) -> Row:
 
 def edge_row(what: str, name: str) -> Row:
     """An edge, beside theory."""
-    if what == FEIGNED:
-        return most_mass_rate(name)
-    return least_local() if what == LEAST else most_local()
+    return {LEAST: least_local, MOST: most_local, FEIGNED: most_mass_rate}[what](name)
 
 
 LEAST = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
@@ -232,7 +226,7 @@ STUDY = Study(
     "edges makes a fall look like rest, and no model of the suite has any",
     parts={
         MAPS: Part(("wall", LOAD, "α", "ξ"), CASES, judged),
-        MASSIVE: Part(("wall", RATE), [(name, rate) for name in WALLS for rate in MASS_RATES], mass_row),
+        MASSIVE: Part(("wall", RATE), [(name, rate) for name in WALLS for rate in MASS_RATES], massive),
         EDGES: Part(
             ("what", "wall"),
             [(LEAST, SLIDING), (MOST, SLIDING), *((FEIGNED, name) for name in (SLIDING, W1, TOPPLING))],

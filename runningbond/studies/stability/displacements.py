@@ -55,12 +55,8 @@ def scene_of(name: str) -> tuple[Scene, float]:
 def curves(scene: Scene, width: float, speed: float) -> tuple[float, Array, Array, Array]:
     """Push a scene at small and at finite displacements, at a mean speed of its blocks along the live load [m/s].
 
-    Returns
-    -------
-    peak
-        λ at small displacements, in the end.
-    moved, small, finite : (n,) float
-        Displacement of the control point from the finite curve's peak on, in block widths, and λ of both curves.
+    Returns λ at small displacements in the end, and from the finite curve's peak on the displacement of the control
+    point in block widths, and λ of both curves, each ``(n,)``.
     """
     distance = FARTHEST * width
     static = dem_static(scene, collapse=2 * distance / scene.lowest_block).curve

@@ -4,7 +4,6 @@ Soft joints let blocks sink into each other, by ρ g H / k_n at the base, until 
 a collapse does. Stiff ones ask for short time steps, until the budget ends before the wall has had the time to fall.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +23,6 @@ from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 NORMAL = tuple(10.0**power for power in range(5, 16))  # normal stiffnesses of the joints [Pa/m]
 RATIO = 0.4  # k_t / k_n, that of mortar with ν = 0.2
 FEM = (1e8, 1e12)  # stiffnesses between which fem is run; beyond them it takes minutes
-
 RUN = ("dem-static", "dem-dynamic", "fem")  # models that read the stiffness
 REST, COLLAPSES = "W1 at rest under its weight", "W1 brought to collapse"
 K_N, OVERLAP, THEORY, STEPS = "k_n [Pa/m]", "overlap [block sizes]", "ρ g H / k_n", "steps to rest"
@@ -87,15 +85,11 @@ def fits(rows: Rows) -> list[Edge]:
         loads = [row["λ"] for row in rows[COLLAPSES] if row["model"] == model and row.get("λ")]
         farthest = max(loads, key=lambda load: abs(load - exact))
         edges.append(Edge(f"λ, {model}, of all collapses farthest from the certified", farthest, exact, TOLERANCE))
-    silent = silent_range(rows[COLLAPSES])
+    # Every model found the collapse there, and had nothing to say of the stiffness.
+    bad = {row[K_N] for row in rows[COLLAPSES] if row["status"] != "collapse" or row.get("of the stiffness")}
+    silent = [normal for normal in NORMAL if normal not in bad]
     ends = (("smallest", silent[0]), ("largest", silent[-1]))
     return edges + [Edge(f"{which} k_n at which all models collapse and say nothing [Pa/m]", k) for which, k in ends]
-
-
-def silent_range(rows: Sequence[Row]) -> list[float]:
-    """Stiffnesses at which every model found the collapse, and had nothing to say of the stiffness."""
-    bad = {row[K_N] for row in rows if row["status"] != "collapse" or row.get("of the stiffness")}
-    return [normal for normal in NORMAL if normal not in bad]
 
 
 def _draw(figure: Figure, rows: Rows) -> None:

@@ -12,14 +12,14 @@ from runningbond.compare.published import published_scene
 from runningbond.limit import equilibrium
 from runningbond.limit.associated import LimitState
 from runningbond.limit.force_program import coulomb, solve_forces
-from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
+from runningbond.scene import JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS, MODEL_LOOKS, level
+from runningbond.studies.walls import boxes
 
 POWERS = (-6, -4, -2, 0, 2, 4, 6)  # powers of ten by which quantities are multiplied, one at a time
 WORTH = 1e-9  # difference that counts as rounding: what a linear program's answer is good for
-
-BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+STIFFNESS = Stiffness(1e11, 4e10)
 QUANTITIES = ("density", "size", "load")
 WALLS = ("wall-w1", "wall-w2", "wall-w3", "panel-04", "panel-03")
 DEGENERATES, SCALES, SOLVERS = (
@@ -30,21 +30,18 @@ DEGENERATES, SCALES, SOLVERS = (
 PROGRAMS = ("limit", "limit-nonassociated")  # the models that solve linear programs; neither reads a stiffness
 
 
-def _build(outlines: list[Array], friction: float = 0.6) -> Scene:
-    joint = JointMaterial(friction, elasticity=Stiffness(1e11, 4e10))
-    return build_scene("piers", outlines, thickness=0.12, block=BlockMaterial(1800.0), joint=joint, load=Load())
-
-
 def row_of_piers(number: int, friction: float = 0.6) -> Scene:
     """Equal piers of four blocks, 240 mm wide and 480 mm high, apart: as many mechanisms, and their combinations."""
     places = [(pier, course) for pier in range(number) for course in range(4)]
-    return _build([BOX * [0.24, 0.12] + [0.5 * pier, 0.12 * course] for pier, course in places], friction)
+    joint = JointMaterial(friction, elasticity=STIFFNESS)
+    return boxes(*((0.5 * pier, 0.12 * course, 0.24, 0.12) for pier, course in places), joint=joint)
 
 
 def dusty() -> Scene:
     """A pier with grains of a hundred-millionth of its blocks' weight on its top and beside it."""
-    pier = [BOX * [0.24, 0.12] + [0.0, 0.12 * course] for course in range(4)]
-    return _build([*pier, *(BOX * 1e-4 + [x, y] for x, y in ((0.02, 0.48), (0.12, 0.48), (0.22, 0.48), (0.4, 0.0)))])
+    pier = [(0.0, 0.12 * course, 0.24, 0.12) for course in range(4)]
+    grains = [(x, y, 1e-4, 1e-4) for x, y in ((0.02, 0.48), (0.12, 0.48), (0.22, 0.48), (0.4, 0.0))]
+    return boxes(*pier, *grains, joint=JointMaterial(0.6, elasticity=STIFFNESS))
 
 
 DEGENERATE: dict[str, tuple[Callable[[], Scene], float]] = {

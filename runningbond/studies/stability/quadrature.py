@@ -31,7 +31,6 @@ RULES = {"Gauss 2": gauss(2), "Gauss 3": gauss(3), "Lobatto 2": lobatto(), "Simp
 CELLS = (1, 2, 4)  # cells in half a block along the course, and in its height: elements of the joint of half a block
 WIDTH, HEIGHT = 0.5, 1.0  # of the block [m]
 TIGHT, USUAL = 5e-4, 5e-3  # relative width of the brackets, of the block and of walls
-
 SCENES = {"block": "block on n elements", "W1": "W1, inset 20 mm", "panel-04": "panel-04"}
 PART, ENDS, EARLY = "λ", "with points at the ends", "of that with points at the ends"
 

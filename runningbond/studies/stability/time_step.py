@@ -7,6 +7,7 @@ to 2 / √(1 + α).
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -15,14 +16,14 @@ from matplotlib.figure import Figure
 from dem.rigid_system import contact_points, rigid_system
 from fem_interface.element_order import modal_wall
 from fem_interface.modes import ModeCount
-from fem_interface.system import system_of
+from fem_interface.system import fem_system, system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Run, State, collapse_by_steps
 from runningbond.results import Outcome
-from runningbond.scene import Array, scene_from_dict
+from runningbond.scene import Array, JointMaterial, Stiffness
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.charts import looks_of
-from runningbond.studies.walls import bonded, outcome_row, vibrations
+from runningbond.studies.walls import bonded, boxes, outcome_row, vibrations
 
 STEPS, STEPS_DAMPED, PIECE = 4000, 100_000, 20
 """Steps after which a vibration that has not grown is not going to, a damped one too, and between two looks at it."""
@@ -54,8 +55,7 @@ def growth_at(times: float) -> float:
 def critical_row(kind: str) -> Row:
     """The critical step of W1 whose joints hold, without damping."""
     modes, scaled = KINDS[kind]
-    wall = modal_wall(bonded(published_scene(WALL)), 1, modes)
-    return critical_step(system_of(wall, damping=0.0, mass_scaling=scaled))
+    return critical_step(fem_system(bonded(published_scene(WALL)), modes=modes, damping=0.0, mass_scaling=scaled))
 
 
 def critical_step(system: BlockSystem) -> Row:
@@ -77,11 +77,8 @@ def critical_step(system: BlockSystem) -> Row:
 @cache
 def one_mass() -> tuple[BlockSystem, float, Array]:
     """A tall block whose joint resists compression far more than shear: its system, its ω [1/s] and its motion."""
-    wall = {"block_width": 0.1, "block_height": 0.4, "thickness": 1.0, "length": 0.1, "height": 0.4}
-    joint = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 1e7}
-    others = {"block": {"density": 1800.0}, "support": {"kind": "base"}}
-    load = {"gravity": 9.81, "live": {"kind": "lateral"}}
-    system = rigid_system(bonded(scene_from_dict({"wall": wall, "joint": joint, "load": load, **others})))
+    joint = JointMaterial(0.6, elasticity=Stiffness(1e9, 1e7))
+    system = rigid_system(bonded(replace(boxes((0, 0, 0.1, 0.4), joint=joint), thickness=1.0)))
     frequencies, shapes = vibrations(system)
     return system, float(frequencies[-1]), shapes[:, -1]
 

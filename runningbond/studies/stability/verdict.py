@@ -29,11 +29,9 @@ from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wal
 SUITE = Criteria(collapse=U_CRIT)
 WALLS = (SLIDING, TOPPLING, W1)
 WEIGHTLESS = "point-load-4"  # the published wall without weight
-
 REST, FAR, INTERVAL = CRITERIA = ("rest [force units]", "u_crit [block sizes]", "steps between looks")
 DEFAULT: dict[str, float] = {REST: SUITE.rest, FAR: U_CRIT, INTERVAL: SUITE.interval}
 LOOSE = (0.01, 0.03)  # thresholds of rest so loose that (4) is seen
-
 TINY, LARGE = (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6), (1e-4, 1e-3, *LOOSE, 0.1, 0.3)
 RESTS = (*TINY, *(x * SUITE.rest for x in (0.5, 1, 2)), *LARGE)
 FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4, 1.6)
@@ -48,7 +46,6 @@ SWEEPS = {
 """Values of a criterion on a wall, ascending."""
 
 WIDTH, BUDGET = 0.005, 1_000_000  # relative width of the brackets, and steps after which a load is left undecided
-
 PART, SCALED = "Searches for λ, one criterion changed", "λ / λ known"
 
 
