@@ -108,6 +108,10 @@ class Study:
         """Every case, with the name of its part."""
         return [(name, case) for name, part in self.parts.items() for case in part.cases]
 
+    def entries(self, where: tuple[str, Case]) -> Row:
+        """A case of a part, by columns."""
+        return dict(zip(self.parts[where[0]].columns, where[1], strict=True))
+
     def edges(self, rows: Rows) -> list[Edge]:
         """Every edge: rows that are one, and those that are read off several rows."""
         edges = []

@@ -50,18 +50,13 @@ def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) 
 
 
 def _collapse(model: str, scene: Scene, tolerance: float = TOLERANCE, **settings: Any) -> Answer:
-    if "drive" in settings:
-        return _driven(model, scene, settings["drive"])
+    if "drive" in settings:  # the peak under work-conjugate displacement control, at a speed that some steps give
+        system, distance = _system(model, scene), DRIVEN * scene.block_size
+        result = _drive(system, scene, distance, settings["drive"])
+        speed = f"largest λ while driven {1e3 * distance:.3g} mm"
+        return Answer("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
     said = MODELS[model].solve(scene, tolerance, **settings)
     return Answer(said.status, said.multiplier, said.lower, said.upper, said.dofs, said.steps, said.message)
-
-
-def _driven(model: str, scene: Scene, steps: int) -> Answer:
-    """The peak of the curve under work-conjugate displacement control, at a speed that some steps give."""
-    system = _system(model, scene)
-    result = _drive(system, scene, DRIVEN * scene.block_size, steps)
-    speed = f"largest λ while driven {1e3 * DRIVEN * scene.block_size:.3g} mm"
-    return Answer("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
 
 
 def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:

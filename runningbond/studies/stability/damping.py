@@ -69,11 +69,6 @@ def judged(
     return {"verdict": "right" if right else "undecided" if verdict == "undecided" else "wrong", "steps": state.steps}
 
 
-def massive(name: str, rate: float) -> Row:
-    """The same just above collapse with mass-proportional damping."""
-    return judged(name, 1 + BESIDE, mass_rate=rate)
-
-
 def least_local(name: str = SLIDING) -> Row:
     """Least local damping with which a block comes to rest under its weight in some steps, without viscosity.
 
@@ -136,11 +131,6 @@ def most_mass_rate(name: str) -> Row:
     theory = float(brentq(surplus, 0.1, 1e4))
     measured = _bisected(seen, theory / 3, theory * 3)
     return {"measured": measured, "theory": theory, "allowed": 0.02 if wall.is_block else None}
-
-
-def edge_row(what: str, name: str) -> Row:
-    """An edge, beside theory."""
-    return {LEAST: least_local, MOST: most_local, FEIGNED: most_mass_rate}[what](name)
 
 
 LEAST = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
@@ -226,11 +216,15 @@ STUDY = Study(
     "edges makes a fall look like rest, and no model of the suite has any",
     parts={
         MAPS: Part(("wall", LOAD, "α", "ξ"), CASES, judged),
-        MASSIVE: Part(("wall", RATE), [(name, rate) for name in WALLS for rate in MASS_RATES], massive),
+        MASSIVE: Part(
+            ("wall", RATE),
+            [(name, rate) for name in WALLS for rate in MASS_RATES],
+            lambda name, rate: judged(name, 1 + BESIDE, mass_rate=rate),
+        ),
         EDGES: Part(
             ("what", "wall"),
             [(LEAST, SLIDING), (MOST, SLIDING), *((FEIGNED, name) for name in (SLIDING, W1, TOPPLING))],
-            edge_row,
+            lambda what, name: {LEAST: least_local, MOST: most_local, FEIGNED: most_mass_rate}[what](name),
         ),
     },
     charts=[

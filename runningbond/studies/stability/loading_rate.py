@@ -166,9 +166,8 @@ def fits(rows: Rows) -> list[Edge]:
         own_speed, slowest = default_loading(name), LOADINGS[-1]
         what = f"λ by the suite's load steps, of that {slowest / own_speed:g} times as slow, {name}"
         edges.append(Edge(what, steps[name, own_speed] / steps[name, slowest]))
-        hasty = max(
-            (steps[name, at] / steps[name, slowest] for at in LOADINGS if at < own_speed), key=lambda x: abs(x - 1)
-        )
+        ratios = [steps[name, at] / steps[name, slowest] for at in LOADINGS if at < own_speed]
+        hasty = max(ratios, key=lambda ratio: abs(ratio - 1))
         edges.append(Edge(f"λ in haste, of that of the slowest loading, {name}", hasty))
     return edges
 
@@ -200,9 +199,8 @@ def _draw(figure: Figure, rows: Rows) -> None:
     right.set(xlabel="first load step in\n[times to rest]; ▾ the suite's", ylabel="bracket of λ off by [%]")
     right.margins(y=0.15)
     right.legend(frameon=False, fontsize=8, loc="center right")
-    for axes, title in zip(
-        (left, middle, right), ("ramp; lines: theory", "displacement control", "load steps"), strict=True
-    ):
+    titles = ("ramp; lines: theory", "displacement control", "load steps")
+    for axes, title in zip(figure.axes, titles, strict=True):
         axes.set_title(title, fontsize=10)
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9)
 
