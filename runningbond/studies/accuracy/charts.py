@@ -42,8 +42,8 @@ TITLES = {
 def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
     """Error against a cost, wall by wall."""
     figure.set_size_inches(11, 9.4)
-    judged = [row for row in rows["accuracy"] if row.get("error") is not None and row.get(cost)]
-    judged = [row for row in judged if row["model"] != FREE]
+    timed = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != FREE]
+    judged = [row for row in timed if row.get("error") is not None]
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
         if own:

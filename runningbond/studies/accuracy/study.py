@@ -9,6 +9,7 @@ from runningbond.studies import Case, Part, Rows, Study
 from runningbond.studies.apart import LONGEST
 from runningbond.studies.page import Block, draw_charts, edges_sheet
 from runningbond.studies.store import failures, table_path
+from runningbond.studies.study import PACKAGE
 from runningbond.studies.walls import INSET
 
 from .charts import CHARTS
@@ -79,8 +80,8 @@ def depends(case: Case) -> str:
 
 
 COLUMNS = ("wall", "model", "parameter", "setting")
-HERE, SHARED = Path(__file__).parent, Path(__file__).parents[1]
-SOURCES = (*(HERE / f"{name}.py" for name in ("walls", "cell", "questions", "measure")), SHARED / "walls.py")
+OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "cell", "questions", "measure")]
+SOURCES = (*OWN, PACKAGE / "studies" / "walls.py", PACKAGE / "compare" / "models.py")
 GROWTH = [(name, model, "", "") for name in growth_walls() for model in COLLAPSE]
 
 STUDY = Study(

@@ -153,17 +153,14 @@ def parameters_table(rows: Rows) -> Sheet:
             one, other = (records(rows, both)[which] for which in (setting, plain))
             costs = zip(one.all("ratio"), other.all("ratio"), strict=True)
             dearer = statistics.median(a / b for a, b in costs)
-            effect = _effect(max(one.error, EXACT) / max(other.error, EXACT), dearer)
+            change = max(one.error, EXACT) / max(other.error, EXACT)
+            effect = "" if 1 / DEARER < dearer < DEARER else "cost alone"
+            if not 1 / CHANGED < change < CHANGED:
+                effect = "costs accuracy" if change > 1 else "buys accuracy"
             numbers = (str(len(both)), percent(one.error), percent(other.error), times(dearer))
             body.append([*setting, *numbers, effect, ", ".join(record.unanswered)])
     heads = ["model", "parameter", "setting", "walls", "largest error", "as it is", "cost, times as it is"]
     return Sheet("Parameters, one changed at a time", [*heads, "what it changes", "no number on"], body)
-
-
-def _effect(change: float, dearer: float) -> str:
-    if not 1 / CHANGED < change < CHANGED:
-        return "costs accuracy" if change > 1 else "buys accuracy"
-    return "" if 1 / DEARER < dearer < DEARER else "cost alone"
 
 
 def cheapest_table(rows: Rows) -> Sheet:
