@@ -31,9 +31,8 @@ def stability(*experiments: str, out: Path = Path("stability")) -> int:
     out
         Folder for tables, charts and the report.
     """
-    from runningbond.studies.page import write_page
+    from runningbond.studies.page import failed, off, page, summary, write_page
     from runningbond.studies.stability import EXPERIMENTS, experiment
-    from runningbond.studies.stability.report import failed, off, page, summary
     from runningbond.studies.store import is_complete
 
     for name in experiments:

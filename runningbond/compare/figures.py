@@ -16,7 +16,6 @@ from runningbond.results import Outcome, write_atomically
 from runningbond.scene import Array
 
 from .model import Model
-from .models import MODELS
 from .published import BARALDI, PublishedCase, cases_of
 from .table import Comparison
 
@@ -26,8 +25,6 @@ TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))
 SLENDERNESS = (("0.5", 0.5), ("1", 1.0), ("2", 2.0))
 COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
 PRINTED = {"FEM/DEM": "P", "DEM": "X", "HOMO": "d"}
-OURS = {model.name: (model.colour, model.marker) for model in MODELS.values()}
-"""Colour and marker of each model."""
 
 MULTIPLIERS = (0, 0.66)
 """Range of the axis of λ of the twelve panels."""

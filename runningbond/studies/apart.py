@@ -17,14 +17,9 @@ from threading import Event
 
 from .study import Case, Row
 
-LONGEST = 60
-"""Processor seconds after which a run is ended, from `limit_time` on."""
-
-TOO_LONG = "too long"
-"""Status of a case whose run took more than `LONGEST`."""
-
-POLL = 0.2
-"""Seconds between two looks at a process."""
+LONGEST = 60  # processor seconds after which a run is ended, from `limit_time` on
+TOO_LONG = "too long"  # status of a case whose run took more than `LONGEST`
+POLL = 0.2  # seconds between two looks at a process
 
 
 class Ended(Exception):
@@ -32,16 +27,7 @@ class Ended(Exception):
 
 
 def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = None) -> Row:
-    """Measure a case in a fresh process.
-
-    Parameters
-    ----------
-    measure
-        A function of a module.
-    case
-        Its arguments, which JSON has words for.
-    stop
-        Ends the process when it is set.
+    """Measure a case, which JSON has words for, by a function of a module in a fresh process, until `stop` is set.
 
     Raises
     ------

@@ -5,15 +5,13 @@ from typing import Any, TypeAlias
 
 from matplotlib.axes import Axes
 
-from runningbond.compare.figures import COLOURS, OURS
+from runningbond.compare.figures import COLOURS
+from runningbond.compare.models import MODELS
 
 from .study import Row
 
-MODEL_LOOKS = OURS
-"""Colour and marker of each model."""
-
-Looks: TypeAlias = Mapping[Any, tuple[str, str]]
-"""Colour and marker by the entries of a column."""
+MODEL_LOOKS = {model.name: (model.colour, model.marker) for model in MODELS.values()}  # colour and marker of each model
+Looks: TypeAlias = Mapping[Any, tuple[str, str]]  # colour and marker by the entries of a column
 
 LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))
 """Colours and markers of other things."""

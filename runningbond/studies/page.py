@@ -1,7 +1,6 @@
 """The page of one or more studies, in Markdown beside its charts and as one HTML file that needs nothing else."""
 
 import html
-import io
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,11 +9,12 @@ from typing import TypeAlias
 
 from matplotlib.figure import Figure
 
-from runningbond.compare.figures import bare
+from runningbond.compare.figures import bare, save
 from runningbond.compare.report import figure_html, page_html, table_html
 from runningbond.compare.table import Sheet
 from runningbond.results import write_atomically
 
+from .store import failures
 from .study import Chart, Edge, Rows, Study
 
 
@@ -26,8 +26,8 @@ class Picture:
     caption: str
 
 
-Block: TypeAlias = str | Picture | Sheet
-"""A heading or a paragraph in Markdown, a chart, or a table."""
+Block: TypeAlias = str | Picture | Sheet  # a heading or a paragraph in Markdown, a chart, or a table
+Measured: TypeAlias = Sequence[tuple[Study, Rows]]  # experiments and their rows
 
 
 def write_page(subject: str, blocks: Sequence[Block], folder: Path, name: str) -> list[Path]:
@@ -36,6 +36,32 @@ def write_page(subject: str, blocks: Sequence[Block], folder: Path, name: str) -
     write_atomically(written[0], "\n".join(map(_markdown, blocks)).encode())
     write_atomically(written[1], page_html(subject, [_html(block) for block in blocks]).encode())
     return [*written, *(block.path for block in blocks if isinstance(block, Picture))]
+
+
+def summary(measured: Measured) -> Sheet:
+    """Experiment by experiment: where the method may be trusted, and what a user gets beyond."""
+    heads = ("experiment", "what is driven", "edges", "may be trusted where", "beyond it you get")
+    sound = [(study, rows) for study, rows in measured if not failures(rows)]
+    body = [(one.name, one.title, agreement(one.edges(rows)), one.trusted, one.beyond) for one, rows in sound]
+    return Sheet("Where each method may be trusted", heads, body)
+
+
+def page(measured: Measured, folder: Path) -> list[Block]:
+    """The page; charts are drawn into a folder."""
+    sections = [block for study, rows in measured if not failures(rows) for block in section(study, rows, folder)]
+    return ["# Where the methods fail", summary(measured), *sections, *failed(measured)]
+
+
+def off(measured: Measured) -> list[str]:
+    """Edges that do not lie where theory has them."""
+    edges = [(study.name, edge) for study, rows in measured if not failures(rows) for edge in study.edges(rows)]
+    wrong = [(name, edge) for name, edge in edges if edge.agrees is False]
+    return [f"{name}: {edge.what}: measured {edge.measured:.6g}, by theory {edge.theory:.6g}" for name, edge in wrong]
+
+
+def failed(measured: Measured) -> list[str]:
+    """Experiments that ended in an error, and its words."""
+    return [f"{study.name} ended in an error: {words}" for study, rows in measured for words in failures(rows)]
 
 
 def section(study: Study, rows: Rows, folder: Path) -> list[Block]:
@@ -57,10 +83,8 @@ def draw(chart: Chart, rows: Rows, folder: Path) -> Path:
     chart.draw(figure, rows)
     for axes in figure.axes:
         bare(axes)
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=160)
     path = folder / f"{chart.name}.png"
-    write_atomically(path, buffer.getvalue())
+    save(figure, path)
     return path
 
 

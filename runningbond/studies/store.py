@@ -13,7 +13,9 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import cache
 from pathlib import Path
 from threading import Event
-from typing import Any, TypeAlias
+from typing import TypeAlias
+
+import numpy as np
 
 from runningbond.compare.fingerprint import code_digest
 from runningbond.results import write_atomically
@@ -21,23 +23,15 @@ from runningbond.results import write_atomically
 from .apart import measure_apart
 from .study import FAILURE, Case, Row, Rows, Study
 
-Where: TypeAlias = tuple[str, Case]
-"""The name of a part, and one of its cases."""
+Where: TypeAlias = tuple[str, Case]  # the name of a part, and one of its cases
 
 
 def run_study(
     study: Study, folder: Path, *, jobs: int = 1, progress: Callable[[str], None] = lambda case: None
 ) -> dict[str, list[Row]]:
-    """Measure what is not in the table yet; every row, by the names of the study's parts.
+    """Measure what is not in the table of a folder yet, some cases side by side; every row, by the study's parts.
 
-    Parameters
-    ----------
-    study, folder
-        The study, and where its table is kept.
-    jobs
-        Cases measured side by side.
-    progress
-        Called with each case that is done, in words.
+    `progress` is called with each case that is done, in words.
     """
     kept = kept_rows(study, folder)
 
@@ -76,7 +70,7 @@ def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
         return {}
     kept = {}
     for where in study.cases:
-        row, case = rows.get(_key(study, where)), _case(study, where)
+        row, case = rows.get(_key(study, where)), study.entries(where)
         if row is not None and FAILURE not in row:
             kept[where] = case | row | case
     return kept
@@ -114,7 +108,7 @@ def _text(value: object, *, plain: bool) -> str:
         return ""
     if isinstance(value, str) and (plain or value == _value(value)):
         return value
-    return json.dumps(value, default=_plain)
+    return json.dumps(value, default=np.generic.item)  # numbers of NumPy as those of Python
 
 
 def _value(cell: str) -> object:
@@ -122,11 +116,6 @@ def _value(cell: str) -> object:
         return json.loads(cell)
     except ValueError:
         return cell
-
-
-def _plain(number: Any) -> object:
-    """A number of NumPy as one of Python."""
-    return number.item()
 
 
 def _seal(cells: Sequence[str]) -> str:
@@ -167,12 +156,8 @@ def _measured(study: Study, cases: Sequence[Where], jobs: int) -> Iterator[tuple
             threads.shutdown(cancel_futures=True)
 
 
-def _case(study: Study, where: Where) -> Row:
-    return dict(zip(study.parts[where[0]].columns, where[1], strict=True))
-
-
 def _row(study: Study, where: Where, stop: Event) -> Row:
-    measure, row = study.parts[where[0]].measure, _case(study, where)
+    measure, row = study.parts[where[0]].measure, study.entries(where)
     try:
         return row | (measure_apart(measure, where[1], stop) if study.apart else measure(*where[1]))
     except Exception as error:  # a defect in one case must not lose the others

@@ -13,41 +13,24 @@ from matplotlib.figure import Figure
 
 from runningbond.compare.table import Sheet
 
-Case: TypeAlias = tuple[Any, ...]
-"""Words and numbers that tell what is measured."""
+Case: TypeAlias = tuple[Any, ...]  # words and numbers that tell what is measured
 
 Row: TypeAlias = dict[str, Any]
 """A case and what was measured of it, by columns: words, numbers, None, and lists, which only charts read."""
 
-Rows: TypeAlias = Mapping[str, Sequence[Row]]
-"""Rows of a study, by the names of its parts."""
-
-FAILURE = "failure"
-"""Column that holds the words of the error in which a case ended, if it did."""
-
+Rows: TypeAlias = Mapping[str, Sequence[Row]]  # rows of a study, by the names of its parts
+FAILURE = "failure"  # column that holds the words of the error in which a case ended, if it did
 PACKAGE = Path(__file__).parents[1]
 
 
 @dataclass(frozen=True)
 class Edge:
-    """An edge beyond which a method fails.
+    """An edge beyond which a method fails."""
 
-    Parameters
-    ----------
-    what
-        The edge, with its unit: ``largest ω dt with local damping 0.5``.
-    measured
-        Where the method began to fail.
-    theory
-        Where it must, by theory; None where there is none.
-    tolerance
-        Relative difference that the study allows itself; None without a theory.
-    """
-
-    what: str
-    measured: float
-    theory: float | None = None
-    tolerance: float | None = None
+    what: str  # the edge, with its unit: ``largest ω dt with local damping 0.5``
+    measured: float  # where the method began to fail
+    theory: float | None = None  # where it must, by theory
+    tolerance: float | None = None  # relative difference that the study allows itself
 
     @property
     def error(self) -> float | None:
@@ -103,44 +86,31 @@ def cell(value: object) -> str:
 
 @dataclass(frozen=True)
 class Study:
-    """A study.
+    """A study, and in fixed words where its method may be trusted; the numbers are edges.
 
-    Parameters
-    ----------
-    name, title
-        Its name on the command line and of its table, and what is studied, in a few words.
-    parts, charts
-        Its cases, by the names of its parts, and its charts.
-    trusted, beyond
-        Where the method may be trusted and what a user is told beyond, in fixed words; the numbers are edges.
-    fits
-        Edges that are read off several rows; a row that has a column `measured` is an edge itself, with `theory` and
-        `allowed` beside it where there is one.
-    tables
-        Tables of the page, from rows.
-    sources, depends
-        Files and folders beside the computing rooms in which a change makes rows invalid, and what else the row of a
-        case depends on, as words.
-    apart
-        Whether each case is measured in a process of its own.
+    A row that has a column `measured` is an edge itself, with `theory` and `allowed` beside it where there is one.
     """
 
-    name: str
-    title: str
-    parts: Mapping[str, Part]
+    name: str  # on the command line, and of its table
+    title: str  # what is studied, in a few words
+    parts: Mapping[str, Part]  # its cases, by the names of its parts
     charts: Sequence[Chart]
-    trusted: str = ""
-    beyond: str = ""
-    fits: Callable[[Rows], list[Edge]] = lambda rows: []
-    tables: Callable[[Rows], list[Sheet]] = all_rows
-    sources: Sequence[Path] = (PACKAGE,)
-    depends: Callable[[Case], str] = lambda case: ""
-    apart: bool = False
+    trusted: str = ""  # where the method may be trusted,
+    beyond: str = ""  # and what a user is told beyond
+    fits: Callable[[Rows], list[Edge]] = lambda rows: []  # edges that are read off several rows
+    tables: Callable[[Rows], list[Sheet]] = all_rows  # tables of the page
+    sources: Sequence[Path] = (PACKAGE,)  # code beside the computing rooms whose change makes rows invalid
+    depends: Callable[[Case], str] = lambda case: ""  # what else the row of a case depends on, as words
+    apart: bool = False  # whether each case is measured in a process of its own
 
     @property
     def cases(self) -> list[tuple[str, Case]]:
         """Every case, with the name of its part."""
         return [(name, case) for name, part in self.parts.items() for case in part.cases]
+
+    def entries(self, where: tuple[str, Case]) -> Row:
+        """A case of a part, by columns."""
+        return dict(zip(self.parts[where[0]].columns, where[1], strict=True))
 
     def edges(self, rows: Rows) -> list[Edge]:
         """Every edge: rows that are one, and those that are read off several rows."""

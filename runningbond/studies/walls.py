@@ -12,6 +12,7 @@ block, whose pressure does not change.
 
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from typing import TypeAlias
 
 import numpy as np
 from scipy.linalg import eigh
@@ -30,33 +31,26 @@ from .study import Row
 INSET = 0.02
 """Distance of contacts from the ends of the joints [m] with which the load multiplier of W1 to W3 is unique."""
 
-RAMP = 4
-"""Length of a ramp to a load, in times that the wall took to rest under its weight."""
+RAMP = 4  # length of a ramp to a load, in times that the wall took to rest under its weight
+SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the block that slides, and b/h of the one that topples
+BRICK = BlockMaterial(1800.0)
+Box: TypeAlias = tuple[float, float, float, float]  # left, bottom, width, height [m]
+HOLDS = 1e15  # cohesion and tensile strength [Pa] that no motion of a study comes near
 
-SLIDES, TOPPLES = 0.4, 0.5
-"""tan φ of the block that slides, and b/h of the one that topples."""
 
-HOLDS = 1e15
-"""Cohesion and tensile strength [Pa] that no motion of a study comes near."""
+def boxes(*places: Box, joint: JointMaterial, block: BlockMaterial = BRICK) -> Scene:
+    """Boxes 0.12 m thick on rigid ground and on each other, pushed at their centroids by λ times their weight."""
+    outlines = [np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]]) for x, y, w, h in places]
+    return build_scene("boxes", outlines, thickness=0.12, block=block, joint=joint, load=Load())
 
 
 def one_block(width: float, height: float, friction: float, stiffness: float) -> Scene:
     """A dry block of 1800 kg/m³ on rigid ground, 0.12 m thick, pushed at its centroid by λ times its weight.
 
-    Parameters
-    ----------
-    width, height
-        Of the block [m].
-    friction
-        tan φ of the joint under it.
-    stiffness
-        Of that joint, normal and shear [Pa/m].
+    Its width and height [m], tan φ of the joint under it, and that joint's stiffness, normal and shear [Pa/m].
     """
-    outline = np.array([[0, 0], [width, 0], [width, height], [0, height]])
     joint = JointMaterial(friction, elasticity=Stiffness(stiffness, stiffness))
-    return build_scene(
-        "a block", [outline], thickness=0.12, block=BlockMaterial(1800.0, 1e12, 0.0), joint=joint, load=Load()
-    )
+    return boxes((0, 0, width, height), joint=joint, block=BlockMaterial(1800.0, 1e12, 0.0))
 
 
 def inset_wall(name: str) -> Scene:
@@ -104,21 +98,11 @@ def outcome_row(outcome: Outcome) -> Row:
 
 @dataclass(frozen=True, eq=False)
 class KnownWall:
-    """A wall under its weight and a lateral load, with the load that brings it down.
-
-    Parameters
-    ----------
-    scene
-        The wall.
-    multiplier
-        λ at which it falls.
-    motion : (nb, 3) float
-        The motion in which it falls, to any scale [m, m, rad].
-    """
+    """A wall under its weight and a lateral load, with the load that brings it down."""
 
     scene: Scene
-    multiplier: float
-    motion: Array
+    multiplier: float  # λ at which it falls
+    motion: Array  # in which it falls, to any scale, (nb, 3) [m, m, rad]
 
     @cached_property
     def system(self) -> BlockSystem:

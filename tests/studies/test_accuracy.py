@@ -1,6 +1,5 @@
 """The study of accuracy against cost: its known answers, its tables, its charts and its page."""
 
-import inspect
 import os
 import subprocess
 import sys
@@ -14,12 +13,13 @@ from hypothesis import strategies as st
 from matplotlib.image import imread
 
 from runningbond.commands.command_line import command
+from runningbond.compare import MODELS
 from runningbond.joints import joint_stiffness
 from runningbond.studies import Row, Rows
 from runningbond.studies.accuracy.charts import pareto_front
 from runningbond.studies.accuracy.measure import machine, measure
 from runningbond.studies.accuracy.parameters import PARAMETERS, VARIED, settings_of
-from runningbond.studies.accuracy.questions import MODELS, ask
+from runningbond.studies.accuracy.questions import ask
 from runningbond.studies.accuracy.study import STUDY, page
 from runningbond.studies.accuracy.tables import (
     cheapest,
@@ -48,13 +48,13 @@ ROOT = Path(__file__).parents[2]
 def test_error_is_the_distance_from_the_interval(low: float, width: float, value: float) -> None:
     """Zero inside, relative to the nearer end outside, and the same when everything is scaled."""
     high = low * (1 + width)
-    found = error(value, (low, high))
+    result = error(value, (low, high))
     if low <= value <= high:
-        assert found == 0
+        assert result == 0
     else:
         nearer = min(low, high, key=lambda end: abs(end - value))
-        assert found == pytest.approx(abs(value / nearer - 1))
-    assert error(4 * value, (4 * low, 4 * high)) == found
+        assert result == pytest.approx(abs(value / nearer - 1))
+    assert error(4 * value, (4 * low, 4 * high)) == result
 
 
 def test_errors_of_panels_are_from_the_interval_that_limit_analysis_certifies() -> None:
@@ -83,7 +83,7 @@ def test_a_measurement_has_its_answer_its_seconds_and_its_memory() -> None:
 def test_memory_is_what_a_run_takes_beyond_what_was_held() -> None:
     script = (
         "from runningbond.studies.accuracy import measure\nimport numpy as np\nlarge = np.ones(20_000_000); del large\n"
-        "held = measure.start_of_memory(); found = np.ones(5_000_000); print(measure.most_memory() - held)"
+        "held = measure.start_of_memory(); result = np.ones(5_000_000); print(measure.most_memory() - held)"
     )
     taken = subprocess.run([sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True)
     if Path("/proc/self/clear_refs").exists():
@@ -96,9 +96,9 @@ def test_memory_is_what_a_run_takes_beyond_what_was_held() -> None:
 @pytest.mark.parametrize("name", ["block-topples", "block-slides", "stack-of-5"])
 def test_limit_analysis_finds_the_exact_multipliers(name: str) -> None:
     wall = accuracy_walls()[name]
-    found = ask("collapse", "limit", wall.scene, {})
+    result = ask("collapse", "limit", wall.scene, {})
     assert wall.answer is not None
-    assert found.value == pytest.approx(wall.answer[0], rel=1e-9)
+    assert result.value == pytest.approx(wall.answer[0], rel=1e-9)
     assert {"block-topples": 0.23 / 0.36, "block-slides": 0.497, "stack-of-5": 0.46}[name] == wall.answer[0]
 
 
@@ -106,11 +106,11 @@ def test_limit_analysis_finds_the_exact_multipliers(name: str) -> None:
 def test_published_multipliers_are_certified_to_their_last_digit(name: str) -> None:
     """With contacts moved in, the interval of certified loads is a point, and rounds to what was published."""
     wall = accuracy_walls()[name]
-    found = ask("collapse", "limit-nonassociated", wall.scene, {})
-    assert found.value is not None
-    assert found.upper == pytest.approx(found.lower, rel=1e-6)
+    result = ask("collapse", "limit-nonassociated", wall.scene, {})
+    assert result.value is not None
+    assert result.upper == pytest.approx(result.lower, rel=1e-6)
     assert wall.answer is not None
-    assert error(found.value, wall.answer) == 0
+    assert error(result.value, wall.answer) == 0
 
 
 @pytest.mark.parametrize("name", [name for name, wall in accuracy_walls().items() if name.startswith("cell-1e")])
@@ -123,8 +123,8 @@ def test_a_compressed_cell_is_blocks_and_joints_in_series(name: str) -> None:
     for modes in (6, 10, "all"):
         assert ask("compression", "fem", wall.scene, {"modes": modes}).value == pytest.approx(wall.answer[0], rel=1e-9)
     for model, settings in (("homog", {}), ("dem-static", {}), ("fem", {"modes": 3})):
-        found = ask("compression", model, wall.scene, settings)
-        assert found.value == pytest.approx(wall.answer[0] * (1 + excess), rel=1e-9)
+        result = ask("compression", model, wall.scene, settings)
+        assert result.value == pytest.approx(wall.answer[0] * (1 + excess), rel=1e-9)
 
 
 def test_a_sheared_cell_of_rigid_blocks_has_the_closed_form() -> None:
@@ -156,14 +156,14 @@ def test_a_physical_second_of_stiff_blocks_takes_fewer_steps_with_scaled_masses(
     """More than ten times fewer at 1000 GPa, and nearly as few as rigid blocks take."""
     wall = stiffness_walls()["stiff-1e12"]
     unscaled = {"mass_scaling": False}
-    found = [
+    result = [
         ask("physical second", model, wall.scene, settings)
         for model, settings in (("fem", {}), ("fem", unscaled), ("dem-dynamic", {}))
     ]
-    scaled, plain, rigid = (float(one.message.split()[2]) for one in found)
+    scaled, plain, rigid = (float(one.message.split()[2]) for one in result)
     assert scaled > 10 * plain
     assert scaled == pytest.approx(rigid, rel=0.05)
-    for one in found:
+    for one in result:
         assert one.value is not None
         assert one.lower is not None
         assert one.upper is not None
@@ -179,7 +179,7 @@ def test_every_case_is_measured_once_and_can_be() -> None:
         wall, settings = all_walls()[name], settings_of(model, parameter, setting)
         assert bool(settings) == bool(parameter)
         if wall.question == "collapse" and "drive" not in settings:
-            inspect.signature(MODELS[model]).bind(wall.scene, **settings)
+            assert {*settings} <= {"tolerance", *MODELS[model].parameters}
 
 
 def test_every_parameter_is_varied_somewhere() -> None:
@@ -203,12 +203,12 @@ points = st.lists(st.tuples(st.sampled_from([0.1, 0.2, 0.5, 1, 2]), st.sampled_f
 
 
 @given(points)
-def test_nothing_beats_the_pareto_front_and_it_beats_everything_else(found: Sequence[tuple[float, float]]) -> None:
-    cost, error = zip(*found, strict=True)
+def test_nothing_beats_the_pareto_front_and_it_beats_everything_else(result: Sequence[tuple[float, float]]) -> None:
+    cost, error = zip(*result, strict=True)
     front = pareto_front(cost, error)
     assert all(np.diff([cost[i] for i in front]) > 0)
     assert all(np.diff([error[i] for i in front]) < 0)
-    for j in range(len(found)):
+    for j in range(len(result)):
         beaten = [i for i in front if cost[i] <= cost[j] and error[i] <= error[j]]
         assert beaten
         if j in front:
@@ -249,14 +249,14 @@ def changed(rows: Rows, part: str, which: tuple[str, str, str], **entries: objec
 
 def test_the_cheapest_within_a_tolerance_is_found() -> None:
     """Errors 0.067, 0.022, 0.0074, … at ever greater cost; the model that certified a panel counts as within there."""
-    found = records(table(), VARIED)
+    result = records(table(), VARIED)
     everything = tuple(MODELS)
     for tolerance, expected in ((0.1, "limit"), (0.05, "limit-nonassociated"), (0.01, "dem-static")):
-        assert cheapest(found, tolerance, VARIED, everything) == (expected, "", "")
-    assert cheapest(found, 0.01, VARIED, ("fem",)) == ("fem", "", "")
-    assert cheapest(found, 1e-9, VARIED, everything) is None
-    assert found["limit-nonassociated", "", ""].own == ["panel-02"]
-    assert "panel-02" not in found["limit-nonassociated", "", ""].all("wall")
+        assert cheapest(result, tolerance, VARIED, everything) == (expected, "", "")
+    assert cheapest(result, 0.01, VARIED, ("fem",)) == ("fem", "", "")
+    assert cheapest(result, 1e-9, VARIED, everything) is None
+    assert result["limit-nonassociated", "", ""].own == ["panel-02"]
+    assert "panel-02" not in result["limit-nonassociated", "", ""].all("wall")
     assert ["1 %", "follows a path", "dem-static", "16", "0.74 %"] in cheapest_table(table()).rows
 
 

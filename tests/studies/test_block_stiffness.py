@@ -14,9 +14,9 @@ from runningbond.studies.walls import INSET, vibrations
 @pytest.mark.parametrize("young", [1e10, 1e12])
 def test_one_factor_for_all_modes_reaches_the_step_and_spoils_the_band(young: float) -> None:
     """Each mode scaled by its own need leaves the lowest frequencies; all by one factor shifts them by a quarter."""
-    found, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
-    none, each = (system_of(found, mass_scaling=on) for on in (False, True))
-    uniform = uniformly_scaled(found, none, rigid.interface.frequency_squared)
+    result, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
+    none, each = (system_of(result, mass_scaling=on) for on in (False, True))
+    uniform = uniformly_scaled(result, none, rigid.interface.frequency_squared)
     exact, own, all_alike = (vibrations(system)[0] for system in (none, each, uniform))
     band = vibrations(rigid)[0][-1] * (1 + 1e-9)
     assert all_alike[-1] ** 2 <= rigid.interface.frequency_squared < none.interface.frequency_squared / 5

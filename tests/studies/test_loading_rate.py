@@ -96,5 +96,5 @@ def test_a_slender_dry_wall_loaded_slower_still_bears_one_load(first_step: float
     scene = published_scene("panel-12")
     run = Run(rigid_system(scene))
     first, criteria = first_step / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
-    found = load_steps(run, first, BRACKET, criteria, loading=4 * LOADING)
-    assert found.lower == pytest.approx(0.077, rel=0.02)
+    result = load_steps(run, first, BRACKET, criteria, loading=4 * LOADING)
+    assert result.lower == pytest.approx(0.077, rel=0.02)

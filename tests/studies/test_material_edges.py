@@ -11,24 +11,24 @@ from runningbond.studies.stability.material_edges import EXTREMES, SIZES, answer
 @pytest.mark.parametrize("model", ["homog", "limit", "limit-nonassociated", "dem-static"])
 @pytest.mark.parametrize("what", EXTREMES)
 def test_models_at_rest_are_right_or_say_that_they_are_not(what: str, model: str) -> None:
-    found = answer(what, model)
-    assert found["worth"] != "wrong", found
-    assert found["message"]
+    result = answer(what, model)
+    assert result["worth"] != "wrong", result
+    assert result["message"]
 
 
 @pytest.mark.parametrize("what", [what for what in EXTREMES if what != "tan φ = 1e-6"])
 def test_rigid_blocks_in_motion_are_right(what: str) -> None:
     """A metre on a centimetre, too, though it sinks so far into it that joints are said to be too soft."""
-    found = answer(what, "dem-dynamic")
-    assert found["worth"] == "right", found
+    result = answer(what, "dem-dynamic")
+    assert result["worth"] == "right", result
 
 
 @pytest.mark.parametrize(
     "what", ["block 1:50", "no equilibrium: overhang", "gap, 0.99 tolerances", "self-locking: one block pinned"]
 )
 def test_deformable_blocks_in_motion_are_right(what: str) -> None:
-    found = answer(what, "fem")
-    assert found["worth"] == "right", found
+    result = answer(what, "fem")
+    assert result["worth"] == "right", result
 
 
 @pytest.mark.parametrize("model", [limit, dem_static, dem_dynamic])

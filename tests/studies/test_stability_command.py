@@ -144,7 +144,7 @@ main(["stability", "--out", sys.argv[2]])
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_a_command_stopped_in_the_middle_goes_on_where_it_was(how: signal.Signals, tmp_path: Path) -> None:
     def start(pace: str) -> "subprocess.Popen[str]":
-        line = [sys.executable, "-c", STOPPED_IN_THE_SECOND, pace, str(tmp_path / "found")]
+        line = [sys.executable, "-c", STOPPED_IN_THE_SECOND, pace, str(tmp_path / "result")]
         return subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     process = start("slow")
@@ -158,8 +158,8 @@ def test_a_command_stopped_in_the_middle_goes_on_where_it_was(how: signal.Signal
         assert f"1 of {len(EXPERIMENTS)} experiments are kept in" in errors
         assert "the same command goes on" in errors
         assert "Traceback" not in errors
-    whole, begun = (tmp_path / "found" / f"{name}.csv" for name in EXPERIMENTS[:2])
-    assert set((tmp_path / "found").glob("*.csv")) == {whole, begun}
+    whole, begun = (tmp_path / "result" / f"{name}.csv" for name in EXPERIMENTS[:2])
+    assert set((tmp_path / "result").glob("*.csv")) == {whole, begun}
     assert "long" in begun.read_text()
     assert "short" not in begun.read_text()
     before = whole.stat().st_mtime_ns
@@ -167,4 +167,4 @@ def test_a_command_stopped_in_the_middle_goes_on_where_it_was(how: signal.Signal
     again.communicate(timeout=120)
     assert again.returncode == 0
     assert whole.stat().st_mtime_ns == before
-    assert {path.stem for path in (tmp_path / "found").glob("*.csv")} == set(EXPERIMENTS)
+    assert {path.stem for path in (tmp_path / "result").glob("*.csv")} == set(EXPERIMENTS)

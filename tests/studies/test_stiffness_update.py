@@ -39,13 +39,13 @@ def test_a_block_beyond_its_collapse_is_singular_and_what_follows_is_not_reached
 
 
 @pytest.fixture(scope="module")
-def found() -> dict[tuple[str, int], Row]:
+def result() -> dict[tuple[str, int], Row]:
     return {(wall, steps): measure(wall, 0.5, steps) for wall in WALLS for steps in INCREMENTS}
 
 
-def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(found: dict[tuple[str, int], Row]) -> None:
+def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(result: dict[tuple[str, int], Row]) -> None:
     """A load below the one that limit analysis allows, which `dem_static` bears."""
-    for (wall, _), row in found.items():
+    for (wall, _), row in result.items():
         associated = limit(published_scene(wall)).upper
         assert associated is not None
         assert collapse_load(wall) <= associated * (1 + 1e-6)
@@ -53,17 +53,17 @@ def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(found: dict
         assert row[BORNE] < 0.8
 
 
-def test_finer_steps_do_not_help(found: dict[tuple[str, int], Row]) -> None:
+def test_finer_steps_do_not_help(result: dict[tuple[str, int], Row]) -> None:
     """In a hundred steps panel-02 gets less far than in ten, and panel-04 and W3 nowhere in either."""
-    borne = {which: row[BORNE] for which, row in found.items()}
+    borne = {which: row[BORNE] for which, row in result.items()}
     assert borne["panel-02", 100] < borne["panel-02", 10]
     assert borne["panel-04", 100] == borne["panel-04", 10] == 0.0
     assert borne["wall-w3", 100] == borne["wall-w3", 10] < 0.0
 
 
-def test_every_tenth_of_the_load_has_its_fate(found: dict[tuple[str, int], Row]) -> None:
+def test_every_tenth_of_the_load_has_its_fate(result: dict[tuple[str, int], Row]) -> None:
     """A run in steps ends once; what lies beyond is never told as borne."""
-    for (_, steps), row in found.items():
+    for (_, steps), row in result.items():
         fates = row["fates"]
         assert len(fates) == 10
         if steps > 1:

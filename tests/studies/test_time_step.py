@@ -47,8 +47,8 @@ def test_the_assembled_stiffness_is_that_of_the_sparse_operators() -> None:
     expected = jump.opening.T @ (k_n[:, None] * jump.opening.toarray())
     expected += jump.slip.T @ (k_t[:, None] * jump.slip.toarray())
     column = np.argsort(system.rigid.ravel())[np.isfinite(system.mass)]
-    found, _ = elastic_stiffness(system)
-    assert np.abs(found - expected[np.ix_(column, column)]).max() < 1e-12 * np.abs(expected).max()
+    result, _ = elastic_stiffness(system)
+    assert np.abs(result - expected[np.ix_(column, column)]).max() < 1e-12 * np.abs(expected).max()
 
 
 def test_vibrations_are_mass_normalised_and_keep_their_cosine() -> None:
@@ -122,12 +122,12 @@ def test_a_run_with_too_long_a_step_that_comes_to_rest_says_so() -> None:
     system = rigid_system(scene)
     order = np.argsort(contact_points(scene).joint, kind="stable")
 
-    def found(times: float) -> tuple[float | None, str]:
+    def result(times: float) -> tuple[float | None, str]:
         run = Run(system, dt=times * Run(system).dt)
         outcome = collapse_by_steps(scene, "", run, 0.01, point_order=order, is_self_locking=lambda: False)
         return outcome.multiplier, outcome.message
 
-    safe, long = found(1.0), found(1.05)
+    safe, long = result(1.0), result(1.05)
     assert safe[0] == long[0]
     assert "longer than the safe" not in safe[1]
     assert "longer than the safe" in long[1]

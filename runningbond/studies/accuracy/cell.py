@@ -14,8 +14,7 @@ from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
 from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Array, Indices, Scene
 
-RULE = lobatto(3)
-"""Exact for the squared jumps of rigid blocks."""
+RULE = lobatto(3)  # exact for the squared jumps of rigid blocks
 
 
 def rigid_cell(scene: Scene) -> tuple[Array, int]:
@@ -33,19 +32,14 @@ def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount | None = None
     """The same of blocks in triangles, in as many modes as `fem` takes."""
     wall = modal_wall(scene, cells, modes, RULE)
     jump = nodal_jump(wall.elements, len(wall.mesh.points))
-    shapes, translations, stiffness = [], [], []
-    for block in range(len(scene.blocks)):
-        template = wall.place[block, 0]
-        nodes = int(wall.mesh.first_node[block + 1] - wall.mesh.first_node[block])
-        if template < 0:  # the ground, which no block of the cell touches
-            shapes.append(np.zeros((2 * nodes, 0)))
-        else:
-            shapes.append(wall.templates[template].modes.shape)
+    shapes, translations = [], []
+    for template, nodes in zip(wall.place[:, 0], np.diff(wall.mesh.first_node), strict=True):
+        # The ground has no template; no block of the cell touches it.
+        shapes.append(np.zeros((2 * nodes, 0)) if template < 0 else wall.templates[template].modes.shape)
         translations.append(np.tile(np.eye(2), (nodes, 1)))
-        stiffness.append(np.zeros(0) if template < 0 else wall.templates[template].modes.stiffness)
     inside, images = _images(scene)
     spread = _spread(scene, inside, images, shapes, translations)
-    own = np.concatenate([stiffness[block] for block in inside])
+    own = np.concatenate([wall.templates[wall.place[block, 0]].modes.stiffness for block in inside])
     opening, slip = jump.opening @ spread, jump.slip @ spread
     return _condensed(scene, wall.elements.points, inside, opening, slip, own), len(own)
 
@@ -86,12 +80,7 @@ def _spread(
 def _condensed(scene: Scene, points: JointPoints, inside: Indices, opening: Array, slip: Array, own: Array) -> Array:
     """Stiffness against macroscopic strain once the cell's coordinates are at rest, ``(3, 3)`` [Pa].
 
-    Parameters
-    ----------
-    opening, slip : (np, n + 3) float
-        Jumps per coordinate and strain.
-    own : (n,) float
-        Stiffness of the coordinates themselves.
+    Of jumps per coordinate and strain, ``(np, n + 3)``, and the stiffness of the coordinates themselves, ``(n,)``.
     """
     belongs = np.isin(points.block[:, 0], inside)
     normal, shear = ((k * points.area)[belongs, None] for k in wall_stiffness(scene, points.joint))

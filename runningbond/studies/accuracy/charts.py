@@ -25,12 +25,8 @@ RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.
 """Models with three freedoms a block, and the ratio by which they stand apart."""
 
 LEGEND_ROWS = 3
-
-FREE = "homog"
-"""Model that is not drawn: a closed form costs nothing."""
-
+FREE = "homog"  # model that is not drawn: a closed form costs nothing
 DRIVEN = "driven, steps"
-
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
 MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))
 """Marks of the parameters; a model as it is has the first one, filled."""
@@ -46,8 +42,8 @@ TITLES = {
 def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
     """Error against a cost, wall by wall."""
     figure.set_size_inches(11, 9.4)
-    judged = [row for row in rows["accuracy"] if row.get("error") is not None and row.get(cost)]
-    judged = [row for row in judged if row["model"] != FREE]
+    timed = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != FREE]
+    judged = [row for row in timed if row.get("error") is not None]
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
         if own:

@@ -30,12 +30,9 @@ MEGABYTE = 1e6
 def measure(name: str, model: str, parameter: str, setting: str) -> Row:
     """Measure a case in this process, after an untimed run on a small wall of the same kind that loads the kernels.
 
-    Returns
-    -------
-    dict
-        The wall and what is known of it, the `Answer` and its relative error, and of the timed runs the median, the
-        least and the most seconds by the clock, of the processor, and of the processor in those of `REFERENCE`, run
-        just before; and the most memory that a run took beyond what its process held before [MB].
+    The row has the wall and what is known of it, the `Answer` and its relative error, and of the timed runs the median,
+    the least and the most seconds by the clock, of the processor, and of the processor in those of `REFERENCE`, run
+    just before; and the most memory that a run took beyond what its process held before [MB].
     """
     wall, settings = all_walls()[name], settings_of(model, parameter, setting)
     interval = wall.interval()

@@ -1,16 +1,13 @@
 """The parameters of each model that are varied, one at a time, beside the model as it is."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
+from runningbond.compare.models import MODELS
 from runningbond.joints import gauss, lobatto
 
-VARIED = ("stack-of-5", "wall-w1-inset", "wall-w3-inset", "panel-02")
-"""Walls on which parameters are varied."""
-
-COLLAPSE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem")
-"""Models that answer for any wall, in the order of their cost."""
-
+VARIED = ("stack-of-5", "wall-w1-inset", "wall-w3-inset", "panel-02")  # walls on which parameters are varied
+COLLAPSE = tuple(name for name in MODELS if name != "homog")  # models that answer for any wall, the cheapest first
 MODES: dict[str, dict[str, Any]] = {str(count): {"modes": count} for count in (3, 6, 20, "all")}
 """Rigid blocks, uniform strains, all displacements up to third degree, and all of the constant-strain triangles."""
 
@@ -19,19 +16,14 @@ MODES: dict[str, dict[str, Any]] = {str(count): {"modes": count} for count in (3
 class Parameter:
     """A parameter of some models, arguments of the model by the name of each setting, and walls on which it is varied.
 
-    Settings that are too expensive for most walls are tried on those of `cheap` alone.
+    Settings that are too expensive for most walls are tried on the first two alone.
     """
 
     name: str
     models: tuple[str, ...]
     settings: dict[str, dict[str, Any]]
     walls: tuple[str, ...] = VARIED
-    expensive: tuple[str, ...] = field(default=())
-
-    @property
-    def cheap(self) -> tuple[str, ...]:
-        """Walls on which expensive settings are tried."""
-        return self.walls[:2]
+    expensive: tuple[str, ...] = ()
 
 
 IN_MOTION = ("dem-dynamic", "fem")

@@ -9,35 +9,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dem.dynamic import dem_dynamic, finite_pushover
 from dem.rigid_system import rigid_system
-from dem.static import dem_static
 from fem_interface import ModeCount
-from fem_interface.finite_pushover import fem_pushover
-from fem_interface.model import fem
 from fem_interface.system import fem_system
-from homog import elastic_moduli, homog
+from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.joints import joint_stiffness
-from runningbond.limit import limit, limit_nonassociated
-from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, Stiffness
 
 from .cell import deformable_cell, rigid_cell
-from .walls import TURNED, Question
+from .walls import TURNED, Question, rigid_moduli
 
-DRIVEN = 0.05
-"""Displacement of the control point to which a wall is driven, in block sizes."""
-
-SPEED = 1e-3
-"""Speed at which the turned block is pushed where nothing else is said [m/s]."""
-
-STEPS, RUNS = 2000, 5
-"""Time steps of a measurement of their cost, and measurements."""
-
-SOFT = 1e10
-"""Stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner."""
+DRIVEN = 0.05  # displacement of the control point to which a wall is driven, in block sizes
+SPEED = 1e-3  # speed at which the turned block is pushed where nothing else is said [m/s]
+STEPS, RUNS = 2000, 5  # time steps of a measurement of their cost, and measurements
+SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner
 
 
 class Answer(NamedTuple):
@@ -55,17 +41,6 @@ class Answer(NamedTuple):
     message: str = ""
 
 
-MODELS: dict[str, Callable[..., Outcome]] = {
-    "homog": homog,
-    "limit": limit,
-    "limit-nonassociated": limit_nonassociated,
-    "dem-static": dem_static,
-    "dem-dynamic": dem_dynamic,
-    "fem": fem,
-}
-"""Models as functions that take the arguments of `parameters`."""
-
-
 def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) -> Answer:
     """Ask a model a question about a scene, with arguments of the model from `parameters`."""
     try:
@@ -74,19 +49,14 @@ def ask(question: Question, model: str, scene: Scene, settings: dict[str, Any]) 
         return Answer("not applicable", message=str(reason))
 
 
-def _collapse(model: str, scene: Scene, **settings: Any) -> Answer:
-    if "drive" in settings:
-        return _driven(model, scene, settings["drive"])
-    said = MODELS[model](scene, **settings)
+def _collapse(model: str, scene: Scene, tolerance: float = TOLERANCE, **settings: Any) -> Answer:
+    if "drive" in settings:  # the peak under work-conjugate displacement control, at a speed that some steps give
+        system, distance = _system(model, scene), DRIVEN * scene.block_size
+        result = _drive(system, scene, distance, settings["drive"])
+        speed = f"largest λ while driven {1e3 * distance:.3g} mm"
+        return Answer("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
+    said = MODELS[model].solve(scene, tolerance, **settings)
     return Answer(said.status, said.multiplier, said.lower, said.upper, said.dofs, said.steps, said.message)
-
-
-def _driven(model: str, scene: Scene, steps: int) -> Answer:
-    """The peak of the curve under work-conjugate displacement control, at a speed that some steps give."""
-    system = _system(model, scene)
-    result = _drive(system, scene, DRIVEN * scene.block_size, steps)
-    speed = f"largest λ while driven {1e3 * DRIVEN * scene.block_size:.3g} mm"
-    return Answer("collapse", result.peak, None, None, system.freedoms, result.state.steps, speed)
 
 
 def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:
@@ -109,7 +79,8 @@ def _turned(model: str, scene: Scene, speed: float = SPEED, **settings: Any) -> 
         system = _system(model, scene)
         pushed = _drive(system, scene, distance, settings["drive"])
         return _read_off(pushed.curve[:, 0] / height, pushed.curve[:, 1], system.freedoms, pushed.state.steps)
-    push = fem_pushover if model == "fem" else finite_pushover
+    push = MODELS[model].pushover
+    assert push is not None
     curve = push(scene, distance, speed=speed)
     # The control point stands above the corner about which the block turns.
     return _read_off(np.arcsin(curve[:, 0] / height), curve[:, 2], _system(model, scene).freedoms, None)
@@ -127,11 +98,7 @@ def _read_off(turned: Array, multiplier: Array, dofs: int, steps: int | None) ->
 def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
     """A2222 or A1212 of a periodic cell; the energy of a shear E12 is 4 A1212 / 2."""
     if model == "homog":
-        joint = joint_stiffness(scene.joint)
-        assert scene.bond is not None
-        springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
-        springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
-        moduli = elastic_moduli(scene.bond.width, scene.bond.height, **springs)
+        moduli = rigid_moduli(scene)
         return Answer("elastic", (moduli.a2222, moduli.a1212)[which - 1])
     result, dofs = deformable_cell(scene, cells, modes) if model == "fem" else rigid_cell(scene)
     return Answer("elastic", float(result[which, which]) / (1, 1, 4)[which], dofs=dofs)

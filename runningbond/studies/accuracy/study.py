@@ -9,17 +9,18 @@ from runningbond.studies import Case, Part, Rows, Study
 from runningbond.studies.apart import LONGEST
 from runningbond.studies.page import Block, draw_charts, edges_sheet
 from runningbond.studies.store import failures, table_path
+from runningbond.studies.study import PACKAGE
 from runningbond.studies.walls import INSET
 
 from .charts import CHARTS
 from .measure import CHEAP, REFERENCE, RUNS, machine, measure
-from .parameters import COLLAPSE, PARAMETERS, settings_of
+from .parameters import COLLAPSE, IN_MOTION, PARAMETERS, settings_of
 from .tables import fits, tables
 from .walls import accuracy_walls, all_walls, growth_walls, stiffness_walls
 
 ASKED = {
     "collapse": ("homog", *COLLAPSE),
-    "turned block": ("dem-dynamic", "fem"),
+    "turned block": IN_MOTION,
     "compression": ("homog", "dem-static", "fem"),
     "shear": ("homog", "dem-static", "fem"),
 }
@@ -68,7 +69,7 @@ def _varied(wall: str, model: str) -> Iterator[Case]:
     for parameter in PARAMETERS:
         if model in parameter.models and wall in parameter.walls:
             for setting in parameter.settings:
-                if setting not in parameter.expensive or wall in parameter.cheap:
+                if setting not in parameter.expensive or wall in parameter.walls[:2]:
                     yield wall, model, parameter.name, setting
 
 
@@ -79,8 +80,8 @@ def depends(case: Case) -> str:
 
 
 COLUMNS = ("wall", "model", "parameter", "setting")
-HERE, SHARED = Path(__file__).parent, Path(__file__).parents[1]
-SOURCES = (*(HERE / f"{name}.py" for name in ("walls", "cell", "questions", "measure")), SHARED / "walls.py")
+OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "cell", "questions", "measure")]
+SOURCES = (*OWN, PACKAGE / "studies" / "walls.py", PACKAGE / "compare" / "models.py")
 GROWTH = [(name, model, "", "") for name in growth_walls() for model in COLLAPSE]
 
 STUDY = Study(

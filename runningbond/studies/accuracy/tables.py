@@ -7,21 +7,21 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from runningbond.compare.models import MODELS
 from runningbond.compare.table import Sheet
 from runningbond.joints import joint_stiffness
 from runningbond.studies import Edge, Row, Rows
 from runningbond.studies.apart import TOO_LONG
-from runningbond.studies.charts import MODEL_LOOKS
 
 from .measure import REFERENCE
-from .parameters import VARIED
+from .parameters import IN_MOTION, VARIED
 from .walls import all_walls
 
 KINDS = {
-    "any": tuple(MODEL_LOOKS),
+    "any": tuple(MODELS),
     "without a path": (REFERENCE, "limit-nonassociated"),
-    "follows a path": ("dem-static", "dem-dynamic", "fem"),
-    "in motion": ("dem-dynamic", "fem"),
+    "follows a path": ("dem-static", *IN_MOTION),
+    "in motion": IN_MOTION,
 }
 """Models of which the cheapest is looked for."""
 
@@ -128,7 +128,7 @@ def cheapest(
 def models_table(rows: Rows) -> Sheet:
     """Every model as it is, on the walls whose answer is known."""
     body, result = [], records(rows)
-    for model in MODEL_LOOKS:
+    for model in MODELS:
         if (record := result.get((model, "", ""))) is None:
             continue
         errors, ratios = record.all("error"), record.all("ratio")
@@ -153,17 +153,14 @@ def parameters_table(rows: Rows) -> Sheet:
             one, other = (records(rows, both)[which] for which in (setting, plain))
             costs = zip(one.all("ratio"), other.all("ratio"), strict=True)
             dearer = statistics.median(a / b for a, b in costs)
-            effect = _effect(max(one.error, EXACT) / max(other.error, EXACT), dearer)
+            change = max(one.error, EXACT) / max(other.error, EXACT)
+            effect = "" if 1 / DEARER < dearer < DEARER else "cost alone"
+            if not 1 / CHANGED < change < CHANGED:
+                effect = "costs accuracy" if change > 1 else "buys accuracy"
             numbers = (str(len(both)), percent(one.error), percent(other.error), times(dearer))
             body.append([*setting, *numbers, effect, ", ".join(record.unanswered)])
     heads = ["model", "parameter", "setting", "walls", "largest error", "as it is", "cost, times as it is"]
     return Sheet("Parameters, one changed at a time", [*heads, "what it changes", "no number on"], body)
-
-
-def _effect(change: float, dearer: float) -> str:
-    if not 1 / CHANGED < change < CHANGED:
-        return "costs accuracy" if change > 1 else "buys accuracy"
-    return "" if 1 / DEARER < dearer < DEARER else "cost alone"
 
 
 def cheapest_table(rows: Rows) -> Sheet:
@@ -194,7 +191,7 @@ def others_table(rows: Rows) -> Sheet:
 def growth(rows: Rows) -> dict[str, list[Row]]:
     """Rows of the growth study that were timed, by model, in order of size."""
     timed = sorted((row for row in rows["growth"] if row.get("cpu_s") is not None), key=lambda row: int(row["blocks"]))
-    return {model: own for model in MODEL_LOOKS if (own := [row for row in timed if row["model"] == model])}
+    return {model: own for model in MODELS if (own := [row for row in timed if row["model"] == model])}
 
 
 def exponent(rows: Sequence[Row]) -> float | None:

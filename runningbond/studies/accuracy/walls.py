@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Literal, TypeAlias
 
-from homog import elastic_moduli
+from homog import Moduli, elastic_moduli
 from runningbond.compare.published import published_scene
 from runningbond.joints import joint_stiffness
 from runningbond.limit import limit_nonassociated
@@ -23,15 +23,10 @@ Interval: TypeAlias = tuple[float, float]
 PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
 """Their λ with contacts moved in (Ferris & Tin-Loi 2001), to four digits."""
 
-DIGITS = 5e-5
-"""Half of the last digit that is published."""
-
-TURNED = 0.1
-"""Rotation of the turned block [rad]."""
-
+DIGITS = 5e-5  # half of the last digit that is published
+TURNED = 0.1  # rotation of the turned block [rad]
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
-STIFF = 1e12
-"""Young's modulus of blocks where nothing else is said, the paper's [Pa]."""
+STIFF = 1e12  # Young's modulus of blocks where nothing else is said, the paper's [Pa]
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,12 +99,18 @@ def elastic_cell(young: float, question: Question, width: float = 0.24, height: 
     1 / A2222 = 1 / (a k_n) + 1 / E; sheared, rigid blocks have the closed form of `homog`.
     """
     scene = _scene((width, height), 0.6, young, length=6 * width, height=6 * height)
-    joint = joint_stiffness(scene.joint)
     if question == "compression":
-        return _exactly(scene, 1 / (1 / (height * joint.normal) + 1 / young), question)
-    stiffness = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
-    stiffness |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
-    return _exactly(scene, elastic_moduli(width, height, **stiffness).a1212, question)
+        return _exactly(scene, 1 / (1 / (height * joint_stiffness(scene.joint).normal) + 1 / young), question)
+    return _exactly(scene, rigid_moduli(scene).a1212, question)
+
+
+def rigid_moduli(scene: Scene) -> Moduli:
+    """Closed-form moduli [Pa] of a wall's running bond of rigid blocks."""
+    assert scene.bond is not None
+    joint = joint_stiffness(scene.joint)
+    springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
+    springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
+    return elastic_moduli(scene.bond.width, scene.bond.height, **springs)
 
 
 def published_wall(name: str) -> Wall:

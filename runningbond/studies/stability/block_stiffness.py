@@ -26,6 +26,7 @@ EXPENSIVE = 1e11
 """Young's modulus [Pa] beyond which the wall is not brought down without mass scaling: it would take minutes."""
 
 NONE, EACH, UNIFORM = SCALINGS = ("none", "each mode by its own", "all modes by one factor")
+KIND, YOUNGS = "masses scaled", "E [Pa]"
 PART, STEP, SHIFT = "W1, its blocks ever stiffer", "time step [µs]", f"largest shift of the {LOWEST} lowest ω [%]"
 
 
@@ -67,7 +68,7 @@ def measure(young: float, scaling: str) -> Row:
 
 def fits(rows: Rows) -> list[Edge]:
     """The step's power of the stiffness without scaling, its value with it, and what scaling does to frequencies."""
-    none, each, uniform = ([row for row in rows[PART] if row["masses scaled"] == kind] for kind in SCALINGS)
+    none, each, uniform = ([row for row in rows[PART] if row[KIND] == kind] for kind in SCALINGS)
     stiffest = each[-1]
     return [
         Edge("time step as E grows tenfold, no scaling, last decade", none[-2][STEP] / none[-1][STEP], 10**0.5, 0.01),
@@ -78,22 +79,16 @@ def fits(rows: Rows) -> list[Edge]:
     ]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Step, λ and shift of frequencies against the blocks' stiffness."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(11, 4.8)
     steps, loads, shifts = figure.subplots(1, 3)
     looks, own = looks_of(SCALINGS), rows[PART]
     hollow = {"mfc": "none", "lw": 1.2}
-    series(
-        steps, [row for row in own if row["masses scaled"] != UNIFORM], "E [Pa]", STEP, "masses scaled", looks, **hollow
-    )
-    series(
-        shifts, [row for row in own if row["masses scaled"] != NONE], "E [Pa]", SHIFT, "masses scaled", looks, **hollow
-    )
+    series(steps, [row for row in own if row[KIND] != UNIFORM], YOUNGS, STEP, KIND, looks, **hollow)
+    series(shifts, [row for row in own if row[KIND] != NONE], YOUNGS, SHIFT, KIND, looks, **hollow)
     for row in own:
         if row.get("λ upper") is not None:
-            aside = 0.9 if row["masses scaled"] == NONE else 1.12
-            bracket(loads, aside * row["E [Pa]"], row, looks[row["masses scaled"]][0])
+            bracket(loads, (0.9 if row[KIND] == NONE else 1.12) * row[YOUNGS], row, looks[row[KIND]][0])
     level(steps, own[0]["of rigid blocks [µs]"], "rigid blocks", 0.05, ha="left")
     exact = known_wall(W1).multiplier
     level(loads, exact, "certified", 0.83, ha="center")
@@ -113,7 +108,7 @@ STUDY = Study(
     trusted="λ does not depend on the blocks' stiffness, and `fem`'s own scaling leaves the lowest frequencies alone",
     beyond="many times as many steps without scaling; with one factor for all deformable modes blocks would vibrate in "
     "the band in which they move as wholes, and `fem` does not offer it",
-    parts={PART: Part(("E [Pa]", "masses scaled"), [(E, kind) for E in YOUNG for kind in SCALINGS], measure)},
-    charts=[Chart("block-stiffness", "Time step, λ and lowest frequencies of blocks from soft to stiff", draw)],
+    parts={PART: Part((YOUNGS, KIND), [(E, kind) for E in YOUNG for kind in SCALINGS], measure)},
+    charts=[Chart("block-stiffness", "Time step, λ and lowest frequencies of blocks from soft to stiff", _draw)],
     fits=fits,
 )

@@ -23,21 +23,19 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from runningbond.dynamics import BlockSystem, Criteria, Run, State, ramp, settle
+from runningbond.dynamics import Criteria, Run, State, ramp, settle
 from runningbond.dynamics.collapse import CALM, CollapseDetector
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS, looks_of
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, known_wall
 
-LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)
-"""Local damping α."""
+LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)  # local damping α
 
 VISCOSITIES = (0.0, 0.01, 0.03, VISCOUS, 0.3, 1.0, 3.0)
 """Damping ratio ξ of the joints' viscosity at the highest frequency."""
 
-MASS_RATES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)
-"""Rates c of mass-proportional damping [1/s]."""
+MASS_RATES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # rates c of mass-proportional damping [1/s]
 
 WALLS, BESIDE, BUDGET, SHORT, CLOSE = (SLIDING, W1), 0.02, 300_000, 20_000, 0.002
 """Walls of the maps; share of λ_c by which loads lie below and above it; steps after which a verdict is given up, and
@@ -56,7 +54,9 @@ def judged(
     Damped by local damping, the joints' viscous ratio and a mass-proportional rate [1/s], within a budget of steps.
     """
     wall = known_wall(name)
-    run = Run(_damped(wall.system, mass_rate), local=local, viscous=viscous)
+    drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)
+    system = replace(wall.system, viscosity=wall.system.viscosity + drag)
+    run = Run(system, local=local, viscous=viscous)
     state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget)
     verdict = settle(run, state, 0.0, criteria, sudden=True)
     if verdict == "collapse":
@@ -69,23 +69,12 @@ def judged(
     return {"verdict": "right" if right else "undecided" if verdict == "undecided" else "wrong", "steps": state.steps}
 
 
-def mass_row(name: str, rate: float) -> Row:
-    """The same just above collapse with mass-proportional damping."""
-    return judged(name, 1 + BESIDE, mass_rate=rate)
-
-
-def _damped(system: BlockSystem, mass_rate: float) -> BlockSystem:
-    return replace(
-        system, viscosity=system.viscosity + mass_rate * np.where(np.isfinite(system.mass), system.mass, 0.0)
-    )
-
-
-def least_local() -> Row:
+def least_local(name: str = SLIDING) -> Row:
     """Least local damping with which a block comes to rest under its weight in some steps, without viscosity.
 
     Steps a tenth as long as stable ones, for the theory is of a continuous motion.
     """
-    wall = known_wall(SLIDING)
+    wall = known_wall(name)
     system, criteria = wall.system, Criteria(collapse=wall.far, budget=SHORT, interval=20)
     dt = 0.1 * Run(system).dt
     omega = math.sqrt(
@@ -106,9 +95,9 @@ def least_local() -> Row:
     return {"measured": _bisected(rings, theory / 2, theory * 2), "theory": theory, "allowed": 0.03}
 
 
-def most_local() -> Row:
+def most_local(name: str = SLIDING) -> Row:
     """Least 1 − α with which the fall of a block is seen within some steps, by (3)."""
-    wall, load = known_wall(SLIDING), 1 + BESIDE
+    wall, load = known_wall(name), 1 + BESIDE
 
     def surplus(left: float) -> float:
         run, rest = wall.rest(1 - left)
@@ -116,7 +105,7 @@ def most_local() -> Row:
         return SHORT - (1 + RAMP) * rest.steps - time / run.dt
 
     def unseen(left: float) -> bool:
-        return bool(judged(SLIDING, load, 1 - left, budget=SHORT)["verdict"] != "right")
+        return bool(judged(name, load, 1 - left, budget=SHORT)["verdict"] != "right")
 
     return {"measured": _bisected(unseen, 1e-3, 0.5), "theory": float(brentq(surplus, 1e-3, 0.5)), "allowed": 0.03}
 
@@ -142,13 +131,6 @@ def most_mass_rate(name: str) -> Row:
     theory = float(brentq(surplus, 0.1, 1e4))
     measured = _bisected(seen, theory / 3, theory * 3)
     return {"measured": measured, "theory": theory, "allowed": 0.02 if wall.is_block else None}
-
-
-def edge_row(what: str, name: str) -> Row:
-    """An edge, beside theory."""
-    if what == FEIGNED:
-        return most_mass_rate(name)
-    return least_local() if what == LEAST else most_local()
 
 
 LEAST = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
@@ -177,8 +159,7 @@ def fits(rows: Rows) -> list[Edge]:
     return [*right, Edge("wrong verdicts with local damping and the joints' viscosity", wrong)]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Maps of steps until the verdict, and mass-proportional damping."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(10, 6)
     grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 0.95))
     norm = LogNorm(min(row["steps"] for row in rows[MAPS] if row["verdict"] == "right"), BUDGET)
@@ -235,15 +216,19 @@ STUDY = Study(
     "edges makes a fall look like rest, and no model of the suite has any",
     parts={
         MAPS: Part(("wall", LOAD, "α", "ξ"), CASES, judged),
-        MASSIVE: Part(("wall", RATE), [(name, rate) for name in WALLS for rate in MASS_RATES], mass_row),
+        MASSIVE: Part(
+            ("wall", RATE),
+            [(name, rate) for name in WALLS for rate in MASS_RATES],
+            lambda name, rate: judged(name, 1 + BESIDE, mass_rate=rate),
+        ),
         EDGES: Part(
             ("what", "wall"),
             [(LEAST, SLIDING), (MOST, SLIDING), *((FEIGNED, name) for name in (SLIDING, W1, TOPPLING))],
-            edge_row,
+            lambda what, name: {LEAST: least_local, MOST: most_local, FEIGNED: most_mass_rate}[what](name),
         ),
     },
     charts=[
-        Chart("damping", "Steps until the verdict over local and viscous damping, and over mass-proportional", draw)
+        Chart("damping", "Steps until the verdict over local and viscous damping, and over mass-proportional", _draw)
     ],
     fits=fits,
 )

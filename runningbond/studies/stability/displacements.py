@@ -21,11 +21,8 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import looks_of
 from runningbond.studies.walls import inset_wall, one_block
 
-LOSSES = (0.01, 0.02, 0.05, 0.1)
-"""Shares of the small-displacement λ whose loss is looked for."""
-
-WIDTH, HEIGHT = 0.5, 1.0
-"""Of the block [m]."""
+LOSSES = (0.01, 0.02, 0.05, 0.1)  # shares of the small-displacement λ whose loss is looked for
+WIDTH, HEIGHT = 0.5, 1.0  # of the block [m]
 
 SOFTER = 0.1
 """Mortar's modulus of the walls, in the published one: past the peak λ does not depend on it, the time step does."""
@@ -33,8 +30,7 @@ SOFTER = 0.1
 SPEEDS = (5e-4, 1.25e-4)
 """Mean speeds of the blocks along the live load [m/s], the first to show that the second is slow enough."""
 
-LOCAL = 0.1
-"""Local damping: what there is of it drags on blocks that move, and adds to λ."""
+LOCAL = 0.1  # local damping: what there is of it drags on blocks that move, and adds to λ
 
 FARTHEST, SMOOTHED, DRAWN = 0.25, 15, 150
 """Displacement to which they are pushed, in block widths; rows of a curve that are averaged, for blocks that slip are
@@ -59,12 +55,8 @@ def scene_of(name: str) -> tuple[Scene, float]:
 def curves(scene: Scene, width: float, speed: float) -> tuple[float, Array, Array, Array]:
     """Push a scene at small and at finite displacements, at a mean speed of its blocks along the live load [m/s].
 
-    Returns
-    -------
-    peak
-        λ at small displacements, in the end.
-    moved, small, finite : (n,) float
-        Displacement of the control point from the finite curve's peak on, in block widths, and λ of both curves.
+    Returns λ at small displacements in the end, and from the finite curve's peak on the displacement of the control
+    point in block widths, and λ of both curves, each ``(n,)``.
     """
     distance = FARTHEST * width
     static = dem_static(scene, collapse=2 * distance / scene.lowest_block).curve
@@ -118,8 +110,7 @@ def fits(rows: Rows) -> list[Edge]:
     return [*edges, Edge("walls beside one block of their λ and height, off by at most [%]", 100 * apart)]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Both curves of each scene past its peak, and what is lost between them."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(9, 4.8)
     curves, losses = figure.subplots(1, 2)
     looks, shares = looks_of(WALLS), np.linspace(0.001, 0.2, 50)
@@ -151,7 +142,7 @@ STUDY = Study(
     "`dem.dynamic.finite_pushover` gives the curve that falls",
     parts={PART: Part(("what", "speed [m/s]"), [(name, speed) for name in WALLS for speed in SPEEDS], measure)},
     charts=[
-        Chart("displacements", "λ past its peak at small and at finite displacements, and what is lost between", draw)
+        Chart("displacements", "λ past its peak at small and at finite displacements, and what is lost between", _draw)
     ],
     fits=fits,
 )

@@ -4,37 +4,26 @@ Soft joints let blocks sink into each other, by ρ g H / k_n at the base, until 
 a collapse does. Stiff ones ask for short time steps, until the budget ends before the wall has had the time to fall.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from dem.dynamic import dem_dynamic
 from dem.rigid_system import rigid_system
-from dem.static import dem_static
 from dem.static_system import static_system
-from fem_interface.model import fem
+from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.joints.stiffness_range import SOFT
-from runningbond.results import Outcome
 from runningbond.scene import Scene, Stiffness
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS, MODEL_LOOKS, bracket
 from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 
-NORMAL = tuple(10.0**power for power in range(5, 16))
-"""Normal stiffnesses of the joints [Pa/m]."""
-
-RATIO = 0.4
-"""k_t / k_n, that of mortar with ν = 0.2."""
-
-FEM = (1e8, 1e12)
-"""Stiffnesses between which fem is run; beyond them it takes minutes."""
-
-SOLVE: dict[str, Callable[..., Outcome]] = {"dem-static": dem_static, "dem-dynamic": dem_dynamic, "fem": fem}
-TOLERANCE = 0.01
+NORMAL = tuple(10.0**power for power in range(5, 16))  # normal stiffnesses of the joints [Pa/m]
+RATIO = 0.4  # k_t / k_n, that of mortar with ν = 0.2
+FEM = (1e8, 1e12)  # stiffnesses between which fem is run; beyond them it takes minutes
+RUN = ("dem-static", "dem-dynamic", "fem")  # models that read the stiffness
 REST, COLLAPSES = "W1 at rest under its weight", "W1 brought to collapse"
 K_N, OVERLAP, THEORY, STEPS = "k_n [Pa/m]", "overlap [block sizes]", "ρ g H / k_n", "steps to rest"
 CONDITION = "condition number"
@@ -74,7 +63,7 @@ def condition(scene: Scene) -> float:
 
 def collapse(normal: float, model: str) -> Row:
     """What a model makes of the wall."""
-    outcome = SOLVE[model](wall(normal), TOLERANCE)
+    outcome = MODELS[model].solve(wall(normal), TOLERANCE)
     return {"of the stiffness": stiffness_note(outcome.message), **outcome_row(outcome)}
 
 
@@ -92,26 +81,21 @@ def fits(rows: Rows) -> list[Edge]:
         Edge(f"overlap at {deepest[K_N]:.0e} Pa/m, farthest from theory", deepest[OVERLAP], deepest[THEORY], 0.01),
         Edge("condition number at the last stiffness by that at the first", worse, 1.0, 0.01),
     ]
-    for model in SOLVE:
+    for model in RUN:
         loads = [row["λ"] for row in rows[COLLAPSES] if row["model"] == model and row.get("λ")]
         farthest = max(loads, key=lambda load: abs(load - exact))
         edges.append(Edge(f"λ, {model}, of all collapses farthest from the certified", farthest, exact, TOLERANCE))
-    silent = silent_range(rows[COLLAPSES])
+    # Every model found the collapse there, and had nothing to say of the stiffness.
+    bad = {row[K_N] for row in rows[COLLAPSES] if row["status"] != "collapse" or row.get("of the stiffness")}
+    silent = [normal for normal in NORMAL if normal not in bad]
     ends = (("smallest", silent[0]), ("largest", silent[-1]))
     return edges + [Edge(f"{which} k_n at which all models collapse and say nothing [Pa/m]", k) for which, k in ends]
 
 
-def silent_range(rows: Sequence[Row]) -> list[float]:
-    """Stiffnesses at which every model found the collapse, and had nothing to say of the stiffness."""
-    bad = {row[K_N] for row in rows if row["status"] != "collapse" or row.get("of the stiffness")}
-    return [normal for normal in NORMAL if normal not in bad]
-
-
-def draw(figure: Figure, rows: Rows) -> None:
-    """λ, overlap and steps against the stiffness."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(11, 4.6)
     loads, depths, steps = figure.subplots(1, 3)
-    for place, model in enumerate(SOLVE):
+    for place, model in enumerate(RUN):
         for row in rows[COLLAPSES]:
             if row["model"] == model and row.get("λ upper") and row.get("λ lower") is not None:
                 bracket(loads, row[K_N] * 2.0 ** (place - 1), row, MODEL_LOOKS[model][0], lw=3)
@@ -136,7 +120,7 @@ def draw(figure: Figure, rows: Rows) -> None:
         axes.legend(frameon=False, fontsize=8)
 
 
-CASES = [(k, model) for k in NORMAL for model in SOLVE if model != "fem" or FEM[0] <= k <= FEM[1]]
+CASES = [(k, model) for k in NORMAL for model in RUN if model != "fem" or FEM[0] <= k <= FEM[1]]
 STUDY = Study(
     "joint-stiffness",
     "Joint stiffness",
@@ -146,7 +130,7 @@ STUDY = Study(
     "runs out, with the time for which each load was followed",
     parts={REST: Part((K_N,), [(k,) for k in NORMAL], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
     charts=[
-        Chart("joint-stiffness", "λ, overlap under the dead load, and time steps of joints from soft to stiff", draw)
+        Chart("joint-stiffness", "λ, overlap under the dead load, and time steps of joints from soft to stiff", _draw)
     ],
     fits=fits,
 )

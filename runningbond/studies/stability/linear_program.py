@@ -7,21 +7,19 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
+from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.compare.published import published_scene
-from runningbond.limit import equilibrium, limit, limit_nonassociated
+from runningbond.limit import equilibrium
 from runningbond.limit.associated import LimitState
 from runningbond.limit.force_program import coulomb, solve_forces
-from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
+from runningbond.scene import JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS, MODEL_LOOKS, level
+from runningbond.studies.walls import boxes
 
-POWERS = (-6, -4, -2, 0, 2, 4, 6)
-"""Powers of ten by which quantities are multiplied, one at a time."""
-
-WORTH = 1e-9
-"""Difference that counts as rounding: what a linear program's answer is good for."""
-
-BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+POWERS = (-6, -4, -2, 0, 2, 4, 6)  # powers of ten by which quantities are multiplied, one at a time
+WORTH = 1e-9  # difference that counts as rounding: what a linear program's answer is good for
+STIFFNESS = Stiffness(1e11, 4e10)
 QUANTITIES = ("density", "size", "load")
 WALLS = ("wall-w1", "wall-w2", "wall-w3", "panel-04", "panel-03")
 DEGENERATES, SCALES, SOLVERS = (
@@ -29,28 +27,21 @@ DEGENERATES, SCALES, SOLVERS = (
     "λ at every scale, of what it must be",
     "λ by simplex, of that by interior point",
 )
-SOLVE: dict[str, Callable[[Scene], float | None]] = {
-    "limit": lambda scene: limit(scene).lower,
-    "limit-nonassociated": lambda scene: limit_nonassociated(scene).lower,
-}
-"""The models that solve linear programs, and what they find; neither reads a stiffness."""
-
-
-def _build(outlines: list[Array], friction: float = 0.6) -> Scene:
-    joint = JointMaterial(friction, elasticity=Stiffness(1e11, 4e10))
-    return build_scene("piers", outlines, thickness=0.12, block=BlockMaterial(1800.0), joint=joint, load=Load())
+PROGRAMS = ("limit", "limit-nonassociated")  # the models that solve linear programs; neither reads a stiffness
 
 
 def row_of_piers(number: int, friction: float = 0.6) -> Scene:
     """Equal piers of four blocks, 240 mm wide and 480 mm high, apart: as many mechanisms, and their combinations."""
     places = [(pier, course) for pier in range(number) for course in range(4)]
-    return _build([BOX * [0.24, 0.12] + [0.5 * pier, 0.12 * course] for pier, course in places], friction)
+    joint = JointMaterial(friction, elasticity=STIFFNESS)
+    return boxes(*((0.5 * pier, 0.12 * course, 0.24, 0.12) for pier, course in places), joint=joint)
 
 
 def dusty() -> Scene:
     """A pier with grains of a hundred-millionth of its blocks' weight on its top and beside it."""
-    pier = [BOX * [0.24, 0.12] + [0.0, 0.12 * course] for course in range(4)]
-    return _build([*pier, *(BOX * 1e-4 + [x, y] for x, y in ((0.02, 0.48), (0.12, 0.48), (0.22, 0.48), (0.4, 0.0)))])
+    pier = [(0.0, 0.12 * course, 0.24, 0.12) for course in range(4)]
+    grains = [(x, y, 1e-4, 1e-4) for x, y in ((0.02, 0.48), (0.12, 0.48), (0.22, 0.48), (0.4, 0.0))]
+    return boxes(*pier, *grains, joint=JointMaterial(0.6, elasticity=STIFFNESS))
 
 
 DEGENERATE: dict[str, tuple[Callable[[], Scene], float]] = {
@@ -84,17 +75,17 @@ def glued(quantity: str = "", factor: float = 1.0) -> tuple[Scene, float]:
 def degenerate_row(wall: str, model: str) -> Row:
     """λ of a degenerate wall, beside the exact one: min of tan φ and width / height, whatever else happens."""
     build, exact = DEGENERATE[wall]
-    result = SOLVE[model](build())
+    result = MODELS[model].solve(build(), TOLERANCE).lower
     return {"measured": float("nan") if result is None else result, "theory": exact, "allowed": 1e-6}
 
 
 def scale_row(model: str, quantity: str) -> Row:
     """Largest relative error of λ over twelve orders of magnitude of a quantity; inf where there is no answer."""
-    reference, errors = SOLVE[model](glued()[0]), []
+    reference, errors = MODELS[model].solve(glued()[0], TOLERANCE).lower, []
     assert reference is not None
     for power in POWERS:
         scene, change = glued(quantity, 10.0**power)
-        result = SOLVE[model](scene)
+        result = MODELS[model].solve(scene, TOLERANCE).lower
         errors.append(float("inf") if result is None else abs(result / (reference * change) - 1))
     return {"measured": 1 + max(errors), "theory": 1.0, "allowed": 1e-6, "largest error": max(errors), "errors": errors}
 
@@ -111,8 +102,7 @@ def solver_row(wall: str) -> Row:
     return {"measured": row["λ, simplex"] / row["λ, interior point"], "theory": 1.0, "allowed": 1e-8, **row}
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Errors at every scale, and of two solvers."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(11, 4.6)
     left, right = figure.subplots(1, 2)
     styles = dict(zip(QUANTITIES, ("-", "--", ":"), strict=True))
@@ -146,9 +136,11 @@ STUDY = Study(
     beyond="an optimum whose forces and mechanism do not prove each other is `failed`, never a number, with what they "
     "miss by",
     parts={
-        DEGENERATES: Part(("wall", "model"), [(wall, model) for wall in DEGENERATE for model in SOLVE], degenerate_row),
-        SCALES: Part(("model", "quantity"), [(model, what) for model in SOLVE for what in QUANTITIES], scale_row),
+        DEGENERATES: Part(
+            ("wall", "model"), [(wall, model) for wall in DEGENERATE for model in PROGRAMS], degenerate_row
+        ),
+        SCALES: Part(("model", "quantity"), [(model, what) for model in PROGRAMS for what in QUANTITIES], scale_row),
         SOLVERS: Part(("wall",), [(wall,) for wall in WALLS], solver_row),
     },
-    charts=[Chart("linear-program", "Errors of limit analysis at every scale, and of its two solvers", draw)],
+    charts=[Chart("linear-program", "Errors of limit analysis at every scale, and of its two solvers", _draw)],
 )

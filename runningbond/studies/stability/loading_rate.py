@@ -28,8 +28,7 @@ from runningbond.studies.charts import LOOKS, level, looks_of, series
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 
 WALLS = (SLIDING, TOPPLING, W1)
-RATES = tuple(10.0 ** -(k / 3) for k in range(7))
-"""Rates of λ [1/s], the fastest first."""
+RATES = tuple(10.0 ** -(k / 3) for k in range(7))  # rates of λ [1/s], the fastest first
 
 PUSHES = tuple(1_000 * 2**k for k in range(12))
 """Steps in which a wall is pushed as far as a load step may move it: the more, the slower."""
@@ -37,8 +36,7 @@ PUSHES = tuple(1_000 * 2**k for k in range(12))
 LOADINGS = (0, 1, 4, LOADING, 4 * LOADING, 16 * LOADING)
 """Times in which the load grows by its first step, in times to rest."""
 
-DRY = ("panel-12", "point-load-4")
-"""Published walls whose λ depends on their history; the second has no weight."""
+DRY = ("panel-12", "point-load-4")  # published walls whose λ depends on their history; the second has no weight
 
 ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005
 """Power of a ramp's error in its rate, by (2); steps between two looks at it; relative width of brackets."""
@@ -168,15 +166,13 @@ def fits(rows: Rows) -> list[Edge]:
         own_speed, slowest = default_loading(name), LOADINGS[-1]
         what = f"λ by the suite's load steps, of that {slowest / own_speed:g} times as slow, {name}"
         edges.append(Edge(what, steps[name, own_speed] / steps[name, slowest]))
-        hasty = max(
-            (steps[name, at] / steps[name, slowest] for at in LOADINGS if at < own_speed), key=lambda x: abs(x - 1)
-        )
+        ratios = [steps[name, at] / steps[name, slowest] for at in LOADINGS if at < own_speed]
+        hasty = max(ratios, key=lambda ratio: abs(ratio - 1))
         edges.append(Edge(f"λ in haste, of that of the slowest loading, {name}", hasty))
     return edges
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Ramps, displacement control, and load steps."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(10, 4.8)
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.2, 1.2, 0.8))
     looks = looks_of(WALLS)
@@ -203,9 +199,8 @@ def draw(figure: Figure, rows: Rows) -> None:
     right.set(xlabel="first load step in\n[times to rest]; ▾ the suite's", ylabel="bracket of λ off by [%]")
     right.margins(y=0.15)
     right.legend(frameon=False, fontsize=8, loc="center right")
-    for axes, title in zip(
-        (left, middle, right), ("ramp; lines: theory", "displacement control", "load steps"), strict=True
-    ):
+    titles = ("ramp; lines: theory", "displacement control", "load steps")
+    for axes, title in zip(figure.axes, titles, strict=True):
         axes.set_title(title, fontsize=10)
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9)
 
@@ -225,7 +220,7 @@ STUDY = Study(
         STEPPED: Part(("wall", LOADED), [(name, at) for name in (W1, *DRY) for at in LOADINGS], step_row),
     },
     charts=[
-        Chart("loading-rate", "λ by the speed of loading: a ramp, a prescribed displacement, and load steps", draw)
+        Chart("loading-rate", "λ by the speed of loading: a ramp, a prescribed displacement, and load steps", _draw)
     ],
     fits=fits,
 )

@@ -15,15 +15,13 @@ from matplotlib.patches import Rectangle
 from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
-from runningbond.scene import Scene, SceneError, build_scene, scene_from_dict
+from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.blocks import CONTACT_TOLERANCE
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
+from runningbond.studies.walls import Box, boxes
 
-UNSEEN = 1e-4
-"""Multiplier below which models in motion see no difference from zero."""
-
-SIZES = (1e-6, 1.0, 1e3)
-"""Lengths [m] of one and the same wall."""
+UNSEEN = 1e-4  # multiplier below which models in motion see no difference from zero
+SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of one and the same wall
 
 WORTH = {
     "right": ("#a6cee3", "right"),
@@ -68,11 +66,9 @@ def pier(width: float, height: float, blocks: int = 1, **joint: float) -> Scene:
     return courses([[1]] * blocks, width, height / blocks, **joint)
 
 
-def piled(*boxes: tuple[float, float, float, float]) -> Scene:
-    """Boxes (left, bottom, width, height) [m] on a base, with the materials of `panel`."""
-    ours = panel()
-    outlines = [np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]]) for x, y, w, h in boxes]
-    return build_scene("boxes", outlines, thickness=0.12, block=ours.block, joint=ours.joint, load=ours.load)
+def piled(*piles: Box) -> Scene:
+    """Boxes on a base, with the materials of `panel`."""
+    return boxes(*piles, joint=panel().joint, block=panel().block)
 
 
 def gaping(gap: float) -> Scene:
@@ -205,8 +201,7 @@ def fits(rows: Rows) -> list[Edge]:
     return edges + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """A map, walls by models, of what the user gets."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(10.5, 0.31 * len(EXTREMES) + 1.6)
     axes = figure.add_subplot()
     places = {wall: place for place, wall in enumerate(EXTREMES)}
@@ -237,6 +232,6 @@ STUDY = Study(
         PART: Part(("wall", "model"), [(wall, model) for wall in EXTREMES for model in MODELS], answer),
         "widest gap that is contact [block sizes]": Part(("between",), [("two blocks",)], widest_gap),
     },
-    charts=[Chart("material-edges", "What every model answers at the edge, beside the exact answer", draw)],
+    charts=[Chart("material-edges", "What every model answers at the edge, beside the exact answer", _draw)],
     fits=fits,
 )

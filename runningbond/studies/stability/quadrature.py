@@ -28,15 +28,9 @@ from runningbond.studies.charts import looks_of
 from runningbond.studies.walls import inset_wall, one_block
 
 RULES = {"Gauss 2": gauss(2), "Gauss 3": gauss(3), "Lobatto 2": lobatto(), "Simpson": lobatto(3)}
-CELLS = (1, 2, 4)
-"""Cells in half a block along the course, and in its height: elements of the joint of half a block."""
-
-WIDTH, HEIGHT = 0.5, 1.0
-"""Of the block [m]."""
-
-TIGHT, USUAL = 5e-4, 5e-3
-"""Relative width of the brackets, of the block and of walls."""
-
+CELLS = (1, 2, 4)  # cells in half a block along the course, and in its height: elements of the joint of half a block
+WIDTH, HEIGHT = 0.5, 1.0  # of the block [m]
+TIGHT, USUAL = 5e-4, 5e-3  # relative width of the brackets, of the block and of walls
 SCENES = {"block": "block on n elements", "W1": "W1, inset 20 mm", "panel-04": "panel-04"}
 PART, ENDS, EARLY = "λ", "with points at the ends", "of that with points at the ends"
 
@@ -95,8 +89,7 @@ def fits(rows: Rows) -> list[Edge]:
     return [Edge(f"λ off by at most [%], {kind}", most) for kind, most in off.items()]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """λ with every rule against the mesh, over that with points at the ends."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(8, 4.8)
     looks = looks_of(list(RULES)[::-1])
     for axes, (name, title) in zip(figure.subplots(1, len(SCENES), sharey=True), SCENES.items(), strict=True):
@@ -132,6 +125,6 @@ STUDY = Study(
     beyond="nothing: every rule ends in `collapse`, its bracket as narrow; Lobatto is the default of every model, and "
     "no scene or command can ask for another",
     parts={PART: Part(("scene", "rule", "cells"), CASES, measure)},
-    charts=[Chart("quadrature", "λ by rule and mesh, over λ with points at the ends of the joints", draw)],
+    charts=[Chart("quadrature", "λ by rule and mesh, over λ with points at the ends of the joints", _draw)],
     fits=fits,
 )

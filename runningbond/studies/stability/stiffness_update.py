@@ -27,11 +27,8 @@ WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS
 TENTHS, FINE = 10, 2000
 """Shares of the collapse load that are told, and increments to the collapse load of a single block."""
 
-INCREMENTS = (1, 10, 100)
-"""Load steps to the collapse load; 1 stands for each tenth of it put on at once."""
-
-ARMS = (0.5, 1.0)
-"""l_c as a share of the joint's length: exact, and as the paper reads."""
+INCREMENTS = (1, 10, 100)  # load steps to the collapse load; 1 stands for each tenth of it put on at once
+ARMS = (0.5, 1.0)  # l_c as a share of the joint's length: exact, and as the paper reads
 
 OUTSIDE, TOLERANCE = 1e-3, 0.02
 """Excess of forces over Eq. 3, in the largest of them, that counts as one; width of the bracket of collapse loads."""
@@ -125,8 +122,7 @@ def fits(rows: Rows) -> list[Edge]:
     ]
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """Map of what became of every tenth of the collapse load, wall by wall, for each size of increment."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(9, 5)
     for axes, increments in zip(figure.subplots(1, len(INCREMENTS), sharey=True), INCREMENTS, strict=True):
         own = [row for row in rows[PART] if (row["steps"], row["l_c / joint"]) == (increments, ARMS[0])]
@@ -168,7 +164,7 @@ STUDY = Study(
         ),
     },
     charts=[
-        Chart("stiffness-update", "What became of each tenth of the collapse load under the published algorithm", draw)
+        Chart("stiffness-update", "What became of each tenth of the collapse load under the published algorithm", _draw)
     ],
     fits=fits,
 )

@@ -28,14 +28,10 @@ from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wal
 
 SUITE = Criteria(collapse=U_CRIT)
 WALLS = (SLIDING, TOPPLING, W1)
-WEIGHTLESS = "point-load-4"
-"""The published wall without weight."""
-
+WEIGHTLESS = "point-load-4"  # the published wall without weight
 REST, FAR, INTERVAL = CRITERIA = ("rest [force units]", "u_crit [block sizes]", "steps between looks")
 DEFAULT: dict[str, float] = {REST: SUITE.rest, FAR: U_CRIT, INTERVAL: SUITE.interval}
-LOOSE = (0.01, 0.03)
-"""Thresholds of rest so loose that (4) is seen."""
-
+LOOSE = (0.01, 0.03)  # thresholds of rest so loose that (4) is seen
 TINY, LARGE = (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6), (1e-4, 1e-3, *LOOSE, 0.1, 0.3)
 RESTS = (*TINY, *(x * SUITE.rest for x in (0.5, 1, 2)), *LARGE)
 FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4, 1.6)
@@ -49,9 +45,7 @@ SWEEPS = {
 }
 """Values of a criterion on a wall, ascending."""
 
-WIDTH, BUDGET = 0.005, 1_000_000
-"""Relative width of the brackets, and steps after which a load is left undecided."""
-
+WIDTH, BUDGET = 0.005, 1_000_000  # relative width of the brackets, and steps after which a load is left undecided
 PART, SCALED = "Searches for λ, one criterion changed", "λ / λ known"
 
 
@@ -123,8 +117,7 @@ def fits(rows: Rows) -> list[Edge]:
     return edges
 
 
-def draw(figure: Figure, rows: Rows) -> None:
-    """λ by the threshold of rest, and by the displacement of a collapse."""
+def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(10, 5)
     left, right = figure.subplots(1, 2)
     many: Array = np.geomspace(1e-5, 0.3, 60)
@@ -184,6 +177,6 @@ STUDY = Study(
     "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
     "large costs steps, and in the end is `undecided`",
     parts={PART: Part(("wall", "criterion", "value"), CASES, search)},
-    charts=[Chart("verdict", "λ by the threshold of rest and by the displacement that counts as a collapse", draw)],
+    charts=[Chart("verdict", "λ by the threshold of rest and by the displacement that counts as a collapse", _draw)],
     fits=fits,
 )
