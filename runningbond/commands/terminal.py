@@ -1,13 +1,16 @@
-"""What commands share of a terminal: whole numbers as options, a progress bar, and Ctrl-C."""
+"""What commands share of a terminal: whole numbers as options, tables, a progress bar, and Ctrl-C."""
 
 import signal
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 from cyclopts import Token
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from runningbond.compare.model import Model
+from runningbond.compare.table import Sheet
 
 
 def whole(_: type, tokens: Sequence[Token]) -> int:
@@ -17,25 +20,31 @@ def whole(_: type, tokens: Sequence[Token]) -> int:
     return int(tokens[0].value)
 
 
-def progress_bar(console: Console) -> Progress:
-    """A bar with what is being done, how much of it is, and for how long."""
+def print_table(sheet: Sheet) -> None:
+    """Print a table as wide as the terminal, or as a page where there is none."""
+    console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
+    console.print(sheet.terminal())
+
+
+@contextmanager
+def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]]:
+    """A bar with what was done last, how much is done, and for how long; to be called with what is done."""
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    return Progress(*columns, console=console)
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task(description, total=total)
+        yield lambda done: bar.update(task, advance=1, description=done)
 
 
-def interruptions(model: Model) -> list[int]:
-    """Interruptions by Ctrl-C from here on: a model that can be interrupted ends with what it has found so far.
+def interruptions(model: Model | None = None) -> list[int]:
+    """Interruptions by Ctrl-C from here on: a model that can be interrupted ends with what it has reached so far.
 
     A linear program does not look up from its work, and the program ends at once.
     """
     signals: list[int] = []
-    if not model.interruptible:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        return signals
 
     def stop(number: int, frame: object) -> None:
         signals.append(number)
         raise KeyboardInterrupt
 
-    signal.signal(signal.SIGINT, stop)
+    signal.signal(signal.SIGINT, stop if model is None or model.interruptible else signal.SIG_DFL)
     return signals

@@ -4,7 +4,7 @@ Processes and the workers of a cluster compute and hand over; the campaign alone
 """
 
 import warnings
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,8 +14,7 @@ from runningbond.scene import Scene
 
 from .model import Model
 from .models import MODELS, TOLERANCE, check_tolerance, find_model
-from .processes import in_processes
-from .tasks import Answer, Cell, ClusterError, Task, side_by_side
+from .tasks import Answer, Cell, ClusterError, Task, in_processes
 
 
 @dataclass
@@ -136,16 +135,9 @@ def _answers(tasks: Sequence[Task], folder: Path | None, jobs: int, cluster: str
             missing.append(task)
         else:
             yield stored
-    if missing:
-        yield from in_processes(missing, jobs) if cluster is None else _on_cluster(missing, cluster)
+    if missing and cluster is not None:
+        from .cluster import on_cluster  # Dask is not always installed
 
-
-def _on_cluster(tasks: Sequence[Task], cluster: str) -> Iterator[Answer]:
-    from .cluster import on_cluster  # Dask is not always installed
-
-    keys = {task.cell: task.key() for task in tasks}
-    with on_cluster(cluster):
-        for answer in side_by_side(tasks):
-            if answer.key not in ("", keys[answer.cell]):
-                raise ClusterError("a worker has other sources or libraries than this process; install the same")
-            yield answer
+        yield from on_cluster(missing, cluster)
+    elif missing:
+        yield from in_processes(missing, jobs)
