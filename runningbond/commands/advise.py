@@ -54,14 +54,14 @@ def advise(
 
 
 def _rung_line(rung: Rung) -> str:
-    """What a rung found, the cost so far, what follows from it, and the next rung with its cost."""
+    """The result of a rung, the cost so far, what follows from it, and the next rung with its cost."""
     result = "–"
     if rung.outcome is not None:
         result = bracket(rung.outcome) if rung.outcome.status == "collapse" else rung.outcome.status
-    line = f"{rung.model:20} {result:19} {rung.seconds:7.2f} s  {rung.reason}"
-    if rung.onward is None:
+    line = f"{rung.model:20} {result:19} {rung.seconds:7.2f} s  {rung.next.reason}"
+    if rung.next.name is None:
         return line
-    return f"{line} → {rung.onward}, {rung.next_cost or 'at a cost that no law gives'}"
+    return f"{line} → {rung.next.name}, {rung.next_cost or 'at a cost that no law gives'}"
 
 
 def _as_text(advice: Advice) -> str:
@@ -83,5 +83,5 @@ def _as_json(advice: Advice) -> str:
 def _rung_json(rung: Rung) -> dict[str, Any]:
     keys = ("status", "multiplier", "lower", "upper", "dofs", "steps")
     next_seconds = None if rung.next_cost is None else rung.next_cost.seconds
-    said = {"seconds": rung.seconds, "reason": rung.reason, "next": rung.onward, "next_seconds": next_seconds}
+    said = {"seconds": rung.seconds, "reason": rung.next.reason, "next": rung.next.name, "next_seconds": next_seconds}
     return {"model": rung.model, **{key: getattr(rung.outcome, key, None) for key in keys}, **said}

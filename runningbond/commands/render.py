@@ -7,12 +7,12 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.pictures.style import Colouring
 from runningbond.results import load_scene
 from runningbond.scene import SceneError
 
 from .exits import DONE, NO_ANSWER
+from .terminal import can_draw
 
 
 def render(
@@ -41,9 +41,7 @@ def render(
 
         view_folder(folder, colour)
         return DONE
-    why_not = why_not_drawn()
-    if why_not:
-        print(f"runningbond: {why_not}", file=sys.stderr)
+    if not can_draw():
         return NO_ANSWER
     from runningbond.pictures.render import render_folder
 

@@ -11,6 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from runningbond.compare.model import Model
 from runningbond.compare.table import Sheet
+from runningbond.pictures.offscreen import why_not_drawn
 
 
 def whole(_: type, tokens: Sequence[Token]) -> int:
@@ -24,6 +25,14 @@ def print_table(sheet: Sheet) -> None:
     """Print a table as wide as the terminal, or as a page where there is none."""
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
     console.print(sheet.terminal())
+
+
+def can_draw() -> bool:
+    """Whether this machine can draw with VTK; where it cannot, a line says why."""
+    why_not = why_not_drawn()
+    if why_not:
+        print(f"runningbond: {why_not}", file=sys.stderr)
+    return not why_not
 
 
 @contextmanager

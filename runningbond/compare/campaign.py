@@ -33,15 +33,6 @@ class Campaign:
         """Number of outcomes that are in the folder."""
         return sum(outcome.status != "failed" for outcome in self.outcomes.values())
 
-    def add(self, answer: Answer) -> None:
-        """Take in an answer."""
-        if answer.outcome is None:
-            self.inapplicable[answer.cell] = answer.reason
-        else:
-            self.outcomes[answer.cell] = answer.outcome
-        if answer.reused:
-            self.reused.add(answer.cell)
-
 
 class Interrupted(Exception):
     """A campaign that stopped before its end, for a reason if not by Ctrl-C; what it has is in the folder."""
@@ -98,16 +89,20 @@ def run_campaign(
     campaign = Campaign()
     try:
         with warnings.catch_warnings():
-            # What is left undone is told by `Interrupted`.
+            # `Interrupted` says what is left undone.
             warnings.filterwarnings("ignore", ".*tasks (have been|which were)", UserWarning, "joblib")
             with closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
                 for answer in answers:
-                    outcome = answer.outcome
-                    # A failure is tried again the next time, perhaps by better code.
-                    if outcome is not None and outcome.status != "failed" and not answer.reused:
-                        save_outcome(outcome, folder.joinpath(*answer.cell), answer.key, scenes[answer.cell[0]])
-                    campaign.add(answer)
-                    progress(answer.cell)
+                    cell, outcome = answer.cell, answer.outcome
+                    if outcome is None:
+                        campaign.inapplicable[cell] = answer.reason
+                    elif answer.reused:
+                        campaign.reused.add(cell)
+                    elif outcome.status != "failed":  # which is tried again the next time, perhaps by better code
+                        save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell[0]])
+                    if outcome is not None:
+                        campaign.outcomes[cell] = outcome
+                    progress(cell)
     except KeyboardInterrupt:
         raise Interrupted(campaign) from None
     except ClusterError as error:
@@ -117,24 +112,18 @@ def run_campaign(
     return campaign
 
 
-def _stored(task: Task, folder: Path) -> Answer | None:
-    """The answer that a folder holds, if it is of this very scene, tolerance and code."""
-    try:
-        outcome, key = load_outcome(folder.joinpath(*task.cell))
-    except StoreError:
-        return None
-    return Answer(task.cell, outcome, key=key, reused=True) if key == task.key() else None
-
-
 def _answers(tasks: Sequence[Task], folder: Path | None, jobs: int, cluster: str | None) -> Generator[Answer]:
     """Answers that a folder holds, if one is given, then those that are computed, as they come."""
     missing = []
     for task in tasks:
-        stored = None if folder is None else _stored(task, folder)
-        if stored is None:
-            missing.append(task)
+        try:
+            outcome, key = (None, "") if folder is None else load_outcome(folder.joinpath(*task.cell))
+        except StoreError:
+            outcome, key = None, ""
+        if outcome is not None and key == task.key():  # of this very scene, tolerance and code
+            yield Answer(task.cell, outcome, key=key, reused=True)
         else:
-            yield stored
+            missing.append(task)
     if missing and cluster is not None:
         from .cluster import on_cluster  # Dask is not always installed
 
