@@ -15,12 +15,11 @@ from runningbond.scene import SceneError
 
 from .advise import advise
 from .compare import compare
-from .exits import BAD_INPUT, DONE, NO_ANSWER, STOPPED
 from .mesh import mesh
 from .render import render
 from .run import run
 from .studies import stability, study
-from .terminal import interruptions
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions
 
 app = App(
     name="runningbond",

@@ -5,9 +5,6 @@ import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from runningbond.compare.campaign import Interrupted, run_campaign
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model
@@ -18,18 +15,17 @@ from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
 
-from .exits import BAD_INPUT, DONE, NO_ANSWER, STOPPED
-from .terminal import print_table, progress_bar
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, Flag, Tolerance, print_table, progress_bar
 
 
 def compare(
     *scenes: str,
     models: str | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: Tolerance = TOLERANCE,
     out: Path = Path("comparison"),
     jobs: int = -1,
     cluster: str | None = None,
-    fresh: Annotated[bool, Parameter(negative="")] = False,
+    fresh: Flag = False,
 ) -> int:
     """Run models on scenes and tabulate them beside the published values.
 
@@ -41,8 +37,6 @@ def compare(
         Scene files or names; all published walls where none is given.
     models
         Names of models, separated by commas; all of them where none is given.
-    tolerance
-        Relative width of the bracket asked for.
     out
         Folder for results, tables and charts.
     jobs

@@ -12,31 +12,24 @@ from runningbond.compare.published import find_scene
 from runningbond.results import Outcome, make_folder, save_outcome
 from runningbond.scene import read_scene
 
-from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
-from .terminal import can_draw, interruptions
+from .terminal import DONE, NO_ANSWER, STOPPED, UNDECIDED, Json, SceneName, Tolerance, can_draw, interruptions
 
 
 def run(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     model: Annotated[str, Parameter(help=f"One of {', '.join(MODELS)}.")],
-    tolerance: float = TOLERANCE,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    tolerance: Tolerance = TOLERANCE,
+    json: Json = False,
     out: Path | None = None,
 ) -> int:
     """Run one model on one scene.
 
     Parameters
     ----------
-    scene
-        Scene file, or the name of a published scene such as panel-01.
     model
         Name of the model.
-    tolerance
-        Relative width of the bracket asked for.
-    json
-        Print one JSON object and nothing else.
     out
         Folder in which to keep the result, its time series for ParaView and a picture of its mechanism.
     """

@@ -4,16 +4,13 @@ import signal
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
-
-from cyclopts import Parameter
+from typing import TYPE_CHECKING
 
 from runningbond.results import make_folder
 from runningbond.scene import SceneError
 from runningbond.scene.ranges import suggestion
 
-from .exits import DONE, NO_ANSWER, STOPPED
-from .terminal import print_table, progress_bar, whole
+from .terminal import DONE, NO_ANSWER, STOPPED, Whole, print_table, progress_bar
 
 if TYPE_CHECKING:
     from runningbond.studies import Row, Study
@@ -55,7 +52,7 @@ def stability(*experiments: str, out: Path = Path("stability")) -> int:
     return _exit_code([*off(rows), *failed(rows)])
 
 
-def study(*, out: Path = Path("study"), jobs: Annotated[int, Parameter(converter=whole)] = 1) -> int:
+def study(*, out: Path = Path("study"), jobs: Whole = 1) -> int:
     """Measure every model and its parameters on walls whose answer is known: error against cost.
 
     Measurements are kept as they come: an interrupted study goes on where it was.

@@ -1,30 +1,51 @@
-"""What commands share of a terminal: whole numbers as options, tables, a progress bar, and Ctrl-C."""
+"""What commands share: exit codes, arguments, tables, a progress bar, and Ctrl-C."""
 
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Annotated, TypeAlias
 
-from cyclopts import Token
+from cyclopts import Parameter, Token
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
 
 from runningbond.compare.model import Model
 from runningbond.compare.table import Sheet
 from runningbond.pictures.offscreen import why_not_drawn
 
+DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
+"""Exit codes of every command."""
 
-def whole(_: type, tokens: Sequence[Token]) -> int:
+UNDECIDED = ("undecided", "failed")
+"""Statuses of outcomes that are no answer."""
+
+
+def _whole(_: type, tokens: Sequence[Token]) -> int:
     """Read a whole number; cyclopts would round any other."""
     if not tokens[0].value.lstrip("+-").isdecimal():
         raise ValueError(f"{tokens[0].value!r} is no whole number")
     return int(tokens[0].value)
 
 
+SceneName: TypeAlias = Annotated[str, Parameter(help="Scene file, or the name of a published scene such as panel-01.")]
+Tolerance: TypeAlias = Annotated[float, Parameter(help="Relative width of the bracket asked for.")]
+Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
+Json: TypeAlias = Annotated[bool, Parameter(negative="", help="Print one JSON object and nothing else.")]
+Whole: TypeAlias = Annotated[int, Parameter(converter=_whole)]
+
+
 def print_table(sheet: Sheet) -> None:
     """Print a table as wide as the terminal, or as a page where there is none."""
     console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
-    console.print(sheet.terminal())
+    table = Table(title=Text(sheet.title), title_justify="left")
+    for head in sheet.heads:
+        table.add_column(Text(head))
+    for row in sheet.rows:
+        table.add_row(*map(Text, row))
+    console.print(table)
 
 
 def can_draw() -> bool:

@@ -61,10 +61,9 @@ def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
     if all(present):
         charts["table-2"] = table_2(comparison)
     for name, source in (("figure-7", BARALDI), ("figure-11", CONCENTRATED), ("curves-ferris", FERRIS)):
-        cases = cases_of(source)
-        models = [x for x in comparison.models if any(len(_curve(comparison, case, x)) for case in cases)]
+        models = [x for x in comparison.models if any(len(_curve(comparison, case, x)) for case in cases_of(source))]
         if models:
-            charts[name] = (_panel_curves if source == BARALDI else _wall_curves)(comparison, cases, models)
+            charts[name] = _curves(comparison, source, models)
     for name, figure in charts.items():
         written.append(folder / f"{name}.png")
         write_atomically(written[-1], to_png(figure, 160))
@@ -95,7 +94,7 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
 
 
 def table_2(comparison: Comparison) -> Figure:
-    """Chart of the multipliers of Table 2: what is printed beside what each model found."""
+    """Chart of the multipliers of Table 2: what is printed beside what each model gives."""
     figure, columns = panel_figure(xlabel="block ratio b/a", ylabel="collapse multiplier λ", xlim=(-0.5, 3.7))
     shifts = np.linspace(0.0, min(0.1 * (len(comparison.models) - 1), 0.5), len(comparison.models))
     hollow = False
@@ -129,45 +128,36 @@ def _mark(axes: Axes, x: float, model: Model, outcome: Outcome) -> None:
     axes.plot(x, place, model.marker, color=model.colour, mfc=face, ms=5, mew=edge, ls="none", clip_on=False)
 
 
-def _panel_curves(comparison: Comparison, cases: Sequence[PublishedCase], models: Sequence[Model]) -> Figure:
-    """Curves of the twelve panels, and a level line for each model that only estimates their multiplier."""
-    xlabel, ylabel = "displacement of the upper corner [mm]", "load multiplier λ"
-    figure, columns = panel_figure(xlabel=xlabel, ylabel=ylabel, xlim=(-0.3, 12))
-    estimates = [model for model in comparison.models if model.kind == "estimate"]
-    for axes, panels in columns:
-        for case, colour in zip(panels, COLOURS, strict=True):
-            _draw_curves(axes, comparison, case, models, colour)
+def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Figure:
+    """Curves of the walls of one source, each with a dot at its end; of loads in kN where λ is a load in newtons.
+
+    A level line is drawn for each model that only estimates the multiplier of the twelve panels.
+    """
+    panels, point_load = source == BARALDI, source == CONCENTRATED
+    where, load = ("under the load", "load [kN]") if point_load else ("of the upper corner", "load multiplier λ")
+    labels = {"xlabel": f"displacement {where} [mm]", "ylabel": load}
+    estimates = [model for model in comparison.models if panels and model.kind == "estimate"]
+    if panels:
+        figure, columns = panel_figure(xlim=(-0.3, 12), **labels)
+    else:
+        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+        columns = [(figure.add_subplot(**labels), cases_of(source))]
+    for axes, cases in columns:
+        for case, colour in zip(cases, COLOURS, strict=False):
+            for model in models:
+                moved, multiplier = (_curve(comparison, case, model) * (1e3, 1e-3 if point_load else 1.0)).T
+                axes.plot(moved, multiplier, ls=model.line, color=colour, lw=1.4)
+                axes.plot(moved[-1:], multiplier[-1:], ".", color=colour, ms=4)
             for model in estimates:
                 outcome = comparison.outcome(case.name, model)
                 if outcome is not None and outcome.multiplier is not None:
                     axes.axhline(outcome.multiplier, color=colour, lw=0.8, ls=model.line)
-    _legend(figure, [f"b/a = {label}" for label, _ in TEXTURES], [*estimates, *models])
+        if not panels:
+            axes.set_ylim(0, None)
+            bare(axes)
+    names = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
+    _legend(figure, names if source == FERRIS else [f"b/a = {label}" for label, _ in TEXTURES], [*estimates, *models])
     return figure
-
-
-def _wall_curves(comparison: Comparison, cases: Sequence[PublishedCase], models: Sequence[Model]) -> Figure:
-    """Curves of the walls of one source in one chart, of loads in kN where λ is a load in newtons."""
-    point_load = cases[0].source == CONCENTRATED
-    figure = Figure(figsize=(6.4, 4.4), layout="constrained")
-    axes = figure.add_subplot()
-    for case, colour in zip(cases, COLOURS, strict=False):
-        _draw_curves(axes, comparison, case, models, colour, 1e-3 if point_load else 1.0)
-    where, load = ("under the load", "load [kN]") if point_load else ("of the upper corner", "load multiplier λ")
-    axes.set(xlabel=f"displacement {where} [mm]", ylabel=load, ylim=(0, None))
-    bare(axes)
-    names = [case.name.removeprefix("wall-").upper() for case in cases]
-    _legend(figure, [f"b/a = {label}" for label, _ in TEXTURES] if point_load else names, models)
-    return figure
-
-
-def _draw_curves(
-    axes: Axes, comparison: Comparison, case: PublishedCase, models: Sequence[Model], colour: str, scale: float = 1.0
-) -> None:
-    """Curves of one wall, each with a dot at its end."""
-    for model in models:
-        displacement, load = (_curve(comparison, case, model) * (1e3, scale)).T
-        axes.plot(displacement, load, ls=model.line, color=colour, lw=1.4)
-        axes.plot(displacement[-1:], load[-1:], ".", color=colour, ms=4)
 
 
 def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:

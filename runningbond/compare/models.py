@@ -33,18 +33,14 @@ def _homog(scene: Scene, tolerance: float) -> Outcome:
     return homog(scene)
 
 
-def _late(module: str, name: str) -> Callable[..., Any]:
-    """A function or class of a module that needs a compiler or VTK, imported when it is called."""
-    return partial(_call, module, name)
-
-
-def _call(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
+def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
+    """Call a function or class of a module that needs a compiler or VTK, and is imported only now."""
     return getattr(import_module(module), name)(*arguments, **settings)
 
 
-_DEM_STATIC, _DEM_DYNAMIC = _late("dem.static", "dem_static"), _late("dem.dynamic", "dem_dynamic")
+_DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(_late, "dem.dynamic", "dem_dynamic")
 _STATIC_RECORDER, _MOTION_RECORDER = (
-    _late("runningbond.compare.recording", recorder) for recorder in ("StaticRecorder", "MotionRecorder")
+    partial(_late, "runningbond.compare.recording", recorder) for recorder in ("StaticRecorder", "MotionRecorder")
 )
 
 IN_STEPS = ("collapse", "first_step", "budget")
@@ -88,18 +84,18 @@ _EVERY_MODEL = (
         observer=_MOTION_RECORDER,
         interruptible=True,
         cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
-        pushover=_late("dem.dynamic", "finite_pushover"),
+        pushover=partial(_late, "dem.dynamic", "finite_pushover"),
         colour="#2a9d8f",
         marker="^",
         line=":",
     ),
     Model(
-        *("fem", "deformable blocks in motion", _late("fem_interface.model", "fem"), ELASTIC, "history"),
+        *("fem", "deformable blocks in motion", partial(_late, "fem_interface.model", "fem"), ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS),
         observer=_MOTION_RECORDER,
         interruptible=True,
         cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
-        pushover=_late("fem_interface.finite_pushover", "fem_pushover"),
+        pushover=partial(_late, "fem_interface.finite_pushover", "fem_pushover"),
         colour="#be185d",
         marker="D",
         line=(0, (3, 1, 1, 1)),
@@ -183,4 +179,4 @@ def run_model(
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     unread = model.unread(scene)
     note = f"not taken into account: {', '.join(unread)}" if unread else ""
-    return replace(outcome, model=model.name, message="; ".join(part for part in (outcome.message, note) if part))
+    return replace(outcome, model=model.name, message="; ".join(filter(None, (outcome.message, note))))

@@ -7,9 +7,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
 
-from rich.table import Table as RichTable
-from rich.text import Text
-
 from homog import homog
 from runningbond.pictures.captions import is_force
 from runningbond.results import Outcome
@@ -39,15 +36,6 @@ class Sheet:
         """The table in Markdown, under its title."""
         lines = [f"### {self.title}", "", _line(self.heads), _line(["---"] * len(self.heads))]
         return "\n".join([*lines, *map(_line, self.rows), ""])
-
-    def terminal(self) -> RichTable:
-        """The table for rich's console."""
-        table = RichTable(title=Text(self.title), title_justify="left")
-        for head in self.heads:
-            table.add_column(Text(head))
-        for row in self.rows:
-            table.add_row(*map(Text, row))
-        return table
 
 
 def _line(cells: Sequence[str]) -> str:

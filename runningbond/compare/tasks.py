@@ -79,7 +79,7 @@ class Task:
 
 
 def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:
-    """Answers as they come, from wherever joblib has been told to send its tasks."""
+    """Answers as they come, from wherever joblib has been set to send its tasks."""
     # All of them at once, for the sake of workers that join a cluster later.
     run = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="all")
     # A process that starts inherits the mask: Ctrl-C reaches all of a terminal's processes, and the parent ends them.
@@ -100,7 +100,7 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
                 del left[answer.cell]
                 yield answer
     except TerminatedWorkerError:
-        # A process was killed, and nobody says over which task: what is left goes one by one, the cheapest first.
+        # A process was killed, over which task is not said: what is left goes one by one, the cheapest first.
         for task in reversed(left.values()):
             try:
                 with _processes(2):
@@ -140,7 +140,7 @@ def _leave_interrupts_to_the_parent() -> None:
 
 @contextmanager
 def _quiet_kill() -> Iterator[None]:
-    """Do not print the error with which loky's manager thread ends when it is told to kill its workers.
+    """Do not print the error with which loky's manager thread ends when it is to kill its workers.
 
     It drops the tasks that wait, kills the workers, and then fills their queue once more, with the numbers of the
     tasks that it has just dropped (`add_call_item_to_queue`): a KeyError that says nothing.

@@ -44,7 +44,7 @@ class Knowledge:
     bound: float | None = None  # associated load, above which nothing stands at small displacements
     evidence: Evidence = ""  # what the answer rests on
     answer: Outcome | None = None  # the outcome whose bracket it is
-    collapses: list[float] = field(default_factory=list)  # loads at which a proof, a certificate or a model has it fall
+    lowest: float | None = None  # smallest load at which a proof, a certificate or a model brings the wall down
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
@@ -75,7 +75,7 @@ class Knowledge:
 
     def _answer(self, evidence: Evidence, outcome: Outcome, collapse: float) -> None:
         self.evidence, self.answer = evidence, outcome
-        self.collapses.append(collapse)
+        self.lowest = collapse if self.lowest is None else min(self.lowest, collapse)
 
     def _below_the_bound(self, outcome: Outcome) -> Outcome:
         """The outcome of a history, which cannot have stood above the associated bound."""
@@ -90,19 +90,23 @@ class Knowledge:
         return sum(outcome.seconds for outcome in self.outcomes)
 
     @property
-    def lowest(self) -> float | None:
-        """Smallest load at which a proof, a certificate or a model brought the wall down."""
-        return min(self.collapses, default=None)
-
-    @property
     def soft(self) -> bool:
         """Whether blocks are so compliant that they must deform."""
         return self.compliance > self.tolerance
 
     @property
     def displacement(self) -> float | None:
-        """How far the wall moves before it collapses, in block sizes; None where nothing tells."""
-        return None if self.answer is None else collapse_displacement(self.scene, self.answer)
+        """How far the wall moves under the live load until it collapses, in block sizes; None where nothing tells.
+
+        By the answer's own curve, where its model followed the wall, else `elastic_displacement`.
+        """
+        if self.answer is None or self.answer.lower is None:
+            return None
+        if not len(self.answer.curve):
+            return elastic_displacement(self.scene, self.answer.lower)
+        displacement, multiplier = self.answer.curve.T
+        last = int(np.argmin(np.abs(multiplier - self.answer.lower)))
+        return float(abs(displacement[last] - displacement[0]) / self.scene.block_size)
 
     def estimate(self, model: Model) -> Estimate:
         """What a model is going to cost, at the pace of those run so far."""
@@ -146,20 +150,6 @@ def sliding_dilates(scene: Scene, motion: Array) -> bool:
     opening, slip = jump.opening @ motion.ravel(), np.abs(jump.slip @ motion.ravel())
     friction = wall_strength(scene, points).friction
     return bool(((slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())
-
-
-def collapse_displacement(scene: Scene, outcome: Outcome) -> float | None:
-    """How far a wall moves under the live load until it collapses, in block sizes.
-
-    By the outcome's own curve, where its model followed the wall, else `elastic_displacement`.
-    """
-    if outcome.lower is None:
-        return None
-    if not len(outcome.curve):
-        return elastic_displacement(scene, outcome.lower)
-    displacement, multiplier = outcome.curve.T
-    last = int(np.argmin(np.abs(multiplier - outcome.lower)))
-    return float(abs(displacement[last] - displacement[0]) / scene.block_size)
 
 
 def elastic_displacement(scene: Scene, multiplier: float) -> float | None:

@@ -126,7 +126,7 @@ def _compliance(known: Knowledge) -> str:
 
 
 def _enough(known: Knowledge, why: str) -> Step:
-    """What was found suffices, unless the wall moves so far before that its geometry is another."""
+    """The answer so far suffices, unless the wall moves so far before that its geometry is another."""
     finite = next(model for model in ladder("history") if model.pushover and deforms(model) == known.soft)
     if known.finite:
         return Step(finite, f"{why}; finite displacements are asked for", finite=True)
