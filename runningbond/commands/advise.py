@@ -1,41 +1,33 @@
 """``runningbond advise``: a line a rung, then the answer; or one JSON object."""
 
 import json as to_json
-from typing import Annotated, Any
-
-from cyclopts import Parameter
+from typing import Any
 
 from runningbond.compare.advice import TOLERANCE, Advice, Rung
 from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.models import check_tolerance
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import bracket
+from runningbond.results import Outcome
 from runningbond.scene import read_scene
 
-from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
-from .terminal import interruptions
+from .terminal import DONE, NO_ANSWER, STOPPED, UNDECIDED, Flag, Json, SceneName, Tolerance, interruptions
 
 
 def advise(
-    scene: str,
+    scene: SceneName,
     /,
     *,
-    tolerance: float = TOLERANCE,
-    finite: Annotated[bool, Parameter(negative="")] = False,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    tolerance: Tolerance = TOLERANCE,
+    finite: Flag = False,
+    json: Json = False,
 ) -> int:
     """Answer with the cheapest models that a scene needs, and say why each was or was not run.
 
     Parameters
     ----------
-    scene
-        Scene file, or the name of a published scene such as panel-01.
-    tolerance
-        Relative width of the bracket asked for.
     finite
         Follow the wall at finite displacements in the end, however small they may be.
-    json
-        Print one JSON object and nothing else.
     """
     check_tolerance(tolerance, "--tolerance")
     advice = Advice(Knowledge(read_scene(find_scene(scene)), tolerance, finite))
@@ -49,33 +41,31 @@ def advise(
             return STOPPED
         if rung.next.model is not None:
             stopped = interruptions(rung.next.model)
-    print(_as_json(advice) if json else _as_text(advice), flush=True)
-    return NO_ANSWER if advice.outcome().status in UNDECIDED else DONE
+    outcome = advice.outcome()
+    print(_as_json(advice, outcome) if json else _as_text(outcome), flush=True)
+    return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
 def _rung_line(rung: Rung) -> str:
-    """What a rung found, the cost so far, what follows from it, and the next rung with its cost."""
+    """The result of a rung, the cost so far, what follows from it, and the next rung with its cost."""
     result = "–"
     if rung.outcome is not None:
         result = bracket(rung.outcome) if rung.outcome.status == "collapse" else rung.outcome.status
-    line = f"{rung.model:20} {result:19} {rung.seconds:7.2f} s  {rung.reason}"
-    if rung.onward is None:
+    line = f"{rung.model:20} {result:19} {rung.seconds:7.2f} s  {rung.next.reason}"
+    if rung.next.name is None:
         return line
-    return f"{line} → {rung.onward}, {rung.next_cost or 'at a cost that no law gives'}"
+    return f"{line} → {rung.next.name}, {rung.next_cost or 'at a cost that no law gives'}"
 
 
-def _as_text(advice: Advice) -> str:
+def _as_text(outcome: Outcome) -> str:
     """The answer, by which model, and what its bracket means."""
-    outcome = advice.outcome()
     result = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
     return f"{result} by {outcome.model}, {outcome.seconds:.2f} s\n  {outcome.message}"
 
 
-def _as_json(advice: Advice) -> str:
+def _as_json(advice: Advice, outcome: Outcome) -> str:
     """The answer and its rungs as one JSON object."""
-    keys = ("scene", "model", "status", "multiplier", "lower", "upper", "seconds", "message")
-    outcome = advice.outcome()
-    answer = {key: getattr(outcome, key) for key in keys}
+    answer = {key: value for key, value in outcome.summary().items() if key not in ("dofs", "steps")}
     bounds = {"lowest": advice.known.lowest, "bound": advice.known.bound}
     return to_json.dumps({**answer, **bounds, "rungs": [_rung_json(rung) for rung in advice.rungs]}, allow_nan=False)
 
@@ -83,5 +73,5 @@ def _as_json(advice: Advice) -> str:
 def _rung_json(rung: Rung) -> dict[str, Any]:
     keys = ("status", "multiplier", "lower", "upper", "dofs", "steps")
     next_seconds = None if rung.next_cost is None else rung.next_cost.seconds
-    said = {"seconds": rung.seconds, "reason": rung.reason, "next": rung.onward, "next_seconds": next_seconds}
+    said = {"seconds": rung.seconds, "reason": rung.next.reason, "next": rung.next.name, "next_seconds": next_seconds}
     return {"model": rung.model, **{key: getattr(rung.outcome, key, None) for key in keys}, **said}

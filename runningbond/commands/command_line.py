@@ -2,7 +2,6 @@
 
 import io
 import os
-import signal
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
@@ -16,12 +15,11 @@ from runningbond.scene import SceneError
 
 from .advise import advise
 from .compare import compare
-from .exits import BAD_INPUT, DONE, NO_ANSWER, STOPPED
 from .mesh import mesh
 from .render import render
 from .run import run
-from .stability import stability
-from .study import study
+from .studies import stability, study
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions
 
 app = App(
     name="runningbond",
@@ -36,13 +34,7 @@ for each in (run, advise, compare, stability, study, mesh, render):
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and leave with its exit code."""
-    signals: list[int] = []
-
-    def stop(number: int, frame: object) -> None:
-        signals.append(number)
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGINT, stop)
+    signals = interruptions()
     try:
         code = command(arguments)
     except Exception:
@@ -63,14 +55,14 @@ def command(arguments: Sequence[str] | None = None) -> int:
         result = app(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()
     except (SceneError, StoreError, CycloptsError) as error:
-        return _refuse(str(error))
+        return _say(str(error), BAD_INPUT)
     except VtkError as error:
         return _say(str(error), NO_ANSWER)
     except BrokenPipeError:  # whoever read us has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return DONE
     except OSError as error:
-        return _refuse(f"{error.filename or 'output'}: {error.strerror or error}")
+        return _say(f"{error.filename or 'output'}: {error.strerror or error}", BAD_INPUT)
     except KeyboardInterrupt:
         return _stopped()
     return result if isinstance(result, int) else DONE
@@ -83,21 +75,16 @@ def _check_backend() -> None:
         try:
             import matplotlib  # noqa: F401
         except ValueError as error:
-            raise SceneError(
-                "MPLBACKEND", "is no backend of matplotlib; leave it unset, or take agg", backend
-            ) from error
+            what = "is no backend of matplotlib; leave it unset, or take agg"
+            raise SceneError("MPLBACKEND", what, backend) from error
 
 
 def _stopped() -> int:
     return _say("interrupted; every file is whole, or as it was before", STOPPED)
 
 
-def _refuse(message: str) -> int:
-    return _say(" ".join(message.split()), BAD_INPUT)
-
-
 def _say(message: str, code: int) -> int:
     """Say a line on standard error, if that takes any, and give the exit code back."""
     with suppress(OSError):
-        print(f"runningbond: {message}", file=sys.stderr, flush=True)
+        print(f"runningbond: {' '.join(message.split())}", file=sys.stderr, flush=True)
     return code

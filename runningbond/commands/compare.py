@@ -5,10 +5,6 @@ import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
-from rich.console import Console
 
 from runningbond.compare.campaign import Interrupted, run_campaign
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model
@@ -19,18 +15,17 @@ from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
 
-from .exits import BAD_INPUT, DONE, NO_ANSWER, STOPPED
-from .terminal import progress_bar
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, Flag, Tolerance, print_table, progress_bar
 
 
 def compare(
     *scenes: str,
     models: str | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: Tolerance = TOLERANCE,
     out: Path = Path("comparison"),
     jobs: int = -1,
     cluster: str | None = None,
-    fresh: Annotated[bool, Parameter(negative="")] = False,
+    fresh: Flag = False,
 ) -> int:
     """Run models on scenes and tabulate them beside the published values.
 
@@ -42,8 +37,6 @@ def compare(
         Scene files or names; all published walls where none is given.
     models
         Names of models, separated by commas; all of them where none is given.
-    tolerance
-        Relative width of the bracket asked for.
     out
         Folder for results, tables and charts.
     jobs
@@ -64,11 +57,10 @@ def compare(
         raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
     walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
     make_folder(out)
-    console = Console(stderr=True, highlight=False)
+    total = len(walls) * len(chosen)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
     try:
-        with progress_bar(console) as bar:
-            task = bar.add_task("comparing", total=len(walls) * len(chosen))
+        with progress_bar("comparing", total) as advance:
             campaign = run_campaign(
                 walls,
                 chosen,
@@ -77,20 +69,20 @@ def compare(
                 jobs=jobs,
                 cluster=cluster,
                 fresh=fresh,
-                progress=lambda cell: bar.update(task, advance=1, description=", ".join(cell)),
+                progress=lambda cell: advance(", ".join(cell)),
             )
     except Interrupted as stopped:
-        total, again = len(walls) * len(chosen), "the same command without --fresh" if fresh else "the same command"
+        again = "the same command without --fresh" if fresh else "the same command"
         kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
         why = f"runningbond: {stopped.reason}" if stopped.reason else "Interrupted"
-        console.print(f"{why}: {kept}", soft_wrap=True, markup=False)
+        print(f"{why}: {kept}", file=sys.stderr)
         if isinstance(stopped.__cause__, OSError):
             return BAD_INPUT
         return NO_ANSWER if stopped.reason else STOPPED
     _report(Comparison(walls, chosen, campaign, published), out, tolerance)
     failed = [(cell, outcome.message) for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for cell, message in failed:
-        console.print(f"{', '.join(cell)}: {message}", markup=False)
+        print(f"{', '.join(cell)}: {message}", file=sys.stderr)
     return NO_ANSWER if failed else DONE
 
 
@@ -111,7 +103,6 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
 
 
 def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
-    from runningbond.compare.curves import draw_curves
     from runningbond.compare.figures import draw_figures
     from runningbond.compare.plates import draw_plates
     from runningbond.compare.report import report_html
@@ -120,17 +111,14 @@ def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
     sheets = [*multiplier_sheets(comparison), *cost_sheets(comparison)]
     write_atomically(out / "table.csv", csv_text(comparison).encode())
     write_atomically(out / "table.md", "\n".join(sheet.markdown() for sheet in sheets).encode())
-    console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
     for sheet in sheets:
-        console.print(sheet.terminal())
-    console.print(f"{len(campaign)} cases, {len(campaign.reused)} of them already in {out}", soft_wrap=True)
-    published = comparison.only_published()
+        print_table(sheet)
+    print(f"{len(campaign)} cases, {len(campaign.reused)} of them already in {out}")
     why_not = why_not_drawn()
-    charts = [*draw_figures(published, out), *draw_curves(published, out)]
-    charts += [] if why_not else draw_plates(comparison, out)
+    charts = draw_figures(comparison.only_published(), out) + ([] if why_not else draw_plates(comparison, out))
     pictures = [path for path in charts if path.suffix == ".png"]
     write_atomically(out / "report.html", report_html(comparison, pictures, tolerance, why_not).encode())
     tables = [out / name for name in ("table.csv", "table.md", "report.html")]
-    console.print(f"written: {', '.join(map(str, [*tables, *charts]))}", soft_wrap=True)
+    print(f"written: {', '.join(map(str, [*tables, *charts]))}")
     if why_not:
         print(f"runningbond: {why_not}", file=sys.stderr)

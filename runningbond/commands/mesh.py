@@ -9,23 +9,20 @@ from meshing import check_suffix, wall_mesh, write_mesh
 from runningbond.compare.published import find_scene
 from runningbond.scene import read_scene
 
-from .exits import DONE
-from .terminal import whole
+from .terminal import DONE, SceneName, Whole
 
 
 def mesh(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     out: Annotated[Path, Parameter(name=("--out", "-o"))],
-    cells: Annotated[int, Parameter(converter=whole)] = 1,
+    cells: Whole = 1,
 ) -> int:
     """Write a finite-element mesh of a wall, its joints as elements without thickness.
 
     Parameters
     ----------
-    scene
-        Scene file, or the name of a published scene such as panel-01.
     out
         File to write, .msh or .vtu.
     cells

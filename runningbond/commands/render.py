@@ -3,16 +3,12 @@
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
 
-from cyclopts import Parameter
-
-from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.pictures.style import Colouring
 from runningbond.results import load_scene
 from runningbond.scene import SceneError
 
-from .exits import DONE, NO_ANSWER
+from .terminal import DONE, NO_ANSWER, Flag, can_draw
 
 
 def render(
@@ -20,7 +16,7 @@ def render(
     /,
     *,
     colour: Colouring = "displacement",
-    view: Annotated[bool, Parameter(negative="")] = False,
+    view: Flag = False,
 ) -> int:
     """Draw what a result folder has to show: its collapse mechanism, and of a time series the last moment and a film.
 
@@ -41,9 +37,7 @@ def render(
 
         view_folder(folder, colour)
         return DONE
-    why_not = why_not_drawn()
-    if why_not:
-        print(f"runningbond: {why_not}", file=sys.stderr)
+    if not can_draw():
         return NO_ANSWER
     from runningbond.pictures.render import render_folder
 

@@ -1,45 +1,35 @@
 """``runningbond run``."""
 
 import json as to_json
-import sys
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from runningbond.compare.fingerprint import fingerprint
-from runningbond.compare.model import Recorder
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model, run_model
 from runningbond.compare.published import find_scene
-from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.results import Outcome, make_folder, save_outcome
-from runningbond.scene import Scene, read_scene
+from runningbond.scene import read_scene
 
-from .exits import DONE, NO_ANSWER, STOPPED, UNDECIDED
-from .terminal import interruptions
+from .terminal import DONE, NO_ANSWER, STOPPED, UNDECIDED, Json, SceneName, Tolerance, can_draw, interruptions
 
 
 def run(
-    scene: str,
+    scene: SceneName,
     /,
     *,
     model: Annotated[str, Parameter(help=f"One of {', '.join(MODELS)}.")],
-    tolerance: float = TOLERANCE,
-    json: Annotated[bool, Parameter(negative="")] = False,
+    tolerance: Tolerance = TOLERANCE,
+    json: Json = False,
     out: Path | None = None,
 ) -> int:
     """Run one model on one scene.
 
     Parameters
     ----------
-    scene
-        Scene file, or the name of a published scene such as panel-01.
     model
         Name of the model.
-    tolerance
-        Relative width of the bracket asked for.
-    json
-        Print one JSON object and nothing else.
     out
         Folder in which to keep the result, its time series for ParaView and a picture of its mechanism.
     """
@@ -51,25 +41,20 @@ def run(
     stopped = interruptions(chosen)
     recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
     outcome = run_model(chosen, wall, tolerance, recorder)
-    print(_as_json(outcome) if json else _as_text(outcome), flush=True)
+    print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
     if out is not None:
         # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
         save_outcome(outcome, out, "" if stopped else fingerprint(wall, chosen, tolerance), wall)
-        _record(wall, outcome, out, recorder)
+        if recorder is None:
+            from runningbond.compare.recording import record_mechanism
+
+            record_mechanism(wall, outcome, out)
+        else:
+            recorder.finish(outcome)
         _draw(out)
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
-
-
-def _record(scene: Scene, outcome: Outcome, out: Path, recorder: Recorder | None) -> None:
-    """Finish the time series of a run, or write that of a mechanism."""
-    if recorder is not None:
-        recorder.finish(outcome)
-        return
-    from runningbond.compare.recording import record_mechanism
-
-    record_mechanism(scene, outcome, out)
 
 
 def _draw(out: Path) -> None:
@@ -77,29 +62,13 @@ def _draw(out: Path) -> None:
     from runningbond.pictures.render import remove_pictures, render_folder
 
     remove_pictures(out)
-    why_not = why_not_drawn()
-    if not why_not:
+    if can_draw():
         render_folder(out, moments=False)
-    else:
-        print(f"runningbond: {why_not}", file=sys.stderr)
-
-
-def _as_json(outcome: Outcome) -> str:
-    return to_json.dumps(outcome.summary(), allow_nan=False)
 
 
 def _as_text(outcome: Outcome) -> str:
-    bracket = ", ".join(
-        f"{name} {value:.6g}"
-        for name, value in (("λ", outcome.multiplier), ("lower", outcome.lower), ("upper", outcome.upper))
-        if value is not None
-    )
+    loads = (("λ", outcome.multiplier), ("lower", outcome.lower), ("upper", outcome.upper))
+    bracket = ", ".join(f"{name} {value:.6g}" for name, value in loads if value is not None)
     size = "" if outcome.dofs is None else f"{outcome.dofs} degrees of freedom, {outcome.steps} steps, "
-    return "\n".join(
-        [
-            f"{outcome.scene}: {outcome.model}",
-            f"  {outcome.status}{': ' + bracket if bracket else ''}",
-            f"  {outcome.message}",
-            f"  {size}{outcome.seconds:.3g} s",
-        ]
-    )
+    lines = [f"{outcome.scene}: {outcome.model}", f"  {outcome.status}{': ' + bracket if bracket else ''}"]
+    return "\n".join([*lines, f"  {outcome.message}", f"  {size}{outcome.seconds:.3g} s"])

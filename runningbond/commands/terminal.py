@@ -1,41 +1,80 @@
-"""What commands share of a terminal: whole numbers as options, a progress bar, and Ctrl-C."""
+"""What commands share: exit codes, arguments, tables, a progress bar, and Ctrl-C."""
 
 import signal
-from collections.abc import Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Annotated, TypeAlias
 
-from cyclopts import Token
+from cyclopts import Parameter, Token
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
 
 from runningbond.compare.model import Model
+from runningbond.compare.table import Sheet
+from runningbond.pictures.offscreen import why_not_drawn
+
+DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
+"""Exit codes of every command."""
+
+UNDECIDED = ("undecided", "failed")
+"""Statuses of outcomes that are no answer."""
 
 
-def whole(_: type, tokens: Sequence[Token]) -> int:
+def _whole(_: type, tokens: Sequence[Token]) -> int:
     """Read a whole number; cyclopts would round any other."""
     if not tokens[0].value.lstrip("+-").isdecimal():
         raise ValueError(f"{tokens[0].value!r} is no whole number")
     return int(tokens[0].value)
 
 
-def progress_bar(console: Console) -> Progress:
-    """A bar with what is being done, how much of it is, and for how long."""
+SceneName: TypeAlias = Annotated[str, Parameter(help="Scene file, or the name of a published scene such as panel-01.")]
+Tolerance: TypeAlias = Annotated[float, Parameter(help="Relative width of the bracket asked for.")]
+Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
+Json: TypeAlias = Annotated[bool, Parameter(negative="", help="Print one JSON object and nothing else.")]
+Whole: TypeAlias = Annotated[int, Parameter(converter=_whole)]
+
+
+def print_table(sheet: Sheet) -> None:
+    """Print a table as wide as the terminal, or as a page where there is none."""
+    console = Console(width=None if sys.stdout.isatty() else 180, markup=False, highlight=False)
+    table = Table(title=Text(sheet.title), title_justify="left")
+    for head in sheet.heads:
+        table.add_column(Text(head))
+    for row in sheet.rows:
+        table.add_row(*map(Text, row))
+    console.print(table)
+
+
+def can_draw() -> bool:
+    """Whether this machine can draw with VTK; where it cannot, a line says why."""
+    why_not = why_not_drawn()
+    if why_not:
+        print(f"runningbond: {why_not}", file=sys.stderr)
+    return not why_not
+
+
+@contextmanager
+def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]]:
+    """A bar with what was done last, how much is done, and for how long; to be called with what is done."""
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    return Progress(*columns, console=console)
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task(description, total=total)
+        yield lambda done: bar.update(task, advance=1, description=done)
 
 
-def interruptions(model: Model) -> list[int]:
-    """Interruptions by Ctrl-C from here on: a model that can be interrupted ends with what it has found so far.
+def interruptions(model: Model | None = None) -> list[int]:
+    """Interruptions by Ctrl-C from here on: a model that can be interrupted ends with what it has reached so far.
 
     A linear program does not look up from its work, and the program ends at once.
     """
     signals: list[int] = []
-    if not model.interruptible:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        return signals
 
     def stop(number: int, frame: object) -> None:
         signals.append(number)
         raise KeyboardInterrupt
 
-    signal.signal(signal.SIGINT, stop)
+    signal.signal(signal.SIGINT, stop if model is None or model.interruptible else signal.SIG_DFL)
     return signals

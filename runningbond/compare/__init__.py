@@ -1,18 +1,7 @@
-"""The suite: models, published cases, campaigns, tables, charts and the command line."""
+"""The suite: models, published cases, campaigns, tables, charts and reports."""
 
-from .campaign import Campaign, Interrupted, run_campaign
-from .model import Model
+from .campaign import Campaign, run_campaign
 from .models import MODELS, run_model
-from .published import PUBLISHED, PublishedCase, published_scene
+from .published import PUBLISHED, published_scene
 
-__all__ = [
-    "MODELS",
-    "PUBLISHED",
-    "Campaign",
-    "Interrupted",
-    "Model",
-    "PublishedCase",
-    "published_scene",
-    "run_campaign",
-    "run_model",
-]
+__all__ = ["MODELS", "PUBLISHED", "Campaign", "published_scene", "run_campaign", "run_model"]

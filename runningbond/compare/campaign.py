@@ -4,7 +4,7 @@ Processes and the workers of a cluster compute and hand over; the campaign alone
 """
 
 import warnings
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,8 +14,7 @@ from runningbond.scene import Scene
 
 from .model import Model
 from .models import MODELS, TOLERANCE, check_tolerance, find_model
-from .processes import in_processes
-from .tasks import Answer, Cell, ClusterError, Task, side_by_side
+from .tasks import Answer, Cell, ClusterError, Task, in_processes
 
 
 @dataclass
@@ -33,15 +32,6 @@ class Campaign:
     def kept(self) -> int:
         """Number of outcomes that are in the folder."""
         return sum(outcome.status != "failed" for outcome in self.outcomes.values())
-
-    def add(self, answer: Answer) -> None:
-        """Take in an answer."""
-        if answer.outcome is None:
-            self.inapplicable[answer.cell] = answer.reason
-        else:
-            self.outcomes[answer.cell] = answer.outcome
-        if answer.reused:
-            self.reused.add(answer.cell)
 
 
 class Interrupted(Exception):
@@ -99,16 +89,20 @@ def run_campaign(
     campaign = Campaign()
     try:
         with warnings.catch_warnings():
-            # What is left undone is told by `Interrupted`.
+            # `Interrupted` says what is left undone.
             warnings.filterwarnings("ignore", ".*tasks (have been|which were)", UserWarning, "joblib")
             with closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
                 for answer in answers:
-                    outcome = answer.outcome
-                    # A failure is tried again the next time, perhaps by better code.
-                    if outcome is not None and outcome.status != "failed" and not answer.reused:
-                        save_outcome(outcome, folder.joinpath(*answer.cell), answer.key, scenes[answer.cell[0]])
-                    campaign.add(answer)
-                    progress(answer.cell)
+                    cell, outcome = answer.cell, answer.outcome
+                    if outcome is None:
+                        campaign.inapplicable[cell] = answer.reason
+                    elif answer.reused:
+                        campaign.reused.add(cell)
+                    elif outcome.status != "failed":  # which is tried again the next time, perhaps by better code
+                        save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell[0]])
+                    if outcome is not None:
+                        campaign.outcomes[cell] = outcome
+                    progress(cell)
     except KeyboardInterrupt:
         raise Interrupted(campaign) from None
     except ClusterError as error:
@@ -118,34 +112,21 @@ def run_campaign(
     return campaign
 
 
-def _stored(task: Task, folder: Path) -> Answer | None:
-    """The answer that a folder holds, if it is of this very scene, tolerance and code."""
-    try:
-        outcome, key = load_outcome(folder.joinpath(*task.cell))
-    except StoreError:
-        return None
-    return Answer(task.cell, outcome, key=key, reused=True) if key == task.key() else None
-
-
 def _answers(tasks: Sequence[Task], folder: Path | None, jobs: int, cluster: str | None) -> Generator[Answer]:
     """Answers that a folder holds, if one is given, then those that are computed, as they come."""
     missing = []
     for task in tasks:
-        stored = None if folder is None else _stored(task, folder)
-        if stored is None:
-            missing.append(task)
+        try:
+            outcome, key = (None, "") if folder is None else load_outcome(folder.joinpath(*task.cell))
+        except StoreError:
+            outcome, key = None, ""
+        if outcome is not None and key == task.key():  # of this very scene, tolerance and code
+            yield Answer(task.cell, outcome, key=key, reused=True)
         else:
-            yield stored
-    if missing:
-        yield from in_processes(missing, jobs) if cluster is None else _on_cluster(missing, cluster)
+            missing.append(task)
+    if missing and cluster is not None:
+        from .cluster import on_cluster  # Dask is not always installed
 
-
-def _on_cluster(tasks: Sequence[Task], cluster: str) -> Iterator[Answer]:
-    from .cluster import on_cluster  # Dask is not always installed
-
-    keys = {task.cell: task.key() for task in tasks}
-    with on_cluster(cluster):
-        for answer in side_by_side(tasks):
-            if answer.key not in ("", keys[answer.cell]):
-                raise ClusterError("a worker has other sources or libraries than this process; install the same")
-            yield answer
+        yield from on_cluster(missing, cluster)
+    elif missing:
+        yield from in_processes(missing, jobs)

@@ -2,9 +2,8 @@
 
 import json
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ from joblib._dask import DaskDistributedBackend
 
 from runningbond.scene import SceneError
 
-from .tasks import ClusterError
+from .tasks import Answer, ClusterError, Task, side_by_side
 
 PATIENCE = 30
 """Seconds in which a scheduler must answer and have a worker."""
@@ -53,13 +52,13 @@ class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
         return super().retrieve_result_callback(out)
 
 
-@contextmanager
-def on_cluster(where: str) -> Iterator[None]:
-    """Send the tasks that joblib is given inside to a cluster: the address of its scheduler, or its file.
+def on_cluster(tasks: Sequence[Task], where: str) -> Iterator[Answer]:
+    """Answers as they come, from a cluster: the address of its scheduler, or its file.
 
     Where no scheduler with a worker answers, that is a `SceneError`.
     """
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what it tells is told here, in a line
+    keys = {task.cell: task.key() for task in tasks}
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are reported here, in a line
     try:
         address = json.loads(Path(where).read_bytes())["address"] if Path(where).is_file() else where
         client = Client(address, timeout=PATIENCE, set_as_default=False)
@@ -69,8 +68,10 @@ def on_cluster(where: str) -> Iterator[None]:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
         except TimeoutError as error:
-            raise SceneError(
-                "--cluster", f"has no worker after {PATIENCE} s; start some, one thread each", where
-            ) from error
+            message = f"has no worker after {PATIENCE} s; start some, one thread each"
+            raise SceneError("--cluster", message, where) from error
         with parallel_config(backend=TaskBackend(client=client)):
-            yield
+            for answer in side_by_side(tasks):
+                if answer.key not in ("", keys[answer.cell]):
+                    raise ClusterError("a worker has other sources or libraries than this process; install the same")
+                yield answer

@@ -1,7 +1,5 @@
-"""Charts of a comparison: the paper's Figure 6, and the multipliers of its Table 2."""
+"""Charts of a comparison: the paper's Figures 6, 7 and 11, and the multipliers of its Table 2."""
 
-import csv
-import io
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,12 +10,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from homog import crack_slope, lateral_multiplier
+from runningbond.pictures.captions import to_png
 from runningbond.results import Outcome, write_atomically
 from runningbond.scene import Array
 
 from .model import Model
-from .published import BARALDI, PublishedCase, cases_of
-from .table import Comparison
+from .published import BARALDI, CONCENTRATED, FERRIS, PublishedCase, cases_of
+from .table import Comparison, csv_lines
 
 FRICTION = 0.6
 TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))
@@ -41,31 +40,31 @@ def figure_6_data(points: int = 120) -> tuple[Array, Array]:
         λ of each of `TEXTURES`.
     """
     slenderness = np.linspace(0, 3, points + 1)[1:]
-    columns = []
-    for _, ratio in TEXTURES:
-        slope = crack_slope(ratio, 1.0, FRICTION)
-        columns.append([lateral_multiplier(float(r), slope, FRICTION) for r in slenderness])
-    return slenderness, np.array(columns).T
+    slopes = [crack_slope(ratio, 1.0, FRICTION) for _, ratio in TEXTURES]
+    return slenderness, np.array([[lateral_multiplier(float(r), x, FRICTION) for x in slopes] for r in slenderness])
 
 
 def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
     """Draw every chart that a comparison of published walls has something for, and write the data of Figure 6."""
-    panels = cases_of(BARALDI)
-    present = [any((case.name, name) in comparison.campaign.outcomes for name in comparison.names) for case in panels]
-    if not any(present):
-        return []
-    slenderness, multiplier = figure_6_data()
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerow(["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)])
-    writer.writerows([f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True))
-    write_atomically(folder / "figure-6.csv", table.getvalue().encode())
-    charts = {"figure-6.png": _figure_6(comparison, slenderness, multiplier)}
+    written, charts = [], {}
+    present = [any(comparison.outcome(case.name, x) for x in comparison.models) for case in cases_of(BARALDI)]
+    if any(present):
+        slenderness, multiplier = figure_6_data()
+        rows = [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True)]
+        written.append(folder / "figure-6.csv")
+        heads = ["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]
+        write_atomically(written[0], csv_lines([heads, *rows]).encode())
+        charts["figure-6"] = _figure_6(comparison, slenderness, multiplier)
     if all(present):
-        charts["table-2.png"] = table_2(comparison)
+        charts["table-2"] = table_2(comparison)
+    for name, source in (("figure-7", BARALDI), ("figure-11", CONCENTRATED), ("curves-ferris", FERRIS)):
+        models = [x for x in comparison.models if any(len(_curve(comparison, case, x)) for case in cases_of(source))]
+        if models:
+            charts[name] = _curves(comparison, source, models)
     for name, figure in charts.items():
-        save(figure, folder / name)
-    return [folder / name for name in ("figure-6.csv", *charts)]
+        written.append(folder / f"{name}.png")
+        write_atomically(written[-1], to_png(figure, 160))
+    return written
 
 
 def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> Figure:
@@ -92,12 +91,19 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
 
 
 def table_2(comparison: Comparison) -> Figure:
-    """Chart of the multipliers of Table 2: what is printed beside what each model found."""
+    """Chart of the multipliers of Table 2: what is printed beside what each model gives."""
     figure, columns = panel_figure(xlabel="block ratio b/a", ylabel="collapse multiplier λ", xlim=(-0.5, 3.7))
+    shifts = np.linspace(0.0, min(0.1 * (len(comparison.models) - 1), 0.5), len(comparison.models))
     hollow = False
     for axes, cases in columns:
         for k, case in enumerate(cases):
-            hollow |= _panel_marks(axes, k, case, comparison)
+            for (label, marker), shift in zip(PRINTED.items(), (-0.3, -0.2, -0.1), strict=True):
+                axes.plot(k + shift, case.printed[label], marker, color="0.62", ms=5, ls="none")
+            for model, shift in zip(comparison.models, shifts, strict=True):
+                outcome = comparison.outcome(case.name, model)
+                if outcome is not None:
+                    _mark(axes, k + float(shift), model, outcome)
+                    hollow |= outcome.multiplier is None
         axes.set_xticks(range(4), [label for label, _ in TEXTURES])
     looks = [(f"printed {label}", "0.62", marker) for label, marker in PRINTED.items()]
     looks += [(model.name, model.colour, model.marker) for model in comparison.models]
@@ -109,29 +115,62 @@ def table_2(comparison: Comparison) -> Figure:
     return figure
 
 
-def _panel_marks(axes: Axes, k: int, case: PublishedCase, comparison: Comparison) -> bool:
-    """Draw what is printed and what each model found of one panel; whether any of it is hollow."""
-    for (label, marker), shift in zip(PRINTED.items(), (-0.3, -0.2, -0.1), strict=True):
-        axes.plot(k + shift, case.printed[label], marker, color="0.62", ms=5, ls="none")
-    shifts = np.linspace(0.0, min(0.1 * (len(comparison.models) - 1), 0.5), len(comparison.models))
-    hollow = False
-    for model, shift in zip(comparison.models, shifts, strict=True):
-        outcome = comparison.outcome(case.name, model)
-        if outcome is not None:
-            _mark(axes, k + float(shift), model, outcome)
-            hollow |= outcome.multiplier is None
-    return hollow
-
-
 def _mark(axes: Axes, x: float, model: Model, outcome: Outcome) -> None:
     """A bar for the bracket and a mark on it; a hollow one, on a thin bar, where no collapse load was found."""
-    known = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
-    found = outcome.multiplier is not None
-    axes.plot([x, x], [known[0], known[-1]], color=model.colour, lw=2.5 if found else 0.8, solid_capstyle="butt")
-    place = known[-1] if outcome.multiplier is None else outcome.multiplier
-    face = model.colour if found else "white"
-    edge = 1.5 if found else 1.0
+    loads = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
+    hollow = outcome.multiplier is None
+    axes.plot([x, x], [loads[0], loads[-1]], color=model.colour, lw=0.8 if hollow else 2.5, solid_capstyle="butt")
+    place = loads[-1] if outcome.multiplier is None else outcome.multiplier
+    face, edge = ("white", 1.0) if hollow else (model.colour, 1.5)
     axes.plot(x, place, model.marker, color=model.colour, mfc=face, ms=5, mew=edge, ls="none", clip_on=False)
+
+
+def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Figure:
+    """Curves of the walls of one source, each with a dot at its end; of loads in kN where λ is a load in newtons.
+
+    A level line is drawn for each model that only estimates the multiplier of the twelve panels.
+    """
+    panels, point_load = source == BARALDI, source == CONCENTRATED
+    where, load = ("under the load", "load [kN]") if point_load else ("of the upper corner", "load multiplier λ")
+    labels = {"xlabel": f"displacement {where} [mm]", "ylabel": load}
+    estimates = [model for model in comparison.models if panels and model.kind == "estimate"]
+    if panels:
+        figure, columns = panel_figure(xlim=(-0.3, 12), **labels)
+    else:
+        figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+        columns = [(figure.add_subplot(**labels), cases_of(source))]
+    for axes, cases in columns:
+        for case, colour in zip(cases, COLOURS, strict=False):
+            for model in models:
+                moved, multiplier = (_curve(comparison, case, model) * (1e3, 1e-3 if point_load else 1.0)).T
+                axes.plot(moved, multiplier, ls=model.line, color=colour, lw=1.4)
+                axes.plot(moved[-1:], multiplier[-1:], ".", color=colour, ms=4)
+            for model in estimates:
+                outcome = comparison.outcome(case.name, model)
+                if outcome is not None and outcome.multiplier is not None:
+                    axes.axhline(outcome.multiplier, color=colour, lw=0.8, ls=model.line)
+        if not panels:
+            axes.set_ylim(0, None)
+            bare(axes)
+    names = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
+    _legend(figure, names if source == FERRIS else [f"b/a = {label}" for label, _ in TEXTURES], [*estimates, *models])
+    return figure
+
+
+def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:
+    """Pushover curve of a wall by a model, ``(n, 2)``; empty where there is none."""
+    outcome = comparison.outcome(case.name, model)
+    return np.zeros((0, 2)) if outcome is None else outcome.curve
+
+
+def _legend(figure: Figure, walls: Sequence[str], models: Sequence[Model]) -> None:
+    """What colours stand for, walls, and what lines stand for, models."""
+    colours = [Line2D([], [], color=colour, label=wall) for wall, colour in zip(walls, COLOURS, strict=False)]
+    lines = [
+        Line2D([], [], color="0.3", ls=model.line, lw=0.8 if model.kind == "estimate" else 1.4, label=model.name)
+        for model in models
+    ]
+    legend_below(figure, [*colours, *lines])
 
 
 def panel_figure(
@@ -157,10 +196,3 @@ def legend_below(figure: Figure, handles: Sequence[Artist], columns: int = 4) ->
 def bare(axes: Axes) -> None:
     """Take away the frame where nothing is read off it."""
     axes.spines[["top", "right"]].set_visible(False)
-
-
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure, whole or not at all."""
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=160)
-    write_atomically(path, buffer.getvalue())

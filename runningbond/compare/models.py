@@ -3,19 +3,20 @@
 A model of one's own is one more `Model`: put into `MODELS`, or handed to `run_model` as it is.
 """
 
-import difflib
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
+from functools import partial
+from importlib import import_module
 from typing import Any
 
 from homog import homog
 from runningbond.limit import limit, limit_nonassociated
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene import Scene, SceneError
+from runningbond.scene.ranges import suggestion
 
-from .model import Cost, Model, Recorder
+from .model import Cost, Model
 
 DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
@@ -31,50 +32,15 @@ def _homog(scene: Scene, tolerance: float) -> Outcome:
     return homog(scene)
 
 
-# What needs a compiler or VTK, which take a second to load, is imported when it is wanted.
+def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
+    """Call a function or class of a module that needs a compiler or VTK, and is imported only now."""
+    return getattr(import_module(module), name)(*arguments, **settings)
 
 
-def _dem_static(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
-    from dem.static import dem_static
-
-    return dem_static(scene, tolerance, **settings)
-
-
-def _dem_dynamic(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
-    from dem.dynamic import dem_dynamic
-
-    return dem_dynamic(scene, tolerance, **settings)
-
-
-def _fem(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
-    from fem_interface.model import fem
-
-    return fem(scene, tolerance, **settings)
-
-
-def _dem_pushover(scene: Scene, distance: float, speed: float) -> Array:
-    from dem.dynamic import finite_pushover
-
-    return finite_pushover(scene, distance, speed=speed)
-
-
-def _fem_pushover(scene: Scene, distance: float, speed: float) -> Array:
-    from fem_interface.finite_pushover import fem_pushover
-
-    return fem_pushover(scene, distance, speed=speed)
-
-
-def _static_recorder(scene: Scene, folder: Path | None) -> Recorder:
-    from .recording import StaticRecorder
-
-    return StaticRecorder(scene, folder)
-
-
-def _motion_recorder(scene: Scene, folder: Path | None) -> Recorder:
-    from .recording import MotionRecorder
-
-    return MotionRecorder(scene, folder)
-
+_DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(_late, "dem.dynamic", "dem_dynamic")
+_STATIC_RECORDER, _MOTION_RECORDER = (
+    partial(_late, "runningbond.compare.recording", recorder) for recorder in ("StaticRecorder", "MotionRecorder")
+)
 
 IN_STEPS = ("collapse", "first_step", "budget")
 """Settings of every model that raises its loads in steps."""
@@ -104,31 +70,31 @@ _EVERY_MODEL = (
         marker="s",
     ),
     Model(
-        *("dem-static", "equilibrium of rigid blocks, load by load", _dem_static, STIFFNESS, "history"),
+        *("dem-static", "equilibrium of rigid blocks, load by load", _DEM_STATIC, STIFFNESS, "history"),
         parameters=(*IN_STEPS, "past"),
-        observer=_static_recorder,
+        observer=_STATIC_RECORDER,
         cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
         colour="#7c3aed",
         marker="v",
     ),
     Model(
-        *("dem-dynamic", "rigid blocks in motion", _dem_dynamic, SOFTENING, "history"),
+        *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, SOFTENING, "history"),
         parameters=IN_STEPS,
-        observer=_motion_recorder,
+        observer=_MOTION_RECORDER,
         interruptible=True,
         cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
-        pushover=_dem_pushover,
+        pushover=partial(_late, "dem.dynamic", "finite_pushover"),
         colour="#2a9d8f",
         marker="^",
         line=":",
     ),
     Model(
-        *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
+        *("fem", "deformable blocks in motion", partial(_late, "fem_interface.model", "fem"), ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS),
-        observer=_motion_recorder,
+        observer=_MOTION_RECORDER,
         interruptible=True,
         cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
-        pushover=_fem_pushover,
+        pushover=partial(_late, "fem_interface.finite_pushover", "fem_pushover"),
         colour="#be185d",
         marker="D",
         line=(0, (3, 1, 1, 1)),
@@ -153,9 +119,7 @@ def find_model(model: str | Model, key: str = "model") -> Model:
     if isinstance(model, Model):
         return model
     if model not in MODELS:
-        likely = difflib.get_close_matches(model, MODELS, n=1)
-        hint = f'; did you mean "{likely[0]}"?' if likely else ""
-        raise SceneError(key, f"must be one of {', '.join(MODELS)}{hint}", model)
+        raise SceneError(key, f"must be one of {', '.join(MODELS)}{suggestion(model, list(MODELS))}", model)
     return MODELS[model]
 
 
@@ -214,4 +178,4 @@ def run_model(
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     unread = model.unread(scene)
     note = f"not taken into account: {', '.join(unread)}" if unread else ""
-    return replace(outcome, model=model.name, message="; ".join(part for part in (outcome.message, note) if part))
+    return replace(outcome, model=model.name, message="; ".join(filter(None, (outcome.message, note))))

@@ -5,6 +5,10 @@ from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from runningbond.pictures.captions import colour_key, multiplier_text, to_png
 from runningbond.pictures.deformed_shape import DeformedShape, Extent, undeformed_shape
@@ -43,29 +47,30 @@ class Plate:
 
 
 def plates(comparison: Comparison) -> list[Plate]:
-    """Plates that a comparison has anything for: the paper's, and one of the walls that are nobody's figure."""
+    """Plates that a comparison has anything for: the paper's, and one of walls that are in no figure of it."""
     textures = [f"b/a = {label}" for label, _ in TEXTURES]
-    panels = _names(BARALDI)
-    drawn = [
-        Plate(
-            f"figure-{8 + k}",
-            f"Mechanisms under self-weight and lateral load, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})",
-            dict(zip(panels[4 * k : 4 * k + 4], textures, strict=True)),
-        )
-        for k, (label, _) in enumerate(SLENDERNESS)
-    ]
-    title = "Mechanisms under a concentrated load (cf. Baraldi et al., Fig. 12)"
-    drawn.append(Plate("figure-12", title, dict(zip(_names(CONCENTRATED), textures, strict=True))))
-    labels = {name: name.removeprefix("wall-").upper() for name in _names(FERRIS)}
-    drawn.append(Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", labels))
-    present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in drawn]
+    panels, loaded, ferris = ([case.name for case in cases_of(x)] for x in (BARALDI, CONCENTRATED, FERRIS))
+    lateral, concentrated = "Mechanisms under self-weight and lateral load", "Mechanisms under a concentrated load"
     own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
+    paper = [
+        *(
+            Plate(
+                f"figure-{8 + k}",
+                f"{lateral}, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})",
+                dict(zip(panels[4 * k : 4 * k + 4], textures, strict=True)),
+            )
+            for k, (label, _) in enumerate(SLENDERNESS)
+        ),
+        Plate("figure-12", f"{concentrated} (cf. Baraldi et al., Fig. 12)", dict(zip(loaded, textures, strict=True))),
+        Plate(
+            "mechanisms-ferris",
+            "Mechanisms of Ferris & Tin-Loi's walls",
+            {name: name.removeprefix("wall-").upper() for name in ferris},
+        ),
+    ]
+    present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in paper]
     present.append(Plate("mechanisms", "Mechanisms", {name: name for name in own}))
     return [plate for plate in present if _models(comparison, plate)]
-
-
-def _names(source: str) -> list[str]:
-    return [case.name for case in cases_of(source)]
 
 
 def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
@@ -81,17 +86,15 @@ def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
 def _models(comparison: Comparison, plate: Plate) -> list[Model]:
     """Models that have a mechanism of any wall of a plate."""
     outcomes = {model: [comparison.outcome(name, model) for name in plate.walls] for model in comparison.models}
-    return [model for model, found in outcomes.items() if any(out is not None and len(out.motion) for out in found)]
+    return [model for model, own in outcomes.items() if any(x is not None and len(x.motion) for x in own)]
 
 
 def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
-    from matplotlib.figure import Figure
-
     models = _models(comparison, plate)
     rows = [_row(comparison, name, models) for name in plate.walls]
-    captions = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
-    ratios = [(top - bottom) / (right - left) for left, right, bottom, top in (row.extent for row in rows)]
-    room = TALLEST - TITLES - captions * len(rows)
+    below = LINE * max(2, *(text.count("\n") + 1 for _, captions, _ in rows for text in captions)) + 0.08
+    ratios = [(top - bottom) / (right - left) for _, _, (left, right, bottom, top) in rows]
+    room = TALLEST - TITLES - below * len(rows)
     labels = [textwrap.wrap(label, 16) or [""] for label in plate.walls.values()]
     side = 0.1 + LETTER * max(len(line) for label in labels for line in label)
     width = min((WIDTH - side) / max(len(models), 3) - GAP, room / sum(ratios))
@@ -101,43 +104,30 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     grid = figure.subplots(len(rows), len(models), squeeze=False, height_ratios=ratios)
     for axes, model in zip(grid[0], models, strict=True):
         axes.set_title(model.name, fontsize=8)
-    for line, row, label in zip(grid, rows, labels, strict=True):
-        line[0].text(
-            -0.04,
-            0.5,
-            "\n".join(label),
-            transform=line[0].transAxes,
-            ha="right",
-            va="center",
-            fontsize=7.5,
-            parse_math=False,
-        )
-        for axes, shape, caption in zip(line, row.shapes, row.captions, strict=True):
-            draw_painted(axes, shape, painter, row.extent, annotated=False)
-            axes.text(0.5, -0.02, caption, transform=axes.transAxes, ha="center", va="top", fontsize=6.3)
+    for line, (shapes, captions, extent), label in zip(grid, rows, labels, strict=True):
+        _write(line[0], -0.04, 0.5, "\n".join(label), ha="right", va="center", fontsize=7.5)
+        for axes, shape, caption in zip(line, shapes, captions, strict=True):
+            draw_painted(axes, shape, painter, extent, annotated=False)
+            _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
     handles = colour_key((JointState.SLIDE, JointState.OPEN))
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
     return to_png(figure, DPI)
 
 
-@dataclass(frozen=True)
-class Row:
+def _write(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
+    """Text at shares of the width and height of some axes."""
+    axes.text(x, y, text, transform=axes.transAxes, parse_math=False, **style)
+
+
+def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> tuple[list[DeformedShape], list[str], Extent]:
     """One wall by all models: what is drawn, its captions, and an extent that shows all of it."""
-
-    shapes: list[DeformedShape]
-    captions: list[str]
-    extent: Extent
-
-
-def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> Row:
     scene = comparison.scenes[name]
     outcomes = [comparison.outcome(name, model) for model in models]
     mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
     shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
     lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
-    extent = min(lefts), max(rights), min(bottoms), max(tops)
     captions = [comparison.cell(name, model, lambda outcome: _caption(scene, outcome)) for model in models]
-    return Row(shapes, captions, extent)
+    return shapes, captions, (min(lefts), max(rights), min(bottoms), max(tops))
 
 
 def _caption(scene: Scene, outcome: Outcome) -> str:

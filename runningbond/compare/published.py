@@ -26,35 +26,19 @@ class PublishedCase:
         return FOLDER / f"{self.name}.toml"
 
 
-def _panel(row: int, fem_dem: float, dem: float, homo: float) -> PublishedCase:
-    printed = {"FEM/DEM": fem_dem, "DEM": dem, "HOMO": homo}
-    return PublishedCase(f"panel-{row:02d}", BARALDI, printed)
-
-
-def _wall(name: str, associated: float, nonassociated: float) -> PublishedCase:
-    return PublishedCase(name, FERRIS, {"associated": associated, "non-associated": nonassociated})
-
+TABLE_2 = {
+    "FEM/DEM": (0.500, 0.410, 0.310, 0.310, 0.380, 0.320, 0.225, 0.140, 0.240, 0.220, 0.175, 0.130),
+    "DEM": (0.570, 0.390, 0.260, 0.160, 0.390, 0.310, 0.230, 0.110, 0.330, 0.310, 0.200, 0.094),
+    "HOMO": (0.537, 0.380, 0.269, 0.134, 0.537, 0.380, 0.269, 0.134, 0.372, 0.328, 0.267, 0.134),
+}
+"""Multipliers of the twelve panels, as the paper prints them."""
 
 PUBLISHED: tuple[PublishedCase, ...] = (
-    _panel(1, 0.500, 0.570, 0.537),
-    _panel(2, 0.410, 0.390, 0.380),
-    _panel(3, 0.310, 0.260, 0.269),
-    _panel(4, 0.310, 0.160, 0.134),
-    _panel(5, 0.380, 0.390, 0.537),
-    _panel(6, 0.320, 0.310, 0.380),
-    _panel(7, 0.225, 0.230, 0.269),
-    _panel(8, 0.140, 0.110, 0.134),
-    _panel(9, 0.240, 0.330, 0.372),
-    _panel(10, 0.220, 0.310, 0.328),
-    _panel(11, 0.175, 0.200, 0.267),
-    _panel(12, 0.130, 0.094, 0.134),
-    PublishedCase("point-load-4", CONCENTRATED),
-    PublishedCase("point-load-2", CONCENTRATED),
-    PublishedCase("point-load-1", CONCENTRATED),
-    PublishedCase("point-load-quarter", CONCENTRATED),
-    _wall("wall-w1", 0.643, 0.640),
-    _wall("wall-w2", 0.580, 0.563),
-    _wall("wall-w3", 0.404, 0.356),
+    *(PublishedCase(f"panel-{k + 1:02d}", BARALDI, {x: TABLE_2[x][k] for x in TABLE_2}) for k in range(12)),
+    *(PublishedCase(f"point-load-{texture}", CONCENTRATED) for texture in ("4", "2", "1", "quarter")),
+    PublishedCase("wall-w1", FERRIS, {"associated": 0.643, "non-associated": 0.640}),
+    PublishedCase("wall-w2", FERRIS, {"associated": 0.580, "non-associated": 0.563}),
+    PublishedCase("wall-w3", FERRIS, {"associated": 0.404, "non-associated": 0.356}),
 )
 """The sixteen panels of Baraldi, Reccia & Cecchi and three walls of Ferris & Tin-Loi."""
 

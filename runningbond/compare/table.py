@@ -5,14 +5,12 @@ import io
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-
-from rich.table import Table as RichTable
-from rich.text import Text
+from itertools import product
 
 from homog import homog
 from runningbond.pictures.captions import is_force
 from runningbond.results import Outcome
-from runningbond.results.outcome import number
+from runningbond.results.outcome import SCALARS, number
 from runningbond.scene import Scene
 
 from .campaign import Campaign
@@ -38,15 +36,6 @@ class Sheet:
         """The table in Markdown, under its title."""
         lines = [f"### {self.title}", "", _line(self.heads), _line(["---"] * len(self.heads))]
         return "\n".join([*lines, *map(_line, self.rows), ""])
-
-    def terminal(self) -> RichTable:
-        """The table for rich's console."""
-        table = RichTable(title=Text(self.title), title_justify="left")
-        for head in self.heads:
-            table.add_column(Text(head))
-        for row in self.rows:
-            table.add_row(*map(Text, row))
-        return table
 
 
 def _line(cells: Sequence[str]) -> str:
@@ -76,7 +65,7 @@ class Comparison:
         return groups
 
     def outcome(self, name: str, model: Model) -> Outcome | None:
-        """What a model found of a scene."""
+        """The outcome of a model on a scene."""
         return self.campaign.outcomes.get((name, model.name))
 
     def cell(self, name: str, model: Model, text: Callable[[Outcome], str]) -> str:
@@ -107,39 +96,30 @@ class Comparison:
 
 def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
     """Printed values and brackets, one table a group of scenes."""
-    sheets = []
-    for title, names in comparison.groups().items():
-        labels = comparison.labels(names)
-        heads = ["title", *(label if label == CORRECTED else f"printed {label}" for label in labels)]
-        cells = {
-            name: [comparison.scenes[name].title, *(_printed_number(x, comparison.printed(name)) for x in labels)]
-            for name in names
-        }
-        sheets.append(_sheet(comparison, title, heads, cells, answer))
-    return sheets
-
-
-def cost_sheets(comparison: Comparison) -> list[Sheet]:
-    """Degrees of freedom, steps and seconds, one table a group of scenes."""
-    blocks = {name: [str(int(scene.wall.sum()))] for name, scene in comparison.scenes.items()}
     return [
         _sheet(
             comparison,
-            f"{title}: degrees of freedom / steps / seconds",
-            ["blocks"],
-            {name: blocks[name] for name in names},
-            _cost,
+            title,
+            ["title", *(x if x == CORRECTED else f"printed {x}" for x in comparison.labels(names))],
+            {name: [comparison.scenes[name].title, *_printed(comparison, name, names)] for name in names},
+            answer,
         )
         for title, names in comparison.groups().items()
     ]
 
 
+def cost_sheets(comparison: Comparison) -> list[Sheet]:
+    """Degrees of freedom, steps and seconds, one table a group of scenes."""
+    blocks = {name: [str(int(scene.wall.sum()))] for name, scene in comparison.scenes.items()}
+    what = "degrees of freedom / steps / seconds"
+    return [
+        _sheet(comparison, f"{title}: {what}", ["blocks"], {name: blocks[name] for name in names}, _cost)
+        for title, names in comparison.groups().items()
+    ]
+
+
 def _sheet(
-    comparison: Comparison,
-    title: str,
-    heads: list[str],
-    cells: Mapping[str, list[str]],
-    text: Callable[[Outcome], str],
+    comparison: Comparison, title: str, heads: list[str], cells: Mapping[str, list[str]], text: Callable[[Outcome], str]
 ) -> Sheet:
     """A row a scene: its name, the cells that are its own, and the text of each model's outcome."""
     models = comparison.models
@@ -150,23 +130,22 @@ def _sheet(
 def csv_text(comparison: Comparison) -> str:
     """One row a scene and model, with the unit of its multiplier and the printed values of the scene."""
     labels = comparison.labels(comparison.scenes)
-    scalars = [key for key in Outcome("", "", "undecided").summary() if key not in ("scene", "model")]
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    heads = ["scene", "title", "source", "blocks", "model", "unit"]
-    writer.writerow([*heads, *scalars, *(f"printed {label}" for label in labels)])
+    scalars = [key for key in SCALARS if key not in ("scene", "model")]
+    heads = ["scene", "title", "source", "blocks", "model", "unit", *scalars, *(f"printed {label}" for label in labels)]
+    rows: list[Sequence[object]] = [heads]
     for source, names in comparison.groups().items():
-        for name in names:
-            scene, printed = comparison.scenes[name], comparison.printed(name)
-            for model in comparison.models:
-                outcome = comparison.outcome(name, model)
-                values = outcome.summary() if outcome else _no_outcome(comparison.campaign, (name, model.name))
-                unit = "N" if is_force(scene) else "1"
-                writer.writerow(
-                    [name, scene.title, source, int(scene.wall.sum()), model.name, unit]
-                    + [values.get(key) for key in scalars]
-                    + [printed.get(label) for label in labels]
-                )
+        for name, model in product(names, comparison.models):
+            scene, printed, outcome = comparison.scenes[name], comparison.printed(name), comparison.outcome(name, model)
+            values = outcome.summary() if outcome else _no_outcome(comparison.campaign, (name, model.name))
+            own = [name, scene.title, source, int(scene.wall.sum()), model.name, "N" if is_force(scene) else "1"]
+            rows.append([*own, *map(values.get, scalars), *map(printed.get, labels)])
+    return csv_lines(rows)
+
+
+def csv_lines(rows: Iterable[Sequence[object]]) -> str:
+    """Rows as the text of a CSV file."""
+    buffer = io.StringIO()
+    csv.writer(buffer, lineterminator="\n").writerows(rows)
     return buffer.getvalue()
 
 
@@ -183,17 +162,15 @@ def corrected_homo(scene: Scene) -> float:
     return multiplier
 
 
-def _printed_number(label: str, values: Mapping[str, float]) -> str:
-    """A printed value with the three decimals that papers give, or nothing."""
-    if label not in values:
-        return ""
-    return number(values[label]) if label == CORRECTED else f"{values[label]:.3f}"
+def _printed(comparison: Comparison, name: str, names: Iterable[str]) -> list[str]:
+    """Values printed for one of some scenes, with the three decimals that papers give; empty where there is none."""
+    values = {x: number(y) if x == CORRECTED else f"{y:.3f}" for x, y in comparison.printed(name).items()}
+    return [values.get(label, "") for label in comparison.labels(names)]
 
 
 def answer(outcome: Outcome) -> str:
-    """Answer of an outcome as tables print it: the bracket of a collapse, any other status before what is known."""
-    known = bracket(outcome)
-    return known if outcome.status == "collapse" else f"{outcome.status} {known}".strip()
+    """Answer of an outcome as tables print it: the bracket of a collapse, any other status before its bounds."""
+    return bracket(outcome) if outcome.status == "collapse" else f"{outcome.status} {bracket(outcome)}".strip()
 
 
 def bracket(outcome: Outcome) -> str:

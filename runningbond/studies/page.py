@@ -9,9 +9,10 @@ from typing import TypeAlias
 
 from matplotlib.figure import Figure
 
-from runningbond.compare.figures import bare, save
+from runningbond.compare.figures import bare
 from runningbond.compare.report import figure_html, page_html, table_html
 from runningbond.compare.table import Sheet
+from runningbond.pictures.captions import to_png
 from runningbond.results import write_atomically
 
 from .store import failures
@@ -84,7 +85,7 @@ def draw(chart: Chart, rows: Rows, folder: Path) -> Path:
     for axes in figure.axes:
         bare(axes)
     path = folder / f"{chart.name}.png"
-    save(figure, path)
+    write_atomically(path, to_png(figure, 160))
     return path
 
 

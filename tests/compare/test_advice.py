@@ -14,7 +14,7 @@ from runningbond.commands.command_line import command
 from runningbond.compare import MODELS, PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, Advice, advise
 from runningbond.compare.advice.costs import estimate, pace
-from runningbond.compare.advice.needs import block_compliance, needs_of, sliding_dilates
+from runningbond.compare.advice.knowledge import block_compliance, sliding_dilates
 from runningbond.compare.advice.steps import WORTH
 from runningbond.limit import limit
 from runningbond.results import Outcome
@@ -99,8 +99,8 @@ def test_all_published_walls_are_answered_with_few_models() -> None:
 def test_no_more_is_run_than_is_needed(name: str, models: list[str]) -> None:
     advice = advise(published_scene(name))
     assert climbed(advice) == models
-    assert [rung.onward for rung in advice.rungs] == [*models[1:], None]
-    assert all(rung.reason for rung in advice.rungs)
+    assert [rung.next.name for rung in advice.rungs] == [*models[1:], None]
+    assert all(rung.next.reason for rung in advice.rungs)
 
 
 def test_a_certificate_much_dearer_than_a_history_is_not_bought() -> None:
@@ -151,7 +151,7 @@ def test_deformability_is_of_no_account_where_the_certificates_suffice() -> None
 def test_rigid_enough_blocks_lose_their_modes_and_keep_the_answer() -> None:
     """W3 of 1000 GPa, where `advise` leaves fem out: no deformable mode moves the bracket by more than a trial."""
     scene = published_scene("wall-w3")
-    assert needs_of(scene).compliance < TOLERANCE
+    assert block_compliance(scene) < TOLERANCE
     rigid, all_modes = dem_dynamic(scene, TOLERANCE), fem(scene, TOLERANCE, modes="all")
     none = fem(scene, TOLERANCE, modes=3)
     for outcome in (all_modes, none):
@@ -182,7 +182,7 @@ def test_soft_blocks_call_for_fem_where_a_history_is_followed() -> None:
     soft = replace(scene, block=BlockMaterial(scene.block.density, 1e11, 0.0))
     advice = advise(soft)
     assert climbed(advice) == ["homog", "limit", "limit-nonassociated", "fem"]
-    assert "must deform" in advice.rungs[2].reason
+    assert "must deform" in advice.rungs[2].next.reason
     check_against_what_is_known("wall-w3", advice)
 
 
@@ -206,15 +206,15 @@ def glued(**changes: Any) -> Scene:
 def test_joints_that_soften_call_for_a_model_that_knows_their_energies() -> None:
     advice = advise(glued(joint__fracture_energy_1=5.0, joint__fracture_energy_2=50.0))
     assert climbed(advice) == ["homog", "limit", "dem-dynamic"]
-    assert "soften" in advice.rungs[1].reason
-    assert "soften" not in advise(glued()).rungs[1].reason
+    assert "soften" in advice.rungs[1].next.reason
+    assert "soften" not in advise(glued()).rungs[1].next.reason
 
 
 def test_blocks_that_may_crack_call_for_fem_with_cracks_in_them() -> None:
     inner = {"friction": 0.6, "cohesion": 1e5, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
     advice = advise(glued(block__young=1e10, inner_joint=inner))
     assert climbed(advice) == ["homog", "limit", "fem"]
-    assert "crack" in advice.rungs[1].reason
+    assert "crack" in advice.rungs[1].next.reason
 
 
 def test_a_wall_that_locks_with_dilatancy_is_asked_without() -> None:
@@ -256,7 +256,7 @@ def test_cost_adds_up_rung_by_rung() -> None:
     advice = advise(published_scene("wall-w3"))
     spent = np.cumsum([0.0 if rung.outcome is None else rung.outcome.seconds for rung in advice.rungs])
     assert [rung.seconds for rung in advice.rungs] == pytest.approx(list(spent))
-    assert all((rung.next_cost is None) == (rung.onward is None) for rung in advice.rungs)
+    assert all((rung.next_cost is None) == (rung.next.name is None) for rung in advice.rungs)
 
 
 def test_a_line_a_rung_is_printed(capsys: pytest.CaptureFixture[str]) -> None:

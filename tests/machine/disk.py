@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from runningbond.commands.exits import BAD_INPUT, DONE
+from runningbond.commands.terminal import BAD_INPUT, DONE
 
 from .commands import COMMANDS
 from .trial import NOT_TRIED, REDONE, REFUSED, Scratch, Trial, call, judged

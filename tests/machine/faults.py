@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from runningbond.commands.exits import BAD_INPUT, DONE, STOPPED
+from runningbond.commands.terminal import BAD_INPUT, DONE, STOPPED
 
 from .commands import RENDER, Command
 from .trial import REDONE, REFUSED, WHOLE, Scratch, Trial, call, judged, message_of

@@ -11,7 +11,7 @@ from functools import cached_property
 from pathlib import Path
 
 from runningbond.commands.command_line import command
-from runningbond.commands.exits import DONE
+from runningbond.commands.terminal import DONE
 
 from .commands import Command, pictures
 

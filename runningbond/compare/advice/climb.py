@@ -6,47 +6,46 @@ collapse. A model that follows the wall brackets the collapse of one history. do
 and what its bracket means.
 """
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from runningbond.compare.models import check_tolerance, run_model
 from runningbond.results import Outcome
-from runningbond.scene import Scene, SceneError
+from runningbond.scene import Array, Scene, SceneError
 
 from .costs import Estimate
-from .finite import finite_peak
 from .knowledge import Knowledge
 from .steps import Step, after_refusal, first_step, next_step
 
 TOLERANCE = 0.05
 """Relative width of the bracket that is asked for where nothing else is."""
 
+SPEED = 0.02
+"""Speed of the first push, in block sizes a second."""
+
+FARTHER = 3.0
+"""Displacement up to which to push, relative to that of the collapse at small displacements."""
+
+HALVINGS = 3
+"""How often the speed is halved until the peak settles."""
+
+SMOOTH = 9
+"""Rows of the curve over which λ is averaged."""
+
 
 @dataclass(frozen=True)
 class Rung:
-    """One rung: what a model found, and what follows from it."""
+    """One rung: the outcome of a model, and what follows from it."""
 
-    step: Step
+    model: str  # its name
     outcome: Outcome | None  # None where the model does not apply to such a scene
     next: Step  # which model follows, and why; or why this is enough
     next_cost: Estimate | None  # None on the last rung, and where no law says
     seconds: float  # since the foot of the ladder
-
-    @property
-    def model(self) -> str:
-        """Name of the model."""
-        return self.step.name or ""
-
-    @property
-    def onward(self) -> str | None:
-        """Name of the next model; None on the last rung."""
-        return self.next.name
-
-    @property
-    def reason(self) -> str:
-        """Why to go on, or why this is enough."""
-        return self.next.reason
 
 
 @dataclass
@@ -69,7 +68,7 @@ class Advice:
                 self.known.learn(step.model, outcome, finite=step.finite)
                 following = next_step(self.known, step, outcome)
             cost = self.known.estimate(following.model) if following.model and not following.finite else None
-            self.rungs.append(Rung(step, outcome, following, cost, self.known.seconds))
+            self.rungs.append(Rung(step.name or "", outcome, following, cost, self.known.seconds))
             yield self.rungs[-1]
             step = following
 
@@ -77,21 +76,20 @@ class Advice:
         """The answer: the bracket of the last rung that gave one, and in the message what it means."""
         known, last = self.known, self.rungs[-1]
         answer = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
-        message = known.meaning() or last.reason
+        message = known.meaning() or last.next.reason
         if last.outcome is None and known.answer is not None:
             message += "; at small displacements, though they are not small"
         elif last.outcome is not None and last.outcome.status != "collapse" and known.answer is not None:
-            message += f"; {last.model}: {last.reason}"
+            message += f"; {last.model}: {last.next.reason}"
         return replace(answer, seconds=known.seconds, message=message)
 
     def _run(self, step: Step) -> Outcome:
         known, model = self.known, step.model
         assert model is not None
         if step.finite:
-            displacement = max(known.displacement or 0.0, known.tolerance)
-            return finite_peak(known.scene, model, known.tolerance, displacement, known.bound)
+            return finite_peak(known, step)
         # No curve past the peak, which is no part of the bracket; and cracks in blocks where they may crack.
-        wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.needs.cracks else "joints"}
+        wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.cracks else "joints"}
         settings = {name: value for name, value in wanted.items() if name in model.parameters}
         return run_model(model, known.scene, known.tolerance, **settings)
 
@@ -113,3 +111,34 @@ def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) 
     for _ in advice.climb():
         pass
     return advice
+
+
+def finite_peak(known: Knowledge, step: Step) -> Outcome:
+    """Peak of the pushover curve at finite displacements, pushed ever slower until it settles.
+
+    It is settled where half the speed changes it by less than the tolerance. A peak far above the load above which
+    nothing stands at small displacements is one of inertia. The bracket is of the peaks at the last two speeds.
+    """
+    model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
+    assert model is not None
+    assert model.pushover is not None
+    start = time.perf_counter()
+    displacement = max(known.displacement or 0.0, tolerance)
+    distance, speed = FARTHER * displacement * scene.block_size, SPEED * scene.block_size
+    curve = model.pushover(scene, distance, speed=speed)
+    message = "the peak did not settle as the push was slowed"
+    outcome = Outcome(scene.title, step.name or "", "undecided", message=message)
+    for _ in range(HALVINGS):
+        fast, speed = _peak(curve), speed / 2
+        curve = model.pushover(scene, distance, speed=speed)
+        low, high = sorted((fast, _peak(curve)))
+        if high - low <= tolerance * high and (bound is None or low <= (1 + tolerance) * bound):
+            message = "peaks of two pushes at finite displacements, one at half the speed of the other"
+            outcome = replace(outcome, status="collapse", multiplier=low, lower=low, upper=high, message=message)
+            outcome = replace(outcome, curve=curve[:, [0, 2]])
+            break
+    return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def _peak(curve: Array) -> float:
+    return float(np.convolve(curve[:, 2], np.ones(SMOOTH) / SMOOTH, "valid").max())

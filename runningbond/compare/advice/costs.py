@@ -17,7 +17,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene
 
 COARSE = 0.01
-"""Tolerance of the comparison that the laws were found in."""
+"""Tolerance of the comparison that the laws were fitted to."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ def estimate(model: Model, scene: Scene, tolerance: float, pace: float = 1.0) ->
     """What a model that has a `Cost` will take on a scene."""
     law = model.cost
     if law is None:
-        raise ValueError(f"nothing is known of the cost of {model.name}")
+        raise ValueError(f"no law says what {model.name} costs")
     blocks = int((scene.wall & ~scene.fixed).sum())
     seconds = law.at_100 * (blocks / 100) ** law.growth * (COARSE / tolerance) ** law.finer
     if not any(scene.load.gravity):

@@ -1,16 +1,23 @@
-"""What the models run so far have shown of a wall, and what that is worth."""
+"""What a scene asks of a model, what the models run so far have shown of the wall, and what that is worth."""
 
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
+import numpy as np
+
+from dem.stiffness_update import resultant_wall
 from runningbond.compare.model import Kind, Model
 from runningbond.compare.models import MODELS
+from runningbond.joints import joint_stiffness, wall_points, wall_strength
+from runningbond.limit.kinematics import jump_operator
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
-from runningbond.scene import Scene
+from runningbond.scene import Array, Scene
 
 from .costs import Estimate, estimate, pace
-from .needs import Needs, collapse_displacement, needs_of, sliding_dilates
+
+NO_SLIP = 1e-6
+"""Slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m."""
 
 Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]
 """What a bracket rests on; nothing, to begin with."""
@@ -37,20 +44,24 @@ class Knowledge:
     bound: float | None = None  # associated load, above which nothing stands at small displacements
     evidence: Evidence = ""  # what the answer rests on
     answer: Outcome | None = None  # the outcome whose bracket it is
-    collapses: list[float] = field(default_factory=list)  # loads at which a proof, a certificate or a model found it
+    lowest: float | None = None  # smallest load at which a proof, a certificate or a model brings the wall down
 
     def __post_init__(self) -> None:
-        self.needs: Needs = needs_of(self.scene)
+        self.compliance = block_compliance(self.scene)
+        self.softens = any(  # joints have a strength to lose, and fracture energies by which they lose it
+            material.cohesion > 0 and (material.fracture_energy_1, material.fracture_energy_2) != (None, None)
+            for material in self.scene.joint_materials
+        )
+        self.cracks = self.scene.inner_joint is not None  # blocks may crack
 
     def learn(self, model: Model, outcome: Outcome, *, finite: bool = False) -> None:
-        """Take in what a model found, at `finite` displacements or at small ones."""
+        """Take in the outcome of a model, at `finite` displacements or at small ones."""
         self.outcomes.append(outcome)
         if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
             return
         if model.kind == "bound":
             self.bound = outcome.upper
-            perfect = not (self.needs.softens or self.needs.cracks)
-            if perfect and not sliding_dilates(self.scene, outcome.motion):
+            if not (self.softens or self.cracks or sliding_dilates(self.scene, outcome.motion)):
                 self._answer("proof", outcome, outcome.lower)
         elif model.kind == "certificate":
             certified = outcome
@@ -64,7 +75,7 @@ class Knowledge:
 
     def _answer(self, evidence: Evidence, outcome: Outcome, collapse: float) -> None:
         self.evidence, self.answer = evidence, outcome
-        self.collapses.append(collapse)
+        self.lowest = collapse if self.lowest is None else min(self.lowest, collapse)
 
     def _below_the_bound(self, outcome: Outcome) -> Outcome:
         """The outcome of a history, which cannot have stood above the associated bound."""
@@ -79,19 +90,23 @@ class Knowledge:
         return sum(outcome.seconds for outcome in self.outcomes)
 
     @property
-    def lowest(self) -> float | None:
-        """Smallest load at which a proof, a certificate or a model brought the wall down."""
-        return min(self.collapses, default=None)
-
-    @property
     def soft(self) -> bool:
         """Whether blocks are so compliant that they must deform."""
-        return self.needs.compliance > self.tolerance
+        return self.compliance > self.tolerance
 
     @property
     def displacement(self) -> float | None:
-        """How far the wall moves before it collapses, in block sizes; None where nothing tells."""
-        return None if self.answer is None else collapse_displacement(self.scene, self.answer)
+        """How far the wall moves under the live load until it collapses, in block sizes; None where nothing tells.
+
+        By the answer's own curve, where its model followed the wall, else `elastic_displacement`.
+        """
+        if self.answer is None or self.answer.lower is None:
+            return None
+        if not len(self.answer.curve):
+            return elastic_displacement(self.scene, self.answer.lower)
+        displacement, multiplier = self.answer.curve.T
+        last = int(np.argmin(np.abs(multiplier - self.answer.lower)))
+        return float(abs(displacement[last] - displacement[0]) / self.scene.block_size)
 
     def estimate(self, model: Model) -> Estimate:
         """What a model is going to cost, at the pace of those run so far."""
@@ -110,3 +125,44 @@ class Knowledge:
             return f"collapse is certified from the lower load on; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
         return f"largest load at rest and smallest at collapse in one history, loads raised slowly{below}{above}"
+
+
+def block_compliance(scene: Scene) -> float:
+    """Share of the blocks in the compliance of a column of blocks and joints, k_n h / (k_n h + E).
+
+    Zero where the scene leaves out either stiffness and blocks are taken as rigid.
+    """
+    if scene.block.young is None or scene.joint.elasticity is None:
+        return 0.0
+    height = scene.bond.height if scene.bond else scene.lowest_block
+    softer = joint_stiffness(scene.joint).normal * height
+    return softer / (softer + scene.block.young)
+
+
+def sliding_dilates(scene: Scene, motion: Array) -> bool:
+    """Whether a mechanism ``(nb, 3)`` of associated joints opens some only because they slide.
+
+    Where none does, joints that slide are off each other anyway and carry no friction: forces and mechanism prove
+    their load for friction without dilatancy just as well.
+    """
+    points = wall_points(scene)
+    jump = jump_operator(points, scene.blocks.centroid)
+    opening, slip = jump.opening @ motion.ravel(), np.abs(jump.slip @ motion.ravel())
+    friction = wall_strength(scene, points).friction
+    return bool(((slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())
+
+
+def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
+    """Largest displacement of a block under the live load alone, in block sizes, while joints neither open nor slip.
+
+    A lower bound of that at collapse, soft blocks counted in; None without a stiffness, or on pins that leave such a
+    wall loose.
+    """
+    if scene.joint.elasticity is None:
+        return None
+    wall = resultant_wall(scene)
+    moved = wall.move(np.ones(wall.law.stiffness.shape, dtype=np.bool_), multiplier * wall.live)
+    if moved is None:
+        return None
+    share = block_compliance(scene)
+    return float(np.abs(moved.reshape(-1, 3)[:, :2]).max() / (1 - share) / scene.block_size)

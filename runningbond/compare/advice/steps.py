@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from runningbond.compare.model import Model
 from runningbond.results import Outcome
 
-from .finite import finite_name
 from .knowledge import Knowledge, deforms, ladder
 
 WORTH = 1.25
@@ -23,9 +22,7 @@ class Step:
     @property
     def name(self) -> str | None:
         """What the step is called."""
-        if self.model is None:
-            return None
-        return finite_name(self.model) if self.finite else self.model.name
+        return None if self.model is None else self.model.name + (", finite" if self.finite else "")
 
 
 def first_step() -> Step:
@@ -61,12 +58,12 @@ def after_refusal(step: Step, refusal: str) -> Step:
 
 
 def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
-    needs, histories = known.needs, ladder("history")
+    histories = ladder("history")
     bound = "no wall stands above it" if outcome.status == "collapse" else outcome.status
-    if needs.cracks:
+    if known.cracks:
         model = next(model for model in histories if "cracks" in model.parameters)
         return Step(model, f"{bound}; blocks may crack elsewhere than on their axes, and do in {model.name} alone")
-    if needs.softens:
+    if known.softens:
         softening = [model for model in histories if "joint.fracture_energy_1" in model.reads]
         others = [model.name for model in (*ladder("certificate"), *histories) if model not in softening]
         reason = f"joints soften, which {' and '.join(others)} do not take into account"
@@ -74,7 +71,7 @@ def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
     if known.evidence == "proof":
         return _enough(known, "nothing slides on a closed joint, so dilatancy has no influence")
     model, why = _history(known)
-    if needs.weightless:
+    if not any(known.scene.load.gravity):
         return Step(model, f"{bound}; without weight certified intervals are wide: {why}")
     certificate = ladder("certificate")[0]
     cost = known.estimate(certificate)
@@ -124,12 +121,12 @@ def _deformable() -> Model:
 
 
 def _compliance(known: Knowledge) -> str:
-    share = f"blocks have {100 * known.needs.compliance:.2g} % of the compliance"
+    share = f"blocks have {100 * known.compliance:.2g} % of the compliance"
     return f"{share}, and must deform" if known.soft else f"{share}, and are taken as rigid"
 
 
 def _enough(known: Knowledge, why: str) -> Step:
-    """What was found suffices, unless the wall moves so far before that its geometry is another."""
+    """The answer so far suffices, unless the wall moves so far before that its geometry is another."""
     finite = next(model for model in ladder("history") if model.pushover and deforms(model) == known.soft)
     if known.finite:
         return Step(finite, f"{why}; finite displacements are asked for", finite=True)
