@@ -16,44 +16,26 @@ from runningbond.contacts.search import Contacts, facing_sides, find_contacts, o
 from runningbond.dynamics import (
     BlockSystem,
     Interface,
-    Restraint,
     block_frequency_squared,
-    force_unit,
     joint_shares,
     stable_step,
 )
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.law import KernelLaw
 from runningbond.joints.wall_law import kernel_law
-from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Array, Indices, JointMaterial
 
 from .deformable_sides import DeformableSides, PlacedNodes, gather_deformable, scatter_deformable
 from .mass_scaling import CLOSE, ScaledModes, scaled_modes
 from .node_outline import NodeOutline
-from .system import DAMPING
+from .system import DAMPING, block_system
 
 
 def finite_system(blocks: NodeOutline, *, damping: float = DAMPING, mass_scaling: bool = True) -> BlockSystem:
-    """Set up the deformable blocks of a wall to move far; see `fem_system` for the arguments."""
-    wall, contacts = blocks.wall, DeformableContacts(blocks)
-    scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    dead, live = wall.load(wall.scene.dead_forces), wall.load(wall.scene.live_forces)
-    strength = wall_strength(wall.scene, wall.elements.points)
-    return BlockSystem(
-        mass=scaled.mass,
-        stiffness=wall.stiffness,
-        viscosity=scaled.viscosity,
-        dead=dead,
-        live=live,
-        control=wall.control_row(),
-        force_unit=force_unit(wall.scene, wall.block, wall.mass, live, strength),
-        rigid=wall.rigid,
-        owner=np.arange(len(wall.rigid)),
-        restraint=Restraint.none(),
-        interface=contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared),
-        contacts=contacts,
-    )
+    """Set up the deformable blocks of a wall to move far; see `system_of` for the arguments."""
+    contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, damping, mass_scaling=mass_scaling)
+    interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
+    return replace(block_system(blocks.wall, scaled, interface), contacts=contacts)
 
 
 class DeformableContacts:

@@ -19,9 +19,8 @@ from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.wall_points import wall_stiffness
 from runningbond.scene import Array
 
-from .element_order import RESOLUTION
 from .frequency_shift import FrequencyShift
-from .modal_wall import ModalWall
+from .modal_wall import RESOLUTION, ModalWall
 
 ROOM = 1.1
 """Step that masses are scaled for, in critical ones: leaves room for the viscosity of the scaled modes."""

@@ -16,10 +16,10 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene
 
 from .cracks import Cracks
-from .element_order import modal_wall
 from .fracture import Energies
 from .loads import Loads
 from .mass_scaling import largest_scaling
+from .modal_wall import modal_wall
 from .modes import ModeCount
 from .operators import PointsOn
 from .system import system_of

@@ -11,8 +11,7 @@ from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, Sides
-from .element_order import modal_wall
-from .modal_wall import ModalWall
+from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .templates import nodes_of
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem_interface import block_modes, mass_matrix, nodal_jump, stiffness_matrix
-from fem_interface.element_order import element_runs, modal_wall
+from fem_interface.modal_wall import element_runs, modal_wall
 from fem_interface.modes import ModeCount, degree_of, polynomials
 from fem_interface.operators import nodes_of_degree
 from fem_interface.system import system_of

@@ -10,7 +10,7 @@ import numpy as np
 
 from dem import jump_operator
 from fem_interface import ModeCount, nodal_jump
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
 from runningbond.scene import Array, Indices, Scene
 

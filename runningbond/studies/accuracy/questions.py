@@ -15,8 +15,9 @@ from dem.rigid_system import rigid_system
 from dem.static import dem_static
 from fem_interface import ModeCount
 from fem_interface.finite_pushover import fem_pushover
+from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem
-from fem_interface.system import fem_system
+from fem_interface.system import system_of
 from homog import elastic_moduli, homog
 from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
 from runningbond.dynamics.collapse import U_CRIT
@@ -97,8 +98,10 @@ def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Dr
     return drive(run, state, distance, steps)
 
 
-def _system(model: str, scene: Scene, **settings: Any) -> BlockSystem:
-    return fem_system(scene, **settings) if model == "fem" else rigid_system(scene)
+def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: Any) -> BlockSystem:
+    if model != "fem":
+        return rigid_system(scene)
+    return system_of(modal_wall(scene, **settings), mass_scaling=mass_scaling)
 
 
 def _turned(model: str, scene: Scene, speed: float = SPEED, **settings: Any) -> Answer:

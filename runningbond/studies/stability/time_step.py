@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from dem.rigid_system import contact_points, rigid_system
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
 from fem_interface.system import system_of
 from runningbond.compare import published_scene
