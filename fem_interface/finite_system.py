@@ -63,7 +63,7 @@ class DeformableContacts:
         side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
         # The corner inwards is the last of side e and the first of f at the low end, and the other way at the high.
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
-        area = np.minimum(ends.area, self._thickness * self.blocks.length[facet] / 2)
+        area = np.minimum(ends.area, self._thickness * self.blocks.nodes.length[facet] / 2)
         inner = self._inner(rigid, margin)
         return Contacts(
             ends.motion,
@@ -77,7 +77,8 @@ class DeformableContacts:
 
     def _inner(self, rigid: Array, margin: float) -> Contacts:
         """Nodes inside one of two facing sides that are near the other: of block b's, unless that one is held."""
-        outline, first, length_of, inset = self.outline, self.blocks.first, self.blocks.length, self.blocks.inset
+        outline, first = self.outline, self.blocks.first
+        length_of, inset = self.blocks.nodes.length, self.blocks.sides.inset
         owner, after = outline.blocks.owner, outline.blocks.successor
         e, f = facing_sides(outline, rigid, margin)
         of_a = outline.held[owner[e]]
@@ -86,7 +87,7 @@ class DeformableContacts:
         pair = np.repeat(np.arange(len(own)), count)
         node = first[own][pair] + 1 + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
         arcs = outline.placed(rigid).arcs
-        at = outline.points(self.blocks.owner[node], self.blocks.wall.mesh.points[self.blocks.node[node]], rigid)
+        at = outline.points(self.blocks.nodes.owner[node], self.blocks.wall.mesh.points[self.blocks.node[node]], rigid)
         corners = outline.corners(rigid)
         on = other[pair]
         run = corners[after[on]] - corners[on]
@@ -197,16 +198,15 @@ def _blocks_on(
     split = [wall.split(values) for values in (scaled.mass, wall.stiffness, scaled.viscosity)]
     mass = scaled.mass[wall.rigid[:, 0]]
     facets = geometry.touched[:, :2]
-    owner = blocks.owner[facets]
+    owner = blocks.nodes.owner[facets]
     for number, template in enumerate(wall.templates):
         shape = template.modes.shape.reshape(-1, 2, len(template.modes.mass))
         own = np.zeros((len(template.blocks), shape.shape[2], shape.shape[2]))
         for side in (0, 1):
             here = np.flatnonzero(wall.place[owner[:, side], 0] == number)
             block, facet, share = owner[here, side], facets[here, side], contact[here, 4 + side, None, None]
-            nodes = (
-                blocks.node[np.column_stack([facet, blocks.following[facet]])] - wall.mesh.first_node[block][:, None]
-            )
+            ends = blocks.node[np.column_stack([facet, blocks.nodes.following[facet]])]
+            nodes = ends - wall.mesh.first_node[block][:, None]
             at = (1 - share) * shape[nodes[:, 0]] + share * shape[nodes[:, 1]]
             cosine, sine, x, y = turned[block].T
             arm = contact[here, :2] - np.column_stack([x, y])

@@ -66,21 +66,14 @@ def fem(
         Make deformable modes heavy enough not to limit the time step.
     energies
         Where the joints' fracture energies come from; without any, joints are perfectly plastic.
-    collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes.
-    first_step
-        First load step; steps grow while they are borne and are bisected once one is not.
-    budget
-        Time steps after which a load is left undecided.
-    observe
-        Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
+    collapse, first_step, budget, observe
+        As `runningbond.dynamics.collapse_by_steps` has them.
 
     Returns
     -------
     Outcome
-        `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `force` lists the points joint element by joint element, those inside blocks last; `motion` is
-        the blocks' rigid part.
+        As of `collapse_by_steps`. `force` lists the points joint element by joint element, those inside blocks last;
+        `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
     wall = modal_wall(scene, cells, modes, rule, points, cracks)

@@ -26,7 +26,7 @@ from skfem.models.elasticity import linear_elasticity, plane_stress
 
 from meshing import WallMesh
 from runningbond.joints import JointPoints, Rule, lobatto, wall_inset
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, Mask, Scene, SceneError
 
 PointsOn: TypeAlias = Literal["elements", "joints"]
 """What a quadrature rule is laid on: every joint element, or every joint whole, however many elements it has."""
@@ -248,7 +248,8 @@ def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tu
     """
     if len(first) == 0:
         return np.zeros((*local.shape, 2)), np.zeros((*local.shape, 2))
-    facets = _facets(wall, first, last)
+    low, high = np.minimum(first, last), np.maximum(first, last)
+    facets = edges_between(wall.facets.T.astype(np.int64), low, high)
     # scikit-fem runs along a facet from its lower node to its higher one.
     running = np.where((first < last)[:, None], local, 1 - local)
     quadrature = (running[None], np.ones(local.shape[1]))
@@ -261,17 +262,21 @@ def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tu
     return weights, np.asarray(basis.global_coordinates()).transpose(1, 2, 0)
 
 
-def _facets(wall: MeshTri, first: Indices, last: Indices) -> Indices:
-    """Facet between each pair of nodes."""
-    count = wall.p.shape[1]
-    low, high = wall.facets
-    keys = low.astype(np.int64) * count + high
+def find_edges(edges: Indices, start: Indices, stop: Indices) -> tuple[Indices, Mask]:
+    """Numbers of the edges ``(n, 2)`` from some nodes to others, and whether there are such edges at all."""
+    count = edges.max() + 1
+    keys, wanted = edges @ [count, 1], start * count + stop
     order = np.argsort(keys)
-    wanted = np.minimum(first, last) * count + np.maximum(first, last)
-    result = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
-    if (keys[result] != wanted).any():
+    number = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
+    return number, np.asarray(keys[number] == wanted)
+
+
+def edges_between(edges: Indices, start: Indices, stop: Indices) -> Indices:
+    """Numbers of the edges ``(n, 2)`` from each end of joint elements to the other."""
+    number, there = find_edges(edges, start, stop)
+    if not there.all():
         raise ValueError("a joint element does not lie on sides of triangles")
-    return np.asarray(result)
+    return number
 
 
 @dataclass(frozen=True, eq=False)
