@@ -32,21 +32,15 @@ def fem_pushover(
         fracture energies, its blocks a stiffness unless `modes` is 3.
     distance
         Displacement of the control point at which to stop [m].
-    cells
-        Cells in half a block along the course, and in a block's height.
-    modes
-        Modes of each block (`ModeCount`), 10 by default.
-    speed
-        Mean speed of the blocks along the live load [m/s]. What moves faster than it falls into place is borne by
-        its inertia: halve the speed until the curve settles. Softer joints allow longer steps.
-    local
-        Local damping; less than at rest, for it drags on what moves.
+    cells, modes
+        As `fem_interface.model.fem` has them.
+    speed, local
+        As `dem.dynamic.finite_pushover` has them.
 
     Returns
     -------
     (n, 3) float
-        Displacement of the control point, and of the corner that has moved farthest, along the live load [m]; and
-        the mean multiplier since the last row.
+        As of `dem.dynamic.finite_pushover`.
 
     Raises
     ------

@@ -68,12 +68,12 @@ class ModalWall:
     @property
     def mass(self) -> Array:
         """Modal masses, ``(nd,)``; inf where nothing moves."""
-        return self._of_modes([template.modes.mass for template in self.templates], np.inf)
+        return np.concatenate([*(np.repeat(t.modes.mass, len(t.blocks)) for t in self.templates), [np.inf]])
 
     @property
     def stiffness(self) -> Array:
         """Modal stiffness of the blocks themselves, ``(nd,)`` [N/m]."""
-        return self._of_modes([template.modes.stiffness for template in self.templates])
+        return np.concatenate([*(np.repeat(t.modes.stiffness, len(t.blocks)) for t in self.templates), [0.0]])
 
     @cached_property
     def block(self) -> Indices:
@@ -90,18 +90,17 @@ class ModalWall:
             result[template.blocks] = first + np.arange(n)[:, None] + n * np.arange(3)
         return result
 
-    def _of_modes(self, values: list[Array], still: float = 0.0) -> Array:
-        each = [np.repeat(v, len(t.blocks)) for v, t in zip(values, self.templates, strict=True)]
-        return np.concatenate([*each, [still]])
-
     def displacement(self, motion: Array) -> Array:
         """Displacement of every node, ``(nn, 2)`` [m]."""
         result = np.zeros_like(self.mesh.points)
         for template, Q in zip(self.templates, self.split(motion), strict=True):
-            shape = template.modes.shape
-            nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
-            result[nodes] = (shape @ Q).reshape(-1, 2, len(template.blocks)).transpose(0, 2, 1)
+            displaced = (template.modes.shape @ Q).reshape(-1, 2, len(template.blocks))
+            result[self._nodes(template)] = displaced.transpose(0, 2, 1)
         return result
+
+    def _nodes(self, template: Template) -> Indices:
+        """Nodes of a template's blocks, ``(nn, n)``."""
+        return self.mesh.first_node[template.blocks] + np.arange(len(template.modes.shape) // 2)[:, None]
 
     def strain(self, motion: Array) -> Array:
         """Mean strains ε_x, ε_y and γ_xy of each triangle, ``(nt, 3)``; zero where nothing moves."""
@@ -139,26 +138,21 @@ class ModalWall:
             place[self.mesh.first_node[template.blocks][:, None] + own] = rows + np.arange(n)[:, None, None]
         return place, first
 
-    def nodal_force(self, force: Array) -> Array:
-        """Modal forces of forces on the nodes ``(nn, 2)`` [N], ``(nd,)`` [N]; the transpose of `displacement`."""
-        result = np.zeros(self.first[-1] + 1)
-        for template, into in zip(self.templates, self.split(result), strict=True):
-            shape = template.modes.shape
-            nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
-            into += shape.T @ force[nodes].transpose(0, 2, 1).reshape(len(shape), -1)
-        return result
-
     def load(self, forces: Forces, loads: Loads = "consistent") -> Array:
         """Modal forces of forces on the blocks, ``(nd,)`` [N]; a moment acts on a block's rotation alone."""
         if loads == "consistent":
             each = [t.modes.inert @ forces.acceleration[t.blocks].T for t in self.templates]
-            found = np.concatenate([*(force.ravel() for force in each), [0.0]])
         else:
-            found = self.nodal_force(inner_mass(self.pieces)[:, None] * forces.acceleration[self.mesh.block])
-        np.add.at(found, self.rigid[:, 2], forces.moment)
+            nodal = inner_mass(self.pieces)[:, None] * forces.acceleration[self.mesh.block]
+            each = [
+                t.modes.shape.T @ nodal[self._nodes(t)].transpose(0, 2, 1).reshape(-1, len(t.blocks))
+                for t in self.templates
+            ]
+        result = np.concatenate([*(force.ravel() for force in each), [0.0]])
+        np.add.at(result, self.rigid[:, 2], forces.moment)
         for block, at, force in zip(forces.block.tolist(), forces.at, forces.force, strict=True):
-            found += self.displacement_row(block, at, force)
-        return found
+            result += self.displacement_row(block, at, force)
+        return result
 
     def displacement_row(self, block: int, at: Array, direction: Array) -> Array:
         """Displacement of a point ``(2,)`` of a movable block along a direction, per coordinate, ``(nd,)``.

@@ -26,6 +26,7 @@ from skfem.models.elasticity import linear_elasticity, plane_stress
 
 from meshing import WallMesh
 from runningbond.joints import JointPoints, Rule, lobatto, wall_inset
+from runningbond.limit.kinematics import Jump
 from runningbond.scene import Array, Indices, Mask, Scene, SceneError
 
 PointsOn: TypeAlias = Literal["elements", "joints"]
@@ -279,34 +280,20 @@ def edges_between(edges: Indices, start: Indices, stop: Indices) -> Indices:
     return number
 
 
-@dataclass(frozen=True, eq=False)
-class NodalJump:
-    """Jump operator of the nodes: opening and slip at the points of joint elements.
-
-    Parameters
-    ----------
-    opening, slip : (np, 2 nn) sparse array
-        Normal and tangential jump u_b − u_a [m] per nodal displacement [m].
-    """
-
-    opening: csr_array
-    slip: csr_array
-
-
-def nodal_jump(result: JointElements, nodes: int) -> NodalJump:
-    """Jump operator of a mesh with so many nodes."""
-    n, ne, _ = result.weights.shape
+def nodal_jump(elements: JointElements, nodes: int) -> Jump:
+    """Jumps at the points of joint elements per nodal displacement [m], of a mesh with so many nodes."""
+    n, ne, _ = elements.weights.shape
     rows = np.arange(n * ne)
-    tangent = np.column_stack([-result.normal[:, 1], result.normal[:, 0]])
+    tangent = np.column_stack([-elements.normal[:, 1], elements.normal[:, 0]])
 
     def along(direction: Array) -> csr_array:
         parts = []
         for column, (sense, end) in enumerate([(-1.0, 0), (-1.0, 1), (1.0, 0), (1.0, 1)]):
-            share = sense * result.weights[:, :, end]
-            node = np.tile(result.nodes[:, column], n)
+            share = sense * elements.weights[:, :, end]
+            node = np.tile(elements.nodes[:, column], n)
             for axis in (0, 1):
                 values = (share * direction[:, axis]).ravel()
                 parts.append(coo_array((values, (rows, 2 * node + axis)), shape=(n * ne, 2 * nodes)))
         return csr_array(sum(parts[1:], start=csr_array(parts[0])))
 
-    return NodalJump(along(result.normal), along(tangent))
+    return Jump(along(elements.normal), along(tangent))
