@@ -47,7 +47,7 @@ class Pieces:
     node: Indices
 
     @property
-    def whole(self) -> bool:
+    def are_blocks(self) -> bool:
         """Whether each piece is a block."""
         return bool((np.diff(self.owner) > 0).all())
 
@@ -82,18 +82,18 @@ class PassedOn(Action):
 
     def forces(self, scene: Scene) -> Forces:
         """Forces on the pieces."""
-        whole = self.load.forces(self.wall)
+        forces = self.load.forces(self.wall)
         share = scene.blocks.area / self.wall.blocks.area[self.owner]
-        touching = [scene.blocks.containing(at) for at in whole.at]
-        of_block = [near[self.owner[near] == block] for near, block in zip(touching, whole.block, strict=True)]
+        touching = [scene.blocks.containing(at) for at in forces.at]
+        of_block = [near[self.owner[near] == block] for near, block in zip(touching, forces.block, strict=True)]
         count = np.array([len(near) for near in of_block], dtype=np.int64)
         return Forces.on(
             scene,
-            whole.acceleration[self.owner],
-            share * whole.moment[self.owner],
+            forces.acceleration[self.owner],
+            share * forces.moment[self.owner],
             block=np.concatenate([np.zeros(0, dtype=np.int64), *of_block]),
-            at=np.repeat(whole.at, count, axis=0),
-            force=np.repeat(whole.force / np.maximum(count, 1)[:, None], count, axis=0),
+            at=np.repeat(forces.at, count, axis=0),
+            force=np.repeat(forces.force / np.maximum(count, 1)[:, None], count, axis=0),
         )
 
 
@@ -125,13 +125,13 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     first_node, node, triangles = _apart(mesh, owner, held, piece)
     points, block = mesh.points[node], np.repeat(np.arange(len(owner)), np.diff(first_node))
 
-    whole, own = edges_of(mesh.triangles), edges_of(triangles)
+    old, new = edges_of(mesh.triangles), edges_of(triangles)
     a0, a1, b1, b0 = mesh.interfaces.T
-    between = own[edges_between(whole, a0, a1)], own[edges_between(whole, b1, b0)]
+    between = new[edges_between(old, a0, a1)], new[edges_between(old, b1, b0)]
     # Every edge between two loose triangles, once.
-    across, there = find_edges(whole, whole[:, 1], whole[:, 0])
-    one = np.flatnonzero(there & (np.arange(len(whole)) < across) & np.repeat(loose, 3))
-    inside = own[one], own[across[one]]
+    across, there = find_edges(old, old[:, 1], old[:, 0])
+    one = np.flatnonzero(there & (np.arange(len(old)) < across) & np.repeat(loose, 3))
+    inside = new[one], new[across[one]]
     sides = [np.concatenate(pair) for pair in zip(between, inside, strict=True)]
     joint = np.concatenate([mesh.joint, len(scene.joints) + np.arange(len(inside[0]))])
     first = np.searchsorted(joint, np.arange(joint[-1] + 1))

@@ -41,7 +41,7 @@ class OutlineNodes(NamedTuple):
     following : (no,) int
         Next node counter-clockwise.
     begin, length : (no,) float
-        Way along its side to each node, and length of the facet that starts there [m].
+        Distance along its side to each node, and length of the facet that starts there [m].
     """
 
     rigid: Indices
@@ -63,7 +63,7 @@ class Sides(NamedTuple):
         First and last facet of each side.
     shares : (nv, 2) float
         Share of each of them at which the arc of the corner touches it.
-    whole, straight : (nv,) float
+    extent, straight : (nv,) float
         Length of the side, and between its arcs [m].
     successor : (nv,) int
         Next corner.
@@ -73,7 +73,7 @@ class Sides(NamedTuple):
 
     outer: Indices
     shares: Array
-    whole: Array
+    extent: Array
     straight: Array
     successor: Indices
     inset: Array
@@ -207,7 +207,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
     """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``."""
     tables, nodes, sides, ends, inwards, _, placed, contact, touched = geometry
     begin, length = nodes.begin, nodes.length
-    outer, shares, whole, straight, successor, inset, radius = sides
+    outer, shares, extent, straight, successor, inset, radius = sides
     facets, arcs = placed.facets, placed.arcs
     place_nodes(motion, tables, nodes, placed)
     _place_arcs(sides, facets, arcs)
@@ -226,7 +226,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
             nx, ny = facets[j, 3], -facets[j, 2]
             away = (x - facets[j, 0]) * nx + (y - facets[j, 1]) * ny
             stretch = length[j] * facets[j, 4]
-            inside = min(moved - inset[side], whole[side] - inset[successor[side]] - moved)
+            inside = min(moved - inset[side], extent[side] - inset[successor[side]] - moved)
             away = max(away, 0.5 * min(length[own], length[own - 1]) - inside)
         else:
             # Side e's last corner lies at f's first one where inwards is along the tangent.
@@ -237,11 +237,11 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
             own, share_own = outer[e, of_e], shares[e, of_e]
             side, end, far = f, 1 - of_f, ends[k, 3]
             j, share, along = _onto(x, y, facets, begin, length, outer[f])
-            on = along - inset[w] if low else whole[f] - inset[w] - along
+            on = along - inset[w] if low else extent[f] - inset[w] - along
             of_a = False
             if on < 0.0:
                 i, share_e, along = _onto(wx, wy, facets, begin, length, outer[e])
-                on_e = whole[e] - inset[v] - along if low else along - inset[v]
+                on_e = extent[e] - inset[v] - along if low else along - inset[v]
                 of_a = on_e >= 0.0
                 on_arc = not of_a and r + r_w > 0.0
                 if of_a:

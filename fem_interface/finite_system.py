@@ -148,7 +148,9 @@ class DeformableContacts:
 
     def deformation(self, motion: Array) -> float:
         """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
-        return self.blocks.deformation(motion)
+        pairs = zip(self.blocks.tables, self.blocks.wall.split(motion), strict=True)
+        far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for (_, table), Q in pairs]
+        return float(np.sqrt(2) * max(far, default=0.0))
 
 
 def contact_law(joint: JointMaterial, contacts: Contacts) -> KernelLaw:

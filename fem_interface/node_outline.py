@@ -64,12 +64,6 @@ class NodeOutline:
         px, py = (mesh.points - blocks.centroid[mesh.block] + self.wall.displacement(deformed)).T
         return np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py])
 
-    def deformation(self, motion: Array) -> float:
-        """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
-        pairs = zip(self.tables, self.wall.split(motion), strict=True)
-        far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for (_, table), Q in pairs]
-        return float(np.sqrt(2) * max(far, default=0.0))
-
     def new_tables(self) -> NodalTables:
         """Displacements of the nodes per deformation, with buffers of their own."""
         wall, rows = self.wall, []
@@ -132,8 +126,8 @@ def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
     inset = np.where(outline.radius > 0, outline.radius * np.tan(outline.exterior / 2), 0.0)
     outer = np.column_stack([first[:-1], first[1:] - 1])
     shares = np.column_stack([inset, -inset[successor]]) / length[outer] + [0.0, 1.0]
-    whole = outline.straight + inset + inset[successor]
-    return Sides(outer, shares, whole, outline.straight.copy(), successor, inset, outline.radius.copy())
+    extent = outline.straight + inset + inset[successor]
+    return Sides(outer, shares, extent, outline.straight.copy(), successor, inset, outline.radius.copy())
 
 
 def _tables(wall: ModalWall, of_block: list[Indices]) -> Iterator[tuple[Indices, Array]]:

@@ -206,8 +206,8 @@ def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tupl
     length = np.hypot(*(mesh.points[mesh.interfaces[:, 1]] - mesh.points[mesh.interfaces[:, 0]]).T)
     first = np.diff(joint, prepend=-1) != 0
     last = np.diff(joint, append=-1) != 0
-    kept = inset[joint] / length
-    low, high = np.where(first, kept, 0.0), np.where(last, 1 - kept, 1.0)
+    off = inset[joint] / length
+    low, high = np.where(first, off, 0.0), np.where(last, 1 - off, 1.0)
     if (low >= high).any():
         worst = int(np.argmax(low - high))
         name = "inner_joint.inset" if scene.joints.inner[joint[worst]] else "joint.inset"

@@ -74,7 +74,7 @@ def block_system(
         owner=pieces.owner,
         restraint=_restraint(wall),
         interface=interface,
-        block_motion=None if pieces.whole else motion_of_blocks(pieces),
+        block_motion=None if pieces.are_blocks else motion_of_blocks(pieces),
         source=wall,
     )
 

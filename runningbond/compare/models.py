@@ -60,7 +60,7 @@ def _dem_pushover(scene: Scene, distance: float, speed: float) -> Array:
 
 
 def _fem_pushover(scene: Scene, distance: float, speed: float) -> Array:
-    from fem_interface.finite_pushover import fem_pushover
+    from fem_interface.model import fem_pushover
 
     return fem_pushover(scene, distance, speed=speed)
 

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 import dem.finite_system
 from dem.dynamic import finite_pushover
-from fem_interface.finite_pushover import fem_pushover
 from fem_interface.finite_system import DeformableContacts, finite_system
 from fem_interface.modal_wall import modal_wall
+from fem_interface.model import fem_pushover
 from fem_interface.modes import ModeCount
 from fem_interface.node_outline import NodeOutline, node_outline
 from fem_interface.system import system_of

@@ -13,9 +13,8 @@ from dem import limit_nonassociated
 from dem.dynamic import dem_dynamic, finite_pushover
 from dem.rigid_system import rigid_system
 from dem.static import dem_static
-from fem_interface.finite_pushover import fem_pushover
 from fem_interface.modal_wall import modal_wall
-from fem_interface.model import fem
+from fem_interface.model import fem, fem_pushover
 from fem_interface.modes import ModeCount
 from fem_interface.system import system_of
 from homog import elastic_moduli, homog
