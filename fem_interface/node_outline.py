@@ -12,7 +12,7 @@ from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, Sides
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
-from .templates import nodes_of
+from .templates import nodes_of, rows_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,9 +133,8 @@ def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
 def _tables(wall: ModalWall, of_block: list[Indices]) -> Iterator[tuple[Indices, Array]]:
     for template in wall.templates:
         block, shape = template.blocks[0], template.modes.shape[:, 3:]
-        modes = shape.shape[1]
-        local = np.sort(of_block[block]) - wall.mesh.first_node[block] if modes else np.zeros(0, dtype=np.int64)
-        yield local, shape.reshape(len(shape) // 2, 2, modes)[local].reshape(2 * len(local), modes)
+        local = np.sort(of_block[block]) - wall.mesh.first_node[block] if shape.size else np.zeros(0, dtype=np.int64)
+        yield local, rows_of(shape, local)
 
 
 def _nodes_of_sides(wall: ModalWall) -> Iterator[Indices]:

@@ -122,15 +122,9 @@ class JointElements:
 
     def arranged(self, order: Indices) -> "JointElements":
         """The same elements ``(ne,)`` in another order."""
-        ne = len(order)
-        of_points = (np.arange(len(self.weights))[:, None] * ne + order).ravel()
-        return JointElements(
-            self.element[order],
-            self.nodes[order],
-            self.normal[order],
-            self.weights[:, order].copy(),
-            self.points.part(of_points),
-        )
+        points = self.points.part((np.arange(len(self.weights))[:, None] * len(order) + order).ravel())
+        weights = self.weights[:, order].copy()
+        return JointElements(self.element[order], self.nodes[order], self.normal[order], weights, points)
 
 
 def joint_elements(

@@ -16,6 +16,7 @@ from .loads import Loads
 from .mass_scaling import ScaledModes, scaled_modes
 from .mirror_symmetry import fold_of_many, folded_tables
 from .modal_wall import ModalWall, element_runs
+from .templates import rows_of
 
 DAMPING = 0.05
 """Viscous damping ratio of the deformable modes."""
@@ -122,5 +123,4 @@ def _tables(wall: ModalWall) -> Iterator[tuple[Indices, Array]]:
     for k, template in enumerate(wall.templates):
         own, modes = on_joint[of_node == k], template.modes
         local = np.unique(own - mesh.first_node[mesh.block[own]])
-        shape = np.hstack([modes.rigid, modes.shape[:, 3:]]).reshape(-1, 2, len(modes.mass))[local]
-        yield local, shape.reshape(2 * len(local), len(modes.mass))
+        yield local, rows_of(np.hstack([modes.rigid, modes.shape[:, 3:]]), local)
