@@ -1,1 +1,5 @@
-"""Rigid blocks: on elastic joints load by load (`dem.static`) and in motion (`dem.dynamic`)."""
+"""Rigid blocks: on elastic joints load by load (`dem.static`), in motion (`dem.dynamic`), at their limit (`runningbond.limit`)."""
+
+from runningbond.limit import limit, limit_nonassociated
+
+__all__ = ["limit", "limit_nonassociated"]

@@ -2,7 +2,7 @@
 
 Motions are kept template by template, each a matrix Q of modes by blocks, so that the displacements of all nodes that
 lie on joints are one product U = Φ Q, and the forces on the modes another, F −= Φᵀ S. Where Φ can be folded
-(`mirror_symmetry`) few of its entries are left. Joint elements come in runs (`element_order`), in which blocks follow
+(`mirror_symmetry`) few of its entries are left. Joint elements come in runs (`modal_wall`), in which blocks follow
 one another as elements do, so that the loops run in vector registers. Indices are unsigned, which need no check for
 counting from the end.
 """

@@ -15,6 +15,8 @@ from scipy.sparse import coo_array, csr_array
 from meshing import WallMesh
 from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Load, Mask, Pins, Scene, SceneError
 
+from .operators import edges_between, find_edges
+
 Cracks: TypeAlias = Literal["joints", "blocks"]
 """Where a wall may crack: at its joints, or between all triangles of its blocks too."""
 
@@ -45,7 +47,7 @@ class Pieces:
     node: Indices
 
     @property
-    def whole(self) -> bool:
+    def are_blocks(self) -> bool:
         """Whether each piece is a block."""
         return bool((np.diff(self.owner) > 0).all())
 
@@ -80,18 +82,18 @@ class PassedOn(Action):
 
     def forces(self, scene: Scene) -> Forces:
         """Forces on the pieces."""
-        whole = self.load.forces(self.wall)
+        forces = self.load.forces(self.wall)
         share = scene.blocks.area / self.wall.blocks.area[self.owner]
-        touching = [scene.blocks.containing(at) for at in whole.at]
-        of_block = [near[self.owner[near] == block] for near, block in zip(touching, whole.block, strict=True)]
+        touching = [scene.blocks.containing(at) for at in forces.at]
+        of_block = [near[self.owner[near] == block] for near, block in zip(touching, forces.block, strict=True)]
         count = np.array([len(near) for near in of_block], dtype=np.int64)
         return Forces.on(
             scene,
-            whole.acceleration[self.owner],
-            share * whole.moment[self.owner],
+            forces.acceleration[self.owner],
+            share * forces.moment[self.owner],
             block=np.concatenate([np.zeros(0, dtype=np.int64), *of_block]),
-            at=np.repeat(whole.at, count, axis=0),
-            force=np.repeat(whole.force / np.maximum(count, 1)[:, None], count, axis=0),
+            at=np.repeat(forces.at, count, axis=0),
+            force=np.repeat(forces.force / np.maximum(count, 1)[:, None], count, axis=0),
         )
 
 
@@ -123,10 +125,13 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     first_node, node, triangles = _apart(mesh, owner, held, piece)
     points, block = mesh.points[node], np.repeat(np.arange(len(owner)), np.diff(first_node))
 
-    edges = _Edges(mesh, triangles)
+    old, new = edges_of(mesh.triangles), edges_of(triangles)
     a0, a1, b1, b0 = mesh.interfaces.T
-    between = edges.nodes(a0, a1), edges.nodes(b1, b0)
-    inside = edges.inner(loose)
+    between = new[edges_between(old, a0, a1)], new[edges_between(old, b1, b0)]
+    # Every edge between two loose triangles, once.
+    across, there = find_edges(old, old[:, 1], old[:, 0])
+    one = np.flatnonzero(there & (np.arange(len(old)) < across) & np.repeat(loose, 3))
+    inside = new[one], new[across[one]]
     sides = [np.concatenate(pair) for pair in zip(between, inside, strict=True)]
     joint = np.concatenate([mesh.joint, len(scene.joints) + np.arange(len(inside[0]))])
     first = np.searchsorted(joint, np.arange(joint[-1] + 1))
@@ -182,40 +187,9 @@ def _apart(mesh: WallMesh, owner: Indices, held: Mask, piece: Indices) -> tuple[
     return first, node, triangles
 
 
-class _Edges:
-    """Edges of triangles, each in the sense in which its triangle runs round: from old nodes to those of its piece."""
-
-    def __init__(self, mesh: WallMesh, triangles: Indices) -> None:
-        self._count = len(mesh.points)
-        self._old = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-        self._new = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-        key = self._key(*self._old.T)
-        self._order = np.argsort(key)
-        self._sorted = key[self._order]
-
-    def _key(self, start: Indices, stop: Indices) -> Indices:
-        return start * self._count + stop
-
-    def _find(self, start: Indices, stop: Indices) -> tuple[Indices, Mask]:
-        """Number of each edge, and whether it is there at all."""
-        key = self._key(start, stop)
-        at = np.minimum(np.searchsorted(self._sorted, key), len(self._sorted) - 1)
-        return self._order[at], np.asarray(self._sorted[at] == key)
-
-    def nodes(self, start: Indices, stop: Indices) -> Indices:
-        """Nodes of the pieces on given edges ``(n, 2)``."""
-        edge, there = self._find(start, stop)
-        if not there.all():
-            raise ValueError("a joint element does not lie on sides of triangles")
-        return self._new[edge]
-
-    def inner(self, loose: Mask) -> tuple[Indices, Indices]:
-        """Nodes a0, a1 and b1, b0 of the two sides of every edge between two loose triangles."""
-        start, stop = self._old.T
-        across, there = self._find(stop, start)
-        here = np.arange(len(start))
-        one = np.flatnonzero(there & (here < across) & np.repeat(loose, 3))
-        return self._new[one], self._new[across[one]]
+def edges_of(triangles: Indices) -> Indices:
+    """Edges of triangles ``(nt, 3)`` in the sense in which these run round, ``(3 nt, 2)``."""
+    return np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
 
 
 def _shapes(points: Array, first_node: Indices, held: Mask) -> Indices:

@@ -41,7 +41,7 @@ class OutlineNodes(NamedTuple):
     following : (no,) int
         Next node counter-clockwise.
     begin, length : (no,) float
-        Way along its side to each node, and length of the facet that starts there [m].
+        Distance along its side to each node, and length of the facet that starts there [m].
     """
 
     rigid: Indices
@@ -63,7 +63,7 @@ class Sides(NamedTuple):
         First and last facet of each side.
     shares : (nv, 2) float
         Share of each of them at which the arc of the corner touches it.
-    whole, straight : (nv,) float
+    extent, straight : (nv,) float
         Length of the side, and between its arcs [m].
     successor : (nv,) int
         Next corner.
@@ -73,7 +73,7 @@ class Sides(NamedTuple):
 
     outer: Indices
     shares: Array
-    whole: Array
+    extent: Array
     straight: Array
     successor: Indices
     inset: Array
@@ -189,8 +189,8 @@ def _facet_at(along: float, begin: Array, first: int, last: int) -> int:
 
 
 @kernel
-def _onto(x: float, y: float, facets: Array, begin: Array, ends: Indices) -> tuple[int, float]:
-    """Facet of a side, given its first and last, that a point lies over, and its share of the way along that facet.
+def _onto(x: float, y: float, facets: Array, begin: Array, length: Array, ends: Indices) -> tuple[int, float, float]:
+    """Facet of a side, given its first and last, that a point lies over, its share of that, and its way along the side.
 
     Sides are straight but for small deformations, so that any facet has their direction.
     """
@@ -198,7 +198,8 @@ def _onto(x: float, y: float, facets: Array, begin: Array, ends: Indices) -> tup
     if last > j:
         along = (x - facets[j, 0]) * facets[j, 2] + (y - facets[j, 1]) * facets[j, 3]
         j = _facet_at(along, begin, j, last)
-    return j, ((x - facets[j, 0]) * facets[j, 2] + (y - facets[j, 1]) * facets[j, 3]) * facets[j, 4]
+    share = ((x - facets[j, 0]) * facets[j, 2] + (y - facets[j, 1]) * facets[j, 3]) * facets[j, 4]
+    return j, share, begin[j] + share * length[j]
 
 
 @kernel
@@ -206,7 +207,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
     """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``."""
     tables, nodes, sides, ends, inwards, _, placed, contact, touched = geometry
     begin, length = nodes.begin, nodes.length
-    outer, shares, whole, straight, successor, inset, radius = sides
+    outer, shares, extent, straight, successor, inset, radius = sides
     facets, arcs = placed.facets, placed.arcs
     place_nodes(motion, tables, nodes, placed)
     _place_arcs(sides, facets, arcs)
@@ -214,93 +215,67 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
         sense = inwards[k]
         stretch = 1.0
-        of_a = False
+        on_arc = False
         if sense == 0.0:
             # A node inside a side; the row has it in place of a corner v, beyond the number of corners.
             of_a = ends[k, 2] == 1
             side = e if of_a else f
-            node = v - radius.size
-            x, y = facets[node, 0], facets[node, 1]
-            j, share = _onto(x, y, facets, begin, outer[side])
-            tx, ty = facets[j, 2], facets[j, 3]
-            away = (x - facets[j, 0]) * ty - (y - facets[j, 1]) * tx
-            moved = begin[j] + share * length[j]
+            own, share_own, r = v - radius.size, 0.0, 0.0
+            x, y = facets[own, 0], facets[own, 1]
+            j, share, moved = _onto(x, y, facets, begin, length, outer[side])
+            nx, ny = facets[j, 3], -facets[j, 2]
+            away = (x - facets[j, 0]) * nx + (y - facets[j, 1]) * ny
             stretch = length[j] * facets[j, 4]
-            inside = min(moved - inset[side], whole[side] - inset[successor[side]] - moved)
-            beyond = 0.5 * min(length[node], length[node - 1]) - inside
-            away = away if away > beyond else beyond
-            b, share_b, a, share_a = node, 0.0, j, share
-            nx, ny = ty, -tx
-            if of_a:
-                b, share_b, a, share_a = j, share, node, 0.0
-                nx, ny = -ty, tx
+            inside = min(moved - inset[side], extent[side] - inset[successor[side]] - moved)
+            away = max(away, 0.5 * min(length[own], length[own - 1]) - inside)
         else:
             # Side e's last corner lies at f's first one where inwards is along the tangent.
             low = sense > 0.0
             of_e, of_f = (1, 0) if low else (0, 1)
-            vx, vy = arcs[e, 2 * of_e], arcs[e, 2 * of_e + 1]
-            wx, wy = arcs[f, 2 * of_f], arcs[f, 2 * of_f + 1]
-            b, share_b = outer[e, of_e], shares[e, of_e]
-            a, share_a = outer[f, of_f], shares[f, of_f]
-            r_v, r_w = radius[v], radius[w]
-            x, y, behind = vx, vy, r_v
-            j, share = _onto(vx, vy, facets, begin, outer[f])
-            tx, ty = facets[j, 2], facets[j, 3]
-            along = begin[j] + share * length[j]
-            on_f = along - inset[w] if low else whole[f] - inset[w] - along
-            on_e, i, share_e = 0.0, j, share
-            if on_f < 0.0:
-                i, share_e = _onto(wx, wy, facets, begin, outer[e])
-                along = begin[i] + share_e * length[i]
-                on_e = whole[e] - inset[v] - along if low else along - inset[v]
-            if on_f >= 0.0 or (on_e < 0.0 and r_v + r_w == 0.0):
-                nx, ny = ty, -tx
-                away = (vx - facets[j, 0]) * nx + (vy - facets[j, 1]) * ny - r_v
-                moved = sense * on_f
-                if r_v > 0.0:
-                    moved -= r_v * angle(facets[b, 3], -facets[b, 2], -nx, -ny)
-                a, share_a, stretch = j, share, length[j] * facets[j, 4]
-                beyond = on_f - straight[f]
-                far = ends[k, 3]
-                if r_v + radius[far] == 0.0:
-                    away = sharp_opening(away, beyond)
-                elif beyond > 0.0:
-                    a, share_a, stretch = outer[f, 1 - of_f], shares[f, 1 - of_f], 1.0
-                    dx, dy = vx - arcs[f, 2 * (1 - of_f)], vy - arcs[f, 2 * (1 - of_f) + 1]
-                    radii = (r_v, radius[far])
-                    away, moved, nx, ny = far_arcs(
-                        dx, dy, radii, -facets[b, 3], facets[b, 2], facets[a, 3], -facets[a, 2]
-                    )
-                    moved += sense * straight[f]
-            elif on_e >= 0.0:
-                of_a = True
-                x, y, behind = wx, wy, -r_w
-                nx, ny = -facets[i, 3], facets[i, 2]
-                away = (facets[i, 0] - wx) * nx + (facets[i, 1] - wy) * ny - r_w
-                moved = -sense * on_e
-                if r_w > 0.0:
-                    moved += r_w * angle(-nx, -ny, -facets[a, 3], facets[a, 2])
-                b, share_b, stretch = i, share_e, length[i] * facets[i, 4]
-                beyond = on_e - straight[e]
-                far = ends[k, 2]
-                if r_w + radius[far] == 0.0:
-                    away = sharp_opening(away, beyond)
-                elif beyond > 0.0:
-                    b, share_b, stretch = outer[e, 1 - of_e], shares[e, 1 - of_e], 1.0
-                    dx, dy = arcs[e, 2 * (1 - of_e)] - wx, arcs[e, 2 * (1 - of_e) + 1] - wy
-                    radii = (radius[far], r_w)
-                    away, moved, nx, ny = far_arcs(
-                        dx, dy, radii, -facets[b, 3], facets[b, 2], facets[a, 3], -facets[a, 2]
-                    )
-                    moved -= sense * straight[e]
+            x, y, r = arcs[e, 2 * of_e], arcs[e, 2 * of_e + 1], radius[v]
+            wx, wy, r_w = arcs[f, 2 * of_f], arcs[f, 2 * of_f + 1], radius[w]
+            own, share_own = outer[e, of_e], shares[e, of_e]
+            side, end, far = f, 1 - of_f, ends[k, 3]
+            j, share, along = _onto(x, y, facets, begin, length, outer[f])
+            on = along - inset[w] if low else extent[f] - inset[w] - along
+            of_a = False
+            if on < 0.0:
+                i, share_e, along = _onto(wx, wy, facets, begin, length, outer[e])
+                on_e = extent[e] - inset[v] - along if low else along - inset[v]
+                of_a = on_e >= 0.0
+                on_arc = not of_a and r + r_w > 0.0
+                if of_a:
+                    x, y, r, sense, on = wx, wy, r_w, -sense, on_e
+                    own, share_own = outer[f, of_f], shares[f, of_f]
+                    side, end, far = e, 1 - of_e, ends[k, 2]
+                    j, share = i, share_e
+            if on_arc:
+                j, share = outer[f, of_f], shares[f, of_f]
+                away, nx, ny = arc_on_arc(x - wx, y - wy, r + r_w)
+                moved = r * angle(nx, ny, -facets[own, 3], facets[own, 2])
+                moved += r_w * angle(nx, ny, facets[j, 3], -facets[j, 2])
             else:
-                of_a = True
-                dx, dy = vx - wx, vy - wy
-                away, nx, ny = arc_on_arc(dx, dy, r_v + r_w)
-                moved = r_v * angle(nx, ny, -facets[b, 3], facets[b, 2])
-                moved += r_w * angle(nx, ny, facets[a, 3], -facets[a, 2])
-            x -= behind * nx
-            y -= behind * ny
+                nx, ny = facets[j, 3], -facets[j, 2]
+                away = (x - facets[j, 0]) * nx + (y - facets[j, 1]) * ny - r
+                moved = sense * on
+                if r > 0.0:
+                    moved -= r * angle(facets[own, 3], -facets[own, 2], -nx, -ny)
+                stretch = length[j] * facets[j, 4]
+                beyond = on - straight[side]
+                if r + radius[far] == 0.0:
+                    away = sharp_opening(away, beyond)
+                elif beyond > 0.0:
+                    j, share, stretch = outer[side, end], shares[side, end], 1.0
+                    dx, dy = x - arcs[side, 2 * end], y - arcs[side, 2 * end + 1]
+                    ex, ey, fx, fy = -facets[own, 3], facets[own, 2], facets[j, 3], -facets[j, 2]
+                    away, moved, nx, ny = far_arcs(dx, dy, (r, radius[far]), ex, ey, fx, fy)
+                    moved += sense * straight[side]
+        b, share_b, a, share_a = own, share_own, j, share
+        x -= r * nx
+        y -= r * ny
+        if of_a:
+            b, share_b, a, share_a = j, share, own, share_own
+            nx, ny = -nx, -ny
         opening[k] = away
         slip[k] = moved
         contact[k, 0] = x
@@ -312,7 +287,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
         contact[k, 6] = stretch
         touched[k, 0] = b
         touched[k, 1] = a
-        touched[k, 2] = 1 if of_a else 0
+        touched[k, 2] = 1 if of_a or on_arc else 0
 
 
 @kernel

@@ -16,44 +16,26 @@ from runningbond.contacts.search import Contacts, facing_sides, find_contacts, o
 from runningbond.dynamics import (
     BlockSystem,
     Interface,
-    Restraint,
     block_frequency_squared,
-    force_unit,
     joint_shares,
     stable_step,
 )
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.law import KernelLaw
 from runningbond.joints.wall_law import kernel_law
-from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Array, Indices, JointMaterial
 
 from .deformable_sides import DeformableSides, PlacedNodes, gather_deformable, scatter_deformable
 from .mass_scaling import CLOSE, ScaledModes, scaled_modes
 from .node_outline import NodeOutline
-from .system import DAMPING
+from .system import DAMPING, block_system
 
 
 def finite_system(blocks: NodeOutline, *, damping: float = DAMPING, mass_scaling: bool = True) -> BlockSystem:
-    """Set up the deformable blocks of a wall to move far; see `fem_system` for the arguments."""
-    wall, contacts = blocks.wall, DeformableContacts(blocks)
-    scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    dead, live = wall.load(wall.scene.dead_forces), wall.load(wall.scene.live_forces)
-    strength = wall_strength(wall.scene, wall.elements.points)
-    return BlockSystem(
-        mass=scaled.mass,
-        stiffness=wall.stiffness,
-        viscosity=scaled.viscosity,
-        dead=dead,
-        live=live,
-        control=wall.control_row(),
-        force_unit=force_unit(wall.scene, wall.block, wall.mass, live, strength),
-        rigid=wall.rigid,
-        owner=np.arange(len(wall.rigid)),
-        restraint=Restraint.none(),
-        interface=contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared),
-        contacts=contacts,
-    )
+    """Set up the deformable blocks of a wall to move far; see `system_of` for the arguments."""
+    contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, damping, mass_scaling=mass_scaling)
+    interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
+    return replace(block_system(blocks.wall, scaled, interface), contacts=contacts)
 
 
 class DeformableContacts:
@@ -81,7 +63,7 @@ class DeformableContacts:
         side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
         # The corner inwards is the last of side e and the first of f at the low end, and the other way at the high.
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
-        area = np.minimum(ends.area, self._thickness * self.blocks.length[facet] / 2)
+        area = np.minimum(ends.area, self._thickness * self.blocks.nodes.length[facet] / 2)
         inner = self._inner(rigid, margin)
         return Contacts(
             ends.motion,
@@ -95,7 +77,8 @@ class DeformableContacts:
 
     def _inner(self, rigid: Array, margin: float) -> Contacts:
         """Nodes inside one of two facing sides that are near the other: of block b's, unless that one is held."""
-        outline, first, length_of, inset = self.outline, self.blocks.first, self.blocks.length, self.blocks.inset
+        outline, first = self.outline, self.blocks.first
+        length_of, inset = self.blocks.nodes.length, self.blocks.sides.inset
         owner, after = outline.blocks.owner, outline.blocks.successor
         e, f = facing_sides(outline, rigid, margin)
         of_a = outline.held[owner[e]]
@@ -104,7 +87,7 @@ class DeformableContacts:
         pair = np.repeat(np.arange(len(own)), count)
         node = first[own][pair] + 1 + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
         arcs = outline.placed(rigid).arcs
-        at = outline.points(self.blocks.owner[node], self.blocks.wall.mesh.points[self.blocks.node[node]], rigid)
+        at = outline.points(self.blocks.nodes.owner[node], self.blocks.wall.mesh.points[self.blocks.node[node]], rigid)
         corners = outline.corners(rigid)
         on = other[pair]
         run = corners[after[on]] - corners[on]
@@ -165,7 +148,9 @@ class DeformableContacts:
 
     def deformation(self, motion: Array) -> float:
         """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
-        return self.blocks.deformation(motion)
+        pairs = zip(self.blocks.tables, self.blocks.wall.split(motion), strict=True)
+        far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for (_, table), Q in pairs]
+        return float(np.sqrt(2) * max(far, default=0.0))
 
 
 def contact_law(joint: JointMaterial, contacts: Contacts) -> KernelLaw:
@@ -215,16 +200,15 @@ def _blocks_on(
     split = [wall.split(values) for values in (scaled.mass, wall.stiffness, scaled.viscosity)]
     mass = scaled.mass[wall.rigid[:, 0]]
     facets = geometry.touched[:, :2]
-    owner = blocks.owner[facets]
+    owner = blocks.nodes.owner[facets]
     for number, template in enumerate(wall.templates):
         shape = template.modes.shape.reshape(-1, 2, len(template.modes.mass))
         own = np.zeros((len(template.blocks), shape.shape[2], shape.shape[2]))
         for side in (0, 1):
             here = np.flatnonzero(wall.place[owner[:, side], 0] == number)
             block, facet, share = owner[here, side], facets[here, side], contact[here, 4 + side, None, None]
-            nodes = (
-                blocks.node[np.column_stack([facet, blocks.following[facet]])] - wall.mesh.first_node[block][:, None]
-            )
+            ends = blocks.node[np.column_stack([facet, blocks.nodes.following[facet]])]
+            nodes = ends - wall.mesh.first_node[block][:, None]
             at = (1 - share) * shape[nodes[:, 0]] + share * shape[nodes[:, 1]]
             cosine, sine, x, y = turned[block].T
             arm = contact[here, :2] - np.column_stack([x, y])

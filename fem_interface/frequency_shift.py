@@ -41,8 +41,8 @@ def elastic_stiffness(wall: ModalWall) -> csr_array:
     return csr_array(result[moving][:, moving])
 
 
-class FrequencyShift:
-    """The lowest frequencies of a wall, and how much of them is lost with other masses.
+def frequency_shift(wall: ModalWall, count: int, highest: float) -> Callable[[Array], float]:
+    """A function that gives the largest part that one of a wall's lowest frequencies loses with other masses.
 
     Parameters
     ----------
@@ -52,26 +52,24 @@ class FrequencyShift:
         Number of frequencies.
     highest
         Its largest ω² [1/s²], roughly.
+
+    Returns
+    -------
+    callable
+        Takes modal masses ``(nd,)`` [kg].
     """
+    moving = np.isfinite(wall.mass)
+    stiffness = csc_array(elastic_stiffness(wall) + diags_array(GROUND * highest * wall.mass[moving]))
+    bodies, body = connected_components(stiffness, directed=False)
+    rows = [np.flatnonzero(body == k) for k in range(bodies)]
+    lowest_of = [(own, _lowest_of(csc_array(stiffness[own][:, own]), count)) for own in rows]
 
-    def __init__(self, wall: ModalWall, count: int, highest: float) -> None:
-        self._moving = np.isfinite(wall.mass)
-        self._count = count
-        ground = diags_array(GROUND * highest * wall.mass[self._moving])
-        stiffness = csc_array(elastic_stiffness(wall) + ground)
-        bodies, body = connected_components(stiffness, directed=False)
-        rows = [np.flatnonzero(body == k) for k in range(bodies)]
-        self._bodies = [(own, _lowest_of(csc_array(stiffness[own][:, own]), count)) for own in rows]
-        self._exact = self._lowest(wall.mass)
-
-    def of(self, mass: Array) -> float:
-        """Largest part that one of the frequencies loses with modal masses ``(nd,)`` [kg]."""
-        return float((1 - np.sqrt(self._lowest(mass) / self._exact)).max())
-
-    def _lowest(self, mass: Array) -> Array:
+    def lowest(mass: Array) -> Array:
         """The smallest ω² [1/s²] of all bodies, ascending."""
-        moving = mass[self._moving]
-        return np.sort(np.concatenate([lowest(moving[own]) for own, lowest in self._bodies]))[: self._count]
+        return np.sort(np.concatenate([of_body(mass[moving][own]) for own, of_body in lowest_of]))[:count]
+
+    exact = lowest(wall.mass)
+    return lambda mass: float((1 - np.sqrt(lowest(mass) / exact)).max())
 
 
 def _lowest_of(stiffness: csc_array, count: int) -> Callable[[Array], Array]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.scene import Array, Mask, SceneError
 
-from .cracks import Pieces
+from .cracks import Pieces, edges_of
 
 Loads: TypeAlias = Literal["consistent", "inner"]
 """Loads proportional to mass: consistent with it, or lumped at nodes inside the blocks (the paper's Sec. 5)."""
@@ -56,8 +56,7 @@ def inner_mass(wall: Pieces) -> Array:
 
 def _on_outline(wall: Pieces) -> Mask:
     """Whether each node lies on the outline of its block, ``(nn,)``: an edge that one triangle alone has does."""
-    nodes = wall.node[wall.mesh.triangles]
-    edges = np.sort(np.stack([nodes, np.roll(nodes, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edges = np.sort(edges_of(wall.node[wall.mesh.triangles]), axis=1)
     edge, times = np.unique(edges, axis=0, return_counts=True)
     outer = np.zeros(int(wall.node.max()) + 1, dtype=bool)
     outer[edge[times == 1].ravel()] = True

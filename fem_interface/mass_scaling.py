@@ -19,9 +19,8 @@ from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.wall_points import wall_stiffness
 from runningbond.scene import Array
 
-from .element_order import RESOLUTION
-from .frequency_shift import FrequencyShift
-from .modal_wall import ModalWall
+from .frequency_shift import frequency_shift
+from .modal_wall import RESOLUTION, ModalWall
 
 ROOM = 1.1
 """Step that masses are scaled for, in critical ones: leaves room for the viscosity of the scaled modes."""
@@ -85,7 +84,7 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
     mass_scaling
         Whether masses are scaled at all.
     """
-    kinds = min(_all_kinds(wall), key=_rigid_bound)
+    kinds = min((_kinds(wall, exponent) for exponent in (0.0, 0.5, 1.0)), key=_rigid_bound)
     if mass_scaling:
         square = _smallest(kinds, damping)
         fit = _square_to_scale_for(wall, square)
@@ -121,8 +120,8 @@ def _square_to_scale_for(wall: ModalWall, square: float) -> float:
     lowest = min(LOWEST, 2 * rigid // 3)
     if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE:
         return square
-    shift = FrequencyShift(wall, lowest, square)
-    while (lost := shift.of(_scaled(wall.mass, wall.stiffness, square)) / LOST) > 1:
+    shift = frequency_shift(wall, lowest, square)
+    while (lost := shift(_scaled(wall.mass, wall.stiffness, square)) / LOST) > 1:
         square *= lost * (1 + CLOSE)
     return square
 
@@ -149,7 +148,7 @@ def _rigid_bound(kinds: list[_Kind]) -> float:
         rigid = np.flatnonzero(kind.stiffness == 0)
         if len(rigid):
             joints = kind.joints[:, rigid[:, None], rigid]
-            result = max(result, float(block_frequency_squared(joints, _each(kind.mass[rigid], joints)).max()))
+            result = max(result, float(block_frequency_squared(joints, kind.mass[None, rigid]).max()))
     return result
 
 
@@ -157,24 +156,15 @@ def _bound(kind: _Kind, square: float, damping: float, fit: float) -> float:
     mass = _scaled(kind.mass, kind.stiffness, fit)
     viscosity = _viscosity(kind.stiffness, mass, damping)
     own = kind.stiffness + 2 / stable_step(square, VISCOUS, LOCAL) * viscosity
-    return float(block_frequency_squared(kind.joints + np.diag(own), _each(mass, kind.joints)).max())
+    return float(block_frequency_squared(kind.joints + np.diag(own), mass[None]).max())
 
 
-def _each(mass: Array, joints: Array) -> Array:
-    return np.tile(mass, (len(joints), 1))
-
-
-def _all_kinds(wall: ModalWall) -> list[list[_Kind]]:
-    """The blocks of a wall, for each of three ways of sharing a joint between its two sides."""
-    return [_kinds(wall, share) for share in (0.0, 0.5, 1.0)]
-
-
-def _kinds(wall: ModalWall, share: float) -> list[_Kind]:
-    """Blocks that differ in their mesh, their pins or their joints."""
+def _kinds(wall: ModalWall, exponent: float) -> list[_Kind]:
+    """Blocks that differ in their mesh, their pins or their joints, shared with an exponent (`joint_shares`)."""
     joint = wall.elements
     n, ne, _ = joint.weights.shape
     block = joint.points.block[:ne]
-    part = joint_shares(np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block], share)
+    part = joint_shares(np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block], exponent)
     normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne])
     springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)
 

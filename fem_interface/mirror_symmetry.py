@@ -8,6 +8,7 @@ face each other across an axis, three quarters and more of a table Φ of nodal d
 which the kernels make use of where there are enough blocks to outweigh its longer way through small arrays.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -130,62 +131,37 @@ class FoldedTables(NamedTuple):
     backward: TableRows
 
 
-class TableFolder:
-    """Folds the tables of many templates."""
-
-    def __init__(self) -> None:
-        self._shapes: list[tuple[int, ...]] = []
-        self._pairs = [np.zeros((0, 2), dtype=np.int64)]
-        self._forward, self._backward = _Rows(), _Rows()
-
-    def take(self, shape: tuple[int, int, int, int, int], points: Array, table: Array) -> bool:
-        """Take a table over if that is worth it.
-
-        Parameters
-        ----------
-        shape
-            Number of blocks, modes and displacements, and where the blocks' coordinates and displacements start.
-        points, table
-            As `folded` has them.
-        """
-        if shape[0] < FEWEST:
-            return False
-        fold = folded(points, table)
-        if not fold.worth_it:
-            return False
-        pair = sum(map(len, self._pairs))
-        rows = self._forward.add(fold.table), self._backward.add(-fold.table.T)
-        self._shapes.append((*shape, *rows, pair, pair + len(fold.pairs)))
-        self._pairs.append(fold.pairs)
-        return True
-
-    def tables(self) -> FoldedTables:
-        """What was taken over."""
-        shapes = np.array(self._shapes, dtype=np.uint64).reshape(-1, 9)
-        pairs = np.concatenate(self._pairs).astype(np.uint64)
-        return FoldedTables(shapes, pairs, self._forward.rows(), self._backward.rows())
+def fold_of_many(blocks: int, points: Array, table: Array) -> Folded | None:
+    """Fold the table of so many blocks, given as `folded` has it, if that is worth it."""
+    if blocks < FEWEST:
+        return None
+    fold = folded(points, table)
+    return fold if fold.worth_it else None
 
 
-class _Rows:
-    """Collects `TableRows`."""
+def folded_tables(templates: Sequence[tuple[tuple[int, int, int, int, int], Folded]]) -> FoldedTables:
+    """Join folded tables, each with the first five entries of its row of `FoldedTables.shapes`."""
+    tables = [fold.table for _, fold in templates]
+    counts = [(*fold.table.shape, len(fold.pairs)) for _, fold in templates]
+    first = np.cumsum([(0, 0, 0), *counts], axis=0)
+    last_pair = first[1:, 2]
+    shapes = [(*shape, *at, end) for (shape, _), at, end in zip(templates, first, last_pair, strict=False)]
+    pairs = np.concatenate([np.zeros((0, 2)), *(fold.pairs for _, fold in templates)])
+    return FoldedTables(
+        np.array(shapes, dtype=np.uint64).reshape(-1, 9),
+        pairs.astype(np.uint64),
+        _rows_of(tables),
+        _rows_of([-table.T for table in tables]),
+    )
 
-    def __init__(self) -> None:
-        self._start = [0]
-        self._column = [np.zeros((0, TERMS), dtype=np.int64)]
-        self._value = [np.zeros((0, TERMS))]
 
-    def add(self, table: Array) -> int:
-        """Add a table; returns its first row."""
-        first = len(self._start) - 1
-        for row in table:
-            column = np.flatnonzero(row)
-            filled = np.resize(column, -(-len(column) // TERMS) * TERMS)
-            value = np.where(np.arange(len(filled)) < len(column), row[filled], 0.0)
-            self._column.append(filled.reshape(-1, TERMS))
-            self._value.append(value.reshape(-1, TERMS))
-            self._start.append(self._start[-1] + len(filled) // TERMS)
-        return first
-
-    def rows(self) -> TableRows:
-        start = np.array(self._start, dtype=np.uint64)
-        return TableRows(start, np.concatenate(self._column).astype(np.uint64), np.concatenate(self._value))
+def _rows_of(tables: list[Array]) -> TableRows:
+    start, column, value = [0], [np.zeros(0, dtype=np.int64)], [np.zeros(0)]
+    for row in (row for table in tables for row in table):
+        entries = np.flatnonzero(row)
+        filled = np.resize(entries, -(-len(entries) // TERMS) * TERMS)
+        column.append(filled)
+        value.append(np.where(np.arange(len(filled)) < len(entries), row[filled], 0.0))
+        start.append(start[-1] + len(filled) // TERMS)
+    columns = np.concatenate(column).reshape(-1, TERMS).astype(np.uint64)
+    return TableRows(np.array(start, dtype=np.uint64), columns, np.concatenate(value).reshape(-1, TERMS))

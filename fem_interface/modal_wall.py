@@ -1,17 +1,22 @@
 """A wall in modal coordinates: which coordinates a block has, and what loads and points are in them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from meshing import WallMesh
+from meshing import WallMesh, wall_mesh
+from runningbond.joints import Rule
 from runningbond.scene import Array, Forces, Indices, Scene
 
-from .cracks import Pieces
+from .cracks import Cracks, Pieces, pieces
 from .loads import Loads, inner_mass
-from .operators import JointElements
-from .templates import Template, nodes_of, triangles_of
+from .modes import BENDING, ModeCount
+from .operators import JointElements, PointsOn, joint_elements
+from .templates import Template, nodes_of, templates, triangles_of
+
+RESOLUTION = 1e-9
+"""Relative difference below which two elements are of one kind."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,12 +68,12 @@ class ModalWall:
     @property
     def mass(self) -> Array:
         """Modal masses, ``(nd,)``; inf where nothing moves."""
-        return self._of_modes([template.modes.mass for template in self.templates], np.inf)
+        return np.concatenate([*(np.repeat(t.modes.mass, len(t.blocks)) for t in self.templates), [np.inf]])
 
     @property
     def stiffness(self) -> Array:
         """Modal stiffness of the blocks themselves, ``(nd,)`` [N/m]."""
-        return self._of_modes([template.modes.stiffness for template in self.templates])
+        return np.concatenate([*(np.repeat(t.modes.stiffness, len(t.blocks)) for t in self.templates), [0.0]])
 
     @cached_property
     def block(self) -> Indices:
@@ -85,18 +90,17 @@ class ModalWall:
             result[template.blocks] = first + np.arange(n)[:, None] + n * np.arange(3)
         return result
 
-    def _of_modes(self, values: list[Array], still: float = 0.0) -> Array:
-        each = [np.repeat(v, len(t.blocks)) for v, t in zip(values, self.templates, strict=True)]
-        return np.concatenate([*each, [still]])
-
     def displacement(self, motion: Array) -> Array:
         """Displacement of every node, ``(nn, 2)`` [m]."""
         result = np.zeros_like(self.mesh.points)
         for template, Q in zip(self.templates, self.split(motion), strict=True):
-            shape = template.modes.shape
-            nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
-            result[nodes] = (shape @ Q).reshape(-1, 2, len(template.blocks)).transpose(0, 2, 1)
+            displaced = (template.modes.shape @ Q).reshape(-1, 2, len(template.blocks))
+            result[self._nodes(template)] = displaced.transpose(0, 2, 1)
         return result
+
+    def _nodes(self, template: Template) -> Indices:
+        """Nodes of a template's blocks, ``(nn, n)``."""
+        return self.mesh.first_node[template.blocks] + np.arange(len(template.modes.shape) // 2)[:, None]
 
     def strain(self, motion: Array) -> Array:
         """Mean strains ε_x, ε_y and γ_xy of each triangle, ``(nt, 3)``; zero where nothing moves."""
@@ -134,26 +138,21 @@ class ModalWall:
             place[self.mesh.first_node[template.blocks][:, None] + own] = rows + np.arange(n)[:, None, None]
         return place, first
 
-    def nodal_force(self, force: Array) -> Array:
-        """Modal forces of forces on the nodes ``(nn, 2)`` [N], ``(nd,)`` [N]; the transpose of `displacement`."""
-        result = np.zeros(self.first[-1] + 1)
-        for template, into in zip(self.templates, self.split(result), strict=True):
-            shape = template.modes.shape
-            nodes = self.mesh.first_node[template.blocks] + np.arange(len(shape) // 2)[:, None]
-            into += shape.T @ force[nodes].transpose(0, 2, 1).reshape(len(shape), -1)
-        return result
-
     def load(self, forces: Forces, loads: Loads = "consistent") -> Array:
         """Modal forces of forces on the blocks, ``(nd,)`` [N]; a moment acts on a block's rotation alone."""
         if loads == "consistent":
             each = [t.modes.inert @ forces.acceleration[t.blocks].T for t in self.templates]
-            found = np.concatenate([*(force.ravel() for force in each), [0.0]])
         else:
-            found = self.nodal_force(inner_mass(self.pieces)[:, None] * forces.acceleration[self.mesh.block])
-        np.add.at(found, self.rigid[:, 2], forces.moment)
+            nodal = inner_mass(self.pieces)[:, None] * forces.acceleration[self.mesh.block]
+            each = [
+                t.modes.shape.T @ nodal[self._nodes(t)].transpose(0, 2, 1).reshape(-1, len(t.blocks))
+                for t in self.templates
+            ]
+        result = np.concatenate([*(force.ravel() for force in each), [0.0]])
+        np.add.at(result, self.rigid[:, 2], forces.moment)
         for block, at, force in zip(forces.block.tolist(), forces.at, forces.force, strict=True):
-            found += self.displacement_row(block, at, force)
-        return found
+            result += self.displacement_row(block, at, force)
+        return result
 
     def displacement_row(self, block: int, at: Array, direction: Array) -> Array:
         """Displacement of a point ``(2,)`` of a movable block along a direction, per coordinate, ``(nd,)``.
@@ -180,3 +179,54 @@ class ModalWall:
         share = 1 / (times[owner] * np.count_nonzero(times))
         rows = [s * self.displacement_row(int(b), at, direction) for s, b in zip(share, held, strict=True)]
         return np.asarray(sum(rows))
+
+
+def element_runs(wall: ModalWall) -> tuple[Indices, Indices]:
+    """Runs of alike joint elements, along which a kernel walks through memory straight ahead.
+
+    A wall of equal blocks has few kinds of joint elements. Elements of one kind are put in the order of their blocks,
+    so that where element e lies between the blocks in rows p and q of their templates, element e + 1 as a rule lies
+    between p + 1 and q + 1.
+
+    Returns
+    -------
+    (ne,) int
+        Joint elements, run by run.
+    (nr + 1,) int
+        First element of each run in that order, then their number.
+    """
+    joint = wall.elements
+    n, ne, _ = joint.weights.shape
+    block = wall.mesh.block[joint.nodes[:, [0, 2]]]
+    template, row = wall.place[block].transpose(2, 0, 1)
+    held = template < 0
+    local = np.where(held[:, [0, 0, 1, 1]], -1, joint.nodes - wall.mesh.first_node[block][:, [0, 0, 1, 1]])
+    area = joint.points.area.reshape(n, ne).T
+    values = [joint.normal, joint.weights.transpose(1, 0, 2).reshape(ne, 2 * n), area / area.max(initial=1e-300)]
+    rounded = np.rint(np.column_stack(values) / RESOLUTION).astype(np.int64)
+    material = wall.scene.material_of_joint[joint.points.joint[:ne]]
+    _, kind = np.unique(np.column_stack([material, template, local, rounded]), axis=0, return_inverse=True)
+    kind = kind.ravel()
+    order = np.lexsort((np.where(held[:, 0], row[:, 1], row[:, 0]), kind))
+    follows = (np.diff(row[order], axis=0) == 1) | held[order][1:]
+    goes_on = np.zeros(ne, dtype=bool)
+    goes_on[1:] = (np.diff(kind[order]) == 0) & follows.all(axis=1)
+    return order, np.append(np.flatnonzero(~goes_on), ne)
+
+
+def modal_wall(
+    scene: Scene,
+    cells: int = 1,
+    modes: ModeCount | None = None,
+    rule: Rule | None = None,
+    points: PointsOn = "elements",
+    cracks: Cracks = "joints",
+) -> ModalWall:
+    """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_interface.model.fem`."""
+    parts = pieces(scene, wall_mesh(scene, cells), cracks)
+    joints = joint_elements(parts.mesh, parts.scene, rule, points)
+    if modes is None:
+        modes = BENDING if cracks == "joints" else "all"
+    wall = ModalWall(parts, templates(parts.mesh, parts.scene, modes), joints)
+    order, _ = element_runs(wall)
+    return replace(wall, elements=joints.arranged(order))

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -11,10 +10,9 @@ from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, Sides
-from .element_order import modal_wall
-from .modal_wall import ModalWall
+from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
-from .templates import nodes_of
+from .templates import nodes_of, rows_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,46 +31,25 @@ class NodeOutline:
         Node of the mesh.
     first : (nv + 1,) int
         First outline node of each side, then their number.
+    nodes, sides
+        The outline nodes and the sides, as the kernels take them.
+    tables : list
+        Of each template the nodes on its outline, in numbers of its own, and their displacements per deformation;
+        no nodes if the blocks do not deform.
     """
 
     wall: ModalWall
     outline: Outline
     node: Indices
     first: Indices
+    nodes: OutlineNodes
+    sides: Sides
+    tables: list[tuple[Indices, Array]]
 
     @property
     def scene(self) -> Scene:
         """The wall."""
         return self.wall.scene
-
-    @cached_property
-    def side(self) -> Indices:
-        """Side of each outline node, ``(no,)``."""
-        return np.repeat(np.arange(len(self.first) - 1), np.diff(self.first))
-
-    @cached_property
-    def following(self) -> Indices:
-        """Next outline node counter-clockwise, ``(no,)``."""
-        following = np.arange(1, len(self.node) + 1)
-        following[self.first[1:] - 1] = self.first[self.outline.blocks.successor]
-        return following
-
-    @cached_property
-    def owner(self) -> Indices:
-        """Block of each outline node, ``(no,)``."""
-        return np.asarray(self.outline.blocks.owner[self.side])
-
-    @cached_property
-    def length(self) -> Array:
-        """Length of the facet that starts at each outline node, ``(no,)`` [m]."""
-        points = self.wall.mesh.points[self.node]
-        return np.asarray(np.hypot(*(points[self.following] - points).T))
-
-    @cached_property
-    def begin(self) -> Array:
-        """Way along its side to each outline node, ``(no,)`` [m]."""
-        total = np.cumsum(self.length) - self.length
-        return np.asarray(total - total[self.first[:-1]][self.side])
 
     def rigid(self, motion: Array) -> Array:
         """Translations and rotation of each block in a motion ``(nd,)``, ``(3 nb,)``."""
@@ -87,67 +64,15 @@ class NodeOutline:
         px, py = (mesh.points - blocks.centroid[mesh.block] + self.wall.displacement(deformed)).T
         return np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py])
 
-    def deformation(self, motion: Array) -> float:
-        """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
-        pairs = zip(self._tables, self.wall.split(motion), strict=True)
-        far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for (_, table), Q in pairs]
-        return float(np.sqrt(2) * max(far, default=0.0))
-
-    @cached_property
-    def inset(self) -> Array:
-        """Distance from each corner at which its arc touches its sides, ``(nv,)`` [m]."""
-        return np.where(self.outline.radius > 0, self.outline.radius * np.tan(self.outline.exterior / 2), 0.0)
-
-    @cached_property
-    def nodes(self) -> OutlineNodes:
-        """The nodes, as the kernels take them."""
-        blocks, wall = self.outline.blocks, self.wall
-        return OutlineNodes(
-            wall.rigid.astype(np.int64),
-            blocks.centroid.copy(),
-            self.owner.astype(np.int64),
-            wall.mesh.points[self.node] - blocks.centroid[self.owner],
-            wall.places([own for own, _ in self._tables])[0][self.node],
-            self.following,
-            self.begin,
-            self.length,
-        )
-
-    @cached_property
-    def sides(self) -> Sides:
-        """The sides, as the kernels take them."""
-        outline, first = self.outline, self.first
-        successor = outline.blocks.successor.astype(np.int64)
-        outer = np.column_stack([first[:-1], first[1:] - 1])
-        shares = np.column_stack([self.inset, -self.inset[successor]]) / self.length[outer] + [0.0, 1.0]
-        whole = outline.straight + self.inset + self.inset[successor]
-        return Sides(outer, shares, whole, outline.straight.copy(), successor, self.inset, outline.radius.copy())
-
     def new_tables(self) -> NodalTables:
         """Displacements of the nodes per deformation, with buffers of their own."""
         wall, rows = self.wall, []
-        _, place = wall.places([own for own, _ in self._tables])
-        for template, first, (_, table), at in zip(wall.templates, wall.first, self._tables, place, strict=False):
+        _, place = wall.places([own for own, _ in self.tables])
+        for template, first, (_, table), at in zip(wall.templates, wall.first, self.tables, place, strict=False):
             n, (width, modes) = len(template.blocks), table.shape
             if modes:
                 rows.append(((n, modes, width, int(first) + 3 * n, int(at)), table))
         return nodal_tables(rows, int(place[-1]), 1)
-
-    @cached_property
-    def _tables(self) -> list[tuple[Indices, Array]]:
-        """Of each template the nodes on its outline, in numbers of its own, and their displacements per deformation.
-
-        No nodes if the blocks do not deform.
-        """
-        mesh = self.wall.mesh
-        of_block = np.split(self.node, self.first[self.outline.blocks.first[1:-1]])
-        tables = []
-        for template in self.wall.templates:
-            block, shape = template.blocks[0], template.modes.shape[:, 3:]
-            modes = shape.shape[1]
-            local = np.sort(of_block[block]) - mesh.first_node[block] if modes else np.zeros(0, dtype=np.int64)
-            tables.append((local, shape.reshape(len(shape) // 2, 2, modes)[local].reshape(2 * len(local), modes)))
-        return tables
 
 
 def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> NodeOutline:
@@ -167,15 +92,52 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
     if joint.cohesion > 0 and (joint.fracture_energy_1 is None or joint.fracture_energy_2 is None):
         raise SceneError("joint", "finite displacements need dry joints, or fracture energies with which they break")
-    wall = modal_wall(scene, cells, modes)
-    node, first = [], [0]
-    for local in _sides(wall):
-        node.append(local)
-        first.append(first[-1] + len(local))
-    return NodeOutline(wall, Outline.of(scene), np.concatenate(node), np.array(first))
+    wall, outline = modal_wall(scene, cells, modes), Outline.of(scene)
+    on_side = list(_nodes_of_sides(wall))
+    node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])
+    tables = list(_tables(wall, np.split(node, first[outline.blocks.first[1:-1]])))
+    nodes = _outline_nodes(wall, node, first, tables)
+    return NodeOutline(wall, outline, node, first, nodes, _sides(outline, first, nodes.length), tables)
 
 
-def _sides(wall: ModalWall) -> Iterator[Indices]:
+def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, tables: list[tuple[Indices, Array]]) -> OutlineNodes:
+    blocks, points = wall.scene.blocks, wall.mesh.points[node]
+    side = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    owner = blocks.owner[side]
+    following = np.arange(1, len(node) + 1)
+    following[first[1:] - 1] = first[blocks.successor]
+    length = np.hypot(*(points[following] - points).T)
+    total = np.cumsum(length) - length
+    return OutlineNodes(
+        wall.rigid.astype(np.int64),
+        blocks.centroid.copy(),
+        owner.astype(np.int64),
+        points - blocks.centroid[owner],
+        wall.places([own for own, _ in tables])[0][node],
+        following,
+        total - total[first[:-1]][side],
+        length,
+    )
+
+
+def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
+    """The sides, from the first outline node of each and the lengths of the facets."""
+    successor = outline.blocks.successor.astype(np.int64)
+    inset = np.where(outline.radius > 0, outline.radius * np.tan(outline.exterior / 2), 0.0)
+    outer = np.column_stack([first[:-1], first[1:] - 1])
+    shares = np.column_stack([inset, -inset[successor]]) / length[outer] + [0.0, 1.0]
+    extent = outline.straight + inset + inset[successor]
+    return Sides(outer, shares, extent, outline.straight.copy(), successor, inset, outline.radius.copy())
+
+
+def _tables(wall: ModalWall, of_block: list[Indices]) -> Iterator[tuple[Indices, Array]]:
+    for template in wall.templates:
+        block, shape = template.blocks[0], template.modes.shape[:, 3:]
+        local = np.sort(of_block[block]) - wall.mesh.first_node[block] if shape.size else np.zeros(0, dtype=np.int64)
+        yield local, rows_of(shape, local)
+
+
+def _nodes_of_sides(wall: ModalWall) -> Iterator[Indices]:
     """Nodes of each side from its first corner up to the last but one."""
     blocks, mesh = wall.scene.blocks, wall.mesh
     seen: dict[tuple[int, bytes], list[Indices]] = {}

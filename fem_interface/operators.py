@@ -26,7 +26,8 @@ from skfem.models.elasticity import linear_elasticity, plane_stress
 
 from meshing import WallMesh
 from runningbond.joints import JointPoints, Rule, lobatto, wall_inset
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.limit.kinematics import Jump
+from runningbond.scene import Array, Indices, Mask, Scene, SceneError
 
 PointsOn: TypeAlias = Literal["elements", "joints"]
 """What a quadrature rule is laid on: every joint element, or every joint whole, however many elements it has."""
@@ -121,15 +122,9 @@ class JointElements:
 
     def arranged(self, order: Indices) -> "JointElements":
         """The same elements ``(ne,)`` in another order."""
-        ne = len(order)
-        of_points = (np.arange(len(self.weights))[:, None] * ne + order).ravel()
-        return JointElements(
-            self.element[order],
-            self.nodes[order],
-            self.normal[order],
-            self.weights[:, order].copy(),
-            self.points.part(of_points),
-        )
+        points = self.points.part((np.arange(len(self.weights))[:, None] * len(order) + order).ravel())
+        weights = self.weights[:, order].copy()
+        return JointElements(self.element[order], self.nodes[order], self.normal[order], weights, points)
 
 
 def joint_elements(
@@ -205,8 +200,8 @@ def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tupl
     length = np.hypot(*(mesh.points[mesh.interfaces[:, 1]] - mesh.points[mesh.interfaces[:, 0]]).T)
     first = np.diff(joint, prepend=-1) != 0
     last = np.diff(joint, append=-1) != 0
-    kept = inset[joint] / length
-    low, high = np.where(first, kept, 0.0), np.where(last, 1 - kept, 1.0)
+    off = inset[joint] / length
+    low, high = np.where(first, off, 0.0), np.where(last, 1 - off, 1.0)
     if (low >= high).any():
         worst = int(np.argmax(low - high))
         name = "inner_joint.inset" if scene.joints.inner[joint[worst]] else "joint.inset"
@@ -248,7 +243,8 @@ def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tu
     """
     if len(first) == 0:
         return np.zeros((*local.shape, 2)), np.zeros((*local.shape, 2))
-    facets = _facets(wall, first, last)
+    low, high = np.minimum(first, last), np.maximum(first, last)
+    facets = edges_between(wall.facets.T.astype(np.int64), low, high)
     # scikit-fem runs along a facet from its lower node to its higher one.
     running = np.where((first < last)[:, None], local, 1 - local)
     quadrature = (running[None], np.ones(local.shape[1]))
@@ -261,47 +257,37 @@ def _tabulated(wall: MeshTri, first: Indices, last: Indices, local: Array) -> tu
     return weights, np.asarray(basis.global_coordinates()).transpose(1, 2, 0)
 
 
-def _facets(wall: MeshTri, first: Indices, last: Indices) -> Indices:
-    """Facet between each pair of nodes."""
-    count = wall.p.shape[1]
-    low, high = wall.facets
-    keys = low.astype(np.int64) * count + high
+def find_edges(edges: Indices, start: Indices, stop: Indices) -> tuple[Indices, Mask]:
+    """Numbers of the edges ``(n, 2)`` from some nodes to others, and whether there are such edges at all."""
+    count = edges.max() + 1
+    keys, wanted = edges @ [count, 1], start * count + stop
     order = np.argsort(keys)
-    wanted = np.minimum(first, last) * count + np.maximum(first, last)
-    result = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
-    if (keys[result] != wanted).any():
+    number = order[np.minimum(np.searchsorted(keys, wanted, sorter=order), len(order) - 1)]
+    return number, np.asarray(keys[number] == wanted)
+
+
+def edges_between(edges: Indices, start: Indices, stop: Indices) -> Indices:
+    """Numbers of the edges ``(n, 2)`` from each end of joint elements to the other."""
+    number, there = find_edges(edges, start, stop)
+    if not there.all():
         raise ValueError("a joint element does not lie on sides of triangles")
-    return np.asarray(result)
+    return number
 
 
-@dataclass(frozen=True, eq=False)
-class NodalJump:
-    """Jump operator of the nodes: opening and slip at the points of joint elements.
-
-    Parameters
-    ----------
-    opening, slip : (np, 2 nn) sparse array
-        Normal and tangential jump u_b − u_a [m] per nodal displacement [m].
-    """
-
-    opening: csr_array
-    slip: csr_array
-
-
-def nodal_jump(result: JointElements, nodes: int) -> NodalJump:
-    """Jump operator of a mesh with so many nodes."""
-    n, ne, _ = result.weights.shape
+def nodal_jump(elements: JointElements, nodes: int) -> Jump:
+    """Jumps at the points of joint elements per nodal displacement [m], of a mesh with so many nodes."""
+    n, ne, _ = elements.weights.shape
     rows = np.arange(n * ne)
-    tangent = np.column_stack([-result.normal[:, 1], result.normal[:, 0]])
+    tangent = np.column_stack([-elements.normal[:, 1], elements.normal[:, 0]])
 
     def along(direction: Array) -> csr_array:
         parts = []
         for column, (sense, end) in enumerate([(-1.0, 0), (-1.0, 1), (1.0, 0), (1.0, 1)]):
-            share = sense * result.weights[:, :, end]
-            node = np.tile(result.nodes[:, column], n)
+            share = sense * elements.weights[:, :, end]
+            node = np.tile(elements.nodes[:, column], n)
             for axis in (0, 1):
                 values = (share * direction[:, axis]).ravel()
                 parts.append(coo_array((values, (rows, 2 * node + axis)), shape=(n * ne, 2 * nodes)))
         return csr_array(sum(parts[1:], start=csr_array(parts[0])))
 
-    return NodalJump(along(result.normal), along(tangent))
+    return Jump(along(elements.normal), along(tangent))

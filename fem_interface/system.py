@@ -5,56 +5,24 @@ from collections.abc import Iterator
 import numpy as np
 
 from runningbond.dynamics import BlockSystem, Interface, Restraint, force_unit
-from runningbond.joints import Rule
 from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Indices
 
 from .block_kernels import ModalJoints, gather_modes, nodal_tables, scatter_modes
-from .cracks import Cracks, motion_of_blocks
-from .element_order import element_runs, modal_wall
+from .cracks import motion_of_blocks
 from .fracture import Energies, fractured
 from .loads import Loads
-from .mass_scaling import scaled_modes
-from .mirror_symmetry import TableFolder
-from .modal_wall import ModalWall
-from .modes import ModeCount
-from .operators import PointsOn
+from .mass_scaling import ScaledModes, scaled_modes
+from .mirror_symmetry import fold_of_many, folded_tables
+from .modal_wall import ModalWall, element_runs
+from .templates import rows_of
 
 DAMPING = 0.05
 """Viscous damping ratio of the deformable modes."""
 
 ROUNDING = 1e-14
 """Share of a node in a point below which it is none, and no time is spent on it."""
-
-
-def fem_system(
-    scene: Scene,
-    cells: int = 1,
-    modes: ModeCount | None = None,
-    rule: Rule | None = None,
-    *,
-    points: PointsOn = "elements",
-    cracks: Cracks = "joints",
-    loads: Loads = "consistent",
-    damping: float = DAMPING,
-    mass_scaling: bool = True,
-    energies: Energies = "given",
-) -> BlockSystem:
-    """Set up the deformable blocks of a scene; see `fem_interface.model.fem` for what is not said here.
-
-    Parameters
-    ----------
-    damping
-        Viscous damping ratio of the deformable modes.
-
-    Raises
-    ------
-    SceneError
-        If the scene gives its joints or its blocks no stiffness.
-    """
-    wall = modal_wall(scene, cells, modes, rule, points, cracks)
-    return system_of(wall, loads=loads, damping=damping, mass_scaling=mass_scaling, energies=energies)
 
 
 def system_of(
@@ -65,13 +33,36 @@ def system_of(
     mass_scaling: bool = True,
     energies: Energies = "given",
 ) -> BlockSystem:
-    """Set up the deformable blocks of a wall in modal coordinates; see `fem_system`."""
-    scene, points, pieces = wall.scene, wall.elements.points, wall.pieces
+    """Set up the deformable blocks of a wall, at small displacements.
+
+    Parameters
+    ----------
+    wall
+        The wall in modal coordinates.
+    damping
+        Viscous damping ratio of the deformable modes.
+    loads, mass_scaling, energies
+        As `fem_interface.model.fem` has them.
+
+    Raises
+    ------
+    SceneError
+        If the scene gives its joints no stiffness.
+    """
+    points = wall.elements.points
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
-    materials, of_joint = fractured(scene, energies)
-    dead, live = wall.load(scene.dead_forces, loads), wall.load(scene.live_forces, loads)
+    materials, of_joint = fractured(wall.scene, energies)
     law = kernel_law(materials, of_joint[points.joint])
-    geometry = _geometry(wall)
+    interface = Interface(law, points.area, gather_modes, scatter_modes, _geometry(wall), scaled.frequency_squared)
+    return block_system(wall, scaled, interface, loads)
+
+
+def block_system(
+    wall: ModalWall, scaled: ScaledModes, interface: Interface, loads: Loads = "consistent"
+) -> BlockSystem:
+    """The blocks of a wall with scaled modes, under its loads, on an interface."""
+    scene, pieces = wall.scene, wall.pieces
+    dead, live = wall.load(scene.dead_forces, loads), wall.load(scene.live_forces, loads)
     return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,
@@ -79,12 +70,12 @@ def system_of(
         dead=dead,
         live=live,
         control=wall.control_row(),
-        force_unit=force_unit(scene, wall.block, wall.mass, live, wall_strength(scene, points)),
+        force_unit=force_unit(scene, wall.block, wall.mass, live, wall_strength(scene, wall.elements.points)),
         rigid=wall.rigid,
         owner=pieces.owner,
         restraint=_restraint(wall),
-        interface=Interface(law, points.area, gather_modes, scatter_modes, geometry, scaled.frequency_squared),
-        block_motion=None if pieces.whole else motion_of_blocks(pieces),
+        interface=interface,
+        block_motion=None if pieces.are_blocks else motion_of_blocks(pieces),
         source=wall,
     )
 
@@ -101,11 +92,14 @@ def _geometry(wall: ModalWall) -> ModalJoints:
     _, start = element_runs(wall)
     local, tables = zip(*_tables(wall), strict=True) if wall.templates else ((), ())
     place, first = wall.places(list(local))
-    rows, folder = [], TableFolder()
+    plain, folds = [], []
     for template, own, table, coordinate, at in zip(wall.templates, local, tables, wall.first, first, strict=False):
         shape = (len(template.blocks), table.shape[1], len(table), int(coordinate), int(at))
-        if not folder.take(shape, mesh.points[mesh.first_node[template.blocks[0]] + own], table):
-            rows.append((shape, table))
+        fold = fold_of_many(len(template.blocks), mesh.points[mesh.first_node[template.blocks[0]] + own], table)
+        if fold:
+            folds.append((shape, fold))
+        else:
+            plain.append((shape, table))
     begin = start[:-1]
     tangent = np.column_stack([-joint.normal[:, 1], joint.normal[:, 0]])
     frame = np.stack([joint.normal, tangent], axis=1)[begin]
@@ -113,8 +107,8 @@ def _geometry(wall: ModalWall) -> ModalJoints:
     shares[np.abs(shares) < ROUNDING] = 0.0
     area = joint.points.area.reshape(n, ne)[:, begin].T[:, :, None, None]
     return ModalJoints(
-        nodal_tables(rows, int(first[-1]), int(np.diff(start).max(initial=0))),
-        folder.tables(),
+        nodal_tables(plain, int(first[-1]), int(np.diff(start).max(initial=0))),
+        folded_tables(folds),
         start.astype(np.uint64),
         (place[joint.nodes[begin]].reshape(-1, 8) - begin[:, None]).astype(np.uint64),
         shares,
@@ -129,5 +123,4 @@ def _tables(wall: ModalWall) -> Iterator[tuple[Indices, Array]]:
     for k, template in enumerate(wall.templates):
         own, modes = on_joint[of_node == k], template.modes
         local = np.unique(own - mesh.first_node[mesh.block[own]])
-        shape = np.hstack([modes.rigid, modes.shape[:, 3:]]).reshape(-1, 2, len(modes.mass))[local]
-        yield local, shape.reshape(2 * len(local), len(modes.mass))
+        yield local, rows_of(np.hstack([modes.rigid, modes.shape[:, 3:]]), local)

@@ -43,8 +43,10 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
     """
     alike: dict[tuple[int, bytes], list[int]] = {}
     order = scene.column_by_column
-    for block in order[~scene.fixed[order]]:
-        alike.setdefault(_likeness(mesh, scene, int(block)), []).append(int(block))
+    for block in order[~scene.fixed[order]].tolist():
+        # Congruent blocks that are held alike.
+        key = int(mesh.shape[block]), held_displacements(mesh, scene, block).tobytes()
+        alike.setdefault(key, []).append(block)
     result = []
     for blocks in alike.values():
         modes, strain = _modes(mesh, scene, blocks[0], count)
@@ -61,6 +63,11 @@ def nodes_of(mesh: WallMesh, block: int) -> slice:
 def triangles_of(mesh: WallMesh, block: int) -> Indices:
     """Triangles of a block, in numbers of its own nodes, ``(nt, 3)``."""
     return np.asarray(mesh.triangles[mesh.triangle_block == block] - mesh.first_node[block])
+
+
+def rows_of(shape: Array, nodes: Indices) -> Array:
+    """Rows of nodal displacements ``(2 nn, m)`` that some nodes have."""
+    return np.asarray(shape[(2 * nodes[:, None] + [0, 1]).ravel()])
 
 
 def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
@@ -81,11 +88,6 @@ def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
             raise SceneError(scene.blocks.name(block), "is pinned where its mesh has no node")
         row[node] = scene.pins.direction[pin]
     return rows.reshape(len(own), 2 * len(points))
-
-
-def _likeness(mesh: WallMesh, scene: Scene, block: int) -> tuple[int, bytes]:
-    """The same for congruent blocks that are held alike."""
-    return int(mesh.shape[block]), held_displacements(mesh, scene, block).tobytes()
 
 
 def _modes(mesh: WallMesh, scene: Scene, block: int, count: ModeCount) -> tuple[Modes, Array]:

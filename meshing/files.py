@@ -2,12 +2,12 @@
 
 import errno
 import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
+from runningbond.results.store import replacing
 from runningbond.scene import Indices, Scene, SceneError
 
 from .mesh import GROUPS, WallMesh, joint_group
@@ -39,27 +39,8 @@ def write_mesh(mesh: WallMesh, scene: Scene, path: str | Path) -> None:
     """
     path = Path(path)
     check_suffix(path)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        _write_beside(mesh, scene, path)
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, str(path)) from error
-
-
-def _write_beside(mesh: WallMesh, scene: Scene, path: Path) -> None:
-    """Write a mesh under another name, and give it its own when it is whole."""
-    suffix = path.suffix.lower()
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=suffix)
-    os.close(handle)
-    try:
-        _WRITERS[suffix](mesh, scene, name)
-        with open(name, "rb") as file:
-            os.fsync(file.fileno())
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+    with replacing(path) as beside:
+        _WRITERS[path.suffix.lower()](mesh, scene, str(beside))
 
 
 def check_suffix(path: Path) -> None:

@@ -91,21 +91,21 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
     triangles = np.empty((first_triangle[-1], 3), dtype=np.int64)
     origin = outline.points[outline.first[:-1]]
     points[_runs(first_node[:-1], outline.count)] = outline.points
-    for number, blocks in enumerate(_members(shape, len(meshes))):
-        mesh = meshes[number]
+    of_shape = np.split(np.argsort(shape, kind="stable"), np.cumsum(np.bincount(shape))[:-1])
+    for mesh, blocks in zip(meshes, of_shape, strict=True):
         start = first_node[blocks] + outline.count[blocks]
         points[start[:, None] + np.arange(len(mesh.inner))] = origin[blocks][:, None] + mesh.inner
         rows = first_triangle[blocks][:, None] + np.arange(len(mesh.triangles))
         triangles[rows] = first_node[blocks][:, None, None] + mesh.triangles
     interfaces, joint = _interfaces(scene, outline, first_node)
-    blocks = np.arange(len(shape))
+    every = np.arange(len(shape))
     return WallMesh(
         points,
         first_node,
-        np.repeat(blocks, np.diff(first_node)),
+        np.repeat(every, np.diff(first_node)),
         shape,
         triangles,
-        np.repeat(blocks, n_triangles),
+        np.repeat(every, n_triangles),
         interfaces,
         joint,
     )
@@ -144,8 +144,3 @@ def _offsets(count: Indices) -> Indices:
 def _runs(start: Indices, count: Indices) -> Indices:
     """The numbers start, start + 1, … of runs of given lengths, one run after another."""
     return np.asarray(np.arange(count.sum()) + np.repeat(start - _offsets(count)[:-1], count))
-
-
-def _members(shape: Indices, n: int) -> list[Indices]:
-    """Blocks of each shape."""
-    return np.split(np.argsort(shape, kind="stable"), np.cumsum(np.bincount(shape, minlength=n))[:-1])

@@ -55,7 +55,10 @@ def outlines(scene: Scene, cells: int) -> Outlines:
     """
     blocks, joints = scene.blocks, scene.joints
     along, length = _edges(blocks)
-    divisions = _parts(joints.length, _part_lengths(scene, cells, joints))
+    # On a joint, parts are as long as the smaller of its blocks wants them.
+    run = joints.ends[:, 1] - joints.ends[:, 0]
+    wanted = [np.where(scene.wall[block], _target(scene, cells, block, run), np.inf) for block in joints.block.T]
+    divisions = _parts(joints.length, np.minimum(*wanted))
     edge, reach = _reach(blocks, joints)
 
     # Joints in the order in which the outlines meet them; each edge ends in an empty one.
@@ -117,13 +120,6 @@ def _target(scene: Scene, cells: int, block: Indices, along: Array) -> Array:
         return np.asarray(np.sqrt(scene.blocks.area[block] / 2) / cells)
     level = np.abs(along[:, 0]) >= np.abs(along[:, 1])
     return np.where(level, scene.bond.width / 2, scene.bond.height) / cells
-
-
-def _part_lengths(scene: Scene, cells: int, joints: Joints) -> Array:
-    """Length of a part wanted on each joint: what the smaller of its blocks wants, ``(nj,)`` [m]."""
-    along = joints.ends[:, 1] - joints.ends[:, 0]
-    wanted = [np.where(scene.wall[block], _target(scene, cells, block, along), np.inf) for block in joints.block.T]
-    return np.minimum(*wanted)
 
 
 def _parts(length: Array, target: Array) -> Indices:

@@ -113,8 +113,8 @@ def _is_grid(points: Array, corner: Mask) -> bool:
 def _read(gmsh: Any, surface: int, ring: list[int], size: float) -> Shape:
     """One surface's triangles; cells are cut by both their diagonals."""
     mesh = gmsh.model.mesh
-    found = [*(mesh.getNodes(0, point)[:2] for point in ring), mesh.getNodes(2, surface)[:2]]
-    tag, coordinates = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    nodes_of = [*(mesh.getNodes(0, point)[:2] for point in ring), mesh.getNodes(2, surface)[:2]]
+    tag, coordinates = (np.concatenate(parts) for parts in zip(*nodes_of, strict=True))
     points = size * coordinates.reshape(-1, 3)[:, :2]
     (kind,), _, (nodes,) = mesh.getElements(2, surface)
     order = np.argsort(tag)

@@ -44,11 +44,11 @@ from typing import Any
 
 import numpy as np
 
-from fem_interface import Template, block_modes, lumped_mass, stiffness_matrix
-from fem_interface.element_order import modal_wall
-from fem_interface.modal_wall import ModalWall
+from fem_interface.modal_wall import ModalWall, modal_wall
+from fem_interface.modes import block_modes
+from fem_interface.operators import lumped_mass, stiffness_matrix
 from fem_interface.system import system_of
-from fem_interface.templates import nodes_of, triangles_of
+from fem_interface.templates import Template, nodes_of, triangles_of
 from runningbond.dynamics import Run, State
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints import gauss, joint_stiffness

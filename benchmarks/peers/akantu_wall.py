@@ -16,7 +16,7 @@ from akantu_step import LOAD, AkantuWall, as_in_akantu, free_run, read_materials
 from load_steps import LOOK, Bracket
 from peer import Peer
 
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from fem_interface.system import system_of
 from runningbond.dynamics import Run, State
 from runningbond.dynamics.run import LOCAL, VISCOUS

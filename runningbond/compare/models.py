@@ -94,7 +94,7 @@ _EVERY_MODEL = (
         observer=_MOTION_RECORDER,
         interruptible=True,
         cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
-        pushover=partial(_late, "fem_interface.finite_pushover", "fem_pushover"),
+        pushover=partial(_late, "fem_interface.model", "fem_pushover"),
         colour="#be185d",
         marker="D",
         line=(0, (3, 1, 1, 1)),

@@ -42,11 +42,11 @@ def point_operator(block: Indices, point: Array, direction: Array, centroid: Arr
 
 @dataclass(frozen=True, eq=False)
 class Jump:
-    """Jump operator B = (B_n, B_t) of rigid blocks: opening and slip at joint points.
+    """Jump operator B = (B_n, B_t) of rigid blocks or of nodes: opening and slip at joint points.
 
     Parameters
     ----------
-    opening, slip : (np, 3 nb) sparse array
+    opening, slip : (np, 3 nb) or (np, 2 nn) sparse array
         Normal and tangential jump u_b − u_a at each point [m] per degree of freedom.
     """
 

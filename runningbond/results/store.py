@@ -30,27 +30,33 @@ class StoreError(Exception):
     """A result folder that cannot be trusted; the message says why."""
 
 
-def write_atomically(path: Path, content: bytes) -> None:
-    """Write a file completely, or leave it as it was before; an OSError names the file."""
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """A new file beside another one, whose place it takes once it is written; an OSError names the latter.
+
+    Where something goes wrong, all is left as it was before. The folder is made if missing.
+    """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _write_beside(path, content)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=path.suffix.lower())
+        os.close(handle)
+        try:
+            yield Path(name)
+            with open(name, "rb") as file:
+                os.fsync(file.fileno())
+            os.chmod(name, 0o644)
+            os.replace(name, path)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
-def _write_beside(path: Path, content: bytes) -> None:
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(name, 0o644)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+def write_atomically(path: Path, content: bytes) -> None:
+    """Write a file completely, or leave it as it was before; an OSError names the file."""
+    with replacing(path) as beside:
+        beside.write_bytes(content)
 
 
 def make_folder(folder: Path) -> None:

@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from fem_interface import nodal_jump
-from fem_interface.element_order import modal_wall
 from fem_interface.fracture import fractured
 from fem_interface.frequency_shift import elastic_stiffness
-from fem_interface.modal_wall import ModalWall
+from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
+from fem_interface.operators import nodal_jump
 from fem_interface.system import system_of
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.joints.law import FRICTION_WORK

@@ -11,11 +11,12 @@ from hypothesis import strategies as st
 
 import dem.finite_system
 from dem.dynamic import finite_pushover
-from fem_interface.finite_pushover import fem_pushover
 from fem_interface.finite_system import DeformableContacts, finite_system
+from fem_interface.modal_wall import modal_wall
+from fem_interface.model import fem_pushover
 from fem_interface.modes import ModeCount
 from fem_interface.node_outline import NodeOutline, node_outline
-from fem_interface.system import fem_system
+from fem_interface.system import system_of
 from fem_interface.templates import nodes_of, triangles_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
@@ -124,7 +125,7 @@ def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, 
     """Modal forces of joints as springs: the difference falls as the square of the amplitude, slope 2 ± 0.1."""
     scene = wall(joint__inset=inset)
     blocks = node_outline(scene, cells, modes)
-    finite, small = finite_system(blocks), fem_system(scene, cells, modes)
+    finite, small = finite_system(blocks), system_of(modal_wall(scene, cells, modes))
     bears = np.abs(finite.interface.jumps(np.zeros_like(finite.mass))[0]) < 1e-9
     assert finite.interface.area[bears].sum() == pytest.approx(small.interface.area.sum(), rel=1e-12)
     stiffness = np.array([finite.interface.law.normal_stiffness[:1], finite.interface.law.shear_stiffness[:1]])
@@ -425,7 +426,10 @@ def test_a_glued_wall_breaks_as_at_small_displacements() -> None:
     scene = replace(scene, joint=replace(scene.joint, fracture_energy_1=5.0, fracture_energy_2=10.0))
     run: Run
     curves = []
-    for run in (Run(finite_system(node_outline(scene))), Run(fem_system(scene), local=LOCAL, viscous=VISCOUS)):
+    for run in (
+        Run(finite_system(node_outline(scene))),
+        Run(system_of(modal_wall(scene)), local=LOCAL, viscous=VISCOUS),
+    ):
         state = State.at_rest(run.system)
         settle(run, state, 0.0, Criteria(collapse=0.006))
         power = 1e-3 * np.abs(run.system.live).sum()

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from fem_interface.fracture import corrected_energies, fractured, printed_energies
+from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem
-from fem_interface.system import fem_system
+from fem_interface.system import system_of
 from runningbond.dynamics import Run
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.joints.softening import DAMAGE
@@ -41,7 +42,7 @@ def test_each_joint_has_the_energy_of_its_length() -> None:
 def test_energies_need_a_mortar_to_follow_from() -> None:
     stiff = {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10}
     with pytest.raises(SceneError, match=r"joint.mortar"):
-        fem_system(wall(joint=stiff), energies="corrected")
+        system_of(modal_wall(wall(joint=stiff)), energies="corrected")
 
 
 @pytest.mark.parametrize("energy", [None, 0.0, 20.0])
@@ -50,7 +51,7 @@ def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
     """Point by point, through rest and collapse; c = f_t = G = 0 among them."""
     scene = wall(1e10, joint__cohesion=cohesion)
     joint = replace(scene.joint, fracture_energy_1=energy, fracture_energy_2=energy)
-    run = Run(fem_system(replace(scene, joint=joint)))
+    run = Run(system_of(modal_wall(replace(scene, joint=joint))))
     state = check_dissipation(run, 100)
     assert state.history[FRICTION_WORK].max() > 0
     if energy is not None:

@@ -11,12 +11,12 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
 from fem_interface.cracks import Cracks
-from fem_interface.element_order import modal_wall
-from fem_interface.frequency_shift import FrequencyShift, elastic_stiffness
+from fem_interface.frequency_shift import elastic_stiffness, frequency_shift
 from fem_interface.loads import inner_mass
 from fem_interface.mass_scaling import scaled_modes
+from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
-from fem_interface.system import fem_system, system_of
+from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.controls import ramp
@@ -69,13 +69,15 @@ def test_loads_lumped_at_inner_nodes_have_the_resultant_of_each_block(make: Any,
 
 def test_rigid_blocks_do_not_feel_where_their_loads_act() -> None:
     scene = panel(joint__mortar=MORTAR)
-    consistent, lumped = (pushed(fem_system(scene, modes=3, loads=loads))[0] for loads in ("consistent", "inner"))
+    consistent, lumped = (
+        pushed(system_of(modal_wall(scene, modes=3), loads=loads))[0] for loads in ("consistent", "inner")
+    )
     assert np.abs(consistent - lumped).max() < 1e-12 * np.abs(lumped).max()
 
 
 def test_a_block_without_inner_nodes_bears_no_lumped_load() -> None:
     with pytest.raises(SceneError, match="has no inner nodes"):
-        fem_system(patch(), loads="inner")
+        system_of(modal_wall(patch()), loads="inner")
 
 
 # --- mass scaling --------------------------------------------------------------------------------------------
@@ -128,8 +130,8 @@ def test_mass_scaling_keeps_the_lowest_frequencies_of_equal_piers(piers: int, co
     assert system.mass == pytest.approx(scaled.mass, rel=1e-12)
     exact, slowed = (vibrations(each)[0][: min(20, 2 * piers * courses)] for each in (bare, system))
     assert (1 - slowed / exact).max() < HELD
-    slowing = FrequencyShift(found, len(exact), scaled.frequency_squared)
-    assert slowing.of(scaled.mass) == pytest.approx((1 - slowed / exact).max(), abs=1e-6)
+    slowing = frequency_shift(found, len(exact), scaled.frequency_squared)
+    assert slowing(scaled.mass) == pytest.approx((1 - slowed / exact).max(), abs=1e-6)
 
 
 @pytest.mark.parametrize("cracks", ["joints", "blocks"])
@@ -162,10 +164,10 @@ def test_stiff_blocks_take_the_step_of_rigid_ones(modes: ModeCount | None, short
     the damping of such a mode costs a little of the step.
     """
     scene = panel(joint__mortar=MORTAR, block__young=1e12)
-    rigid = fem_system(scene, modes=3).interface.frequency_squared
-    scaled = fem_system(scene, modes=modes).interface.frequency_squared
+    rigid = system_of(modal_wall(scene, modes=3)).interface.frequency_squared
+    scaled = system_of(modal_wall(scene, modes=modes)).interface.frequency_squared
     assert 1 < math.sqrt(scaled / rigid) < 1 + shorter
-    assert math.sqrt(fem_system(scene, mass_scaling=False).interface.frequency_squared / rigid) > 15
+    assert math.sqrt(system_of(modal_wall(scene), mass_scaling=False).interface.frequency_squared / rigid) > 15
 
 
 @pytest.mark.parametrize("young", [1e9, 1e12])
@@ -202,7 +204,7 @@ def test_mass_scaling_leaves_a_pushed_wall_where_it_is(scene: Scene, highest: fl
     rows = []
     loads = np.linspace(0.0, highest, 6)
     for on in (True, False):
-        run = Run(fem_system(scene, mass_scaling=on))
+        run = Run(system_of(modal_wall(scene), mass_scaling=on))
         state, criteria = State.at_rest(run.system), Criteria(collapse=1.0, rest=1e-6, budget=20_000_000)
         pieces = round(SLOWLY / run.dt / 20)
         for piece in range(pieces):
@@ -225,7 +227,7 @@ def test_statics_of_default_modes_do_not_feel_the_scaling(young: float) -> None:
     """A glued wall at rest with and without mass scaling, to 1e-6 of the largest."""
     motions = []
     for on in (True, False):
-        run = Run(fem_system(wall(young, joint={**GLUE}), mass_scaling=on))
+        run = Run(system_of(modal_wall(wall(young, joint={**GLUE})), mass_scaling=on))
         state = State.at_rest(run.system)
         assert settle(run, state, 0.7, Criteria(collapse=1.0, rest=1e-9, budget=20_000_000)) == "stable"
         motions.append(state.motion)

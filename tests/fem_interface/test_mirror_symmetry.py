@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 
 from fem_interface import mirror_symmetry as folding
 from fem_interface.block_kernels import ModalJoints
-from fem_interface.element_order import modal_wall
-from fem_interface.mirror_symmetry import Folded, TableFolder, folded
+from fem_interface.mirror_symmetry import Folded, fold_of_many, folded
+from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
-from fem_interface.system import fem_system
+from fem_interface.system import system_of
 from meshing import wall_mesh
 from runningbond.dynamics import BlockSystem
 from runningbond.scene import Array
@@ -77,7 +77,7 @@ def test_an_irregular_block_is_left_as_it_is() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.1], [0.9, 0.8], [0.2, 0.7]])
     found = folded(points, np.ones((8, 3)))
     assert len(found.pairs) == 0
-    assert not TableFolder().take((1000, 3, 8, 0, 0), points, np.ones((8, 3)))
+    assert fold_of_many(1000, points, np.ones((8, 3))) is None
 
 
 def test_nodes_in_one_place_are_left_as_they_are() -> None:
@@ -94,7 +94,7 @@ def test_kernels_do_not_mind_whether_tables_are_folded(
 ) -> None:
     def system(fewest: int) -> BlockSystem:
         monkeypatch.setattr(folding, "FEWEST", fewest)
-        return fem_system(panel(joint__mortar=MORTAR, block__young=1e10, **changes), modes=count)
+        return system_of(modal_wall(panel(joint__mortar=MORTAR, block__young=1e10, **changes), modes=count))
 
     def answers(system: BlockSystem) -> tuple[Array, Array, Array]:
         rng = np.random.default_rng(1)

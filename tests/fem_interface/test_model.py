@@ -9,10 +9,10 @@ from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
 
 from dem.dynamic import dem_dynamic
-from fem_interface import nodal_jump
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem
-from fem_interface.system import fem_system, system_of
+from fem_interface.operators import nodal_jump
+from fem_interface.system import system_of
 from meshing import wall_mesh
 from runningbond.compare import published_scene
 from runningbond.dynamics import Criteria, Run, State, settle
@@ -135,14 +135,14 @@ def test_contact_forces_carry_the_weight(on: Literal["elements", "joints"]) -> N
 
 def test_blocks_without_a_stiffness_are_refused_unless_rigid() -> None:
     scene = panel(joint__mortar=MORTAR)
-    fem_system(scene, modes=3)
+    system_of(modal_wall(scene, modes=3))
     with pytest.raises(SceneError, match=r"block\.young"):
-        fem_system(scene)
+        system_of(modal_wall(scene))
 
 
 def test_an_unknown_number_of_modes_is_refused() -> None:
     with pytest.raises(ValueError, match="modes = 4"):
-        fem_system(wall(), modes=4)
+        system_of(modal_wall(wall(), modes=4))
 
 
 def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> None:

@@ -14,9 +14,9 @@ from scipy.sparse.linalg import spsolve
 from skfem import Basis, ElementTriP1, MeshTri
 
 from dem.rigid_system import contact_points
-from fem_interface import joint_elements, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import rigid_motions
+from fem_interface.operators import joint_elements, lumped_mass, mass_matrix, nodal_jump, stiffness_matrix
 from fem_interface.templates import nodes_of, triangles_of
 from meshing import wall_mesh
 from runningbond.joints import JointPoints, Rule, gauss, lobatto, wall_points

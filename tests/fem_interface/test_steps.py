@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from dem.rigid_system import rigid_system
-from fem_interface.element_order import modal_wall
 from fem_interface.frequency_shift import elastic_stiffness
 from fem_interface.mass_scaling import scaled_modes
-from fem_interface.system import fem_system, system_of
+from fem_interface.modal_wall import modal_wall
+from fem_interface.system import system_of
 from runningbond.dynamics import Run, State
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import JointMaterial, Mortar
@@ -53,7 +53,7 @@ def test_three_modes_are_rigid_blocks(
     Without local damping, whose sign of a velocity that is zero but for rounding is anybody's guess.
     """
     scene = panel(joint__mortar=MORTAR, support__kind=support, **changes)
-    ours, theirs = fem_system(scene, cells, modes=3, points=on), rigid_system(scene)
+    ours, theirs = system_of(modal_wall(scene, cells, modes=3, points=on)), rigid_system(scene)
     free = ~scene.fixed
     for name in ("mass", "dead", "live", "control", "force_unit"):
         a, b = (getattr(system, name)[system.rigid][free] for system in (ours, theirs))
@@ -86,7 +86,7 @@ def test_a_wall_at_the_stable_step_stays_bounded(make: Any, young: float) -> Non
     scene = make()
     block, joint = replace(scene.block, young=young), JointMaterial(0.6, 1e9, 1e9, Mortar(1e9, 0.2, 0.01))
     scene = replace(scene, block=block, joint=joint)
-    run = Run(fem_system(scene))
+    run = Run(system_of(modal_wall(scene)))
     state = State.at_rest(run.system)
     moving = np.isfinite(run.system.mass)
     state.velocity[moving] = np.random.default_rng(5).normal(size=moving.sum()) * 1e-3

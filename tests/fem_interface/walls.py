@@ -6,8 +6,8 @@ import numpy as np
 from scipy.linalg import block_diag
 from scipy.sparse import csr_array
 
-from fem_interface import mass_matrix, stiffness_matrix
 from fem_interface.modes import rigid_motions
+from fem_interface.operators import mass_matrix, stiffness_matrix
 from fem_interface.templates import nodes_of, triangles_of
 from meshing import WallMesh
 from runningbond.dynamics import BlockSystem, Run, State

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import runningbond as rb
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from runningbond.results import Outcome
 from runningbond.run_result import Result
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import pyvista
 
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
 from runningbond.compare.fingerprint import fingerprint
 from runningbond.compare.models import run_model

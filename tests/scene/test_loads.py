@@ -9,7 +9,8 @@ import pytest
 
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import rigid_system
-from fem_interface.system import fem_system
+from fem_interface.modal_wall import modal_wall
+from fem_interface.system import system_of
 from homog import homog
 from runningbond.limit import limit
 from runningbond.limit.kinematics import dead_load, live_load
@@ -124,7 +125,7 @@ def test_forces_are_the_same_to_rigid_and_to_deformable_blocks() -> None:
     loads = (PointLoad((0.12, 0.36), (3.0, -4.0)), Body((1.0, -2.0)), Moments(5.0))
     scene = tower(block__young=1e9)
     scene = replace(scene, load=Load(scene.load.gravity, loads))
-    rigid, deformable = rigid_system(scene), fem_system(scene)
+    rigid, deformable = rigid_system(scene), system_of(modal_wall(scene))
     for system in (rigid, deformable):
         moved = system.live[system.rigid]
         assert moved[:-1] == pytest.approx(live_load(scene).reshape(-1, 3)[:-1], rel=1e-9, abs=1e-9)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fem_interface.element_order import modal_wall
 from fem_interface.mass_scaling import LOST, LOWEST
+from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem
 from fem_interface.system import system_of
 from runningbond.studies.stability.block_stiffness import uniformly_scaled, wall

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from dem.rigid_system import contact_points, rigid_system
+from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
-from fem_interface.system import fem_system
+from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
 from runningbond.dynamics.central_differences import LOOK
@@ -73,7 +74,7 @@ def test_vibrations_are_mass_normalised_and_keep_their_cosine() -> None:
 @pytest.mark.parametrize("scaled", [True, False])
 def test_a_wall_grows_beyond_the_step_of_its_largest_eigenvalue(modes: ModeCount, scaled: bool) -> None:
     """To 0.1 %; the bound from each block alone lies inside it, and no farther than a fifth."""
-    system = fem_system(bonded(small()), modes=modes, damping=0.0, mass_scaling=scaled)
+    system = system_of(modal_wall(bonded(small()), modes=modes), damping=0.0, mass_scaling=scaled)
     row = critical_step(system)
     assert row["measured"] == pytest.approx(row["theory"], rel=1e-3)
     assert 0.8 * row["theory"] < row["bound from each block"] <= row["theory"] * (1 + 1e-12)
@@ -108,7 +109,7 @@ def test_a_run_beyond_the_critical_step_fails_at_its_first_look(
     """And names the step that it took and one that is safe; the latter is safe."""
     outcome = run_beyond(model, times)
     scene = published_scene("wall-w1")
-    system = rigid_system(scene) if model == "dem-dynamic" else fem_system(scene)
+    system = rigid_system(scene) if model == "dem-dynamic" else system_of(modal_wall(scene))
     taken = times * 2 / vibrations(system)[0][-1]
     assert (outcome.status, outcome.multiplier, outcome.lower, outcome.upper) == ("failed", None, None, None)
     assert outcome.steps == LOOK

@@ -8,8 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fem_interface import ModeCount, nodal_jump
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
+from fem_interface.modes import ModeCount
+from fem_interface.operators import nodal_jump
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
 from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Array, Indices, Scene

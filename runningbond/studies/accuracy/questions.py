@@ -10,8 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dem.rigid_system import rigid_system
-from fem_interface import ModeCount
-from fem_interface.system import fem_system
+from fem_interface.modal_wall import modal_wall
+from fem_interface.modes import ModeCount
+from fem_interface.system import system_of
 from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
 from runningbond.dynamics.collapse import U_CRIT
@@ -66,8 +67,10 @@ def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Dr
     return drive(run, state, distance, steps)
 
 
-def _system(model: str, scene: Scene, **settings: Any) -> BlockSystem:
-    return fem_system(scene, **settings) if model == "fem" else rigid_system(scene)
+def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: Any) -> BlockSystem:
+    if model != "fem":
+        return rigid_system(scene)
+    return system_of(modal_wall(scene, **settings), mass_scaling=mass_scaling)
 
 
 def _turned(model: str, scene: Scene, speed: float = SPEED, **settings: Any) -> Answer:

@@ -10,9 +10,8 @@ from dataclasses import replace
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem_interface.element_order import modal_wall
 from fem_interface.mass_scaling import LOWEST, largest_scaling
-from fem_interface.modal_wall import ModalWall
+from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
 from fem_interface.system import system_of
 from runningbond.dynamics import BlockSystem, Run

@@ -14,9 +14,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from dem.rigid_system import contact_points, rigid_system
-from fem_interface.element_order import modal_wall
+from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
-from fem_interface.system import fem_system, system_of
+from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Run, State, collapse_by_steps
 from runningbond.results import Outcome
@@ -55,7 +55,8 @@ def growth_at(times: float) -> float:
 def critical_row(kind: str) -> Row:
     """The critical step of W1 whose joints hold, without damping."""
     modes, scaled = KINDS[kind]
-    return critical_step(fem_system(bonded(published_scene(WALL)), modes=modes, damping=0.0, mass_scaling=scaled))
+    blocks = modal_wall(bonded(published_scene(WALL)), modes=modes)
+    return critical_step(system_of(blocks, damping=0.0, mass_scaling=scaled))
 
 
 def critical_step(system: BlockSystem) -> Row:
