@@ -113,7 +113,7 @@ def test_what_is_kept_of_a_wall_is_kept_for_its_law_in_every_process() -> None:
     """The fingerprint of an outcome tells laws apart, and is the same in another process."""
     program = """
 from runningbond.compare.fingerprint import fingerprint
-from tests.test_laws import SPRINGS, tower
+from tests.joints.test_laws import SPRINGS, tower
 print(fingerprint(tower(law=SPRINGS), "limit", 0.01))
 """
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).parents[2])}
