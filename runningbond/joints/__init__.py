@@ -7,7 +7,7 @@ from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw, resultant_law
 from .stiffness import joint_stiffness
 from .stiffness_range import stiffness_note
-from .wall_points import static_law, wall_inset, wall_points, wall_stiffness, wall_strength
+from .wall_points import static_law, wall_cones, wall_inset, wall_points, wall_stiffness, wall_strength
 
 __all__ = [
     "JointPoints",
@@ -26,6 +26,7 @@ __all__ = [
     "resultant_law",
     "static_law",
     "stiffness_note",
+    "wall_cones",
     "wall_inset",
     "wall_points",
     "wall_stiffness",

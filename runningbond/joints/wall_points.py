@@ -23,14 +23,16 @@ def wall_inset(scene: Scene) -> Array:
 
 def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:
     """Strength of points on a scene's joints."""
-    cones = np.array(
-        [
-            material.law.cone(material) if isinstance(material.law, Law) else truncated_cone(material)
-            for material in scene.joint_materials
-        ]
-    )
-    friction, tension, shear = cones[scene.material_of_joint[points.joint]].T
+    friction, tension, shear = wall_cones(scene, points.joint)
     return PointStrength(friction, tension * points.area, shear * points.area)
+
+
+def wall_cones(scene: Scene, joint: Indices) -> tuple[Array, Array, Array]:
+    """tan φ, f_t [Pa] and shear at that tension [Pa] of joints of a scene by their law, three ``(n,)``."""
+    laws = [(material, material.law) for material in scene.joint_materials]
+    cones = [law.cone(material) if isinstance(law, Law) else truncated_cone(material) for material, law in laws]
+    friction, tension, shear = np.array(cones)[scene.material_of_joint[joint]].T
+    return friction, tension, shear
 
 
 def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
