@@ -37,10 +37,8 @@ class LimitState:
 
     Parameters
     ----------
-    system
-        The equilibrium equations.
-    forces
-        The solution of the linear program.
+    system, forces
+        The equilibrium equations, and the solution of the linear program.
     """
 
     system: Equilibrium
@@ -235,10 +233,8 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
 
     Parameters
     ----------
-    scene
-        The scene.
-    tolerance
-        Relative width of the bracket asked for; strong duality closes it to about 1e-9.
+    scene, tolerance
+        The scene, and the relative width of the bracket asked for; strong duality closes it to about 1e-9.
 
     Returns
     -------

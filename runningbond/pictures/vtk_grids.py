@@ -30,6 +30,7 @@ class GridBuilder:
     def __init__(self, discretisation: Discretisation) -> None:
         self._scene, self._points = discretisation.scene, discretisation.points
         self._triangles = discretisation.triangles
+        self._courses, self._templates = course_numbers(self._scene), _templates(self._scene.blocks)
 
     def blocks(self, frame: Frame) -> Grid:
         """Blocks, each a polygon, or in triangles where they deform, with the arrays of ``blocks.pvd``."""
@@ -102,14 +103,6 @@ class GridBuilder:
         length = along[second] - along[first]
         apart = (points.joint[first] == points.joint[second]) & (length > self._scene.blocks.tolerance)
         return np.column_stack([first[apart], second[apart]])
-
-    @cached_property
-    def _courses(self) -> Indices:
-        return course_numbers(self._scene)
-
-    @cached_property
-    def _templates(self) -> Indices:
-        return _templates(self._scene.blocks)
 
 
 def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:

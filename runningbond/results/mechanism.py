@@ -81,8 +81,6 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
 
     Parameters
     ----------
-    scene
-        The wall.
     motion : (nb, 3) float
         Displacement of each block's centroid [m] and rotation [rad].
     dead, live : (3 nb,) float

@@ -64,18 +64,9 @@ def make_folder(folder: Path) -> None:
 
 
 def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | None = None) -> None:
-    """Write an outcome into a folder of its own.
+    """Write an outcome into a folder of its own, made if missing.
 
-    Parameters
-    ----------
-    outcome
-        The outcome.
-    folder
-        The folder; made if missing.
-    key
-        What the outcome was computed from, given back by `load_outcome`.
-    scene
-        The wall it is about, given back by `load_scene`.
+    `load_outcome` gives back its key, what it was computed from, and `load_scene` the wall that it is about.
     """
     buffer = io.BytesIO()
     columns: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}

@@ -10,15 +10,7 @@ from .ranges import Range, one_of, ranges_of, suggestion, vector
 
 
 class Table:
-    """A TOML table being read.
-
-    Parameters
-    ----------
-    name
-        Full name, empty for the file's top level.
-    content
-        What the file holds under that name.
-    """
+    """A TOML table being read: its full name, empty for the file's top level, and what the file holds under that."""
 
     def __init__(self, name: str, content: Any) -> None:
         if not isinstance(content, dict):

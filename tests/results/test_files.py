@@ -328,7 +328,7 @@ def test_states_under_load_follow_the_law() -> None:
 
 
 def test_states_follow_the_cone_of_a_law_of_ones_own() -> None:
-    """Tan φ = 0.2 in the law, 0.6 in the material: 0.3 of the pressure slides, and so does a lift of 0.2 of the slip."""
+    """Tan φ = 0.2 in the law, 0.6 in the material: 0.3 of the pressure slides, as does a lift of 0.2 of the slip."""
     law = replace(COULOMB, name="smooth", cone=lambda _: (0.2, 0.0, 0.0))
     joint = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8, "law": law}
     scene = courses([[1]], width=0.2, height=0.2, joint=joint)

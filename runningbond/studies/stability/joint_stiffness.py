@@ -17,7 +17,7 @@ from dem.static_system import static_system
 from fem_interface.model import fem
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.joints.stiffness_range import SOFT
+from runningbond.joints.stiffness import SOFT
 from runningbond.results import Outcome
 from runningbond.scene import Scene, Stiffness
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
