@@ -36,22 +36,9 @@ def lateral_multiplier(slenderness: float, slope: float, friction: float) -> flo
 def homog(scene: Scene) -> Outcome:
     """Collapse multiplier of a dry running-bond panel under lateral load, as a homogenised continuum.
 
-    Parameters
-    ----------
-    scene
-        A full rectangular panel on a frictional base or a fixed first course, whose height then counts
-        from there.
-
-    Returns
-    -------
-    Outcome
-        No bracket: a mechanism of the continuum proves the multiplier an upper bound for the continuum, but
-        for the wall of blocks it is an estimate, on either side.
-
-    Raises
-    ------
-    SceneError
-        For a scene to which the closed form does not apply.
+    The scene is a full rectangular panel on a frictional base or a fixed first course, whose height then counts from
+    there; any other is refused by a `SceneError`. The outcome has no bracket: a mechanism of the continuum proves the
+    multiplier an upper bound for the continuum, but for the wall of blocks it is an estimate, on either side.
     """
     start = time.perf_counter()
     bond = _bond(scene)

@@ -26,10 +26,8 @@ class Equilibrium:
 
     Parameters
     ----------
-    scene
-        The scene.
-    points
-        Contact points: the ends of every joint, moved in by the scene's inset.
+    scene, points
+        The scene, and its contact points: the ends of every joint, moved in by the scene's inset.
     strength
         Strength of those points, in force units.
     opening, slip : (nd, np) sparse array
@@ -38,10 +36,8 @@ class Equilibrium:
         Transposed pin operator.
     dead, live : (nd,) float
         Loads.
-    force_unit : float
-        Force [N] that counts as 1.
-    live_unit : float
-        λ that counts as 1.
+    force_unit, live_unit : float
+        Force [N] and multiplier λ that count as 1.
     scale : (nd,) float
         Factor of each equation: blocks count by their own weight, or a small one's balance would be lost in
         the solver's tolerance beside a large one, and moments by their own size.

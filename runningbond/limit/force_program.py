@@ -69,10 +69,8 @@ class ForceSolution:
 
     Parameters
     ----------
-    status
-        Whether there is an optimum, and why not.
-    multiplier
-        λ at the optimum.
+    status, multiplier
+        Whether there is an optimum, and why not; λ at the optimum.
     pressure, tangential : (np,) float
         f_t0 − f_n, not negative, and f_t at each point.
     reaction : (n_pins,) float
@@ -80,7 +78,7 @@ class ForceSolution:
     motion : (nd,) float
         Multipliers of the equilibrium equations: the collapse mechanism, f_live · q = 1.
     iterations
-        Iterations of the solver.
+        Of the solver.
     """
 
     status: ProgramStatus

@@ -10,7 +10,7 @@ import json
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -32,35 +32,34 @@ class StoreError(Exception):
 
 def write_atomically(path: Path, content: bytes) -> None:
     """Write a file completely, or leave it as it was before; an OSError names the file."""
-    try:
+    with _errors_named(path), ExitStack() as after:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _write_beside(path, content)
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, str(path)) from error
-
-
-def _write_beside(path: Path, content: bytes) -> None:
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        after.callback(Path(name).unlink, missing_ok=True)
         with os.fdopen(handle, "wb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
         os.chmod(name, 0o644)
         os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        after.pop_all()
 
 
 def make_folder(folder: Path) -> None:
     """Make a folder and check that files can be written there, before a long computation; an OSError names it."""
-    try:
+    with _errors_named(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder) as file:
             file.write(b" ")
+
+
+@contextmanager
+def _errors_named(path: Path) -> Iterator[None]:
+    """Name a path in an OSError."""
+    try:
+        yield
     except OSError as error:
-        raise OSError(error.errno, error.strerror, str(folder)) from error
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | None = None) -> None:

@@ -44,10 +44,6 @@ class Joints:
         run = self.ends[:, 1] - self.ends[:, 0]
         return np.hypot(run[:, 0], run[:, 1])
 
-    def part(self, chosen: Mask | Indices) -> "Joints":
-        """Some of the joints, or all in another order."""
-        return Joints(self.block[chosen], self.ends[chosen], self.inner[chosen])
-
 
 def find_joints(blocks: Blocks) -> Joints:
     """Find every segment along which two blocks touch.

@@ -20,10 +20,8 @@ class Pins:
     ----------
     block : (n,) int
         The block held.
-    point : (n, 2) float
-        Where [m].
-    direction : (n, 2) float
-        Unit vector along which the displacement of that point is zero.
+    point, direction : (n, 2) float
+        Where [m], and the unit vector along which the displacement of that point is zero.
     """
 
     block: Indices
