@@ -37,15 +37,7 @@ PENETRATION = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Proof that a wall can collapse: a mechanism and the interval of loads that drive it.
-
-    Parameters
-    ----------
-    motion : (nd,) float
-        The mechanism, scaled.
-    least, most
-        Forces at the smallest and the largest multiplier.
-    """
+    """Proof that a wall can collapse: a scaled mechanism ``(nd,)``, and forces at the least and the most load on it."""
 
     motion: Array
     least: ForceSolution

@@ -124,9 +124,8 @@ class DeformedShape:
 
 def undeformed_shape(scene: Scene) -> DeformedShape:
     """The wall as it was built."""
-    return DeformedShape.of_rigid_blocks(
-        scene, np.zeros((len(scene.blocks), 3)), np.zeros(len(scene.joints), np.int64), 0.0
-    )
+    at_rest = np.zeros((len(scene.blocks), 3))
+    return DeformedShape.of_rigid_blocks(scene, at_rest, np.zeros(len(scene.joints), np.int64), 0.0)
 
 
 def visible_scale(scene: Scene, displacement: Array) -> float:

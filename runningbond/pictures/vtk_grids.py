@@ -67,10 +67,12 @@ class GridBuilder:
         grid = _grid(points.position[at], [(LINE, lines.ravel(), np.full(n, 2)), (QUAD, quads.ravel(), np.full(n, 4))])
 
         jump = frame.opening[:, None] * points.normal + frame.slip[:, None] * points.tangent
+        # Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
+        a, b = (carried(self._scene.blocks, side, points.position, frame.motion) for side in points.block.T)
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
         _add(
             grid.point_data,
-            displacement=_in_space(self._sides(frame, jump)[at] + share[:, None] * jump[at]),
+            displacement=_in_space(((a + b - jump) / 2)[at] + share[:, None] * jump[at]),
             opening=frame.opening[at],
             slip=frame.slip[at],
             sigma=frame.normal[at],
@@ -83,15 +85,6 @@ class GridBuilder:
         _add(grid.cell_data, joint=joint, inner=inner.astype(np.uint8), state=state.astype(np.uint8))
         _add(grid.field_data, multiplier=[frame.multiplier])
         return grid
-
-    def _sides(self, frame: Frame, jump: Array) -> Array:
-        """Displacement of block a at each joint point, ``(np, 2)`` [m].
-
-        Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
-        """
-        points = self._points
-        a, b = (carried(self._scene.blocks, side, points.position, frame.motion) for side in points.block.T)
-        return np.asarray((a + b - jump) / 2)
 
     @cached_property
     def _pieces(self) -> Indices:

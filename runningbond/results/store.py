@@ -89,13 +89,7 @@ def _seal(scalars: dict[str, object], content: bytes) -> str:
 
 
 def load_outcome(folder: Path) -> tuple[Outcome, str]:
-    """Read an outcome and its key back.
-
-    Raises
-    ------
-    StoreError
-        If there is no outcome, or anything about it is missing, damaged or not what was written.
-    """
+    """Read an outcome and its key; a StoreError if there is none, or anything of it is missing, damaged or changed."""
     with _trusted(folder) as (record, stored):
         arrays: dict[str, Any] = {name: stored[name] for name in ARRAYS}
         scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}

@@ -117,13 +117,7 @@ class Blocks:
         return np.flatnonzero(np.minimum.reduceat(depth, self.first[:-1]) >= -self.tolerance)
 
     def check(self) -> None:
-        """Refuse polygons that enclose nothing or are not convex.
-
-        Raises
-        ------
-        SceneError
-            Naming the first offending block and where it is.
-        """
+        """Refuse polygons that enclose nothing or are not convex, in a `SceneError` that names and places the first."""
         here, there, _ = self._local
         edge = there - here
         turn = edge[:, 0] * edge[self.successor, 1] - edge[:, 1] * edge[self.successor, 0]

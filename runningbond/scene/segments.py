@@ -50,12 +50,7 @@ def find_joints(blocks: Blocks) -> Joints:
 
     Two edges make a joint where they run in opposite senses, lie on one line to within the contact
     tolerance, and overlap by more than it. Nothing is asked of courses or rows, so T-junctions, half
-    blocks, openings and inclined edges all come out right.
-
-    Raises
-    ------
-    SceneError
-        Where two blocks overlap.
+    blocks, openings and inclined edges all come out right. Blocks that overlap are refused by a `SceneError`.
     """
     tolerance = blocks.tolerance
     start = blocks.vertices

@@ -107,5 +107,5 @@ class Table:
         """Refuse keys that have no meaning."""
         for key, value in self._left.items():
             place = f"[{self.name}]" if self.name else "a scene file"
-            shown = "a table" if isinstance(value, dict) else value
-            raise SceneError(self.key(key), f"is not a key of {place}{suggestion(key, self._keys)}", shown)
+            what = f"is not a key of {place}{suggestion(key, self._keys)}"
+            raise SceneError(self.key(key), what, "a table" if isinstance(value, dict) else value)
