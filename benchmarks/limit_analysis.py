@@ -6,13 +6,13 @@ The two are timed in turn, run by run; what is quoted is the median ratio and it
 import statistics
 import time
 from collections.abc import Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from scipy.optimize import linprog
 
 from runningbond.compare import PUBLISHED, published_scene
 from runningbond.limit import equilibrium, limit
-from runningbond.limit.force_program import LinearProgram, coulomb, force_program
+from runningbond.limit.force_program import coulomb, force_program
 
 RUNS = 5
 Argument = TypeVar("Argument")
@@ -25,11 +25,9 @@ def seconds(call: Callable[[Argument], object], argument: Argument) -> float:
     return time.perf_counter() - start
 
 
-def bare(program: LinearProgram) -> object:
+def bare(program: dict[str, Any]) -> object:
     """Solve a program with nothing round it."""
-    return linprog(  # type: ignore[call-overload]  # its stubs know no sparse A_eq
-        program.cost, A_eq=program.matrix, b_eq=program.right, bounds=program.bounds, method="highs-ipm"
-    )
+    return linprog(**program, method="highs-ipm")
 
 
 def main() -> None:

@@ -1,4 +1,4 @@
-"""Rigid blocks: on elastic joints load by load (`dem.static`), in motion (`dem.dynamic`), at their limit (`runningbond.limit`)."""
+"""Rigid blocks: load by load (`dem.static`), in motion (`dem.dynamic`), and their limit (`runningbond.limit`)."""
 
 from runningbond.limit import limit, limit_nonassociated
 

@@ -22,7 +22,7 @@ import numpy as np
 from scipy.sparse import block_array, csc_array, csr_array, diags_array, vstack
 from scipy.sparse.linalg import splu
 
-from runningbond.joints import ResultantLaw, gauss, joint_points, resultant_law, wall_stiffness, wall_strength
+from runningbond.joints import ResultantLaw, gauss, joint_points, wall_stiffness, wall_strength
 from runningbond.joints.resultant_law import DETACHED
 from runningbond.limit.kinematics import (
     control_row,
@@ -110,8 +110,9 @@ def resultant_wall(scene: Scene, arm: float = 0.5) -> ResultantWall:
     entries = (np.repeat([1.0, -1.0], len(joint)), (np.tile(joint, 2), np.concatenate([3 * b + 2, 3 * a + 2])))
     rotation = csr_array(entries, shape=jump.opening.shape)
     free = movable_freedoms(scene)
+    stiffness = np.column_stack([normal, shear, normal * length**2 / 12])
     return ResultantWall(
-        resultant_law(wall_strength(scene, middles), normal, shear, length, arm * length),
+        ResultantLaw(wall_strength(scene, middles), stiffness, arm * length),
         csr_array(vstack([jump.opening, jump.slip, rotation]))[:, free],
         pin_operator(scene)[:, free],
         dead_load(scene)[free],

@@ -24,15 +24,7 @@ def elastic_moduli(
     head_normal: float,
     head_shear: float,
 ) -> Moduli:
-    """Moduli of the infinite wall.
-
-    Parameters
-    ----------
-    block_width, block_height
-        b and a [m].
-    bed_normal, bed_shear, head_normal, head_shear
-        Joint stiffness per unit area [Pa/m] of bed (h) and head (v) joints.
-    """
+    """Moduli of the infinite wall from blocks b × a [m] and stiffnesses per unit area [Pa/m] of bed and head joints."""
     b, a = block_width, block_height
     # Shear strain tilts the bond against the heads' shear and the beds' normal stiffness, in series with bed shear.
     tilting = b * head_shear + bed_normal * b**2 / (4 * a)

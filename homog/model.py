@@ -1,5 +1,15 @@
-"""Model ``homog``: the closed-form multiplier of a scene, where the scene is what the closed form is about."""
+"""Model ``homog``: collapse multiplier of a dry running-bond panel pushed sideways by its own weight, as a continuum.
 
+One crack rises from the lower corner on the far side of the push and the wedge above it turns about that
+corner. Blocks hold together up to a crack slope tan ψ = s, ψ from the horizontal, with
+
+    s = (m / tan φ)^{1/2},    m = 2 a / b,    r = H / L
+
+(Baraldi, Reccia & Cecchi, Eq. 6, with the exponent corrected: the printed −1/2 in the second branch makes the
+multiplier jump at r = s; see docs/errata.md).
+"""
+
+import math
 import time
 
 import numpy as np
@@ -7,28 +17,28 @@ import numpy as np
 from runningbond.results import Outcome
 from runningbond.scene import Bond, Scene, SceneError
 
-from .collapse import crack_slope, lateral_multiplier
+
+def crack_slope(block_width: float, block_height: float, friction: float) -> float:
+    """Steepest crack slope s = (m / tan φ)^{1/2} of blocks b × a [m] with friction tan φ; inf without friction."""
+    return math.sqrt(2 * block_height / block_width / friction) if friction > 0 else math.inf
+
+
+def lateral_multiplier(slenderness: float, slope: float, friction: float) -> float:
+    """Collapse multiplier λ of a panel of slenderness r = H / L with crack slope s.
+
+    It is 1 / (2 s) where r ≤ s, (3 r − 2 s) / (3 r² − s²) beyond, and never more than tan φ, at which all of it slides.
+    """
+    r, s = slenderness, slope
+    turning = 1 / (2 * s) if r <= s else (3 * r - 2 * s) / (3 * r**2 - s**2)
+    return min(turning, friction)
 
 
 def homog(scene: Scene) -> Outcome:
     """Collapse multiplier of a dry running-bond panel under lateral load, as a homogenised continuum.
 
-    Parameters
-    ----------
-    scene
-        A full rectangular panel on a frictional base or a fixed first course, whose height then counts
-        from there.
-
-    Returns
-    -------
-    Outcome
-        No bracket: a mechanism of the continuum proves the multiplier an upper bound for the continuum, but
-        for the wall of blocks it is an estimate, on either side.
-
-    Raises
-    ------
-    SceneError
-        For a scene to which the closed form does not apply.
+    The scene is a full rectangular panel on a frictional base or a fixed first course, whose height then counts from
+    there; any other is refused by a `SceneError`. The outcome has no bracket: a mechanism of the continuum proves the
+    multiplier an upper bound for the continuum, but for the wall of blocks it is an estimate, on either side.
     """
     start = time.perf_counter()
     bond = _bond(scene)

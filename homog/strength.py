@@ -13,49 +13,27 @@ import numpy as np
 from scipy.optimize import linprog
 
 from runningbond.joints import point_strength
-from runningbond.scene import Array, Bond, JointMaterial
+from runningbond.scene import Bond, JointMaterial
 
 
 @dataclass(frozen=True)
 class StrengthDomain:
-    """Stresses that running bond can carry.
-
-    Parameters
-    ----------
-    bond
-        The block.
-    joint
-        Strength of its joints.
-    """
+    """Stresses that running bond can carry, by its block and the strength of its joints."""
 
     bond: Bond
     joint: JointMaterial
 
-    def _jumps(self) -> tuple[Array, Array]:
-        """Opening and slip of the head and the two bed joints per (D11, D22, D12, ω), two ``(3, 4)`` [m]."""
-        b, a = self.bond.width, self.bond.height
-        half = b / 2
-        opening = np.array([[b, 0, 0, 0], [0, a, half, -half], [0, a, -half, half]], dtype=float)
-        slip = np.array([[0, 0, b, -b], [half, 0, a, a], [-half, 0, a, a]], dtype=float)
-        return opening, slip
-
     def strength(self, direction: tuple[float, float, float]) -> float:
-        """Largest t for which t (Σ11, Σ22, Σ12) is carried [Pa per unit of `direction`]; inf if any is.
+        """Largest t for which t (Σ11, Σ22, Σ12), tension positive, is carried [Pa per unit of it]; inf if any is.
 
-        Parameters
-        ----------
-        direction
-            (Σ11, Σ22, Σ12), tension positive.
-
-        Notes
-        -----
         Solved as min π(D) over D with Σ : D = 1, with each joint's slip split into its two senses.
         """
         b, a = self.bond.width, self.bond.height
-        length = np.array([a, b / 2, b / 2])
-        resistance = point_strength(self.joint, length)
-        opening, slip = self._jumps()
-        n = len(length)
+        half, n = b / 2, 3
+        resistance = point_strength(self.joint, np.array([a, half, half]))
+        # Jumps [m] of the head and the two bed joints per D11, D22, D12 and ω.
+        opening = np.array([[b, 0, 0, 0], [0, a, half, -half], [0, a, -half, half]], dtype=float)
+        slip = np.array([[0, 0, b, -b], [half, 0, a, a], [-half, 0, a, a]], dtype=float)
         # Unknowns: D11, D22, D12, ω, then forward and backward slip of each joint.
         cost = np.concatenate([resistance.tension @ opening, resistance.shear, resistance.shear]) / (a * b)
         split = np.hstack([slip, -np.eye(n), np.eye(n)])

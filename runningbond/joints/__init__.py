@@ -4,10 +4,9 @@ from .law import KernelLaw, Law
 from .mohr_coulomb import PointStrength, point_strength
 from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
-from .resultant_law import ResultantLaw, resultant_law
-from .stiffness import joint_stiffness
-from .stiffness_range import stiffness_note
-from .wall_points import static_law, wall_inset, wall_points, wall_stiffness, wall_strength
+from .resultant_law import ResultantLaw
+from .stiffness import joint_stiffness, stiffness_note
+from .wall_points import static_law, wall_cones, wall_inset, wall_points, wall_stiffness, wall_strength
 
 __all__ = [
     "JointPoints",
@@ -23,9 +22,9 @@ __all__ = [
     "joint_stiffness",
     "lobatto",
     "point_strength",
-    "resultant_law",
     "static_law",
     "stiffness_note",
+    "wall_cones",
     "wall_inset",
     "wall_points",
     "wall_stiffness",

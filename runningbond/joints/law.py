@@ -90,8 +90,6 @@ class KernelLaw:
 
     Parameters
     ----------
-    law
-        The law.
     segments : (ns + 1,) uint64
         First point of each row of points of one material, then their number.
     constants : (ns, n_constants) float

@@ -43,15 +43,7 @@ class PointResponse:
 
 @dataclass(frozen=True, eq=False)
 class PointLaw:
-    """Joint points that are elastic up to a strength.
-
-    Parameters
-    ----------
-    strength
-        What the points can carry.
-    normal_stiffness, shear_stiffness : (np,) float
-        K_n and K_t [N/m].
-    """
+    """Joint points that are elastic, with K_n and K_t ``(np,)`` [N/m], up to a strength."""
 
     strength: PointStrength
     normal_stiffness: Array

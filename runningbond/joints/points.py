@@ -88,8 +88,6 @@ def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, ins
 
     Parameters
     ----------
-    joints
-        The joints.
     thickness
         Out-of-plane thickness [m].
     rule

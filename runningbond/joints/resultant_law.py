@@ -30,7 +30,7 @@ class ResultantLaw:
     strength
         Strength of the joints' whole areas.
     stiffness : (nj, 3) float
-        Normal [N/m], shear [N/m] and rotational stiffness [N m].
+        Normal [N/m], shear [N/m] and rotational stiffness [N m], of a uniform layer of length l k_n A l² / 12.
     arm : (nj,) float
         Largest distance l_c of the normal force from the joint's centre [m].
     """
@@ -60,22 +60,3 @@ class ResultantLaw:
         room = tolerance * np.column_stack([np.ones_like(self.arm), np.ones_like(self.arm), self.arm])
         beyond: Mask = self.excess(action) > room
         return beyond
-
-
-def resultant_law(strength: PointStrength, normal: Array, shear: Array, length: Array, arm: Array) -> ResultantLaw:
-    """Law of whole joints.
-
-    Parameters
-    ----------
-    strength
-        Strength of the joints' areas.
-    normal, shear : (nj,) float
-        Stiffness of the joints' whole areas [N/m].
-    length : (nj,) float
-        Of the joints [m].
-    arm : (nj,) float
-        l_c [m]; ``length / 2`` is exact, the paper reads ``length``.
-    """
-    # A uniform layer of length l resists rotation with k_n A l² / 12.
-    rotational = normal * length**2 / 12
-    return ResultantLaw(strength, np.column_stack([normal, shear, rotational]), arm)

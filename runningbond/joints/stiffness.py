@@ -1,6 +1,20 @@
-"""Elastic stiffness of a joint, given directly or from its mortar."""
+"""Elastic stiffness of a joint, given directly or from its mortar, and whether it is one that models can use."""
+
+import numpy as np
 
 from runningbond.scene import JointMaterial, Mortar, SceneError, Stiffness
+
+SOFT = 0.02
+"""Overlap of two blocks, in displacements that count as collapse, above which joints are too soft.
+
+The overlap at a wall's base is that of one joint; its top settles by half as many of them as there are courses. At
+this share of a collapse of 0.05 block sizes, 1 ‰ of a block, a hundred courses settle by as much as a fall.
+"""
+
+STIFF = 1e-5
+"""Force that rounding in displacements as large as a collapse may amount to, in units of force: that of rest."""
+
+EPSILON = float(np.finfo(np.float64).eps)
 
 
 def joint_stiffness(material: JointMaterial) -> Stiffness:
@@ -23,3 +37,27 @@ def joint_stiffness(material: JointMaterial) -> Stiffness:
     raise SceneError(
         "joint.mortar", "is missing; this model needs it, or joint.normal_stiffness and joint.shear_stiffness"
     )
+
+
+def stiffness_note(overlap: float, collapse: float, size: float, stiffness: float, force_unit: float) -> str:
+    """What an outcome's message is to say of stiffnesses that its numbers suffer from; empty for others.
+
+    Parameters
+    ----------
+    overlap, collapse, size
+        Largest depth of one block in another at rest, displacement that counts as collapse, size of a block [m].
+    stiffness, force_unit
+        Largest stiffness of a joint point [N/m], and smallest force by which unbalanced ones are measured [N].
+    """
+    if overlap > SOFT * collapse:
+        return (
+            f"joints are too soft: blocks overlap by {float(f'{100 * overlap / size:.2g}'):g} % of their size, "
+            f"and above {100 * SOFT * collapse / size:.2g} % elastic motion may pass for collapse"
+        )
+    rounding = EPSILON * collapse * stiffness / force_unit
+    if rounding > STIFF:
+        return (
+            f"joints are too stiff: in displacements of a collapse rounding makes forces of {rounding:.1e} "
+            f"of the smallest block's load, and rest is known to {STIFF:.0e}"
+        )
+    return ""

@@ -21,12 +21,9 @@ def law_of(material: JointMaterial) -> Law:
 
 
 def common_law(materials: Sequence[JointMaterial]) -> Law:
-    """The one law of materials that joints of one wall are of.
+    """The one law of materials that joints of one wall are of; a `SceneError` for laws that do not go together.
 
-    Raises
-    ------
-    SceneError
-        For materials of laws that do not go together; plastic joints may stand beside softening ones.
+    Plastic joints may stand beside softening ones.
     """
     laws = {law.name: law for law in map(law_of, materials)}
     if laws.keys() == {COULOMB.name, SOFTENING.name}:
@@ -38,14 +35,9 @@ def common_law(materials: Sequence[JointMaterial]) -> Law:
 
 
 def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelLaw:
-    """Law over joint points.
+    """Law over joint points from the joints' materials, which need a stiffness, and that of each point ``(np,)``.
 
-    Parameters
-    ----------
-    materials
-        Materials of the joints; they need a stiffness.
-    of_point : (np,) int
-        Material of each point. Points of one material in a row are taken together.
+    Points of one material in a row are taken together.
     """
     law = common_law(materials)
     start = np.flatnonzero(np.diff(of_point, prepend=-1))

@@ -23,24 +23,20 @@ def wall_inset(scene: Scene) -> Array:
 
 def wall_strength(scene: Scene, points: JointPoints) -> PointStrength:
     """Strength of points on a scene's joints."""
-    cones = np.array(
-        [
-            material.law.cone(material) if isinstance(material.law, Law) else truncated_cone(material)
-            for material in scene.joint_materials
-        ]
-    )
-    friction, tension, shear = cones[scene.material_of_joint[points.joint]].T
+    friction, tension, shear = wall_cones(scene, points.joint)
     return PointStrength(friction, tension * points.area, shear * points.area)
 
 
-def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
-    """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m].
+def wall_cones(scene: Scene, joint: Indices) -> tuple[Array, Array, Array]:
+    """Tan φ, f_t [Pa] and shear at that tension [Pa] of joints of a scene by their law, three ``(n,)``."""
+    laws = [(material, material.law) for material in scene.joint_materials]
+    cones = [law.cone(material) if isinstance(law, Law) else truncated_cone(material) for material, law in laws]
+    friction, tension, shear = np.array(cones)[scene.material_of_joint[joint]].T
+    return friction, tension, shear
 
-    Raises
-    ------
-    SceneError
-        If the scene gives its joints no stiffness.
-    """
+
+def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
+    """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m], as of `joint_stiffness`."""
     of_material = np.array([(each.normal, each.shear) for each in map(joint_stiffness, scene.joint_materials)])
     normal, shear = of_material[scene.material_of_joint[joint]].T
     return normal, shear
@@ -49,10 +45,7 @@ def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
 def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Array) -> PointLaw:
     """Law of a scene's joint points with a tangent, of points with a strength and stiffnesses ``(np,)`` [N/m].
 
-    Raises
-    ------
-    SceneError
-        For a law that has no tangent.
+    A law without a tangent is refused by a `SceneError`.
     """
     if all(material.law is None for material in scene.joint_materials):
         return PointLaw(strength, normal, shear)

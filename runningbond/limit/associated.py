@@ -37,49 +37,17 @@ class LimitState:
 
     Parameters
     ----------
-    system
-        The equilibrium equations.
-    forces
-        The solution of the linear program.
+    system, forces
+        The equilibrium equations, and the solution of the linear program.
     """
 
     system: Equilibrium
     forces: ForceSolution
 
     @property
-    def residual(self) -> float:
-        """Largest unbalanced force or moment, relative to the largest force."""
-        system, forces = self.system, self.forces
-        normal = system.strength.tension - forces.pressure
-        unbalanced = (
-            system.opening @ normal
-            + system.slip @ forces.tangential
-            + system.reaction @ forces.reaction
-            - forces.multiplier * system.live
-            - system.dead
-        )
-        return float(np.abs(unbalanced).max() / self._largest_force)
-
-    @property
-    def violation(self) -> float:
-        """Largest distance of a point's forces from its cone of strength, relative to the largest force."""
-        normal = self.system.strength.tension - self.forces.pressure
-        strength = self.system.strength
-        outside = strength.violation(normal, self.forces.tangential) / np.hypot(1.0, strength.friction)
-        return float(outside.max(initial=0.0) / self._largest_force)
-
-    @property
     def jumps(self) -> tuple[Array, Array]:
         """Opening and slip rates of the mechanism at each point, two ``(np,)``."""
         return self.system.opening.T @ self.forces.motion, self.system.slip.T @ self.forces.motion
-
-    @property
-    def penetration(self) -> float:
-        """Largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion."""
-        opening, slip = self.jumps
-        largest = float(np.abs(self.forces.motion).max(initial=0.0))
-        short = self.system.strength.friction * np.abs(slip) - opening
-        return float(short.max(initial=0.0) / largest) if largest > 0 else 0.0
 
     @property
     def kinematic_multiplier(self) -> float:
@@ -89,42 +57,39 @@ class LimitState:
         return float((dissipated - system.dead @ motion) / (system.live @ motion))
 
     @property
-    def complementarity(self) -> float:
-        """Power of the forces short of the dissipation, point by point; zero at an optimum. Relative."""
-        opening, slip = self.jumps
-        strength, forces = self.system.strength, self.forces
-        power = (strength.tension - forces.pressure) * opening + forces.tangential * slip
-        short = np.abs(strength.dissipation(opening, slip) - power)
-        scale = np.abs(self.system.live @ forces.motion) * max(1.0, forces.multiplier)
-        return float(short.max(initial=0.0) / scale)
-
-    @property
-    def gap(self) -> float:
-        """Distance between static and kinematic multiplier, relative to the larger of them and 1."""
-        static, kinematic = self.forces.multiplier, self.kinematic_multiplier
-        return abs(kinematic - static) / max(1.0, abs(static))
-
-    @property
     def sound(self) -> bool:
         """Whether forces and mechanism prove each other right."""
         return max(self.measures.values()) <= SOUND
 
     @property
     def measures(self) -> dict[str, float]:
-        """Everything that is zero for an exact answer."""
-        return {
-            "residual": self.residual,
-            "violation": self.violation,
-            "penetration": self.penetration,
-            "gap": self.gap,
-            "complementarity": self.complementarity,
-        }
+        """Everything that is zero for an exact answer.
 
-    @property
-    def _largest_force(self) -> float:
-        system, forces = self.system, self.forces
-        largest = max(np.abs(forces.pressure).max(initial=0.0), np.abs(forces.tangential).max(initial=0.0))
-        return float(max(largest, np.abs(system.dead).max(initial=0.0), forces.multiplier)) or 1.0
+        - ``residual``: largest unbalanced force or moment, relative to the largest force.
+        - ``violation``: largest distance of a point's forces from its cone of strength, relative to the largest force.
+        - ``penetration``: largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion.
+        - ``gap``: distance between static and kinematic multiplier, relative to the larger of them and 1.
+        - ``complementarity``: power of the forces short of the dissipation, point by point, relative.
+        """
+        system, forces, strength = self.system, self.forces, self.system.strength
+        multiplier, tangential, motion = forces.multiplier, forces.tangential, forces.motion
+        normal, (opening, slip) = strength.tension - forces.pressure, self.jumps
+        in_joints = system.opening @ normal + system.slip @ tangential
+        unbalanced = in_joints + system.reaction @ forces.reaction - multiplier * system.live - system.dead
+        outside = strength.violation(normal, tangential) / np.hypot(1.0, strength.friction)
+        parts = (forces.pressure, tangential, system.dead)
+        largest = max(multiplier, *(np.abs(part).max(initial=0.0) for part in parts)) or 1.0
+        fastest = np.abs(motion).max(initial=0.0)
+        short = strength.dissipation(opening, slip) - (normal * opening + tangential * slip)
+        power = np.abs(system.live @ motion) * max(1.0, multiplier)
+        measures = {
+            "residual": np.abs(unbalanced).max() / largest,
+            "violation": outside.max(initial=0.0) / largest,
+            "penetration": (strength.friction * np.abs(slip) - opening).max(initial=0.0) / (fastest or np.inf),
+            "gap": abs(self.kinematic_multiplier - multiplier) / max(1.0, abs(multiplier)),
+            "complementarity": np.abs(short).max(initial=0.0) / power,
+        }
+        return {name: float(value) for name, value in measures.items()}
 
 
 def limit_state(system: Equilibrium) -> LimitState:
@@ -235,10 +200,8 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
 
     Parameters
     ----------
-    scene
-        The scene.
-    tolerance
-        Relative width of the bracket asked for; strong duality closes it to about 1e-9.
+    scene, tolerance
+        The scene, and the relative width of the bracket asked for; strong duality closes it to about 1e-9.
 
     Returns
     -------

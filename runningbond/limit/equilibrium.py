@@ -26,10 +26,8 @@ class Equilibrium:
 
     Parameters
     ----------
-    scene
-        The scene.
-    points
-        Contact points: the ends of every joint, moved in by the scene's inset.
+    scene, points
+        The scene, and its contact points: the ends of every joint, moved in by the scene's inset.
     strength
         Strength of those points, in force units.
     opening, slip : (nd, np) sparse array
@@ -38,10 +36,8 @@ class Equilibrium:
         Transposed pin operator.
     dead, live : (nd,) float
         Loads.
-    force_unit : float
-        Force [N] that counts as 1.
-    live_unit : float
-        Multiplier λ that counts as 1.
+    force_unit, live_unit : float
+        Force [N] and multiplier λ that count as 1.
     scale : (nd,) float
         Factor of each equation: blocks count by their own weight, or a small one's balance would be lost in
         the solver's tolerance beside a large one, and moments by their own size.
@@ -65,13 +61,7 @@ class Equilibrium:
         return len(self.dead)
 
     def motion(self, multipliers: Array) -> Array:
-        """Motion of all blocks ``(nb, 3)`` [m, m, rad], its fastest corner moving by one metre.
-
-        Parameters
-        ----------
-        multipliers : (nd,) float
-            Multipliers of the equilibrium equations.
-        """
+        """Motion ``(nb, 3)`` [m, m, rad] from multipliers of equations ``(nd,)``; its fastest corner moves by 1 m."""
         motion = np.zeros(3 * len(self.scene.blocks))
         motion[movable_freedoms(self.scene)] = multipliers * self.scale
         return fastest_corner_by_one(self.scene.blocks, motion.reshape(-1, 3))

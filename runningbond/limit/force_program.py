@@ -7,7 +7,7 @@ which HiGHS's interior point solves several times faster than rows of friction i
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from scipy.optimize import linprog
@@ -64,25 +64,13 @@ def frozen_friction(strength: PointStrength, pressure: Array) -> ForceSet:
 
 
 @dataclass(frozen=True, eq=False)
-class LinearProgram:
-    """Minimise ``cost · x`` subject to ``matrix x = right`` and ``bounds`` ``(n, 2)``."""
-
-    cost: Array
-    matrix: csc_array
-    right: Array
-    bounds: Array
-
-
-@dataclass(frozen=True, eq=False)
 class ForceSolution:
     """Solution of a linear program, in the units of its `Equilibrium`; arrays are empty without an optimum.
 
     Parameters
     ----------
-    status
-        Whether there is an optimum, and why not.
-    multiplier
-        λ at the optimum.
+    status, multiplier
+        Whether there is an optimum, and why not; λ at the optimum.
     pressure, tangential : (np,) float
         f_t0 − f_n, not negative, and f_t at each point.
     reaction : (n_pins,) float
@@ -90,7 +78,7 @@ class ForceSolution:
     motion : (nd,) float
         Multipliers of the equilibrium equations: the collapse mechanism, f_live · q = 1.
     iterations
-        Iterations of the solver.
+        Of the solver.
     """
 
     status: ProgramStatus
@@ -102,8 +90,8 @@ class ForceSolution:
     iterations: int
 
 
-def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> LinearProgram:
-    """Pose the program that looks for a multiplier which forces of a set can balance."""
+def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> dict[str, Any]:
+    """Arguments of `scipy.optimize.linprog` that look for a multiplier which forces of a set can balance."""
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
     rays = [system.slip.multiply(slope).tocsc() - system.opening for slope in forces.slopes]
     shear = [system.slip] if forces.has_shear else []
@@ -116,19 +104,14 @@ def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -
     bounds[-1, 1] = 0.0 if aim == "zero" else np.inf
     cost = np.zeros(matrix.shape[1])
     cost[-1] = {"largest": -1.0, "smallest": 1.0, "zero": 0.0}[aim] * _mechanism_scale(system)
-    return LinearProgram(cost, matrix, system.dead - system.opening @ system.strength.tension, bounds)
+    right = system.dead - system.opening @ system.strength.tension
+    return {"c": cost, "A_eq": matrix, "b_eq": right, "bounds": bounds}
 
 
 def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *, method: str = "") -> ForceSolution:
     """Solve `force_program`: by interior point and crossover, or by simplex where nothing is optimised."""
-    program = force_program(system, forces, aim)
-    result = linprog(  # type: ignore[call-overload]  # its stubs know no sparse A_eq
-        program.cost,
-        A_eq=program.matrix,
-        b_eq=program.right,
-        bounds=program.bounds,
-        method=method or ("highs-ds" if aim == "zero" else "highs-ipm"),
-    )
+    method = method or ("highs-ds" if aim == "zero" else "highs-ipm")
+    result = linprog(**force_program(system, forces, aim), method=method)  # type: ignore[call-overload]
     status = STATUS[int(result.status)]
     if result.x is None or status != "optimal":
         none = np.zeros(0)

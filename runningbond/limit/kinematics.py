@@ -13,28 +13,13 @@ from runningbond.joints import JointPoints
 from runningbond.scene import Array, Forces, Indices, Scene
 
 
-def _point_rows(direction: Array, arm: Array) -> Array:
-    """Displacement of points along directions, per degree of freedom of their block, ``(n, 3)``."""
-    return np.column_stack([direction, direction[:, 1] * arm[:, 0] - direction[:, 0] * arm[:, 1]])
-
-
 def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
-    """Displacements of points of blocks along directions.
+    """Displacements of points ``(n, 2)`` [m] of blocks ``(n,)`` along directions ``(n, 2)``, ``(n, 3 nb)``.
 
-    Parameters
-    ----------
-    block : (n,) int
-        Block of each point.
-    point, direction : (n, 2) float
-        Where [m], and the unit vector along which the displacement is read.
-    centroid : (nb, 2) float
-        Centroids of all blocks [m].
-
-    Returns
-    -------
-    (n, 3 nb) sparse array
+    All blocks' centroids are ``(nb, 2)`` [m].
     """
-    values = _point_rows(direction, point - centroid[block])
+    arm = point - centroid[block]
+    values = np.column_stack([direction, direction[:, 1] * arm[:, 0] - direction[:, 0] * arm[:, 1]])
     rows = np.repeat(np.arange(len(block)), 3)
     columns = (3 * block[:, None] + np.arange(3)).ravel()
     return csr_array(coo_array((values.ravel(), (rows, columns)), shape=(len(block), 3 * len(centroid))))
@@ -42,13 +27,7 @@ def point_operator(block: Indices, point: Array, direction: Array, centroid: Arr
 
 @dataclass(frozen=True, eq=False)
 class Jump:
-    """Jump operator B = (B_n, B_t) of rigid blocks or of nodes: opening and slip at joint points.
-
-    Parameters
-    ----------
-    opening, slip : (np, 3 nb) or (np, 2 nn) sparse array
-        Normal and tangential jump u_b − u_a at each point [m] per degree of freedom.
-    """
+    """Jump operator, of rigid blocks or of nodes: opening and slip u_b − u_a [m] per freedom, ``(np, nd)`` each."""
 
     opening: csr_array
     slip: csr_array
@@ -59,10 +38,8 @@ def jump_operator(points: JointPoints, centroid: Array) -> Jump:
     a, b = points.block.T
 
     def along(direction: Array) -> csr_array:
-        return csr_array(
-            point_operator(b, points.position, direction, centroid)
-            - point_operator(a, points.position, direction, centroid)
-        )
+        of_b, of_a = (point_operator(side, points.position, direction, centroid) for side in (b, a))
+        return csr_array(of_b - of_a)
 
     return Jump(along(points.normal), along(points.tangent))
 

@@ -37,15 +37,7 @@ PENETRATION = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Proof that a wall can collapse: a mechanism and the interval of loads that drive it.
-
-    Parameters
-    ----------
-    motion : (nd,) float
-        The mechanism, scaled.
-    least, most
-        Forces at the smallest and the largest multiplier.
-    """
+    """Proof that a wall can collapse: a scaled mechanism ``(nd,)``, and forces at the least and the most load on it."""
 
     motion: Array
     least: ForceSolution
@@ -53,19 +45,9 @@ class Certificate:
 
 
 def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
-    """Forces that obey Coulomb's law on a mechanism: none where it opens, at the limit where it slides.
+    """Forces that obey Coulomb's law on a mechanism ``(nd,)``: none where it opens, at the limit where it slides.
 
-    Parameters
-    ----------
-    system
-        The equilibrium equations.
-    motion : (nd,) float
-        The mechanism.
-
-    Returns
-    -------
-    ForceSet or None
-        None for a mechanism whose blocks run into each other.
+    None for a mechanism whose blocks run into each other.
     """
     opening, slip = system.opening.T @ motion, system.slip.T @ motion
     largest = float(np.abs(motion).max(initial=0.0))
@@ -100,10 +82,8 @@ class Search:
 
     Parameters
     ----------
-    certificates
-        Every collapse that was proved.
-    programs
-        Number of programs solved in the sequence.
+    certificates, programs
+        Every collapse that was proved, and the number of programs solved in the sequence.
     frictionless
         Whether normal forces alone carry any multiple of the live load.
     growing
@@ -159,11 +139,9 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
 
     Parameters
     ----------
-    scene
-        The scene.
-    tolerance
-        Relative width of the interval asked for. A wider one is reported as it is, for the load itself
-        is not unique. The search ends with the first certificate that is this close to the associated bound.
+    scene, tolerance
+        The scene, and the relative width of the interval asked for. A wider one is reported as it is, for the load
+        itself is not unique. The search ends with the first certificate that is this close to the associated bound.
 
     Returns
     -------

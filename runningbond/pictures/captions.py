@@ -32,16 +32,12 @@ class Caption:
 
     Parameters
     ----------
-    heading
-        Lines in bold above the drawing.
-    subtitle
-        Line below them; empty for none.
+    heading, subtitle
+        Lines in bold above the drawing, and a line below them; empty for none.
     notes
         Lines below the drawing and its key.
-    key
-        What colours and lines stand for: handles of a legend.
-    columns
-        Columns of the key.
+    key, columns
+        What colours and lines stand for, handles of a legend, and in how many columns.
     """
 
     heading: Sequence[str]

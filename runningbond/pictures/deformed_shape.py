@@ -36,10 +36,8 @@ class DeformedShape:
         displacement [m].
     state : (nf,) int
         A `JointState` each.
-    multiplier
-        λ.
-    scale
-        Factor of displacements in the drawing.
+    multiplier, scale
+        λ, and the factor of displacements in the drawing.
     colouring
         How blocks are coloured.
     """
@@ -126,9 +124,8 @@ class DeformedShape:
 
 def undeformed_shape(scene: Scene) -> DeformedShape:
     """The wall as it was built."""
-    return DeformedShape.of_rigid_blocks(
-        scene, np.zeros((len(scene.blocks), 3)), np.zeros(len(scene.joints), np.int64), 0.0
-    )
+    at_rest = np.zeros((len(scene.blocks), 3))
+    return DeformedShape.of_rigid_blocks(scene, at_rest, np.zeros(len(scene.joints), np.int64), 0.0)
 
 
 def visible_scale(scene: Scene, displacement: Array) -> float:
@@ -156,12 +153,7 @@ def course_numbers(scene: Scene) -> Indices:
 def outer_edges(corner: Indices, first: Indices) -> Indices:
     """Ends of the edges that no two polygons share, ``(ne, 2)``, as places among the corners of one after another.
 
-    Parameters
-    ----------
-    corner : (n,) int
-        Number of each corner; polygons that share an edge share the numbers of its ends.
-    first : (nc + 1,) int
-        Where each polygon's corners start.
+    Corners have numbers ``(n,)``, the same in polygons that share them; those of each polygon start at ``(nc + 1,)``.
     """
     following = np.arange(1, len(corner) + 1)
     following[first[1:] - 1] = first[:-1]

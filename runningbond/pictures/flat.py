@@ -39,7 +39,7 @@ HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DAR
 
 def draw_wall(axes: "Axes", scene: Scene) -> None:
     """Draw a wall before any analysis: blocks, joints by material, supports, and arrows of the live load."""
-    _draw_wall(axes, undeformed_shape(scene), _wall_caption(scene))
+    _draw(axes, *_wall(scene))
 
 
 def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
@@ -47,42 +47,37 @@ def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 
     Where there is none, or none that the loads drive, the undeformed wall is drawn and a note below says so.
     """
-    _draw_mechanism(axes, *_mechanism(scene, outcome))
+    _draw(axes, *_mechanism(scene, outcome), is_mechanism=True)
 
 
 def figure_of(scene: Scene, outcome: Outcome | None = None) -> "Figure":
     """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column."""
-    drawn = (undeformed_shape(scene), _wall_caption(scene)) if outcome is None else _mechanism(scene, outcome)
-    figure, axes = figure_with_room(annotated_extent(scene, drawn[0].extent), drawn[1])
-    draw = _draw_wall if outcome is None else _draw_mechanism
-    draw(axes, *drawn)
+    shape, caption = _wall(scene) if outcome is None else _mechanism(scene, outcome)
+    figure, axes = figure_with_room(annotated_extent(scene, shape.extent), caption)
+    _draw(axes, shape, caption, is_mechanism=outcome is not None)
     return figure
 
 
-def _draw_wall(axes: "Axes", shape: DeformedShape, caption: Caption) -> None:
+def _draw(axes: "Axes", shape: DeformedShape, caption: Caption, *, is_mechanism: bool = False) -> None:
     scene = shape.scene
     show_extent(axes, annotated_extent(scene, shape.extent))
     width = _line_width(axes, scene)
+    if is_mechanism:
+        _draw_ghost(axes, scene, width)
     _draw_blocks(axes, shape, 0.5 * width)
-    for number, colour in _material_colours(scene):
-        _draw_lines(axes, scene.joints.ends[scene.material_of_joint == number], colour, 0.6 * width, "solid")
+    if is_mechanism:
+        for state in shape.states:
+            _draw_joints(axes, shape, state, width)
+        axes.plot(*_hinges(shape).T, ms=2.2 * width, mew=0.4 * width, **HINGE)
+    else:
+        for number, colour in _material_colours(scene):
+            _draw_lines(axes, scene.joints.ends[scene.material_of_joint == number], colour, 0.6 * width, "solid")
     annotate(axes, shape)
     caption.write(axes)
 
 
-def _draw_mechanism(axes: "Axes", shape: DeformedShape, caption: Caption) -> None:
-    show_extent(axes, annotated_extent(shape.scene, shape.extent))
-    width = _line_width(axes, shape.scene)
-    _draw_ghost(axes, shape.scene, width)
-    _draw_blocks(axes, shape, 0.5 * width)
-    for state in shape.states:
-        _draw_joints(axes, shape, state, width)
-    axes.plot(*_hinges(shape).T, ms=2.2 * width, mew=0.4 * width, **HINGE)
-    annotate(axes, shape)
-    caption.write(axes)
-
-
-def _wall_caption(scene: Scene) -> Caption:
+def _wall(scene: Scene) -> tuple[DeformedShape, Caption]:
+    """What is drawn of a wall, and its caption."""
     from matplotlib.lines import Line2D
 
     materials = scene.joint_materials
@@ -91,7 +86,7 @@ def _wall_caption(scene: Scene) -> Caption:
     ]
     length, height = np.subtract(*scene.blocks.extent(scene.wall)[::-1])
     size = f"{length:.4g} × {height:.4g} m, {scene.wall.sum()} blocks, {len(scene.joints)} joints"
-    return Caption(wall_title(scene.title), "", [size], key, columns=1)
+    return undeformed_shape(scene), Caption(wall_title(scene.title), "", [size], key, columns=1)
 
 
 def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption]:

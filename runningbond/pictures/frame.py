@@ -10,17 +10,7 @@ from runningbond.scene import Array, Indices, Scene, frozen
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """Finite elements of the blocks.
-
-    Parameters
-    ----------
-    points : (nn, 2) float
-        Nodes [m].
-    corners : (nt, 3) int
-        Nodes of each triangle.
-    block : (nt,) int
-        Its block.
-    """
+    """Finite elements of the blocks: nodes ``(nn, 2)`` [m], the nodes of each triangle ``(nt, 3)`` and its block."""
 
     points: Array
     corners: Indices
@@ -39,10 +29,6 @@ class Discretisation:
     def of_rigid_blocks(cls, scene: Scene) -> "Discretisation":
         """Rigid blocks with contact points at the ends of their joints."""
         return cls(scene, wall_points(scene))
-
-
-def _empty(columns: int = 0) -> Array:
-    return np.zeros((0, columns) if columns else 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +64,10 @@ class Frame:
     normal: Array
     tangential: Array
     state: Indices
-    velocity: Array = field(default_factory=lambda: _empty(3))
-    damage: Array = field(default_factory=_empty)
-    displacement: Array = field(default_factory=lambda: _empty(2))
-    stress: Array = field(default_factory=lambda: _empty(3))
+    velocity: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    damage: Array = field(default_factory=lambda: np.zeros(0))
+    displacement: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    stress: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "state", frozen(self.state, np.int64))

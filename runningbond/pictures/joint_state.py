@@ -4,8 +4,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from runningbond.joints import JointPoints, joint_stiffness
-from runningbond.joints.mohr_coulomb import truncated_cone
+from runningbond.joints import JointPoints, wall_cones, wall_stiffness
 from runningbond.scene import Array, Indices, Scene
 
 VISIBLE = 0.01
@@ -45,8 +44,7 @@ def states_of_mechanism(scene: Scene, points: JointPoints, opening: Array, slip:
     tan φ times its slip, and only what exceeds that is opening. Such a mechanism is recognised by its jumps: nowhere
     does it open by less.
     """
-    friction = np.array([material.friction for material in scene.joint_materials])
-    dilation = friction[scene.material_of_joint[points.joint]] * np.abs(slip)
+    dilation = wall_cones(scene, points.joint)[0] * np.abs(slip)
     associated = bool((opening >= dilation - NORMALITY).all())
     opens = opening > (dilation if associated else 0.0) + VISIBLE
     slides = np.abs(slip) > VISIBLE
@@ -60,8 +58,8 @@ def states_under_load(
 
     A point is open where it has opened farther than tension can stretch it; the joints of the scene need a stiffness.
     """
-    cones = [(*truncated_cone(material), joint_stiffness(material).normal) for material in scene.joint_materials]
-    friction, tension, shear, stiffness = np.array(cones)[scene.material_of_joint[points.joint]].T
+    friction, tension, shear = wall_cones(scene, points.joint)
+    stiffness, _ = wall_stiffness(scene, points.joint)
     sound = 1 - damage
     strength = sound * shear + friction * np.maximum(0.0, sound * tension - normal)
     opens = opening > np.where(damage < 1, tension / stiffness, 0.0) * (1 + 1e-9)

@@ -16,7 +16,7 @@ from .joint_state import joint_states, states_of_mechanism
 def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
     """The mechanism of an outcome, its fastest corner moving by one metre; None where it has none.
 
-    Tractions are those under the load at which it was found, or zero where the outcome lists none for the two points
+    Tractions are those under the load of the mechanism, or zero where the outcome lists none for the two points
     of each joint that rigid blocks have.
     """
     if not has_mechanism(scene, outcome):

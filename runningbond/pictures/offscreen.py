@@ -1,4 +1,4 @@
-"""Whether this machine draws off-screen, found out by a process that may crash."""
+"""Whether this machine draws off-screen, as a process that may crash finds out."""
 
 import subprocess
 import sys
@@ -14,7 +14,7 @@ raise SystemExit(0 if shades.min() < 64 < 192 < shades.max() else 1)
 """
 
 PATIENCE = 120
-"""Seconds after which a process that only draws a square is given up."""
+"""Seconds after which a process that only draws a square is stopped."""
 
 
 @cache

@@ -25,13 +25,7 @@ REFERENCE = 1000
 
 
 class Painter:
-    """Paints walls, one after another, with one square off-screen window.
-
-    Parameters
-    ----------
-    pixels
-        Sides of the window.
-    """
+    """Paints walls, one after another, with one square off-screen window whose sides have so many pixels."""
 
     def __init__(self, pixels: int = REFERENCE) -> None:
         self._pyvista = import_pyvista("Plotter")
@@ -111,19 +105,16 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
 
 
 def _polygons(points: Array, first: Indices, height: float) -> Any:
-    """Polygons, one after another, in the plane at a height above it: what is higher is in front."""
-    import pyvista as pv
-
-    faces = np.insert(np.arange(len(points)), first[:-1], np.diff(first))
-    return pv.PolyData(_at(points, height), faces=faces)
+    """Polygons, one after another, at a height above the plane: what is higher is in front."""
+    return _cells(points, height, faces=np.insert(np.arange(len(points)), first[:-1], np.diff(first)))
 
 
 def _lines(points: Array, ends: NDArray[Any], height: float) -> Any:
     """Lines between points of the plane, at a height above it."""
+    return _cells(points, height, lines=np.insert(ends, 0, 2, axis=1).ravel())
+
+
+def _cells(points: Array, height: float, **cells: Any) -> Any:
     import pyvista as pv
 
-    return pv.PolyData(_at(points, height), lines=np.insert(ends, 0, 2, axis=1).ravel())
-
-
-def _at(points: Array, height: float) -> Array:
-    return np.column_stack([points, np.full(len(points), height)])
+    return pv.PolyData(np.column_stack([points, np.full(len(points), height)]), **cells)

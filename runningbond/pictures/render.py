@@ -1,10 +1,11 @@
 """Pictures of a result folder, drawn from what the folder holds and nothing else."""
 
 import io
+from collections.abc import Iterable
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
 
@@ -17,9 +18,6 @@ from .style import Colouring
 from .time_series import frame_files, read_grid
 from .vtk_grids import shape_of_grids
 from .vtk_safety import VtkError, import_pyvista
-
-if TYPE_CHECKING:
-    from PIL.Image import Image
 
 FILM_DPI = 150
 FRAME_TIME, LAST_FRAME_TIME = 150, 2000
@@ -37,19 +35,7 @@ def remove_pictures(folder: Path) -> None:
 def render_folder(folder: Path, colouring: Colouring = "displacement", *, moments: bool = True) -> list[Path]:
     """Draw what a folder has to show: its mechanism, and of its time series the last moment and a film.
 
-    Parameters
-    ----------
-    folder
-        Result folder of one outcome.
-    colouring
-        How blocks are coloured.
-    moments
-        Whether the time series is drawn, too.
-
-    Returns
-    -------
-    list of Path
-        ``mechanism.png``, ``last-moment.png`` and ``film.gif``, those of them that there are.
+    It gives the files that it wrote: ``mechanism.png`` and, with `moments`, ``last-moment.png`` and ``film.gif``.
 
     Raises
     ------
@@ -78,7 +64,7 @@ def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list
     if len(shapes) > 1:
         shapes = [replace(shape, scale=last.scale) for shape in shapes]
         figures = (frame_figure(shape, outcome, painter, last.extent, last.states) for shape in shapes)
-        write_atomically(folder / "film.gif", _film([_image(to_png(figure, FILM_DPI)) for figure in figures]))
+        write_atomically(folder / "film.gif", _film(to_png(figure, FILM_DPI) for figure in figures))
         written.append(folder / "film.gif")
     return written
 
@@ -109,16 +95,11 @@ def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
     plotter.show()
 
 
-def _image(content: bytes) -> "Image":
+def _film(contents: Iterable[bytes]) -> bytes:
+    """PNG files of one size as an animated GIF, with the colours of the last one."""
     from PIL import Image
 
-    return Image.open(io.BytesIO(content)).convert("RGB")
-
-
-def _film(images: list["Image"]) -> bytes:
-    """Images of one size as an animated GIF, with the colours of the last one."""
-    from PIL import Image
-
+    images = [Image.open(io.BytesIO(content)).convert("RGB") for content in contents]
     palette = images[-1].quantize(128, dither=Image.Dither.NONE)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     times = [FRAME_TIME] * (len(frames) - 1) + [LAST_FRAME_TIME]

@@ -18,14 +18,9 @@ MAX_FRAMES = 40
 
 
 class TimeSeries:
-    """Frames of one wall in a folder, in the order in which they come; the first replaces what was there before.
+    """Frames of one wall, in the order in which they come; the first replaces what was there before.
 
-    Parameters
-    ----------
-    discretisation
-        The wall.
-    folder
-        Where ``blocks.pvd``, ``joints.pvd`` and a folder ``frames`` with the VTU files go.
+    Its folder holds ``blocks.pvd``, ``joints.pvd`` and a folder ``frames`` with the VTU files.
     """
 
     def __init__(self, discretisation: Discretisation, folder: Path) -> None:
@@ -70,10 +65,7 @@ class TimeSeries:
 def frame_files(folder: Path, kind: str) -> list[Path]:
     """VTU files that a folder's ``blocks.pvd`` or ``joints.pvd`` lists, in order; none where there is no such file.
 
-    Raises
-    ------
-    StoreError
-        If the list is damaged.
+    A list that is damaged is a `StoreError`.
     """
     path = folder / f"{kind}.pvd"
     if not path.is_file():

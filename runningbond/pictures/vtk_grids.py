@@ -30,6 +30,7 @@ class GridBuilder:
     def __init__(self, discretisation: Discretisation) -> None:
         self._scene, self._points = discretisation.scene, discretisation.points
         self._triangles = discretisation.triangles
+        self._courses, self._templates = course_numbers(self._scene), _templates(self._scene.blocks)
 
     def blocks(self, frame: Frame) -> Grid:
         """Blocks, each a polygon, or in triangles where they deform, with the arrays of ``blocks.pvd``."""
@@ -66,10 +67,12 @@ class GridBuilder:
         grid = _grid(points.position[at], [(LINE, lines.ravel(), np.full(n, 2)), (QUAD, quads.ravel(), np.full(n, 4))])
 
         jump = frame.opening[:, None] * points.normal + frame.slip[:, None] * points.tangent
+        # Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
+        a, b = (carried(self._scene.blocks, side, points.position, frame.motion) for side in points.block.T)
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
         _add(
             grid.point_data,
-            displacement=_in_space(self._sides(frame, jump)[at] + share[:, None] * jump[at]),
+            displacement=_in_space(((a + b - jump) / 2)[at] + share[:, None] * jump[at]),
             opening=frame.opening[at],
             slip=frame.slip[at],
             sigma=frame.normal[at],
@@ -83,15 +86,6 @@ class GridBuilder:
         _add(grid.field_data, multiplier=[frame.multiplier])
         return grid
 
-    def _sides(self, frame: Frame, jump: Array) -> Array:
-        """Displacement of block a at each joint point, ``(np, 2)`` [m].
-
-        Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
-        """
-        points = self._points
-        a, b = (carried(self._scene.blocks, side, points.position, frame.motion) for side in points.block.T)
-        return np.asarray((a + b - jump) / 2)
-
     @cached_property
     def _pieces(self) -> Indices:
         """Joint points at the two ends of each piece of a joint, ``(n, 2)``."""
@@ -102,14 +96,6 @@ class GridBuilder:
         length = along[second] - along[first]
         apart = (points.joint[first] == points.joint[second]) & (length > self._scene.blocks.tolerance)
         return np.column_stack([first[apart], second[apart]])
-
-    @cached_property
-    def _courses(self) -> Indices:
-        return course_numbers(self._scene)
-
-    @cached_property
-    def _templates(self) -> Indices:
-        return _templates(self._scene.blocks)
 
 
 def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:

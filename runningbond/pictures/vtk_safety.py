@@ -10,21 +10,21 @@ from typing import Any
 @contextmanager
 def uninterrupted_imports() -> Iterator[None]:
     """Hold back Ctrl-C, and what else raises an exception at a signal, until what is imported inside is there."""
-    if threading.current_thread() is not threading.main_thread():  # where no signal is heard
+    if threading.current_thread() is not threading.main_thread():  # where no signal arrives
         yield
         return
-    heard: list[int] = []
+    received: list[int] = []
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     held = {number: handler for number, handler in before.items() if callable(handler)}
     for number in held:
-        signal.signal(number, lambda number, _: heard.append(number))
+        signal.signal(number, lambda number, _: received.append(number))
     try:
         yield
     finally:
         for number, handler in held.items():
             signal.signal(number, handler)
-        if heard:
-            signal.raise_signal(heard[0])
+        if received:
+            signal.raise_signal(received[0])
 
 
 def import_pyvista(*names: str) -> Any:
@@ -44,7 +44,7 @@ class VtkError(Exception):
 
 @contextmanager
 def vtk_errors_raised() -> Iterator[None]:
-    """Raise the first error that VTK reports inside, once it has been left; warnings pass unheard."""
+    """Raise the first error that VTK reports inside, once it has been left; warnings pass."""
     with uninterrupted_imports():
         from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 
@@ -52,12 +52,12 @@ def vtk_errors_raised() -> Iterator[None]:
     verbosity = vtkLogger.GetCurrentVerbosityCutoff()
     errors: list[str] = []
 
-    def heard(caller: object, event: str, message: str = "") -> None:
+    def on_error(caller: object, event: str, message: str = "") -> None:
         errors.append(message)
 
-    heard.CallDataType = "string0"  # type: ignore[attr-defined]
-    listening: Any = window
-    listening.AddObserver("ErrorEvent", heard)
+    on_error.CallDataType = "string0"  # type: ignore[attr-defined]
+    observed: Any = window
+    observed.AddObserver("ErrorEvent", on_error)
     vtkOutputWindow.SetInstance(window)
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
     try:

@@ -81,14 +81,12 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
 
     Parameters
     ----------
-    scene
-        The wall.
     motion : (nb, 3) float
         Displacement of each block's centroid [m] and rotation [rad].
     dead, live : (3 nb,) float
         Forces and moments of the loads on the blocks [N, N, N m].
     multiplier
-        λ under which the wall moves; 0 where it falls under its dead load, whatever the live load does then.
+        λ under which the wall moves; 0 where it collapses under its dead load, whatever the live load does then.
     """
     motion = fastest_corner_by_one(scene.blocks, motion)
     by_dead, by_live = float(dead @ motion.ravel()), float(live @ motion.ravel())

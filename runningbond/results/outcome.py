@@ -12,20 +12,14 @@ Status: TypeAlias = Literal["collapse", "unbounded", "infeasible", "undecided", 
 STATUSES: tuple[str, ...] = get_args(Status)
 
 
-def _no_rows(columns: int) -> Array:
-    return np.zeros((0, columns))
-
-
 @dataclass(frozen=True, eq=False)
 class Outcome:
     """The answer of one model on one scene.
 
     Parameters
     ----------
-    scene
-        Title of the scene.
-    model
-        Name of the model.
+    scene, model
+        Title of the scene and name of the model.
     status
         ``collapse``: a load was found at which the wall collapses; ``unbounded``: the wall is self-locking, no
         multiple of the live load brings it down; ``infeasible``: it collapses under its dead load; ``undecided``:
@@ -35,14 +29,10 @@ class Outcome:
     lower, upper
         Bracket of the collapse multiplier; each None where the model has no such bound. What the bracket
         means, a proof or a pair of runs, is in the message.
-    dofs
-        Degrees of freedom; None for a closed form.
-    steps
-        Steps, iterations or programs that were solved; None for a closed form.
-    seconds
-        Wall-clock time.
-    message
-        One line for the reader.
+    dofs, steps
+        Degrees of freedom; steps, iterations or programs that were solved. None for a closed form.
+    seconds, message
+        Wall-clock time, and one line for the reader.
     motion : (nb, 3) float
         Collapse mechanism: displacement of each block's centroid [m] and rotation [rad], the fastest corner
         moving by one metre. Empty without one.
@@ -64,9 +54,9 @@ class Outcome:
     steps: int | None = None
     seconds: float = 0.0
     message: str = ""
-    motion: Array = field(default_factory=lambda: _no_rows(3))
-    force: Array = field(default_factory=lambda: _no_rows(2))
-    curve: Array = field(default_factory=lambda: _no_rows(2))
+    motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    force: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    curve: Array = field(default_factory=lambda: np.zeros((0, 2)))
 
     def __post_init__(self) -> None:
         for name, columns in ARRAYS.items():

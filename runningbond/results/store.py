@@ -61,27 +61,25 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 def make_folder(folder: Path) -> None:
     """Make a folder and check that files can be written there, before a long computation; an OSError names it."""
-    try:
+    with _errors_named(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder) as file:
             file.write(b" ")
+
+
+@contextmanager
+def _errors_named(path: Path) -> Iterator[None]:
+    """Name a path in an OSError."""
+    try:
+        yield
     except OSError as error:
-        raise OSError(error.errno, error.strerror, str(folder)) from error
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | None = None) -> None:
-    """Write an outcome into a folder of its own.
+    """Write an outcome into a folder of its own, made if missing.
 
-    Parameters
-    ----------
-    outcome
-        The outcome.
-    folder
-        The folder; made if missing.
-    key
-        What the outcome was computed from, given back by `load_outcome`.
-    scene
-        The wall it is about, given back by `load_scene`.
+    `load_outcome` gives back its key, what it was computed from, and `load_scene` the wall that it is about.
     """
     buffer = io.BytesIO()
     columns: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
@@ -105,13 +103,7 @@ def _seal(scalars: dict[str, object], content: bytes) -> str:
 
 
 def load_outcome(folder: Path) -> tuple[Outcome, str]:
-    """Read an outcome and its key back.
-
-    Raises
-    ------
-    StoreError
-        If there is no outcome, or anything about it is missing, damaged or not what was written.
-    """
+    """Read an outcome and its key; a StoreError if there is none, or anything of it is missing, damaged or changed."""
     with _trusted(folder) as (record, stored):
         arrays: dict[str, Any] = {name: stored[name] for name in ARRAYS}
         scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}

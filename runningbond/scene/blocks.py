@@ -98,12 +98,16 @@ class Blocks:
         """Largest gap that counts as contact [m]."""
         return float(CONTACT_TOLERANCE * np.sqrt(self.area.min()))
 
+    @cached_property
+    def boxes(self) -> tuple[Array, Array]:
+        """Lower and upper corner of the bounding box of each block, two ``(nb, 2)`` [m]."""
+        low, high = (extreme.reduceat(self.vertices, self.first[:-1]) for extreme in (np.minimum, np.maximum))
+        return low, high
+
     def extent(self, block: int | Mask | slice = slice(None)) -> tuple[Array, Array]:
         """Lower and upper corner of the bounding box of all or some blocks, two ``(2,)`` [m]."""
-        chosen = np.zeros(len(self), dtype=bool)
-        chosen[block] = True
-        corners = self.vertices[chosen[self.owner]]
-        return corners.min(axis=0), corners.max(axis=0)
+        low, high = (np.atleast_2d(corner[block]) for corner in self.boxes)
+        return low.min(axis=0), high.max(axis=0)
 
     def containing(self, point: Array) -> Indices:
         """Blocks that hold or touch a point ``(2,)`` [m], to within the contact tolerance."""
@@ -113,13 +117,7 @@ class Blocks:
         return np.flatnonzero(np.minimum.reduceat(depth, self.first[:-1]) >= -self.tolerance)
 
     def check(self) -> None:
-        """Refuse polygons that enclose nothing or are not convex.
-
-        Raises
-        ------
-        SceneError
-            Naming the first offending block and where it is.
-        """
+        """Refuse polygons that enclose nothing or are not convex, in a `SceneError` that names and places the first."""
         here, there, _ = self._local
         edge = there - here
         turn = edge[:, 0] * edge[self.successor, 1] - edge[:, 1] * edge[self.successor, 0]
@@ -139,13 +137,12 @@ class Blocks:
 
     def name(self, block: int) -> str:
         """What a message calls a block: its number and its centre in metres."""
-        low, high = self.extent(block)
-        x, y = (low + high) / 2
+        x, y = np.mean(self.extent(block), axis=0)
         return f"block {block} at ({x:.4g}, {y:.4g})"
 
     def neighbours(self) -> tuple[Indices, Indices]:
         """Pairs ``a < b`` of blocks whose bounding boxes touch."""
-        low, high = (extreme.reduceat(self.vertices, self.first[:-1]) for extreme in (np.minimum, np.maximum))
+        low, high = self.boxes
         a, b = touching_boxes(low - self.tolerance, high + self.tolerance)
         return a[a < b], b[a < b]
 

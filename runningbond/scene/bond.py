@@ -37,8 +37,6 @@ def running_bond(
 
     Parameters
     ----------
-    bond
-        The block.
     length, height
         Size of the panel [m]: whole half blocks long, whole blocks high.
     first_course
@@ -75,8 +73,6 @@ def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array
 
     Parameters
     ----------
-    bond
-        The block.
     courses
         Bottom to top; each a list of widths in blocks, left to right from x = 0, negative for an opening.
         Both sides of an opening lie on the half-block lattice.

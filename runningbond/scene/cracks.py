@@ -4,6 +4,7 @@ The paper announces such inner interfaces on the blocks' axes of symmetry as its
 """
 
 from collections.abc import Sequence
+from itertools import chain
 
 import numpy as np
 import shapely
@@ -12,33 +13,16 @@ from .arrays import Array, Indices
 
 
 def cut_in_half(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indices]:
-    """Cut polygons at the vertical line through their centroids.
+    """Cut convex polygons ``(n, 2)`` [m] at the vertical line through their centroids, but for those up to a width [m].
 
-    Parameters
-    ----------
-    polygons : list of (n, 2) float
-        Convex blocks [m], counter-clockwise.
-    widest : float
-        Width [m] up to which a block is not cut.
-
-    Returns
-    -------
-    list of (n, 2) float
-        The pieces, left before right, in the order of their blocks.
-    (n_pieces,) int
-        Block that each piece was part of.
+    The pieces come left before right in the order of their blocks, and with them the block of each, ``(n_pieces,)``.
     """
-    pieces: list[Array] = []
-    owner: list[int] = []
-    for k, polygon in enumerate(polygons):
-        if np.ptp(polygon[:, 0]) <= widest:
-            cut = [polygon]
-        else:
-            middle = shapely.Polygon(polygon).centroid.x
-            cut = [_side(polygon, middle, -1.0), _side(polygon, middle, 1.0)]
-        pieces += cut
-        owner += [k] * len(cut)
-    return pieces, np.array(owner)
+    pieces: list[list[Array]] = []
+    for polygon in polygons:
+        middle = shapely.Polygon(polygon).centroid.x
+        is_cut = np.ptp(polygon[:, 0]) > widest
+        pieces.append([_side(polygon, middle, sense) for sense in (-1.0, 1.0)] if is_cut else [polygon])
+    return list(chain(*pieces)), np.repeat(np.arange(len(pieces)), [len(cut) for cut in pieces])
 
 
 def _side(polygon: Array, x: float, sense: float) -> Array:

@@ -18,12 +18,7 @@ METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 def read_drawing(path: Path, units: str) -> tuple[list[Array], Array]:
     """Read closed polylines from a drawing's model space.
 
-    Parameters
-    ----------
-    path
-        The DXF file.
-    units
-        A key of `METRES`.
+    Units are a key of `METRES`.
 
     Returns
     -------

@@ -19,12 +19,7 @@ from .wall import Scene, build_scene
 
 
 def read_scene(path: str | Path) -> Scene:
-    """Read a scene file.
-
-    Parameters
-    ----------
-    path
-        A TOML file; drawings it names are looked up beside it.
+    """Read a scene file, in TOML; drawings that it names are looked up beside it.
 
     Raises
     ------

@@ -12,14 +12,7 @@ def locked(folder: Path, *, reading: bool = False) -> Iterator[None]:
     """Wait until no other process holds a folder, and hold it.
 
     The lock lies on the folder itself and ends with its holder, however that comes about. A file system that knows
-    no locks gives none; what is written atomically is so without one.
-
-    Parameters
-    ----------
-    folder
-        The folder.
-    reading
-        Let other readers in, and keep writers waiting.
+    no locks gives none; what is written atomically is so without one. `reading` lets other readers in.
     """
     handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:

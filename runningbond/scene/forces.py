@@ -57,13 +57,8 @@ class Forces:
         )
 
     def __add__(self, other: "Forces") -> "Forces":
-        return Forces(
-            self.acceleration + other.acceleration,
-            self.moment + other.moment,
-            np.concatenate([self.block, other.block]),
-            np.concatenate([self.at, other.at]),
-            np.concatenate([self.force, other.force]),
-        )
+        joined = (np.concatenate([getattr(each, name) for each in (self, other)]) for name in ("block", "at", "force"))
+        return Forces(self.acceleration + other.acceleration, self.moment + other.moment, *joined)
 
     @property
     def on_mass_alone(self) -> bool:

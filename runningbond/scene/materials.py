@@ -44,12 +44,8 @@ class Mortar:
 
     Parameters
     ----------
-    young
-        Young's modulus [Pa].
-    poisson
-        Poisson's ratio.
-    thickness
-        Thickness of the layer [m].
+    young, poisson, thickness
+        Young's modulus [Pa], Poisson's ratio, and thickness of the layer [m].
     """
 
     young: Positive

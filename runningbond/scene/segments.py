@@ -44,22 +44,13 @@ class Joints:
         run = self.ends[:, 1] - self.ends[:, 0]
         return np.hypot(run[:, 0], run[:, 1])
 
-    def part(self, chosen: Mask | Indices) -> "Joints":
-        """Some of the joints, or all in another order."""
-        return Joints(self.block[chosen], self.ends[chosen], self.inner[chosen])
-
 
 def find_joints(blocks: Blocks) -> Joints:
     """Find every segment along which two blocks touch.
 
     Two edges make a joint where they run in opposite senses, lie on one line to within the contact
     tolerance, and overlap by more than it. Nothing is asked of courses or rows, so T-junctions, half
-    blocks, openings and inclined edges all come out right.
-
-    Raises
-    ------
-    SceneError
-        Where two blocks overlap.
+    blocks, openings and inclined edges all come out right. Blocks that overlap are refused by a `SceneError`.
     """
     tolerance = blocks.tolerance
     start = blocks.vertices

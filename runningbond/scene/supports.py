@@ -20,10 +20,8 @@ class Pins:
     ----------
     block : (n,) int
         The block held.
-    point : (n, 2) float
-        Where [m].
-    direction : (n, 2) float
-        Unit vector along which the displacement of that point is zero.
+    point, direction : (n, 2) float
+        Where [m], and the unit vector along which the displacement of that point is zero.
     """
 
     block: Indices
@@ -44,32 +42,21 @@ NO_PINS = Pins(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros((0, 2)))
 
 def first_course(blocks: Blocks, wall: Mask) -> Mask:
     """Blocks of the wall whose lowest corner is level with the lowest of all, ``(nb,)``."""
-    lowest = np.minimum.reduceat(blocks.vertices[:, 1], blocks.first[:-1])
+    lowest = blocks.boxes[0][:, 1]
     level: Mask = lowest <= lowest[wall].min() + blocks.tolerance
     return wall & level
 
 
 def corner_pins(blocks: Blocks, wall: Mask, *, roller: bool) -> Pins:
-    """Hold the outer bottom corners of the first course.
-
-    Parameters
-    ----------
-    blocks, wall
-        The blocks, and which of them belong to the wall.
-    roller
-        Whether the right-hand corner is free to move horizontally.
-    """
+    """Hold the outer bottom corners of the first course; a `roller` leaves the right one free to move horizontally."""
     members = first_course(blocks, wall)
-    corner = np.flatnonzero(
-        members[blocks.owner] & (blocks.vertices[:, 1] <= blocks.extent(members)[0][1] + blocks.tolerance)
-    )
-    left = corner[np.argmin(blocks.vertices[corner, 0])]
-    right = corner[np.argmax(blocks.vertices[corner, 0])]
-    held = [(left, (1, 0)), (left, (0, 1)), (right, (0, 1))]
-    if not roller:
-        held.append((right, (1, 0)))
-    vertex = np.array([vertex for vertex, _ in held])
-    return Pins(blocks.owner[vertex], blocks.vertices[vertex], np.array([d for _, d in held], dtype=float))
+    level = blocks.extent(members)[0][1] + blocks.tolerance
+    corner = np.flatnonzero(members[blocks.owner] & (blocks.vertices[:, 1] <= level))
+    x = blocks.vertices[corner, 0]
+    left, right = corner[x.argmin()], corner[x.argmax()]
+    n = 3 if roller else 4
+    vertex, direction = [left, left, right, right][:n], [(1.0, 0.0), (0.0, 1.0), (0.0, 1.0), (1.0, 0.0)][:n]
+    return Pins(blocks.owner[vertex], blocks.vertices[vertex], np.array(direction))
 
 
 def free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
@@ -84,11 +71,10 @@ def free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
 
     Returns
     -------
-    (3, 3) float
-        A motion a column, and columns of zeros where there are fewer. With pins they are of the block's own mass, and
-        their coordinates its root mean square displacement [m]; without, they are the identity.
-    (3,) float
-        Their masses, inf where there is none.
+    (3, 3) and (3,) float
+        A motion a column, and columns of zeros where there are fewer; their masses, inf where there is none. With
+        pins motions are of the block's own mass, and their coordinates its root mean square displacement [m]; without,
+        they are the identity.
     """
     if len(held) == 0:
         return np.eye(3), inertia.copy()

@@ -10,15 +10,7 @@ from .ranges import Range, one_of, ranges_of, suggestion, vector
 
 
 class Table:
-    """A TOML table being read.
-
-    Parameters
-    ----------
-    name
-        Full name, empty for the file's top level.
-    content
-        What the file holds under that name.
-    """
+    """A TOML table being read: its full name, empty for the file's top level, and what the file holds under that."""
 
     def __init__(self, name: str, content: Any) -> None:
         if not isinstance(content, dict):
@@ -115,5 +107,5 @@ class Table:
         """Refuse keys that have no meaning."""
         for key, value in self._left.items():
             place = f"[{self.name}]" if self.name else "a scene file"
-            shown = "a table" if isinstance(value, dict) else value
-            raise SceneError(self.key(key), f"is not a key of {place}{suggestion(key, self._keys)}", shown)
+            what = f"is not a key of {place}{suggestion(key, self._keys)}"
+            raise SceneError(self.key(key), what, "a table" if isinstance(value, dict) else value)

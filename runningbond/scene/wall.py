@@ -131,17 +131,14 @@ class Scene:
 
         A large block on small ones leans, and settles, by more than a small one's share before it falls.
         """
-        x, y = self.blocks.vertices.T
-        first = self.blocks.first[:-1]
-        sides = [np.maximum.reduceat(z, first) - np.minimum.reduceat(z, first) for z in (x, y)]
-        return np.asarray(np.maximum(np.minimum(*sides), self.block_size))
+        low, high = self.blocks.boxes
+        return np.asarray(np.maximum((high - low).min(axis=1), self.block_size))
 
     @property
     def lowest_block(self) -> float:
         """Smallest height of a movable block [m]."""
-        y, first = self.blocks.vertices[:, 1], self.blocks.first[:-1]
-        height = np.maximum.reduceat(y, first) - np.minimum.reduceat(y, first)
-        return float(height[~self.fixed].min())
+        low, high = self.blocks.boxes
+        return float((high - low)[~self.fixed, 1].min())
 
 
 def build_scene(

@@ -89,8 +89,8 @@ def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() 
         assert opening.min() > -1e-6 * largest
         for forces in (certificate.least, certificate.most):
             state = LimitState(system, forces)
-            assert state.residual < 1e-8
-            assert state.violation < 1e-8
+            assert state.measures["residual"] < 1e-8
+            assert state.measures["violation"] < 1e-8
             scale = forces.pressure.max()
             opens, slides = opening > 1e-5 * largest, abs(slip) > 1e-5 * largest
             assert abs(forces.pressure[opens]).max(initial=0.0) < 1e-8 * scale

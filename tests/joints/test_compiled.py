@@ -47,7 +47,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_kernel_closed_over_another_is_found_by_the_next_process(tmp_path: Path) -> None:
     """Two processes, two laws in one loop: the second compiles neither anew, and gets each right."""
     program = """
-from tests.test_compiled import doubled, plus_one, tripled
+from tests.joints.test_compiled import doubled, plus_one, tripled
 loops = plus_one(doubled), plus_one(tripled)
 print([loop(5.0) for loop in loops], sum(len(loop.stats.cache_misses) for loop in loops))
 """
@@ -115,7 +115,7 @@ def test_where_nothing_can_be_kept_kernels_are_compiled_all_the_same(
 
 def test_a_law_of_a_users_own_that_has_changed_is_compiled_anew(tmp_path: Path) -> None:
     """The loop over it stands in another file, which has not; nor has the law's, where a number beside it has."""
-    program = "from mine import law\nfrom tests.test_compiled import plus_one\nprint(plus_one(law)(5.0))"
+    program = "from mine import law\nfrom tests.joints.test_compiled import plus_one\nprint(plus_one(law)(5.0))"
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": f"{ROOT}:{tmp_path}"}
     text = "from runningbond.joints.compiled import kernel\nK = {}\n@kernel\ndef law(x):\n    return {} * x\n"
     printed = []
@@ -133,7 +133,7 @@ import pwd
 pwd.getpwuid = lambda uid: {}[uid]
 from pathlib import Path
 from runningbond.scene import SceneError, scene_from_dict
-from tests.test_compiled import doubled
+from tests.joints.test_compiled import doubled
 from tests.walls import content
 scene_from_dict(content())
 Path("wall.dxf").write_text("")

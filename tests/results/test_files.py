@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,10 @@ from runningbond.compare.fingerprint import fingerprint
 from runningbond.compare.models import run_model
 from runningbond.compare.recording import MotionRecorder, StaticRecorder, record_mechanism, stresses
 from runningbond.joints import wall_points
+from runningbond.joints.coulomb import COULOMB
 from runningbond.limit import limit
 from runningbond.pictures.frame import Discretisation, Frame
-from runningbond.pictures.joint_state import JointState, states_under_load
+from runningbond.pictures.joint_state import JointState, states_of_mechanism, states_under_load
 from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.time_series import MAX_FRAMES, TimeSeries, frame_files, read_grid
 from runningbond.pictures.vtk_safety import VtkError, vtk_errors_raised
@@ -323,6 +325,18 @@ def test_states_under_load_follow_the_law() -> None:
     assert state(-1e-6, -1e5, 0.5e5, 1.0) == JointState.DEBONDED
     assert state(-1e-6, -1e5, 0.6e5, 1.0) == JointState.SLIDE
     assert state(1e-7, 0.0, 0.0, 1.0) == JointState.OPEN
+
+
+def test_states_follow_the_cone_of_a_law_of_ones_own() -> None:
+    """Tan φ = 0.2 in the law, 0.6 in the material: 0.3 of the pressure slides, as does a lift of 0.2 of the slip."""
+    law = replace(COULOMB, name="smooth", cone=lambda _: (0.2, 0.0, 0.0))
+    joint = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8, "law": law}
+    scene = courses([[1]], width=0.2, height=0.2, joint=joint)
+    points = wall_points(scene)
+    one = np.ones(len(points))
+    assert (states_under_load(scene, points, -1e-6 * one, -one, 0.3 * one, 0 * one) == JointState.SLIDE).all()
+    assert (states_under_load(scene, points, -1e-6 * one, -one, 0.1 * one, 0 * one) == JointState.STICK).all()
+    assert (states_of_mechanism(scene, points, 0.2 * one, one) == JointState.SLIDE).all()
 
 
 def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from fem_interface.model import fem
 from runningbond.compare import published_scene, run_model
 from runningbond.dynamics import Run
 from runningbond.joints import stiffness_note
-from runningbond.joints.stiffness_range import EPSILON, SOFT, STIFF
+from runningbond.joints.stiffness import EPSILON, SOFT, STIFF
 from runningbond.studies.stability.joint_stiffness import OVERLAP, at_rest, condition, overlap, wall
 from runningbond.studies.stability.joint_stiffness import stiffness_note as said_in
 

@@ -14,7 +14,7 @@ from dem.static_system import static_system
 from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.joints.stiffness_range import SOFT
+from runningbond.joints.stiffness import SOFT
 from runningbond.scene import Scene, Stiffness
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS, MODEL_LOOKS, bracket
