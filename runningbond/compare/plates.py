@@ -132,5 +132,5 @@ def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> tuple[li
 
 def _caption(scene: Scene, outcome: Outcome) -> str:
     """The load, its bracket, and what is wrong with the mechanism where something is."""
-    lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 34)]
+    lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 26)]
     return "\n".join(filter(None, lines))
