@@ -18,6 +18,7 @@ from .compare import compare
 from .mesh import mesh
 from .render import render
 from .run import run
+from .show import show
 from .studies import stability, study
 from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions
 
@@ -28,7 +29,7 @@ app = App(
     result_action="return_value",
     suppress_keyboard_interrupt=False,
 )
-for each in (run, advise, compare, stability, study, mesh, render):
+for each in (run, show, advise, compare, stability, study, mesh, render):
     app.command(each)
 
 
