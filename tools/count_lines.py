@@ -20,7 +20,7 @@ DEMONSTRATION = {"compare", "studies", "commands"}
 LOADS = re.compile(r"\bPointLoad\b")
 LAWS = re.compile(r"\b(SOFTENING|COULOMB|softening_\w+|coulomb_(kernel|constants)|fracture_energy_1)\b")
 MODELS = {"limit-nonassociated", "dem-static", "dem-dynamic", "fem"}
-UNTYPED = re.compile(r"tuple\[Any\b")
+UNTYPED = re.compile(r"[Gg]eometry[^\n]*tuple\[Any\b")
 
 
 def sources(root: Path) -> list[Path]:
