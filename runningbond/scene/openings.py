@@ -1,9 +1,10 @@
 """Openings in a bonded wall and the lintels over them, as a file says them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .errors import SceneError
-from .ranges import Positive, check_numbers
+from .ranges import Positive
 from .table import Table
 
 
@@ -22,9 +23,6 @@ class Lintel:
     height: Positive
     bearing: Positive
     material: str | None = None
-
-    def __post_init__(self) -> None:
-        check_numbers(self, "lintel")
 
 
 @dataclass(frozen=True)
@@ -47,22 +45,20 @@ class Opening:
     lintel: Lintel | None = None
 
 
-def read_openings(wall: Table) -> list[Opening]:
-    """Openings of the table of a wall; none where it has no such key."""
-    name, given = wall.key("opening"), wall.value("opening", [])
-    if not isinstance(given, list):
-        raise SceneError(name, f"must be a list of tables, [[{name}]]", given)
-    return [_read_opening(Table(f"{name}[{k}]", one)) for k, one in enumerate(given)]
+def read_openings(wall: Table, block_names: Sequence[str]) -> list[Opening]:
+    """Openings of the table of a wall, whose lintels are of materials of some names."""
+    return [_read_opening(table, block_names) for table in wall.list_of_tables("opening")]
 
 
-def _read_opening(table: Table) -> Opening:
+def _read_opening(table: Table, block_names: Sequence[str]) -> Opening:
     low, high = table.vector("from"), table.vector("to")
     if not (low[0] < high[0] and low[1] < high[1]):
         what = f"must lie to the right of and above {table.key('from')} = {list(low)}"
         raise SceneError(table.key("to"), what, list(high))
     lintel, over = None, table.optional_table("lintel")
     if over:
-        lintel = Lintel(**over.numbers(Lintel), material=over.text("material") if "material" in over else None)
+        material = over.choice("material", block_names) if "material" in over else None
+        lintel = Lintel(**over.numbers(Lintel), material=material)
         over.finish()
     table.finish()
     return Opening(table.name, low, high, lintel)

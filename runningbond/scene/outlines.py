@@ -1,5 +1,6 @@
 """The outlines of a wall's blocks, from what a scene file says under ``[wall]``."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast, get_args
@@ -47,8 +48,15 @@ class Outlines:
     notes: tuple[str, ...] = ()
 
 
-def read_outlines(wall: Table, folder: Path) -> Outlines:
-    """The outlines that the table of a wall describes; drawings are looked up in a folder.
+def read_outlines(wall: Table, folder: Path, block_names: Sequence[str]) -> Outlines:
+    """The outlines that the table of a wall describes.
+
+    Parameters
+    ----------
+    folder
+        Where drawings are looked up.
+    block_names
+        Names of the materials that blocks may have.
 
     Raises
     ------
@@ -76,7 +84,7 @@ def read_outlines(wall: Table, folder: Path) -> Outlines:
         ends = cast(Ends, wall.choice("ends", get_args(Ends), "flush"))
         rows = bonded_rows(width, length, n_courses, first, ends)
     levels = bond.levels(len(rows)) if bond else np.cumsum([0.0, *cast(Array, heights)])
-    polygons, openings = rectangles(rows, width, levels), read_openings(wall)
+    polygons, openings = rectangles(rows, width, levels), read_openings(wall, block_names)
     if not openings:
         return Outlines(polygons, bond=bond)
     polygons, materials = cut_openings(polygons, openings, width)
