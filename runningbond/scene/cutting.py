@@ -131,7 +131,7 @@ class _Wall:
         (x0, y0), (x1, y1) = low, high = self.low.min(axis=0), self.high.max(axis=0)
         spans = f"x {x0:.4g} … {x1:.4g} m, y {y0:.4g} … {y1:.4g} m"
         for k, hole in enumerate(holes):
-            reach = [hole.low.tolist(), hole.high.tolist()]
+            reach = np.round([hole.low, hole.high], 9).tolist()
             if (hole.low < low).any() or (hole.high > high).any():
                 raise SceneError(hole.key, f"must not reach beyond the wall, which spans {spans}", reach)
             for other in holes[:k]:
@@ -141,9 +141,7 @@ class _Wall:
             if inside <= self.rounding**2:
                 raise SceneError(hole.key, f"cuts no block of the wall, which spans {spans}", reach)
             if hole.key.endswith(".lintel") and inside < EXACT * whole:
-                raise SceneError(
-                    hole.key, "must lie in the wall, whole; here it reaches where there is no block", reach
-                )
+                raise SceneError(hole.key, "must lie whole in the wall; part of it is where there is no block", reach)
 
     def pieces(self, holes: list[_Hole]) -> Pieces:
         """What holes leave of the blocks that they cut, slivers joined to their neighbours."""
