@@ -149,9 +149,10 @@ class _Wall:
         rest = shapely.difference(shapely.polygons(self.corners[cut]), shapely.union_all([h.shape for h in holes]))
         pieces: Pieces = {int(i): polygonal_parts(shape) for i, shape in zip(cut, rest, strict=True)}
         slivers = [(i, part) for i, parts in pieces.items() for part in parts if self._is_sliver(i, part)]
-        while slivers:
-            self._join(pieces, *slivers[0], holes)
-            slivers = [(i, part) for i, parts in pieces.items() for part in parts if self._is_sliver(i, part)]
+        for block, sliver in slivers:  # grows where two slivers make one
+            if any(part is sliver for part in pieces[block]):
+                neighbour, whole = self._join(pieces, block, sliver, holes)
+                slivers += [(neighbour, whole)] * self._is_sliver(neighbour, whole)
         for block, parts in pieces.items():
             for part in parts:
                 self._refuse(block, part, holes)
@@ -162,7 +163,7 @@ class _Wall:
         whole = self.high[block, 0] - self.low[block, 0]
         return bool(right - left < EXACT * min(SLIVER * self.width, whole))
 
-    def _join(self, pieces: Pieces, block: int, sliver: Any, holes: list[_Hole]) -> None:
+    def _join(self, pieces: Pieces, block: int, sliver: Any, holes: list[_Hole]) -> tuple[int, Any]:
         """Make a sliver one with the piece beside it in its course with which it shares most of a head joint."""
         beside = [
             (shapely.length(shapely.intersection(sliver, other)), neighbour, other)
@@ -177,8 +178,9 @@ class _Wall:
             what = f"leaves a piece {right - left:.4g} m long of a block, and none beside it that it could be part of"
             raise SceneError(_beside(sliver, holes).key, f"{what}; move it, or let it end at the wall's side")
         pieces[block] = [part for part in pieces[block] if part is not sliver]
-        own = pieces.setdefault(neighbour, [other])
-        pieces[neighbour] = [shapely.union(other, sliver) if part is other else part for part in own]
+        own, whole = pieces.setdefault(neighbour, [other]), shapely.union(other, sliver)
+        pieces[neighbour] = [whole if part is other else part for part in own]
+        return neighbour, whole
 
     def _refuse(self, block: int, part: Any, holes: list[_Hole]) -> None:
         """Refuse a piece that is too low, or has a hole inside."""

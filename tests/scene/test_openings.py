@@ -76,8 +76,8 @@ def test_a_stack_of_courses_topples_at_its_height() -> None:
 
 
 def test_an_opening_on_the_lattice_is_that_of_a_list_of_courses() -> None:
-    whole, half = [1.0] * 6, [0.5, 1, 1, 1, 1, 1, 0.5]
-    pattern = [[1, 1, -2, 1, 1], [0.5, 1, 0.5, -2, 0.5, 1, 0.5]] * 3 + [whole, half] * 2
+    whole, half = [1.0] * 6, [0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 0.5]
+    pattern = [[1.0, 1.0, -2.0, 1.0, 1.0], [0.5, 1.0, 0.5, -2.0, 0.5, 1.0, 0.5]] * 3 + [whole, half] * 2
     keys = {key: value for key, value in SIZE.items() if key not in ("wall__length", "wall__height")}
     listed = courses(pattern, 0.5, 0.2, **{k: v for k, v in keys.items() if "block_" not in k})
     cut = pierced(opening(1.0, 0.0, 2.0, 1.2))
