@@ -49,7 +49,7 @@ def scene_of(name: str) -> tuple[Scene, float]:
     assert isinstance(scene.joint.elasticity, Mortar)
     assert scene.bond is not None
     mortar = replace(scene.joint.elasticity, young=SOFTER * scene.joint.elasticity.young)
-    return replace(scene, joint=replace(scene.joint, elasticity=mortar)), scene.bond.width
+    return scene.with_joint(elasticity=mortar), scene.bond.width
 
 
 def curves(scene: Scene, width: float, speed: float) -> tuple[float, Array, Array, Array]:
