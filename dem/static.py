@@ -96,10 +96,10 @@ def dem_static(
             outcome = _fallen(replace(outcome, steps=rest.solves), system)
         else:
             path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-            observe(system, path.rests[0])
+            observe(path, path.rests[0])
             undecided = _climb(path, first_step, tolerance, past)
             for state in path.past:
-                observe(system, state)
+                observe(path, state)
             outcome = _judge(outcome, path, undecided)
             message = "; ".join(part for part in (outcome.message, _window(path)) if part)
             outcome = replace(outcome, message=message, steps=budget - path.budget)

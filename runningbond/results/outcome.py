@@ -87,11 +87,11 @@ class Outcome:
         """The scalars, in the order of the command line's contract."""
         return {key: getattr(self, key) for key in SCALARS}
 
-    def curve_columns(self, displacement: str = "displacement", multiplier: str = "multiplier") -> dict[str, Array]:
+    def curve_columns(self, multiplier: str = "multiplier", displacement: str = "displacement") -> dict[str, Array]:
         """Curve and path, column by column; without a curve the collapse, where something is known of it."""
         collapse = [(np.nan, self.multiplier)] * len(self.path)
         moved, load = (self.curve if len(self.curve) else np.array(collapse, dtype=float).reshape(-1, 2)).T
-        return {displacement: moved, multiplier: load, **dict(zip(self.path_columns, self.path.T, strict=True))}
+        return {multiplier: load, displacement: moved, **dict(zip(self.path_columns, self.path.T, strict=True))}
 
 
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")

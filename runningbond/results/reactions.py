@@ -1,13 +1,14 @@
 """What holds a wall, and with which forces: the path quantities of an outcome.
 
-A held block is one that is fixed and touched, or pinned. What holds it is the balance of its joint forces and loads,
+A held block is one that is fixed and touched, or pinned, as a beam may be. What holds it is the balance of its joint
+forces and loads,
 
     R = B_nᵀ N + B_tᵀ S − f_dead − λ f_live,
 
 of a fixed one the joint forces alone, for loads on it go straight into the ground. Reactions act on the wall.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,8 @@ class Supports:
     def __init__(self, scene: Scene, points: JointPoints, owner: Indices | None = None) -> None:
         sides = points.block if owner is None else owner[points.block]
         touched = np.isin(np.arange(len(scene.blocks)), sides)
-        self.block: Indices = np.union1d(np.flatnonzero(scene.fixed & touched), scene.pins.block)
+        self._pins = scene.pins + scene.late_pins
+        self.block: Indices = np.union1d(np.flatnonzero(scene.fixed & touched), self._pins.block)
         number = np.full(len(scene.blocks), -1)
         number[self.block] = np.arange(len(self.block))
         self._point, side = np.nonzero((number[sides] >= 0) & (sides[:, :1] != sides[:, 1:]))
@@ -58,7 +60,7 @@ class Supports:
         self._dead, self._live = (self._load(forces, number) for forces in (scene.dead_forces, scene.live_forces))
 
     def _middle(self, k: int) -> Array:
-        pinned = self._scene.pins.point[self._scene.pins.block == self.block[k]]
+        pinned = self._pins.point[self._pins.block == self.block[k]]
         at = pinned if len(pinned) else self._points.position[self._body == k]
         return np.asarray((at.min(axis=0) + at.max(axis=0)) / 2)
 
@@ -86,6 +88,8 @@ class Supports:
         scene = self._scene
         ground = self.block[~scene.wall[self.block]]
         names = {int(b): "ground" if len(ground) == 1 else f"ground {k + 1}" for k, b in enumerate(ground)}
+        if scene.beam is not None and scene.beam.block is not None:
+            names[scene.beam.block] = "beam"
         return [names.get(int(b), f"{'block' if scene.fixed[b] else 'pinned block'} {b}") for b in self.block]
 
     def reactions(self, force: Array, multiplier: float, *, at_rest: bool = True) -> Array:
@@ -108,7 +112,7 @@ class Supports:
         return total.ravel()
 
     def path(
-        self, forces: Sequence[Array], multipliers: Sequence[float], works: Array, *, falls: bool = False
+        self, forces: Sequence[Array], multipliers: Iterable[float], works: Array, *, falls: bool = False
     ) -> dict[str, Any]:
         """Path and names of its columns, as `Outcome` has them, of states with point forces and works ``(n, 2)``.
 

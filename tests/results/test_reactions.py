@@ -1,5 +1,7 @@
 """Reactions and works along a path: what is held bears what pushes, state by state."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,8 +13,9 @@ from runningbond.scene import Array, Scene
 
 from ..walls import courses, panel
 
+STIFFNESS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 POINT = {"gravity": 9.81, "live": {"kind": "point", "at": [0.24, 0.24], "force": [100.0, -30.0]}}
-WALLS = {
+WALLS: dict[str, dict[str, Any]] = {
     "base": {},
     "held course": {"support__kind": "fixed-first-course"},
     "corners": {"support__kind": "corners"},
@@ -26,9 +29,6 @@ def wall(name: str) -> Scene:
     """Four courses of two blocks."""
     size = {"wall__length": 0.48, "wall__height": 0.24, "block__young": 1e12}
     return panel(**size, joint={"friction": 0.6, "cohesion": 2e3} | STIFFNESS, **WALLS[name])
-
-
-STIFFNESS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
 
 
 def sums(scene: Scene, outcome: Outcome) -> tuple[Array, Array]:
@@ -100,7 +100,8 @@ def test_the_loads_work_is_what_they_do_on_the_path(model: str) -> None:
     trapezoids = np.append(0.0, np.cumsum((load[1:] + load[:-1]) / 2 * np.diff(moved))) * np.hypot(100, 30)
     live = columns[WORKS[1]][rests]
     assert live == pytest.approx(trapezoids, rel=0.15, abs=0.02 * trapezoids[-1])
-    assert (columns[WORKS[0]][rests][0] > 0) and (np.diff(live) >= 0).all()
+    assert columns[WORKS[0]][rests][0] > 0
+    assert (np.diff(live) >= 0).all()
 
 
 def test_the_path_comes_back_from_disk(tmp_path_factory: pytest.TempPathFactory) -> None:

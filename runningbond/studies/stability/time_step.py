@@ -141,9 +141,7 @@ def run_beyond(model: str, times: float = MUCH) -> Outcome:
         order = np.argsort(points.joint, kind="stable")
     step = times * 2 / float(vibrations(system)[0][-1])
     run = Run(system, dt=step)
-    return collapse_by_steps(
-        scene, model, run, 0.01, points=points, point_order=order, is_self_locking=lambda: False
-    )
+    return collapse_by_steps(scene, model, run, 0.01, points=points, point_order=order, is_self_locking=lambda: False)
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
