@@ -1,6 +1,7 @@
 """``runningbond run``."""
 
 import json as to_json
+import sys
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -27,6 +28,7 @@ from .terminal import (
     can_draw,
     interruptions,
     progress_line,
+    remarks,
 )
 
 CURVE_FILES = ("curve.csv", "curve.png")
@@ -56,6 +58,8 @@ def run(
     wall = read_scene(find_scene(scene))
     if out is not None:
         make_folder(out)
+    for line in remarks(wall):
+        print(line, file=sys.stderr)
     stopped = interruptions(chosen)
     recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
     progress = chosen.progress() if chosen.progress else None

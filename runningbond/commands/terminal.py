@@ -18,6 +18,8 @@ from rich.text import Text
 from runningbond.compare.model import Model
 from runningbond.compare.table import Sheet
 from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.scene import Scene
+from runningbond.scene.plausibility import warnings
 
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 """Exit codes of every command."""
@@ -60,6 +62,11 @@ def can_draw() -> bool:
     if why_not:
         print(f"runningbond: {why_not}", file=sys.stderr)
     return not why_not
+
+
+def remarks(scene: Scene) -> tuple[str, ...]:
+    """What is to be said of a scene before anything is computed: what its drawing left out, what looks like a slip."""
+    return (*(f"note: {line}" for line in scene.notes), *(f"warning: {line}" for line in warnings(scene)))
 
 
 @contextmanager
