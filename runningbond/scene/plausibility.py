@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, Indices
+from .arrays import Array, Mask
 from .blocks import touching_boxes
-from .materials import Mortar, Stiffness
+from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
 from .wall import Scene, table_of
 
 
@@ -85,7 +85,8 @@ def warnings(scene: Scene) -> tuple[str, ...]:
 
 def _materials(scene: Scene) -> Iterator[str]:
     """Numbers of materials, and of ties."""
-    for material in (*scene.block_materials, *scene.joint_materials):
+    materials: tuple[BlockMaterial | JointMaterial, ...] = (*scene.block_materials, *scene.joint_materials)
+    for material in materials:
         table = table_of(material)
         for name in (entry.name for entry in fields(material)):
             value: Any = getattr(material, name)
@@ -134,10 +135,12 @@ def _sizes(scene: Scene) -> Iterator[str]:
         yield f"load.live.by = {moved:g}: moves a support by more than a tenth of the wall's size; are mm meant?"
 
 
-def _own_blocks(scene: Scene) -> Indices:
-    """Blocks of the wall but for a beam on top, ``(n,)``."""
-    own = np.flatnonzero(scene.wall)
-    return own if scene.beam is None else own[own != scene.beam.block]
+def _own_blocks(scene: Scene) -> Mask:
+    """Blocks of the wall but for a beam on top, ``(nb,)``."""
+    own = scene.wall.copy()
+    if scene.beam is not None:
+        own[scene.beam.block] = False
+    return own
 
 
 def _courses(scene: Scene) -> Iterator[str]:
@@ -147,7 +150,7 @@ def _courses(scene: Scene) -> Iterator[str]:
     size = high - low
     full = scene.blocks.area[own] >= (1 - 1e-6) * size.prod(axis=1)
     levels = _distinct(low[:, 1], scene.blocks.tolerance)
-    if full.mean() < REGULAR or 2 * len(levels) > max(len(own), 4):
+    if full.mean() < REGULAR or 2 * len(levels) > max(len(full), 4):
         return
     gaps = np.diff(levels)
     close = np.flatnonzero(gaps < LEVEL * size[:, 1].min())
@@ -168,10 +171,10 @@ def _courses(scene: Scene) -> Iterator[str]:
 def _distinct(values: Array, tolerance: float) -> Array:
     """Values in ascending order, those that differ by less than a tolerance taken as one."""
     values = np.sort(values)
-    return values[np.append(True, np.diff(values) > tolerance)]
+    return np.asarray(values[np.append(True, np.diff(values) > tolerance)])
 
 
-def _short(reach: Array, half: float) -> Array:
+def _short(reach: Array, half: float) -> Mask:
     """Courses that end more than half a block short of both neighbours; at an end of the wall, where all others agree.
 
     Gables, steps and openings at the side, which are several courses high, are none of these.
@@ -190,7 +193,7 @@ def _head_joints(scene: Scene) -> Iterator[str]:
     """Blocks that stand side by side, and nowhere touch."""
     ends, own = scene.joints.ends, _own_blocks(scene)
     run = np.abs(ends[:, 1] - ends[:, 0])
-    if (run[:, 1] > run[:, 0])[np.isin(scene.joints.block, own).all(axis=1)].any():
+    if (run[:, 1] > run[:, 0])[own[scene.joints.block].all(axis=1)].any():
         return
     low, high = (corner[own] for corner in scene.blocks.boxes)
     reach = NEAR * np.median((high - low)[:, 0]) / 2 * np.array([1.0, 0.0])
