@@ -58,8 +58,6 @@ def run(
     wall = read_scene(find_scene(scene))
     if out is not None:
         make_folder(out)
-    for line in remarks(wall):
-        print(line, file=sys.stderr)
     stopped = interruptions(chosen)
     recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
     progress = chosen.progress() if chosen.progress else None
@@ -71,6 +69,8 @@ def run(
 
     with progress_line(chosen.name, progress.line if progress else None):
         outcome = run_model(chosen, wall, tolerance, observe if observers else None)
+    for line in remarks(wall):  # not before: a scene that the model refuses is one line
+        print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
     if out is not None:
         # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
