@@ -124,3 +124,17 @@ def test_what_falls_holds_its_pins_with_more_than_forces() -> None:
     pinned = [values for name, values in columns.items() if name.startswith("pinned block")]
     assert len(pinned) == 6
     assert all(np.isnan(values[-1]) and np.isfinite(values[:-1]).all() for values in pinned)
+
+
+def test_a_held_beam_bears_what_its_joints_do_not() -> None:
+    """A beam that is level and does not rise, pushed 0.1 m above its middle, on joints that carry nothing."""
+    beam = {"height": 0.1, "mass": 50.0, "condition": "fixed-height", "drive": {"force": [2.0, 0.0], "at": 0.39}}
+    scene = panel(wall__length=0.48, wall__height=0.24, load={"gravity": 9.81}, beam=beam | {"force": [0.0, -300.0]})
+    supports = Supports(scene, wall_points(scene))
+    reactions = supports.reactions(np.zeros((len(wall_points(scene)), 2)), 3.0)
+    columns = dict(zip(supports.columns, reactions, strict=True))
+    named = {name: value for name, value in columns.items() if name.startswith("beam")}
+    assert list(named) == [
+        f"beam {head}" for head in ("horizontal [N]", "vertical [N]", "moment about (0.24, 0.29) [N m]")
+    ]
+    assert list(named.values()) == pytest.approx([-6.0, 300 + 50 * 9.81, 0.6])
