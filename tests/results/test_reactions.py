@@ -14,7 +14,7 @@ from runningbond.scene import Array, Scene
 from ..walls import courses, panel
 
 STIFFNESS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
-POINT = {"gravity": 9.81, "live": {"kind": "point", "at": [0.24, 0.24], "force": [100.0, -30.0]}}
+POINT = {"gravity": 9.81, "live": {"kind": "point", "at": [0.24, 0.18], "force": [100.0, -30.0]}}
 WALLS: dict[str, dict[str, Any]] = {
     "base": {},
     "held course": {"support__kind": "fixed-first-course"},
@@ -26,8 +26,8 @@ WALLS: dict[str, dict[str, Any]] = {
 
 
 def wall(name: str) -> Scene:
-    """Four courses of two blocks."""
-    size = {"wall__length": 0.48, "wall__height": 0.24, "block__young": 1e12}
+    """Three courses of two blocks."""
+    size = {"wall__length": 0.48, "wall__height": 0.18, "block__young": 1e12}
     return panel(**size, joint={"friction": 0.6, "cohesion": 2e3} | STIFFNESS, **WALLS[name])
 
 
@@ -46,15 +46,17 @@ def sums(scene: Scene, outcome: Outcome) -> tuple[Array, Array]:
     return total, load[0] + outcome.curve_columns()["multiplier"][:, None] * load[1]
 
 
+TOLERANCES = {"limit": 1e-6, "limit-nonassociated": 1e-6, "dem-static": 1e-6, "dem-dynamic": 3e-4}
+EACH = [(model, tolerance, name) for model, tolerance in TOLERANCES.items() for name in WALLS]
+
+
 @pytest.mark.parametrize(
-    ("model", "tolerance"),
-    [("limit", 1e-6), ("limit-nonassociated", 1e-6), ("dem-static", 1e-6), ("dem-dynamic", 3e-4), ("fem", 3e-4)],
+    ("model", "tolerance", "name"), [*EACH, ("fem", 3e-4, "base"), ("fem", 3e-4, "corners"), ("fem", 3e-4, "point")]
 )
-@pytest.mark.parametrize("name", WALLS)
 def test_reactions_balance_the_loads_in_every_state_at_rest(model: str, tolerance: float, name: str) -> None:
-    """In force and moment: to the tolerance of a program, and of rest: each block's 1e-5 weights, eight blocks."""
+    """In force and moment: to the tolerance of a program, and of rest: each block's 1e-5 weights, of each block."""
     scene = wall(name)
-    outcome = run_model(model, scene, 0.05)
+    outcome = run_model(model, scene, 0.3)
     rests = outcome.curve_columns()[AT_REST] == 1
     assert rests.any(), outcome.message
     reactions, loads = sums(scene, outcome)
@@ -89,11 +91,11 @@ def test_stepped_ground_is_a_support_a_piece() -> None:
     assert [name.split(" horizontal")[0] for name in columns if "horizontal" in name] == ["block 0", "block 1"]
 
 
-@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
 def test_the_loads_work_is_what_they_do_on_the_path(model: str) -> None:
     """A force P = λ f at the control point works ∫ P du; the dead load of an elastic pile weight times settlement."""
     scene = wall("point")
-    outcome = run_model(model, scene, 0.02)
+    outcome = run_model(model, scene, 0.1)
     columns = outcome.curve_columns()
     rests = columns[AT_REST] == 1
     moved, load = columns["displacement"][rests], columns["multiplier"][rests]
