@@ -1,6 +1,7 @@
 """Draw an arch on two piers: blocks on the layers PIERS and ARCH, the ground on the layer GROUND; in millimetres."""
 
 import sys
+from itertools import pairwise
 
 import ezdxf
 import numpy as np
@@ -26,7 +27,7 @@ def main(path):
     middle = PIER + SPAN / 2
     rays = np.linspace(np.pi, 0, VOUSSOIRS + 1)
     inner, outer = SPAN / 2, SPAN / 2 + RING
-    for a, b in zip(rays[:-1], rays[1:], strict=True):
+    for a, b in pairwise(rays):
         corners = [
             (r * np.cos(t) + middle, r * np.sin(t) + RISE_AT)
             for r, t in ((inner, a), (inner, b), (outer, b), (outer, a))
