@@ -6,11 +6,10 @@ import tomllib
 from pathlib import Path
 from typing import Any, cast, get_args
 
-from .arrays import Array
 from .assignment import ANY, BEAM, GROUND, read_assignments
 from .beam import read_beam
 from .bond import Bond, Ends, FirstCourse, course_pattern, running_bond
-from .drawing import METRES, read_drawing
+from .drawings import METRES, Drawing, read_drawing
 from .errors import SceneError, keys_of
 from .loads import read_load
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness, check_friction
@@ -89,40 +88,41 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     support.finish()
     loads = read_load(load, driven=beam is not None and beam.drive is not None)
     thickness = wall.number("thickness", ABOVE_ZERO)
-    polygons, ground, bond = _blocks(wall, folder)
+    drawing, bond = _blocks(wall, folder)
     wall.finish()
     return build_scene(
         title,
-        polygons,
+        drawing.blocks,
         thickness=thickness,
         block=block_material,
         joint=joint_material,
         load=loads,
         support=kind,
-        grounds=() if ground is None else (ground,),
+        grounds=drawing.grounds,
         bond=bond,
         inner_joint=inner_material,
         materials=materials,
         joints=joints,
         assignments=assignments,
+        layers=drawing.layers,
         beam=beam,
         ties=[read_tie(table) for table in tie_tables],
+        notes=drawing.notes,
     )
 
 
-def _blocks(wall: Table, folder: Path) -> tuple[list[Array], Array | None, Bond | None]:
+def _blocks(wall: Table, folder: Path) -> tuple[Drawing, Bond | None]:
     _refuse_mixed_descriptions(wall)
     if "drawing" in wall:
         path = folder / wall.text("drawing")
-        blocks, ground = read_drawing(path, wall.choice("units", METRES))
-        return blocks, ground, None
+        return read_drawing(path, wall.choice("units", METRES), wall.optional_number("heal", ABOVE_ZERO)), None
     bond = Bond(wall.number("block_width", ABOVE_ZERO), wall.number("block_height", ABOVE_ZERO))
     if "courses" in wall:
-        return course_pattern(bond, wall.rows("courses")), None, bond
+        return Drawing(course_pattern(bond, wall.rows("courses"))), bond
     length, height = wall.number("length", ABOVE_ZERO), wall.number("height", ABOVE_ZERO)
     first = cast(FirstCourse, wall.choice("first_course", get_args(FirstCourse), "full"))
     ends = cast(Ends, wall.choice("ends", get_args(Ends), "flush"))
-    return running_bond(bond, length, height, first, ends), None, bond
+    return Drawing(running_bond(bond, length, height, first, ends)), bond
 
 
 def _refuse_mixed_descriptions(wall: Table) -> None:
@@ -130,8 +130,8 @@ def _refuse_mixed_descriptions(wall: Table) -> None:
     by_size = ("length", "height", "first_course", "ends")
     for description, strangers in (
         ("drawing", ("courses", *by_size, "block_width", "block_height")),
-        ("courses", ("units", *by_size)),
-        ("length", ("units",)),
+        ("courses", ("units", "heal", *by_size)),
+        ("length", ("units", "heal")),
     ):
         if description in wall:
             for key in strangers:
