@@ -1,7 +1,6 @@
 """Blocks from a drawing: DXF curves or a COMPAS assembly, closed, cut into chords and healed."""
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -44,9 +43,9 @@ class Drawing:
     """
 
     blocks: list[Array]
-    layers: tuple[str, ...] = ()
-    grounds: Sequence[Array] = ()
-    notes: tuple[str, ...] = ()
+    layers: tuple[str, ...]
+    grounds: list[Array]
+    notes: tuple[str, ...]
 
 
 def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
