@@ -5,7 +5,6 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import ezdxf
 import numpy as np
 import pytest
 
@@ -332,12 +331,3 @@ def test_two_blocks_along_one_spline_touch(tmp_path: Path) -> None:
     assert scene.joints.ends[between][..., 0].min() == 0
     assert scene.joints.ends[between][..., 0].max() == pytest.approx(0.2)
     assert (scene.joints.ends[between][:, 0, 0] - scene.joints.ends[between][:, 1, 0]).sum() == pytest.approx(0.2)
-
-
-def test_notes_reach_the_scene(tmp_path: Path) -> None:
-    path = tmp_path / "wall.dxf"
-    document = ezdxf.new()  # type: ignore[attr-defined]
-    for draw in (closed(), lambda _, space: space.add_text("x")):
-        draw(document, document.modelspace())
-    document.saveas(path)
-    assert scene_of(path).notes[0] == "left out: 1 TEXT on layer 0"

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.linalg import lsqr
+from scipy.sparse import coo_array, csc_array, csr_array, eye_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import spsolve
 from scipy.spatial import cKDTree
 
 from ..arrays import Array, Indices
@@ -15,8 +16,8 @@ from ..errors import SceneError
 
 KEY = "wall.heal"
 
-SWEEPS = 20
-"""Corrections of the corners; each leaves a share of about the gap over the block's size of the one before."""
+SWEEPS = 200
+"""Most corrections of the corners; a dozen are enough where the gaps are as small beside the blocks as they may be."""
 
 NOTICED = 0.01
 """Gap between facing edges, in sizes of the smaller block, below which a joint was surely meant."""
@@ -24,15 +25,18 @@ NOTICED = 0.01
 
 @dataclass(frozen=True, eq=False)
 class _Touches:
-    """What is to coincide: a corner, and a point on an edge of another block or one of its corners.
+    """What is to coincide.
 
     Parameters
     ----------
-    corner, low, high : (n,) int
-        The corner, and the ends of the edge; the same one twice for a corner.
+    node : (nv,) int
+        The node that each corner becomes, with all corners that it is to meet.
+    lies, low, high : (n,) int
+        A node, and the ends of the edge that it is to lie on.
     """
 
-    corner: Indices
+    node: Indices
+    lies: Indices
     low: Indices
     high: Indices
 
@@ -40,9 +44,9 @@ class _Touches:
 def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     """Close gaps and overlaps up to `reach` between neighbours.
 
-    Corners that are nearest to each other are to coincide, and those near another block's edge are to lie on it; of
-    all shapes in which they do, corners take the one to which they move least (in the sum of squares), so that a
-    joint along many blocks becomes one straight line.
+    Corners of two blocks that are each other's nearest become one, in their middle; those near another block's edge
+    are to lie on it. Damped Gauss-Newton steps, the least in the sum of squares, lead there: a joint along many blocks
+    becomes one straight line through their midst.
 
     Parameters
     ----------
@@ -69,18 +73,20 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
         raise SceneError(KEY, what, reach)
     blocks = Blocks.from_polygons(polygons)
     drawn = blocks.vertices
-    touches = _touches(blocks, reach)
-    corners, gap, size = drawn.copy(), np.zeros(0), float(np.ptp(drawn, axis=0).max())
-    for sweep in range(SWEEPS):
-        apart = _apart(touches, corners)
-        gap = np.hypot(*apart.T) if sweep == 0 else gap
-        if np.abs(apart).max(initial=0.0) <= 1e-12 * size:
+    touches, gap = _touches(blocks, reach)
+    number = np.bincount(touches.node)[:, None]
+    nodes = np.column_stack([np.bincount(touches.node, x) for x in drawn.T]) / number
+    size = float(np.ptp(drawn, axis=0).max())
+    for _ in range(SWEEPS):
+        apart = _apart(touches, nodes)
+        if np.abs(apart).max(initial=0.0) <= 1e-13 * size:
             break
-        corners = corners + _least_motion(touches, corners, apart)
+        nodes = nodes + _step(touches, nodes, apart, least)
+    corners = nodes[touches.node]
     moved = np.hypot(*(corners - drawn).T)
     worst = int(np.argmax(moved))
     x, y = drawn[worst]
-    if moved[worst] > 2 * reach or np.abs(_apart(touches, corners)).max(initial=0.0) > blocks.tolerance / 10:
+    if moved[worst] > 2 * reach or np.abs(_apart(touches, nodes)).max(initial=0.0) > blocks.tolerance / 10:
         what = f"closes no gaps near ({x:.4g}, {y:.4g}): the corner would move by {moved[worst]:.2g} m; draw it anew"
         raise SceneError(KEY, what, reach)
     healed = np.split(corners, blocks.first[1:-1])
@@ -88,10 +94,11 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
         raise SceneError(KEY, f"makes {blocks.name(int(k))} cross itself; choose a smaller one", reach)
     changed = int(np.sum(moved > blocks.tolerance / 100))
     note = f"heal: {changed} corners moved, by at most {moved[worst]:.2g} m"
-    return healed, f"{note}, to close gaps and overlaps of up to {gap.max(initial=0.0):.2g} m"
+    return healed, f"{note}, to close gaps and overlaps of up to {gap:.2g} m"
 
 
-def _touches(blocks: Blocks, reach: float) -> _Touches:
+def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
+    """What is to coincide within a reach, and how far apart it is at most [m]."""
     corner, other = _twins(blocks, reach)
     start = blocks.vertices
     stop = start[blocks.successor]
@@ -101,14 +108,16 @@ def _touches(blocks: Blocks, reach: float) -> _Touches:
     place = ((start[c] - start[e]) * along).sum(axis=1) / (along**2).sum(axis=1)
     # A corner that has a twin on the edge's block meets it there, not beside it.
     n = len(blocks)
-    taken = np.isin(
-        c * n + blocks.owner[e], np.concatenate([corner * n + blocks.owner[other], other * n + blocks.owner[corner]])
-    )
+    pairs = np.concatenate([corner * n + blocks.owner[other], other * n + blocks.owner[corner]])
+    taken = np.isin(c * n + blocks.owner[e], pairs)
     inside = (blocks.owner[c] != blocks.owner[e]) & (place > 0) & (place < 1) & ~taken
-    c, e = c[inside], e[inside]
-    return _Touches(
-        np.concatenate([corner, c]), np.concatenate([other, e]), np.concatenate([other, blocks.successor[e]])
-    )
+    c, e, place, along = c[inside], e[inside], place[inside, None], along[inside]
+    gaps = [start[corner] - start[other], start[c] - start[e] - place * along]
+    shape = (len(start), len(start))
+    _, node = connected_components(coo_array((np.ones(len(corner)), (corner, other)), shape=shape), directed=False)
+    rows = np.unique(np.column_stack([node[c], node[e], node[blocks.successor[e]]]), axis=0)
+    rows = rows[(rows[:, :1] != rows[:, 1:]).all(axis=1)]
+    return _Touches(node.astype(np.int64), *rows.T), float(np.hypot(*np.vstack(gaps).T).max(initial=0.0))
 
 
 def _twins(blocks: Blocks, reach: float) -> tuple[Indices, Indices]:
@@ -127,41 +136,38 @@ def _twins(blocks: Blocks, reach: float) -> tuple[Indices, Indices]:
     return a[both], b[both]
 
 
-def _apart(touches: _Touches, corners: Array) -> Array:
-    """From what each corner is to touch to the corner itself, ``(n, 2)`` [m]."""
-    start, along = corners[touches.low], corners[touches.high] - corners[touches.low]
-    return corners[touches.corner] - start - _place(touches, corners)[:, None] * along
+def _apart(touches: _Touches, nodes: Array) -> Array:
+    """Distances of nodes from the lines of the edges that they are to lie on, to their left, ``(n,)`` [m]."""
+    _, normal = _place(touches, nodes)
+    found: Array = ((nodes[touches.lies] - nodes[touches.low]) * normal).sum(axis=1)
+    return found
 
 
-def _place(touches: _Touches, corners: Array) -> Array:
-    start, along = corners[touches.low], corners[touches.high] - corners[touches.low]
-    square = (along**2).sum(axis=1)
-    place: Array = ((corners[touches.corner] - start) * along).sum(axis=1) / np.where(square > 0, square, 1.0)
-    return place
+def _place(touches: _Touches, nodes: Array) -> tuple[Array, Array]:
+    """Where nodes lie along their edges, in lengths of these, ``(n,)``; the edges' normals, ``(n, 2)``."""
+    along = nodes[touches.high] - nodes[touches.low]
+    length = np.hypot(*along.T)[:, None]
+    place = ((nodes[touches.lies] - nodes[touches.low]) * along / length**2).sum(axis=1)
+    return place, np.column_stack([-along[:, 1], along[:, 0]]) / length
 
 
-def _least_motion(touches: _Touches, corners: Array, apart: Array) -> Array:
-    """Smallest motion of all corners that closes what is apart, to first order, ``(nv, 2)`` [m]."""
-    edge = touches.low != touches.high
-    along = corners[touches.high] - corners[touches.low]
-    normal = np.column_stack([-along[:, 1], along[:, 0]]) / np.where(edge, np.hypot(*along.T), 1.0)[:, None]
-    first = np.where(edge[:, None], normal, [1.0, 0.0])
-    rows = [(np.arange(len(edge)), first), (np.flatnonzero(~edge), np.tile([0.0, 1.0], (len(edge), 1)))]
-    place = _place(touches, corners)
-    i, j, values, wanted = [], [], [], []
-    base = 0
-    for chosen, direction in rows:
-        for points, share in ((touches.corner, np.ones_like(place)), (touches.low, place - 1), (touches.high, -place)):
-            for axis in (0, 1):
-                i.append(base + np.arange(len(chosen)))
-                j.append(2 * points[chosen] + axis)
-                values.append((share[:, None] * direction)[chosen, axis])
-        wanted.append(-(apart * direction).sum(axis=1)[chosen])
-        base += len(chosen)
-    shape = (base, 2 * len(corners))
-    system = csr_array(coo_array((np.concatenate(values), (np.concatenate(i), np.concatenate(j))), shape=shape))
-    motion = lsqr(system, np.concatenate(wanted), atol=1e-14, btol=1e-14, iter_lim=20 * len(corners) + 1000)[0]
-    return np.asarray(motion).reshape(-1, 2)
+def _step(touches: _Touches, nodes: Array, apart: Array, length: float) -> Array:
+    """Motion of all nodes that closes what is apart, but for a damping that fades as that does, ``(nn, 2)`` [m].
+
+    Conditions of which one follows from the others contradict each other a little for as long as edges are not in
+    line; undamped, they would move the corners by much.
+    """
+    place, normal = _place(touches, nodes)
+    values, columns = [], []
+    for node, share in ((touches.lies, np.ones_like(place)), (touches.low, place - 1), (touches.high, -place)):
+        values.append(share[:, None] * normal)
+        columns.append(2 * node[:, None] + [0, 1])
+    row = np.tile(np.repeat(np.arange(len(place)), 2), 3)
+    where = (row, np.concatenate(columns).ravel())
+    system = csr_array(coo_array((np.concatenate(values).ravel(), where), shape=(len(place), nodes.size)))
+    damping = max(10 * float(np.abs(apart).max()) / length, 1e-5)
+    matrix = csc_array(system.T @ system + damping**2 * eye_array(nodes.size))
+    return np.asarray(spsolve(matrix, -(system.T @ apart))).reshape(-1, 2)
 
 
 def missed_joints(polygons: Sequence[Array]) -> str:
