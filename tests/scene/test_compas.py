@@ -30,7 +30,12 @@ def mesh(outline: Outline, axes: tuple[str, str, str] = UPRIGHT, depth: float = 
     faces = [list(range(n))]
     if depth:
         faces += [list(range(n, 2 * n))[::-1], *[[i, (i + 1) % n, n + (i + 1) % n, n + i] for i in range(n)]]
-    data = {"vertex": vertex, "face": {str(k): face for k, face in enumerate(faces)}, "facedata": {}, "edgedata": {}}
+    data: dict[str, Any] = {
+        "vertex": vertex,
+        "face": {str(k): face for k, face in enumerate(faces)},
+        "facedata": {},
+        "edgedata": {},
+    }
     return {"attributes": {}, "default_vertex_attributes": {"x": 0.0, "y": 0.0, "z": 0.0}, **data}
 
 
@@ -73,14 +78,20 @@ def model(**how: Any) -> dict[str, Any]:
 
     def element(k: int, outline: Outline) -> dict[str, Any]:
         geometry = {"dtype": "compas.datastructures/Mesh", "data": mesh(outline, **how)}
-        data = {"transformation": None, "features": [], "name": f"Block {k}", "material": None, "geometry": geometry}
+        data: dict[str, Any] = {
+            "transformation": None,
+            "features": [],
+            "name": f"Block {k}",
+            "material": None,
+            "geometry": geometry,
+        }
         return {"dtype": "compas_dem.elements/Block", "data": data | {"is_support": k == 7}, "guid": str(k)}
 
     elements = {str(k): element(k, outline) for k, outline in enumerate([*WALL, BASE])}
     shifted = element(0, [(x - 3, y) for x, y in WALL[0]])
     matrix = [[1.0, 0.0, 0.0, 3.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
     shifted["data"]["transformation"] = {"dtype": "compas.geometry/Transformation", "data": {"matrix": matrix}}
-    rest = {"materials": {}, "tree": {"root": {}}, "graph": {}}
+    rest: dict[str, Any] = {"materials": {}, "tree": {"root": {}}, "graph": {}}
     return {
         "dtype": "compas_dem.models/BlockModel",
         "data": {"transformation": None, "elements": elements | {"0": shifted}, **rest},

@@ -14,7 +14,7 @@ from .curves import TURN, Arc, spline_points
 
 KEY = "wall.drawing"
 
-MOST = 1_000_000
+MOST = 300_000
 """Entities that a drawing may hold once its INSERTs are exploded; a few that hold each other could be any number."""
 
 DEEPEST = 32
@@ -110,14 +110,15 @@ class _Walk:
         if insert.block() is None or insert.block().block.is_xref:
             self._left_out["INSERT of another file", f"on layer {layer}"] += 1
             return
-        self._count(insert.mcount)
+        several = insert.mcount > 1
+        self._count(insert.dxf.row_count * insert.dxf.column_count if several else 1)
         for attribute in insert.attribs:
             self._left_out[attribute.dxftype(), f"on layer {layer}"] += 1
 
         def skipped(entity: Any, _: str) -> None:
             self._left_out[entity.dxftype(), f"on layer {layer}"] += 1
 
-        for one in insert.multi_insert() if insert.mcount > 1 else [insert]:
+        for one in insert.multi_insert() if several else [insert]:
             parts = one.virtual_entities(skipped_entity_callback=skipped)
             yield from self._within(parts, layer, name, depth + 1)
 

@@ -53,7 +53,7 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     polygons : list of (n, 2) float
         Blocks and ground, counter-clockwise [m].
     reach
-        Largest gap or overlap [m].
+        Largest gap or overlap, and the furthest that a corner may move [m].
 
     Returns
     -------
@@ -86,7 +86,7 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     moved = np.hypot(*(corners - drawn).T)
     worst = int(np.argmax(moved))
     x, y = drawn[worst]
-    if moved[worst] > 2 * reach or np.abs(_apart(touches, nodes)).max(initial=0.0) > blocks.tolerance / 10:
+    if moved[worst] > reach or np.abs(_apart(touches, nodes)).max(initial=0.0) > blocks.tolerance / 10:
         what = f"closes no gaps near ({x:.4g}, {y:.4g}): the corner would move by {moved[worst]:.2g} m; draw it anew"
         raise SceneError(KEY, what, reach)
     healed = np.split(corners, blocks.first[1:-1])

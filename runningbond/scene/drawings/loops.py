@@ -58,7 +58,7 @@ def join(
         closed = [np.vstack([outlines[k], outlines[k][:1]]) for k in cut]
         edges, loose = _network([*curves, *closed], tolerance)
     if len(loose):
-        places = " and ".join(f"({x:.6g}, {y:.6g})" for x, y in loose[:2])
+        places = " and ".join(f"({x:.6g}, {y:.6g})" for x, y in loose[:2].round(9) + 0.0)
         more = f" and {len(loose) - 2} more" if len(loose) > 2 else ""
         raise SceneError(f"{KEY}, layer {layer}", f"is open at {places}{more}; each block needs a closed outline")
     faces = shapely.get_parts(shapely.polygonize(list(shapely.linestrings(edges))))
