@@ -108,7 +108,10 @@ def test_an_undeformed_wall_fills_its_outline_and_nothing_else(painter: Painter)
 def test_what_a_block_encloses_stays_white(painter: Painter) -> None:
     """A block over a door, L-shaped at its corners, and one that is a portal."""
     scene = panel(
-        **{"wall__block_width": 0.5, "wall__block_height": 0.2, "wall__length": 3.0, "wall__height": 1.2},
+        wall__block_width=0.5,
+        wall__block_height=0.2,
+        wall__length=3.0,
+        wall__height=1.2,
         wall__opening=[{"from": [0.8, 0.0], "to": [1.8, 0.9]}, {"from": [2.4, 0.6], "to": [2.6, 0.7]}],
     )
     image, extent = paint(painter, undeformed_shape(scene))

@@ -153,6 +153,7 @@ def test_a_deformable_block_of_any_outline_topples_and_slides() -> None:
 
 CAP = [(0, 1), (0.4, 1), (0.4, 0.7), (0.8, 0.7), (0.8, 1), (1.2, 1), (1.2, 1.3), (0, 1.3)]
 PIERS = [box(0, 0, 0.3, 1), box(0.9, 0, 1.2, 1)]
+STEP = np.array([(-1, -1), (3, -1), (3, 0.25), (0.5, 0.25), (0.5, 0), (-1, 0)])
 TROUGH = [(0, 0), (1, 0), (1, 2), (0.75, 2), (0.75, 0.5), (0.25, 0.5), (0.25, 2), (0, 2)]
 
 
@@ -162,6 +163,12 @@ def test_a_tee_between_piers_and_a_block_in_a_trough(model: Any) -> None:
     holds on three sides topples with it."""
     assert holds(model(wall(*PIERS, CAP, friction=1.0)), 0.3)
     assert holds(model(wall(TROUGH, box(0.25, 0.5, 0.75, 2), friction=1.0)), 0.5)
+
+
+@pytest.mark.parametrize("model", [limit, limit_nonassociated, dem_static, dem_dynamic])
+def test_a_smooth_block_tips_over_the_step_of_the_ground_that_holds_it(model: Any) -> None:
+    """b × h held up to a height s: λ (h / 2 − s) = b / 2."""
+    assert holds(model(wall(box(0, 0, 0.5, 1), friction=0.0, grounds=[STEP])), 0.25 / (0.5 - 0.25))
 
 
 def test_deformable_blocks_on_three_sides() -> None:
@@ -208,7 +215,7 @@ def test_a_block_cracks_on_all_of_its_axis() -> None:
 
 @pytest.mark.parametrize("cells", [1, 3])
 def test_triangles_fill_a_block_and_no_more(cells: int) -> None:
-    scene = wall(*PIERS, CAP, [(x + 0.1, y + 1.3) for x, y in ELL])
+    scene = wall(*PIERS, CAP, [(x + 0.1, y + 1.3) for x, y in ELL], grounds=[STEP + [0.7, 0]])
     mesh = wall_mesh(scene, cells)
     corners = mesh.points[mesh.triangles]
     u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
