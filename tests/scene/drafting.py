@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import ezdxf
-import numpy as np
 
 from runningbond.limit import equilibrium, limit_state
-from runningbond.scene import Array, Scene, scene_from_dict
+from runningbond.scene import Scene, scene_from_dict
 from tests.walls import content
 
 Outline = Sequence[tuple[float, float]]
@@ -75,7 +74,3 @@ def multiplier(scene: Scene) -> float:
     forces = limit_state(equilibrium(scene)).forces
     assert forces.status == "optimal"
     return float(forces.multiplier)
-
-
-def areas(outlines: Sequence[Array]) -> Array:
-    return np.array([abs(np.cross(o, np.roll(o, -1, axis=0)).sum()) / 2 for o in outlines])

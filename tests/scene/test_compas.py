@@ -14,8 +14,6 @@ from .drafting import BRICKS, GROUND, Outline, closed, dxf, multiplier, scene_of
 WALL = [[(x / 1e3, y / 1e3) for x, y in outline] for outline in BRICKS]
 BASE = [(x / 1e3, y / 1e3) for x, y in GROUND]
 
-Plane = dict[str, int]
-
 UPRIGHT = ("x", "z", "y")
 """Axes of an assembly along the wall, upwards and across it."""
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from runningbond.scene import Array, SceneError
+from runningbond.scene import Array, Blocks, SceneError, find_joints
 from runningbond.scene.drawings import read_drawing
 from runningbond.scene.drawings.healing import heal, missed_joints
 
@@ -27,8 +27,6 @@ def sloppy(outlines: list[Array], reach: float, seed: int) -> list[Array]:
 
 
 def touching(outlines: list[Array]) -> int:
-    from runningbond.scene import Blocks, find_joints
-
     return len(find_joints(Blocks.from_polygons(outlines)))
 
 

@@ -78,10 +78,6 @@ class Arc:
         x, y = np.linalg.solve(self.axes.T, (points - self.centre).T)
         return np.mod(np.arctan2(y, x), TURN), np.abs(np.hypot(x, y) - 1) * self.radius
 
-    def runs_along(self, other: "Arc", tolerance: float) -> bool:
-        """Whether it lies on the curve of which the other one is a part."""
-        return bool(self.parameters(other.at(other.start + other.sweep * np.linspace(0, 1, 5)))[1].max() <= tolerance)
-
 
 class Chords:
     """Chords for the arcs of one drawing.
@@ -103,8 +99,13 @@ class Chords:
         self.tolerance = tolerance
         self.number, self.sagitta = 0, 0.0
         self._curves: list[tuple[Arc, Array, Array]] = []
+        self._centre, self._inverse = np.zeros((len(arcs), 1, 2)), np.zeros((len(arcs), 2, 2))
+        self._scale = np.zeros((len(arcs), 1))
         for arc in arcs:
-            if not any(curve.runs_along(arc, tolerance) for curve, *_ in self._curves):
+            if self._curve_under(arc) is None:
+                new = len(self._curves)
+                self._scale[new] = arc.radius / tolerance
+                self._centre[new], self._inverse[new] = arc.centre, np.linalg.inv(arc.axes) * self._scale[new]
                 t, off = arc.parameters(corners)
                 on = np.flatnonzero(off <= tolerance)
                 on = on[np.argsort(t[on], kind="stable")]
@@ -114,9 +115,19 @@ class Chords:
                 on = on[fresh]
                 self._curves.append((arc, t[on], corners[on]))
 
+    def _curve_under(self, arc: Arc) -> tuple[Arc, Array, Array] | None:
+        """The curve of which an arc is a part, with its corners' parameters and places."""
+        n = len(self._curves)
+        apart = (arc.at(arc.start + arc.sweep * np.linspace(0, 1, 5)) - self._centre[:n]) @ self._inverse[:n]
+        off = np.abs(np.hypot(*np.moveaxis(apart, 2, 0)) - self._scale[:n]).max(axis=1, initial=0.0)
+        on = np.flatnonzero(off <= 1)
+        return self._curves[on[0]] if len(on) else None
+
     def cut(self, arc: Arc) -> Array:
         """Corners of the chords of an arc from its first point to its last, ``(n, 2)``."""
-        curve, t, corners = next(c for c in self._curves if c[0].runs_along(arc, self.tolerance))
+        under = self._curve_under(arc)
+        assert under is not None
+        curve, t, corners = under
         ends = arc.ends[:: 1 if arc.sweep > 0 else -1]
         if not len(t):
             t, corners = np.zeros(1), curve.at(0.0)
