@@ -18,14 +18,8 @@ from .parameters import COLLAPSE, IN_MOTION, PARAMETERS, settings_of
 from .tables import fits, tables
 from .walls import accuracy_walls, all_walls, growth_walls, stiffness_walls
 
-ASKED = {
-    "collapse": ("homog", *COLLAPSE),
-    "turned block": IN_MOTION,
-    "compression": ("homog", "dem-static", "fem"),
-    "shear": ("homog", "dem-static", "fem"),
-}
-"""Models that are asked each question."""
-
+ELASTIC = ("homog", "dem-static", "fem")
+ASKED = {"collapse": ("homog", *COLLAPSE), "turned block": IN_MOTION, "compression": ELASTIC, "shear": ELASTIC}
 HOW = (
     "Walls with an exact answer are a block that topples, one that slides and a stack, λ = min(tan φ, b / (n h)); a "
     "block that has turned by θ, λ = tan(α − θ); and periodic cells. W1 – W3 of Ferris & Tin-Loi have their contacts "
@@ -75,23 +69,19 @@ def _varied(wall: str, model: str) -> Iterator[Case]:
 
 def depends(case: Case) -> str:
     """Scene, settings and machine."""
-    wall, model, parameter, setting = case
-    return fingerprint(all_walls()[wall].scene, f"{settings_of(model, parameter, setting)!r} {machine()}", 0.0)
+    return fingerprint(all_walls()[case[0]].scene, f"{settings_of(*case[1:])!r} {machine()}", 0.0)
 
 
 COLUMNS = ("wall", "model", "parameter", "setting")
 OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "cell", "questions", "measure")]
 SOURCES = (*OWN, PACKAGE / "studies" / "walls.py", PACKAGE / "compare" / "models.py")
 GROWTH = [(name, model, "", "") for name in growth_walls() for model in COLLAPSE]
+CASES = {"accuracy": [*_accuracy()], "stiffness": [*_stiffness()], "growth": GROWTH}
 
 STUDY = Study(
     "study",
     "Speed against accuracy",
-    parts={
-        "accuracy": Part(COLUMNS, [*_accuracy()], measure),
-        "stiffness": Part(COLUMNS, [*_stiffness()], measure),
-        "growth": Part(COLUMNS, GROWTH, measure),
-    },
+    parts={name: Part(COLUMNS, cases, measure) for name, cases in CASES.items()},
     charts=CHARTS,
     fits=fits,
     tables=tables,
