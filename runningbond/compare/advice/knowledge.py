@@ -16,11 +16,8 @@ from runningbond.scene import Array, Scene
 
 from .costs import Estimate, estimate, pace
 
-NO_SLIP = 1e-6
-"""Slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m."""
-
-Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]
-"""What a bracket rests on; nothing, to begin with."""
+NO_SLIP = 1e-6  # slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m
+Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]  # what a bracket rests on; first nothing
 
 
 def ladder(kind: Kind) -> list[Model]:

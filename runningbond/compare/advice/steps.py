@@ -7,8 +7,7 @@ from runningbond.results import Outcome
 
 from .knowledge import Knowledge, deforms, ladder
 
-WORTH = 1.25
-"""How many times the cost of following one history a certificate, which holds for all of them, is worth: a choice."""
+WORTH = 1.25  # times the cost of one history that a certificate, which holds for all of them, is worth: a choice
 
 
 @dataclass(frozen=True)
