@@ -92,9 +92,8 @@ def elastic_cell(young: float, question: Question, width: float = 0.24, height: 
     1 / A2222 = 1 / (a k_n) + 1 / E; sheared, rigid blocks have the closed form of `homog`.
     """
     scene = _scene(width, height, 0.6, young, length=6 * width, height=6 * height)
-    if question == "compression":
-        return _exactly(scene, 1 / (1 / (height * joint_stiffness(scene.joint).normal) + 1 / young), question)
-    return _exactly(scene, rigid_moduli(scene).a1212, question)
+    in_series = 1 / (1 / (height * joint_stiffness(scene.joint).normal) + 1 / young)
+    return _exactly(scene, in_series if question == "compression" else rigid_moduli(scene).a1212, question)
 
 
 def rigid_moduli(scene: Scene) -> Moduli:
@@ -106,12 +105,6 @@ def rigid_moduli(scene: Scene) -> Moduli:
     return elastic_moduli(scene.bond.width, scene.bond.height, **springs)
 
 
-def published_wall(name: str) -> Wall:
-    """A wall of Ferris & Tin-Loi with contacts moved in."""
-    middle = PUBLISHED_INSET[name]
-    return Wall(inset_wall(name), "collapse", "published", (middle - DIGITS, middle + DIGITS))
-
-
 def square_panel(courses: int, young: float = STIFF) -> Scene:
     """A square panel of blocks twice as wide as high, the texture of panel-06; its number of courses is even."""
     return _scene(0.12, 0.06, 0.6, young, length=0.06 * courses, height=0.06 * courses)
@@ -120,11 +113,12 @@ def square_panel(courses: int, young: float = STIFF) -> Scene:
 @cache
 def accuracy_walls() -> dict[str, Wall]:
     """Walls of which the answer is known, by name."""
+    inset = {name: (middle - DIGITS, middle + DIGITS) for name, middle in PUBLISHED_INSET.items()}
     return {
         "block-topples": pile(0.23, 0.36, 1, 0.9),
         "block-slides": pile(0.23, 0.36, 1, 0.497),
         "stack-of-5": pile(0.23, 0.1, 5, 0.9),
-        **{f"{name}-inset": published_wall(name) for name in PUBLISHED_INSET},
+        **{f"{name}-inset": Wall(inset_wall(name), "collapse", "published", known) for name, known in inset.items()},
         **{name: Wall(published_scene(name), known="certified") for name in ("panel-02", "panel-03", "panel-04")},
         "turned-block": turned_block(0.1, 0.4),
         **{f"cell-{young:.0e}".replace("+", ""): elastic_cell(young, "compression") for young in (1e10, 1e11, 1e12)},

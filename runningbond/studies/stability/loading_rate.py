@@ -9,7 +9,6 @@ too high by the rate to the power 2/3. Under displacement control inertia resist
 its speed; what is left, a soft start later, are the waves of that start.
 """
 
-from collections.abc import Sequence
 from functools import cache
 from itertools import product
 
@@ -84,12 +83,6 @@ def push_row(name: str, steps: int) -> Row:
     return {SPEED: 1e3 * wall.far / (steps * run.dt), "λ": peak, OFF: off(name, peak)}
 
 
-def fastest_within(rows: Sequence[Row], percent: float) -> float:
-    """Fastest speed [mm/s] from which on λ stays within some per cent of what is known; the fastest row first."""
-    worse = [place for place, row in enumerate(rows) if abs(row[OFF]) > percent]
-    return float(rows[worse[-1] + 1][SPEED])
-
-
 @cache
 def system_of(name: str) -> tuple[BlockSystem, float | Array, float]:
     """A wall, the displacements [m] of its blocks in which collapses are measured, and its first load step."""
@@ -125,14 +118,6 @@ def own_row(name: str) -> Row:
     }
 
 
-def stepped_off(rows: Rows, name: str) -> tuple[Array, Array]:
-    """Ends of the brackets of a wall by `LOADINGS`, off the λ that is known, or that of the slowest loading [%]."""
-    own = [row for row in rows[STEPPED] if row["wall"] == name]
-    unit = own[-1]["λ"] if name in DRY else known_wall(name).multiplier
-    lower, upper = (100 * (np.array([row[end] for row in own]) / unit - 1) for end in ("λ lower", "λ upper"))
-    return lower, upper
-
-
 def default_loading(name: str) -> float:
     """The suite's loading of a wall."""
     return LOADING_WEIGHTLESS if system_of(name)[0].weightless else LOADING
@@ -146,7 +131,8 @@ def fits(rows: Rows) -> list[Edge]:
         own = [row for row in rows[RAMPS] if row["wall"] == name]
         rate, multiplier = (np.array([row[head] for row in own]) for head in (RATE, "λ"))
         limit, error = at_no_speed(rate, multiplier)
-        slow, pushed = own[-1], [row for row in rows[DRIVEN] if row["wall"] == name]
+        slow, pushed = own[-1], [row for row in rows[DRIVEN] if row["wall"] == name]  # the fastest row first
+        too_fast = [place for place, row in enumerate(pushed) if abs(row[OFF]) > 1.0]
         ramped = (float(multiplier[-1]) - known, slow["λ, theory"] - known, None if loose else 0.01)
         to_order, to_limit, to_peak = (0.05, 0.01, 0.01) if loose else (0.005, 0.001, 1e-6)
         edges += [
@@ -155,7 +141,7 @@ def fits(rows: Rows) -> list[Edge]:
             Edge(f"its standard error, {name}", error),
             Edge(f"excess of λ in a ramp at {slow[RATE]:.2g} 1/s, {name}", *ramped),
             Edge(f"peak λ at {pushed[-1][SPEED]:.2g} mm/s, {name}", pushed[-1]["λ"], known, to_peak),
-            Edge(f"fastest speed within 1 % [mm/s], {name}", fastest_within(pushed, 1.0)),
+            Edge(f"fastest speed within 1 % [mm/s], {name}", pushed[too_fast[-1] + 1][SPEED]),
         ]
     steps = {(row["wall"], row[LOADED]): row["λ"] for row in rows[STEPPED]}
     edges.append(Edge(f"λ by the suite's load steps, {W1}", steps[W1, LOADING], known_wall(W1).multiplier, BRACKET))
@@ -187,7 +173,9 @@ def _draw(figure: Figure, rows: Rows) -> None:
     middle.set(xscale="log", yscale="log", xlabel="speed of the blocks [mm/s]", ylabel="peak of λ off by [%]")
     middle.annotate("0.0001 and less", (0.03, 0.1), xycoords="axes fraction", color="0.4", fontsize=8)
     for name, (colour, _), aside in zip((W1, *DRY), LOOKS[2:], (-0.2, 0, 0.2), strict=True):
-        places, (lower, upper) = np.arange(len(LOADINGS)) + aside, stepped_off(rows, name)
+        own, places = [row for row in rows[STEPPED] if row["wall"] == name], np.arange(len(LOADINGS)) + aside
+        unit = own[-1]["λ"] if name in DRY else known_wall(name).multiplier  # of the slowest loading, or known
+        lower, upper = (100 * (np.array([row[end] for row in own]) / unit - 1) for end in ("λ lower", "λ upper"))
         right.vlines(places, lower, upper, color=colour, lw=5, label=name)
         default = LOADINGS.index(default_loading(name))
         right.annotate("▾", (places[default], upper[default] + 0.3), ha="center", color=colour, fontsize=11)

@@ -52,8 +52,8 @@ def growth_at(times: float) -> float:
 def critical_row(kind: str) -> Row:
     """The critical step of W1 whose joints hold, without damping."""
     modes, scaled = KINDS[kind]
-    blocks = modal_wall(bonded(published_scene(WALL)), modes=modes)
-    return critical_step(system_of(blocks, damping=0.0, mass_scaling=scaled))
+    wall = modal_wall(bonded(published_scene(WALL)), modes=modes)
+    return critical_step(system_of(wall, damping=0.0, mass_scaling=scaled))
 
 
 def critical_step(system: BlockSystem) -> Row:
@@ -130,11 +130,10 @@ def _edge_of(growth: Callable[[float], float], low: float) -> float:
 def run_beyond(model: str, times: float = MUCH) -> Outcome:
     """What W1 as it was published comes to at so many critical steps."""
     scene = published_scene(WALL)
+    system, order = rigid_system(scene), np.argsort(contact_points(scene).joint, kind="stable")
     if model == "fem":
         wall = modal_wall(scene)
         system, order = system_of(wall), wall.elements.listing
-    else:
-        system, order = rigid_system(scene), np.argsort(contact_points(scene).joint, kind="stable")
     step = times * 2 / float(vibrations(system)[0][-1])
     return collapse_by_steps(scene, model, Run(system, dt=step), 0.01, point_order=order, is_self_locking=lambda: False)
 
