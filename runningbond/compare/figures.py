@@ -40,10 +40,10 @@ def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
     present = [any(comparison.outcome(case.name, x) for x in comparison.models) for case in cases_of(BARALDI)]
     if any(present):
         slenderness, multiplier = figure_6_data()
-        rows = [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True)]
+        rows = [["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]]
+        rows += [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True)]
         written.append(folder / "figure-6.csv")
-        heads = ["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]
-        write_atomically(written[0], csv_lines([heads, *rows]).encode())
+        write_atomically(written[0], csv_lines(rows).encode())
         charts["figure-6"] = _figure_6(comparison, slenderness, multiplier)
     if all(present):
         charts["table-2"] = table_2(comparison)

@@ -17,7 +17,6 @@ from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.pictures.pyvista_figure import draw_painted
 from runningbond.pictures.pyvista_painter import Painter
 from runningbond.results import Outcome, write_atomically
-from runningbond.scene import Scene
 
 from .figures import SLENDERNESS, TEXTURES
 from .model import Model
@@ -108,15 +107,14 @@ def _write(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
 def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> tuple[list[DeformedShape], list[str], Extent]:
     """One wall by all models: what is drawn, its captions, and an extent that shows all of it."""
     scene = comparison.scenes[name]
+
+    def caption(outcome: Outcome) -> str:  # the load, its bracket, and what is wrong with the mechanism, if anything
+        lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 26)]
+        return "\n".join(filter(None, lines))
+
     outcomes = [comparison.outcome(name, model) for model in models]
     mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
     shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
     lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
-    captions = [comparison.cell(name, model, lambda outcome: _caption(scene, outcome)) for model in models]
+    captions = [comparison.cell(name, model, caption) for model in models]
     return shapes, captions, (min(lefts), max(rights), min(bottoms), max(tops))
-
-
-def _caption(scene: Scene, outcome: Outcome) -> str:
-    """The load, its bracket, and what is wrong with the mechanism where something is."""
-    lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 26)]
-    return "\n".join(filter(None, lines))

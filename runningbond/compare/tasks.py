@@ -107,7 +107,13 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
 @contextmanager
 def _processes(jobs: int) -> Iterator[None]:
     """Have joblib run tasks in processes of their own, or in this one where there is to be only one."""
-    if jobs == 1 or not _can_have_processes():
+    if jobs != 1:
+        try:
+            multiprocessing.Lock()
+        except OSError as error:  # some containers have no usable /dev/shm
+            warnings.warn(f"cases run one after another, for processes cannot share a lock: {error}", stacklevel=2)
+            jobs = 1
+    if jobs == 1:
         with parallel_config(backend="sequential"):
             yield
         return
@@ -118,16 +124,6 @@ def _processes(jobs: int) -> Iterator[None]:
     ignore = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
     with parallel_config(backend="loky", n_jobs=n_jobs, initializer=ignore), _quiet_kill():
         yield
-
-
-def _can_have_processes() -> bool:
-    """Whether this machine lets processes share a lock; some containers have no usable /dev/shm."""
-    try:
-        multiprocessing.Lock()
-    except OSError as error:
-        warnings.warn(f"cases run one after another, for processes cannot share a lock: {error}", stacklevel=2)
-        return False
-    return True
 
 
 @contextmanager

@@ -22,10 +22,7 @@ from .knowledge import Knowledge
 from .steps import Step, after_refusal, first_step, next_step
 
 TOLERANCE = 0.05  # relative width of the bracket that is asked for where nothing else is
-SPEED, HALVINGS = (
-    0.02,
-    3,
-)  # of the first push, in block sizes a second, and how often it is halved until the peak settles
+SPEED, HALVINGS = 0.02, 3  # of the first push, in block sizes a second; how often it is halved until the peak settles
 FARTHER = 3.0  # displacement up to which to push, relative to that of the collapse at small displacements
 SMOOTH = 9  # rows of the curve over which λ is averaged
 

@@ -65,20 +65,12 @@ class Record:
     judged: Sequence[Row]  # with a number that can be judged
     unanswered: Sequence[str]  # walls without a number,
     own: Sequence[str]  # and those whose answer it certified itself
+    error: float  # the largest
+    ratio: float  # median cost, in runs of `REFERENCE`
 
     def all(self, column: str) -> list[Any]:
         """A column of the rows that are judged."""
         return [row[column] for row in self.judged]
-
-    @property
-    def error(self) -> float:
-        """Largest error."""
-        return float(max(self.all("error")))
-
-    @property
-    def ratio(self) -> float:
-        """Median cost, in runs of `REFERENCE`."""
-        return float(statistics.median(self.all("ratio")))
 
 
 def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Record]:
@@ -95,7 +87,8 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Rec
         judged = [row for row in own if row not in certified and row.get("error") is not None and row.get("ratio")]
         if judged:
             silent = [row["wall"] for row in own if row.get("value") is None]
-            result[setting] = Record(judged, silent, [row["wall"] for row in certified])
+            error, ratio = max(row["error"] for row in judged), statistics.median(row["ratio"] for row in judged)
+            result[setting] = Record(judged, silent, [row["wall"] for row in certified], error, ratio)
     return result
 
 
