@@ -23,7 +23,7 @@ from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.limit import limit_nonassociated
 from runningbond.scene import Array, Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import looks_of
+from runningbond.studies.charts import LOOKS, looks_of
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wall
 
 SUITE = Criteria(collapse=U_CRIT)
@@ -121,7 +121,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     left.set(xscale="log", xlabel="threshold of rest [force units]", ylabel=SCALED, xlim=(2e-17, 1), ylim=(0.9, 1.5))
     left.annotate("?  undecided", (1e-12, 0.945), color="0.4", fontsize=8)
     left.set_title("at rest; lines: λ taken for standing, by theory", fontsize=10)
-    looks = dict(zip((W1, W2, WEIGHTLESS), list(looks_of(range(4)).values())[1:], strict=True))
+    looks = dict(zip((W1, W2, WEIGHTLESS), LOOKS[1:4], strict=True))
     for name, (colour, marker) in looks.items():
         label = f"{name}, no weight" if name == WEIGHTLESS else name
         _draw_sweep(right, sweep(rows, name, FAR), label, colour, marker, 0.75, joined=True)
