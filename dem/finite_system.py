@@ -28,6 +28,8 @@ def finite_system(scene: Scene) -> BlockSystem:
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
     if scene.joint.cohesion > 0:
         raise SceneError("joint.cohesion", "finite displacements need dry joints", scene.joint.cohesion)
+    if len(scene.joint_materials) > 1 and scene.inner_joint is None:
+        raise SceneError("joints", "finite displacements need one material for all joints")
     if scene.inner_joint is not None:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
     contacts = RigidContacts(scene)

@@ -149,6 +149,8 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
             np.concatenate([scene.joints.ends, points[inside[0]]]),
             np.concatenate([scene.joints.inner, np.ones(len(inside[0]), dtype=bool)]),
         ),
+        material_of_block=scene.material_of_block[owner],
+        material_of_joint=np.append(scene.material_of_joint, np.full(len(inside[0]), len(scene.joint_materials) - 1)),
     )
     shape = _shapes(points, first_node, held)
     interfaces = np.concatenate(sides, axis=1)

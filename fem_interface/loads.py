@@ -33,6 +33,7 @@ def inner_mass(wall: Pieces) -> Array:
     of_node[_on_outline(wall)] = 0.0
 
     weight = np.bincount(wall.owner, wall.scene.blocks.area, minlength=count)
+    total = np.bincount(wall.owner, wall.scene.mass, minlength=count)
     first = [np.bincount(wall.owner, wall.scene.blocks.area * x, minlength=count) for x in wall.scene.blocks.centroid.T]
     centre = np.column_stack(first) / weight[:, None]
     reach = (mesh.points - centre[owner]) / np.sqrt(weight)[owner, None]
@@ -50,8 +51,7 @@ def inner_mass(wall: Pieces) -> Array:
         raise SceneError(
             wall.scene.blocks.name(piece), "has no inner nodes that could bear its load; take more cells a block"
         )
-    mass = wall.scene.block.density * wall.scene.thickness * weight
-    return np.where(still[owner], 0.0, result * mass[owner])
+    return np.where(still[owner], 0.0, result * total[owner])
 
 
 def _on_outline(wall: Pieces) -> Mask:

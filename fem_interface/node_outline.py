@@ -88,6 +88,8 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
     if not (scene.live_forces.on_mass_alone and scene.dead_forces.on_mass_alone):
         raise SceneError("load.live", "finite displacements need a load on the blocks' mass")
+    if len(scene.joint_materials) > 1 and scene.inner_joint is None:
+        raise SceneError("joints", "finite displacements need one material for all joints")
     if scene.inner_joint is not None:
         raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
     if joint.cohesion > 0 and (joint.fracture_energy_1 is None or joint.fracture_energy_2 is None):

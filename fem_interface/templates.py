@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshing import WallMesh
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene, SceneError, table_of
 
 from .modes import ModeCount, Modes, block_modes, degree_of
 from .operators import mass_matrix, nodes_of_degree, stiffness_matrix, strain_matrix
@@ -41,11 +41,12 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
     SceneError
         If blocks are to deform and the scene does not say how stiff they are.
     """
-    alike: dict[tuple[int, bytes], list[int]] = {}
+    alike: dict[tuple[int, int, float, bytes], list[int]] = {}
     order = scene.column_by_column
     for block in order[~scene.fixed[order]].tolist():
-        # Congruent blocks that are held alike.
-        key = int(mesh.shape[block]), held_displacements(mesh, scene, block).tobytes()
+        # Congruent blocks of one material that are held alike.
+        held = held_displacements(mesh, scene, block).tobytes()
+        key = int(mesh.shape[block]), int(scene.material_of_block[block]), float(scene.density[block]), held
         alike.setdefault(key, []).append(block)
     result = []
     for blocks in alike.values():
@@ -92,17 +93,17 @@ def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
 
 def _modes(mesh: WallMesh, scene: Scene, block: int, count: ModeCount) -> tuple[Modes, Array]:
     """Modes of a block, found on triangles of their own degree and taken at the nodes of the mesh; their strains."""
-    material = scene.block
+    material = scene.block_materials[scene.material_of_block[block]]
     degree = degree_of(count)
     corners, triangles = mesh.points[nodes_of(mesh, block)], triangles_of(mesh, block)
     points = nodes_of_degree(corners, triangles, degree)
     if count == 3:
         K = np.zeros((2 * len(points), 2 * len(points)))
     elif material.young is None:
-        raise SceneError("block.young", "is missing; this model needs it unless its blocks are rigid")
+        raise SceneError(f"{table_of(material)}.young", "is missing; this model needs it unless its blocks are rigid")
     else:
         K = stiffness_matrix(corners, triangles, material.young, material.poisson, scene.thickness, degree).toarray()
-    M = mass_matrix(corners, triangles, material.density, scene.thickness, degree).toarray()
+    M = mass_matrix(corners, triangles, float(scene.density[block]), scene.thickness, degree).toarray()
     held = held_displacements(mesh, scene, block)
     further = np.zeros((len(held), len(M) - held.shape[1]))
     modes = block_modes(points, K, M, np.hstack([held, further]), count)

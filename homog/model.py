@@ -72,6 +72,8 @@ def _why_not(scene: Scene, bond: Bond) -> str:
         return 'it needs load.live.kind = "lateral", to the right or the left, and no dead load but the weight'
     if len(scene.pins):
         return 'it needs support.kind = "base" or "fixed-first-course"'
+    if len(scene.block_materials) + len(scene.joint_materials) > 2 and scene.inner_joint is None:
+        return "it needs one material of blocks and one of joints"
     if scene.joint.cohesion > 0:
         return "it needs dry joints, joint.cohesion = 0"
     if scene.joint.inset > 0:

@@ -21,7 +21,7 @@ one wall differ in its density, by parts in a thousand million that change nothi
 import argparse
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import get_args
 
 import numpy as np
@@ -45,7 +45,7 @@ DRAW = 1e-9
 
 def redrawn(scene: Scene, k: int) -> Scene:
     """A wall that differs from another in nothing that counts."""
-    return replace(scene, block=replace(scene.block, density=scene.block.density * (1 + k * DRAW)))
+    return scene.with_block(density=scene.block.density * (1 + k * DRAW))
 
 
 def outcome_of(scene: Scene, model: str, cells: int = 1, points: PointsOn = "joints") -> Outcome:

@@ -8,7 +8,7 @@ Prints a Markdown table, one row a run as it ends: the bracket of λ and how far
 """
 
 import sys
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 from dem.dynamic import dem_dynamic
@@ -18,7 +18,7 @@ from runningbond.compare import published_scene
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.joints import Rule, gauss, lobatto
 from runningbond.results import Outcome
-from runningbond.scene import BlockMaterial, Scene
+from runningbond.scene import Scene
 
 WALLS = {"panel-02": 2, "panel-04": 4, "panel-06": 2, "wall-w1": 4}
 """Walls, and the finest mesh that each is taken to, in cells."""
@@ -72,8 +72,7 @@ def wall(name: str) -> Scene:
     """A published wall, its blocks of 1000 GPa as the paper's are."""
     scene = published_scene(name)
     inset = INSET if name == "wall-w1" else 0.0
-    block = BlockMaterial(scene.block.density, 1e12, 0.0)
-    return replace(scene, block=block, joint=replace(scene.joint, inset=inset))
+    return scene.with_block(young=1e12, poisson=0.0).with_joint(inset=inset)
 
 
 def row(name: str, case: str, outcome: Outcome, reference: float | None) -> str:

@@ -7,7 +7,7 @@ from typing import Any, Literal, Protocol, TypeAlias
 
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.results import Outcome
-from runningbond.scene import Array, JointMaterial, Mortar, Scene
+from runningbond.scene import Array, JointMaterial, Mortar, Scene, SceneError, table_of
 
 Kind: TypeAlias = Literal["estimate", "bound", "certificate", "history"]
 """What the multiplier of a model is worth: `bound` is proved from above, `certificate` an interval of loads at which
@@ -64,22 +64,33 @@ class Model:
     observer: Callable[[Scene, Path | None], Recorder] | None = None  # records a run in a folder, or in memory
     interruptible: bool = False  # whether it ends with what it has found so far on KeyboardInterrupt
     cost: Cost | None = None  # `advise` runs no model without
+    takes: frozenset[str] = frozenset()  # what it can do of `Scene.extras`; scenes with others it refuses by name
     pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed
     colour: str = "0.35"  # how charts draw it,
     marker: str = "*"
     line: str | tuple[int, tuple[int, ...]] = "-"  # and its pushover curve
 
+    def check(self, scene: Scene) -> None:
+        """Refuse, by name, a scene with what this model does not know of."""
+        for key in scene.extras:
+            if key not in self.takes:
+                raise SceneError(key, f"is not taken by model {self.name}; take another model, or leave it out")
+
     def unread(self, scene: Scene) -> list[str]:
         """Keys of its file that a scene gives and this model does not take into account."""
-        tables = {"block": scene.block, "joint": scene.joint, "inner_joint": scene.inner_joint}
-        given = [f"{table}.{key}" for table, material in tables.items() if material for key in _given_keys(material)]
-        inner = {f"inner_{key}" for key in self.reads if "inner_joint" in self.reads}
-        return [key for key in given if key not in self.reads | inner]
+        unread = []
+        for kind, materials in (("block", scene.block_materials), ("joint", scene.joint_materials)):
+            for material in materials:
+                read = material.name != "inner_joint" or "inner_joint" in self.reads
+                given = [key for key in _given_keys(material) if not (read and f"{kind}.{key}" in self.reads)]
+                unread += [f"{table_of(material)}.{key}" for key in given]
+        return unread
 
 
 def _given_keys(material: Any) -> list[str]:
     """Keys of a material's table that say something else than their defaults."""
-    keys = [entry.name for entry in fields(material) if getattr(material, entry.name) != entry.default]
+    own = [entry for entry in fields(material) if entry.name != "name"]
+    keys = [entry.name for entry in own if getattr(material, entry.name) != entry.default]
     if isinstance(material, JointMaterial) and "elasticity" in keys:
         stiffness = ["mortar"] if isinstance(material.elasticity, Mortar) else ["normal_stiffness", "shear_stiffness"]
         keys[keys.index("elasticity") : keys.index("elasticity") + 1] = stiffness

@@ -168,6 +168,7 @@ def run_model(
         if name not in model.parameters:
             own = ", ".join(model.parameters) or "none"
             raise SceneError(f"model {model.name}: {name}", f"is no parameter of it; it has {own}", value)
+    model.check(scene)
     if observe is not None and model.observer is not None:
         parameters["observe"] = observe
     try:
@@ -177,5 +178,7 @@ def run_model(
     except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     unread = model.unread(scene)
-    note = f"not taken into account: {', '.join(unread)}" if unread else ""
-    return replace(outcome, model=model.name, message="; ".join(filter(None, (outcome.message, note))))
+    notes = [outcome.message, f"not taken into account: {', '.join(unread)}" if unread else ""]
+    if outcome.multiplier is not None:
+        notes += [load.note(outcome.multiplier) for load in scene.load.live]
+    return replace(outcome, model=model.name, message="; ".join(filter(None, notes)))

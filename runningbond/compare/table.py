@@ -144,7 +144,7 @@ def csv_lines(rows: Iterable[Sequence[object]]) -> str:
 def corrected_homo(scene: Scene) -> float:
     """Homogenised multiplier by the corrected Eq. (6), with the tan 30° the paper's column was computed with."""
     friction = math.tan(math.radians(30))
-    multiplier = homog(replace(scene, joint=replace(scene.joint, friction=friction))).multiplier
+    multiplier = homog(scene.with_joint(friction=friction)).multiplier
     assert multiplier is not None  # it answers or refuses
     return multiplier
 

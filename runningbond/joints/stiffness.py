@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runningbond.scene import JointMaterial, Mortar, SceneError, Stiffness
+from runningbond.scene import JointMaterial, Mortar, SceneError, Stiffness, table_of
 
 SOFT = 0.02
 """Overlap of two blocks, in displacements that count as collapse, above which joints are too soft.
@@ -34,9 +34,9 @@ def joint_stiffness(material: JointMaterial) -> Stiffness:
     if isinstance(elasticity, Mortar):
         young, poisson, thickness = elasticity.young, elasticity.poisson, elasticity.thickness
         return Stiffness(young / (thickness * (1 - poisson**2)), young / (2 * (1 + poisson) * thickness))
-    raise SceneError(
-        "joint.mortar", "is missing; this model needs it, or joint.normal_stiffness and joint.shear_stiffness"
-    )
+    table = table_of(material)
+    other = f"{table}.normal_stiffness and {table}.shear_stiffness"
+    raise SceneError(f"{table}.mortar", f"is missing; this model needs it, or {other}")
 
 
 def stiffness_note(overlap: float, collapse: float, size: float, stiffness: float, force_unit: float) -> str:

@@ -47,12 +47,14 @@ def jump_operator(points: JointPoints, centroid: Array) -> Jump:
 def pin_operator(scene: Scene) -> csr_array:
     """Displacement of each pinned point along its direction, ``(n_pins, 3 nb)``."""
     pins = scene.pins
-    return point_operator(pins.block, pins.point, pins.direction, scene.blocks.centroid)
+    at_points = point_operator(pins.block, pins.point, pins.direction, scene.blocks.centroid)
+    turn = coo_array((pins.turn, (np.arange(len(pins)), 3 * pins.block + 2)), shape=at_points.shape)
+    return csr_array(at_points + turn)
 
 
 def mass_matrix_diagonal(scene: Scene) -> Array:
     """Mass, mass and polar moment of inertia of each block, ``(3 nb,)`` [kg, kg, kg m²]."""
-    inertia = scene.block.density * scene.thickness * scene.blocks.polar_moment
+    inertia = scene.density * scene.thickness * scene.blocks.polar_moment
     return np.column_stack([scene.mass, scene.mass, inertia]).ravel()
 
 

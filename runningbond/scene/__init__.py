@@ -1,40 +1,57 @@
 """What is modelled: blocks, joints, materials, supports and loads, and the file they are read from."""
 
+from .actions import Action
 from .arrays import Array, Indices, Mask, frozen
+from .beam import Beam, BeamLoad, Drive
 from .blocks import Blocks
 from .bond import Bond, course_pattern, running_bond
 from .errors import SceneError
 from .file import read_description, read_scene, scene_from_dict
 from .forces import Arrow, Forces
-from .loads import Action, Body, GivenForces, Lateral, Load, PointLoad
+from .loads import Load
+from .mass_loads import Body, Lateral, Tilt
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
+from .point_loads import GivenForces, LineLoad, Moment, PointLoad
 from .segments import Joints, find_joints
+from .settlement import Settlement
 from .supports import NO_PINS, Pins, free_motions
-from .wall import Scene, build_scene
+from .ties import ANCHOR, NO_TIES, Tie, Ties
+from .wall import Scene, build_scene, table_of
 
 __all__ = [
+    "ANCHOR",
     "NO_PINS",
+    "NO_TIES",
     "Action",
     "Array",
     "Arrow",
+    "Beam",
+    "BeamLoad",
     "BlockMaterial",
     "Blocks",
     "Body",
     "Bond",
+    "Drive",
     "Forces",
     "GivenForces",
     "Indices",
     "JointMaterial",
     "Joints",
     "Lateral",
+    "LineLoad",
     "Load",
     "Mask",
+    "Moment",
     "Mortar",
     "Pins",
     "PointLoad",
     "Scene",
     "SceneError",
+    "Settlement",
     "Stiffness",
+    "Tie",
+    "Ties",
+    "Tilt",
     "build_scene",
     "course_pattern",
     "find_joints",
@@ -44,4 +61,5 @@ __all__ = [
     "read_scene",
     "running_bond",
     "scene_from_dict",
+    "table_of",
 ]

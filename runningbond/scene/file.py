@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any, cast, get_args
 
 from .arrays import Array
+from .assignment import ANY, BEAM, GROUND, read_assignments
+from .beam import read_beam
 from .bond import Bond, Ends, FirstCourse, course_pattern, running_bond
 from .drawing import METRES, read_drawing
 from .errors import SceneError, keys_of
@@ -15,7 +17,11 @@ from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness, check_fr
 from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, Range
 from .supports import SUPPORT_KINDS, SupportKind
 from .table import Table
+from .ties import read_tie
 from .wall import Scene, build_scene
+
+RESERVED = ("block", "joint", "inner_joint", ANY, BEAM, GROUND)
+"""Names that no further material may have."""
 
 
 def read_scene(path: str | Path) -> Scene:
@@ -68,15 +74,20 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     top = Table("", content)
     title = " ".join(top.text("title", default_title).split())
     wall, block, joint, support, load = (top.table(key) for key in ("wall", "block", "joint", "support", "load"))
-    inner = top.optional_table("inner_joint")
+    inner, beam_table = top.optional_table("inner_joint"), top.optional_table("beam")
+    material_tables, joint_tables = top.tables_by_name("materials"), top.tables_by_name("joints")
+    assign, tie_tables = top.value("assign", []), top.list_of_tables("tie")
     top.finish()
-    block_material = BlockMaterial(**block.numbers(BlockMaterial))
-    block.finish()
-    joint_material = _joint_material(joint)
+    block_material, *materials = (_block_material(table) for table in (block, *material_tables))
+    joint_material, *joints = (_joint_material(table) for table in (joint, *joint_tables))
     inner_material = _joint_material(inner) if inner else None
+    block_names = [each.name for each in (block_material, *materials)]
+    joint_names = [each.name for each in (joint_material, *joints)]
+    assignments = read_assignments(assign, block_names, joint_names)
+    beam = read_beam(beam_table, joint_names) if beam_table else None
     kind = cast(SupportKind, support.choice("kind", SUPPORT_KINDS))
     support.finish()
-    loads = read_load(load)
+    loads = read_load(load, driven=beam is not None and beam.drive is not None)
     thickness = wall.number("thickness", ABOVE_ZERO)
     polygons, ground, bond = _blocks(wall, folder)
     wall.finish()
@@ -88,9 +99,14 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
         joint=joint_material,
         load=loads,
         support=kind,
-        ground=ground,
+        grounds=() if ground is None else (ground,),
         bond=bond,
         inner_joint=inner_material,
+        materials=materials,
+        joints=joints,
+        assignments=assignments,
+        beam=beam,
+        ties=[read_tie(table) for table in tie_tables],
     )
 
 
@@ -125,12 +141,28 @@ def _refuse_mixed_descriptions(wall: Table) -> None:
             return
 
 
+def _block_material(block: Table) -> BlockMaterial:
+    with keys_of(block.name, "block"):
+        material = BlockMaterial(**block.numbers(BlockMaterial), name=_material_name(block))
+    block.finish()
+    return material
+
+
+def _material_name(table: Table) -> str:
+    """Name of a material: the last part of its table's."""
+    name = table.name.rpartition(".")[2]
+    if "." in table.name and name in RESERVED:
+        raise SceneError(table.name, f"is a name that means something else; take another than {', '.join(RESERVED)}")
+    return name
+
+
 def _joint_material(joint: Table) -> JointMaterial:
     with keys_of(joint.name, "joint"):
         material = JointMaterial(
             friction=_friction(joint),
             elasticity=_elasticity(joint),
             law=joint.value("law"),
+            name=_material_name(joint),
             **joint.numbers(JointMaterial, "friction"),
         )
     joint.finish()

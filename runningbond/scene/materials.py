@@ -23,6 +23,8 @@ class BlockMaterial:
         Young's modulus [Pa]; None where the scene leaves it out. Rigid models do not read it.
     poisson
         Poisson's ratio.
+    name
+        What `assign` calls it in a scene file.
 
     Raises
     ------
@@ -33,6 +35,7 @@ class BlockMaterial:
     density: Positive
     young: Positive | None = None
     poisson: Annotated[float, Range(above=-1.0, most=0.5)] = 0.0
+    name: str = "block"
 
     def __post_init__(self) -> None:
         check_numbers(self, "block")
@@ -89,6 +92,8 @@ class JointMaterial:
         Fracture energies in opening and in shear [J/m²]; None is perfectly plastic.
     law
         A law of one's own (`runningbond.joints.Law`); None is Coulomb's, softening where there is a fracture energy.
+    name
+        What `assign` calls it in a scene file.
 
     Raises
     ------
@@ -104,6 +109,7 @@ class JointMaterial:
     fracture_energy_1: NotNegative | None = None
     fracture_energy_2: NotNegative | None = None
     law: object = None
+    name: str = "joint"
 
     def __post_init__(self) -> None:
         check_numbers(self, "joint")

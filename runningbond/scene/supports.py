@@ -1,6 +1,6 @@
 """Supports: which blocks are held, and where."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -14,27 +14,34 @@ SUPPORT_KINDS: tuple[str, ...] = get_args(SupportKind)
 
 @dataclass(frozen=True, eq=False)
 class Pins:
-    """Points of blocks held in one direction each, in both senses.
+    """Motions of blocks that are held at zero, in both senses: direction · u(point) + turn · ω = 0.
 
     Parameters
     ----------
     block : (n,) int
         The block held.
     point, direction : (n, 2) float
-        Where [m], and the unit vector along which the displacement of that point is zero.
+        Where [m], and the unit vector along which the displacement of that point is zero; (0, 0) for a held rotation.
+    turn : (n,) float
+        1 [m/rad] for a held rotation, 0 (where it is left out) for a held displacement.
     """
 
     block: Indices
     point: Array
     direction: Array
+    turn: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "block", frozen(self.block, np.int64))
         object.__setattr__(self, "point", frozen(np.reshape(self.point, (-1, 2))))
         object.__setattr__(self, "direction", frozen(np.reshape(self.direction, (-1, 2))))
+        object.__setattr__(self, "turn", frozen(self.turn if len(self.turn) else np.zeros(len(self.block))))
 
     def __len__(self) -> int:
         return len(self.block)
+
+    def __add__(self, other: "Pins") -> "Pins":
+        return Pins(*(np.concatenate([getattr(each, part.name) for each in (self, other)]) for part in fields(Pins)))
 
 
 NO_PINS = Pins(np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros((0, 2)))

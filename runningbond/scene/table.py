@@ -53,6 +53,18 @@ class Table:
         value = self.value(key)
         return None if value is None else Table(self.key(key), value)
 
+    def tables_by_name(self, key: str) -> "list[Table]":
+        """The tables of a table of tables, none where the key is not present."""
+        outer = self.optional_table(key)
+        return [] if outer is None else [Table(outer.key(name), inner) for name, inner in outer._left.items()]
+
+    def list_of_tables(self, key: str) -> "list[Table]":
+        """A list of tables, empty where the key is not present."""
+        value = self.value(key, [])
+        if not isinstance(value, list):
+            raise SceneError(self.key(key), f"must be tables, [[{self.key(key)}]] with keys of their own", value)
+        return [Table(f"{self.key(key)}[{k}]", inner) for k, inner in enumerate(value)]
+
     def number(self, key: str, within: Range) -> float:
         """A number in a range."""
         return within.take(self.key(key), self.required(key, str(within)))

@@ -1,24 +1,30 @@
 """The scene: a wall with its joints, materials, supports and loads, complete and checked."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from .actions import Action
 from .arrays import Array, Indices, Mask, frozen
+from .assignment import BEAM, GROUND, Assignment, assign_blocks, assign_joints
+from .beam import Beam
 from .blocks import Blocks
 from .bond import Bond
 from .cracks import cut_in_half
 from .errors import SceneError
 from .forces import Forces
-from .loads import Action, Load
+from .loads import Load
 from .materials import BlockMaterial, JointMaterial
 from .ranges import ABOVE_ZERO, one_of
 from .segments import Joints, find_joints
+from .settlement import Settlement, cut_ground
 from .supports import NO_PINS, SUPPORT_KINDS, Pins, SupportKind, corner_pins, first_course
+from .ties import NO_TIES, Tie, Ties, place_ties
 
 SAME_COLUMN = 1e-9
 """Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
@@ -39,19 +45,25 @@ class Scene:
     wall : (nb,) bool
         Blocks of the wall: all but the ground.
     pins
-        Points held in one direction.
+        Motions of blocks that are held.
     joints
         Joints with at least one movable side.
     thickness
         Out-of-plane thickness [m].
-    block, joint
-        Materials.
+    block_materials, joint_materials
+        Materials of blocks and of joints, the default ones first.
+    material_of_block : (nb,) int
+        Material of each block.
+    material_of_joint : (nj,) int
+        Material of each joint; of potential cracks inside blocks the one named ``inner_joint``.
     load
         Dead and live load.
     bond
         Nominal block where the wall is bonded on a lattice, None for a drawing.
-    inner_joint
-        Material of the potential cracks inside blocks; None where blocks do not crack.
+    ties, beam
+        Bars, and the stiff body across the top; None where there is none.
+    notes
+        What was healed or left out when the wall was read.
     """
 
     title: str
@@ -61,31 +73,87 @@ class Scene:
     pins: Pins
     joints: Joints
     thickness: float
-    block: BlockMaterial
-    joint: JointMaterial
+    block_materials: tuple[BlockMaterial, ...]
+    material_of_block: Indices
+    joint_materials: tuple[JointMaterial, ...]
+    material_of_joint: Indices
     load: Load
     bond: Bond | None = None
-    inner_joint: JointMaterial | None = None
+    ties: Ties = NO_TIES
+    beam: Beam | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for name in ("material_of_block", "material_of_joint"):
+            object.__setattr__(self, name, frozen(getattr(self, name), np.int64))
         object.__setattr__(self, "fixed", frozen(self.fixed, np.bool_))
         object.__setattr__(self, "wall", frozen(self.wall, np.bool_))
         object.__setattr__(self, "thickness", ABOVE_ZERO.take("wall.thickness", self.thickness))
 
+    @property
+    def block(self) -> BlockMaterial:
+        """Material of the blocks that nothing else is said of."""
+        return self.block_materials[0]
+
+    @property
+    def joint(self) -> JointMaterial:
+        """Material of the joints that nothing else is said of."""
+        return self.joint_materials[0]
+
+    @property
+    def inner_joint(self) -> JointMaterial | None:
+        """Material of the potential cracks inside blocks; None where blocks do not crack."""
+        return next((material for material in self.joint_materials if material.name == "inner_joint"), None)
+
+    def with_block(self, **changes: Any) -> "Scene":
+        """A copy whose default block material differs in some fields."""
+        return replace(self, block_materials=(replace(self.block, **changes), *self.block_materials[1:]))
+
+    def with_joint(self, **changes: Any) -> "Scene":
+        """A copy whose default joint material differs in some fields."""
+        return replace(self, joint_materials=(replace(self.joint, **changes), *self.joint_materials[1:]))
+
+    @cached_property
+    def density(self) -> Array:
+        """Density of each block, ``(nb,)`` [kg/m³]."""
+        density = np.array([material.density for material in self.block_materials])[self.material_of_block]
+        if self.beam is not None:
+            density[self.beam.block] = self.beam.mass / (self.thickness * self.blocks.area[self.beam.block])
+        return density
+
     @cached_property
     def mass(self) -> Array:
         """Mass of each block, ``(nb,)`` [kg]."""
-        return self.block.density * self.thickness * self.blocks.area
+        return self.density * self.thickness * self.blocks.area
+
+    @cached_property
+    def settlement(self) -> Settlement | None:
+        """The live load that moves a support; None where there is none."""
+        return next((load for load in self.load.live if isinstance(load, Settlement)), None)
+
+    @cached_property
+    def support_motion(self) -> Array:
+        """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``: that of moving supports."""
+        return np.zeros((len(self.blocks), 3)) if self.settlement is None else self.settlement.motion(self)
+
+    @cached_property
+    def late_pins(self) -> Pins:
+        """Motions of blocks that are held once the dead load is on."""
+        return NO_PINS if self.beam is None else self.beam.late_pins(self.blocks.centroid[self.beam.block])
 
     @property
-    def joint_materials(self) -> tuple[JointMaterial, ...]:
-        """Materials of the joints, to which `material_of_joint` refers."""
-        return (self.joint,) if self.inner_joint is None else (self.joint, self.inner_joint)
-
-    @property
-    def material_of_joint(self) -> Indices:
-        """Material of each joint, ``(nj,)``."""
-        return self.joints.inner.astype(np.int64)
+    def extras(self) -> tuple[str, ...]:
+        """Keys of what a model has to know of by name, or refuses."""
+        path = self.beam.drive.path if self.beam and self.beam.drive else ()
+        given = {
+            "tie": len(self.ties) > 0,
+            "beam": self.beam is not None,
+            "beam.condition fixed-height": len(self.late_pins) > 0,
+            "beam.drive.displacement": len(path) == 1,
+            "beam.drive.displacement, cyclic": len(path) > 1,
+            "load.live settlement": self.settlement is not None,
+        }
+        return tuple(key for key, there in given.items() if there)
 
     @cached_property
     def dead_forces(self) -> Forces:
@@ -150,46 +218,75 @@ def build_scene(
     joint: JointMaterial,
     load: Load,
     support: SupportKind = "base",
-    ground: Array | None = None,
+    grounds: Sequence[Array] = (),
     bond: Bond | None = None,
     inner_joint: JointMaterial | None = None,
+    materials: Sequence[BlockMaterial] = (),
+    joints: Sequence[JointMaterial] = (),
+    assignments: Sequence[Assignment] = (),
+    layers: Sequence[str] = (),
+    material_of: Mapping[int, str] | None = None,
+    beam: Beam | None = None,
+    ties: Sequence[Tie] = (),
+    notes: Sequence[str] = (),
 ) -> Scene:
     """Join blocks into a wall, put it on its support, and check that it can be analysed.
 
     Parameters
     ----------
     polygons : list of (n, 2) float
-        Blocks of the wall [m], convex and counter-clockwise.
-    ground : (n, 2) float, optional
-        Outline of the ground; without it a flat strip is laid under the lowest course where the
-        support needs one.
+        Blocks of the wall [m], counter-clockwise.
+    grounds : list of (n, 2) float
+        Outlines of the ground; without any a flat strip is laid under the lowest course where the support needs one.
     inner_joint
         Material of a potential crack on the vertical axis of every block; in a bonded wall, of every block wider
         than half the nominal one.
+    materials, joints
+        Further materials of blocks and joints, by their names.
+    assignments
+        Which blocks and joints are of them; later ones win.
+    layers
+        Layer of each block of a drawing.
+    material_of
+        Names of the materials of single blocks, before any assignment.
+    beam, ties
+        A stiff body to lay across the top, and bars.
+    notes
+        What there is to say of how the wall was read.
 
     Raises
     ------
     SceneError
-        For blocks that are not convex, overlap or touch nothing that is held, for an inset that
-        leaves no joint, and for a load that nothing takes up.
+        For blocks that overlap or touch nothing that is held, for an inset that leaves no joint, for a load that
+        nothing takes up, for an assignment that chooses nothing, for a tie that holds nothing.
     """
     one_of("support.kind", support, SUPPORT_KINDS)
-    if ground is not None and support in ("corners", "pinned-corners"):
+    if grounds and support in ("corners", "pinned-corners"):
         raise SceneError("support.kind", 'a drawing brings its ground; use "base" or "fixed-first-course"', support)
     if inner_joint and joint.elasticity and not inner_joint.elasticity:
         raise SceneError("inner_joint.mortar", "is missing; joint has a stiffness, and models that need it need both")
     wall_blocks = Blocks.from_polygons(polygons)
     wall_blocks.check()
+    block_materials = (block, *materials)
+    names = [each.name for each in block_materials]
+    material = assign_blocks(wall_blocks, names, layers, material_of or {}, assignments)
     owner = np.arange(len(polygons))
     if inner_joint is not None:
         polygons, owner = cut_in_half(polygons, 0.75 * bond.width if bond else 0.0)
         wall_blocks = Blocks.from_polygons(polygons)
-    if ground is None and support == "base":
-        ground = _strip_below(wall_blocks)
-    outlines = [*polygons] if ground is None else [*polygons, ground]
-    blocks = Blocks.from_polygons(outlines)
+    if not grounds and support == "base":
+        grounds = [_strip_below(wall_blocks)]
+    grounds = cut_ground(grounds, [live for live in load.live if isinstance(live, Settlement)])
+    bodies = [*polygons]
+    if beam is not None:
+        beam = replace(beam, block=len(bodies))
+        bodies.append(beam.outline(wall_blocks))
+    blocks = Blocks.from_polygons([*bodies, *grounds])
     blocks.check()
-    wall = np.arange(len(blocks)) < len(polygons)
+    wall = np.arange(len(blocks)) < len(bodies)
+    others = len(blocks) - len(polygons)
+    material = np.append(material[owner], np.zeros(others, dtype=np.int64))
+    called = [names[k] for k in material[: len(polygons)]] + [BEAM] * (beam is not None) + [GROUND] * len(grounds)
 
     fixed = ~wall
     pins = NO_PINS
@@ -197,28 +294,51 @@ def build_scene(
         fixed = fixed | first_course(blocks, wall)
     elif support in ("corners", "pinned-corners"):
         pins = corner_pins(blocks, wall, roller=support == "corners")
+    if beam is not None:
+        pins = pins + beam.pins(blocks.centroid[len(polygons)])
+        live, dead = beam.loads()
+        load = Load(load.gravity, (*live, *load.live), (*load.dead, *dead))
 
-    joints = find_joints(blocks)
-    part_of = np.append(owner, np.full(len(outlines) - len(polygons), -1))[joints.block]
-    movable = ~fixed[joints.block].all(axis=1)
-    inner = (part_of[:, 0] == part_of[:, 1]) & movable
-    order = np.concatenate([np.flatnonzero(movable & ~inner), np.flatnonzero(inner)])
+    found = _joints(blocks, fixed, np.append(owner, np.full(others, -1)))
+    joint_materials = (joint, *joints, *(() if inner_joint is None else (replace(inner_joint, name="inner_joint"),)))
+    material_of_joint = assign_joints(
+        found,
+        [each.name for each in joint_materials],
+        called,
+        [layers[int(k)] for k in owner] if layers else (),
+        assignments,
+        None if beam is None else (len(polygons), beam.joint or joint.name),
+    )
     scene = Scene(
         title,
         blocks,
         fixed,
         wall,
         pins,
-        Joints(joints.block[order], joints.ends[order], inner[order]),
+        found,
         thickness,
-        block,
-        joint,
+        block_materials,
+        material,
+        joint_materials,
+        material_of_joint,
         load,
         bond,
-        inner_joint,
+        place_ties(ties, blocks, fixed),
+        beam,
+        tuple(notes),
     )
     _check(scene)
     return scene
+
+
+def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
+    """Joints with a movable side; those inside what was one block come last."""
+    joints = find_joints(blocks)
+    movable = ~fixed[joints.block].all(axis=1)
+    a, b = part_of[joints.block].T
+    inner = (a == b) & (a >= 0) & movable
+    order = np.concatenate([np.flatnonzero(movable & ~inner), np.flatnonzero(inner)])
+    return Joints(joints.block[order], joints.ends[order], inner[order])
 
 
 def _strip_below(blocks: Blocks) -> Array:
@@ -234,21 +354,30 @@ def _check(scene: Scene) -> None:
     if scene.fixed.all():
         raise SceneError("support.kind", "holds every block; give the wall more than one course", "fixed-first-course")
     _refuse_floating_blocks(scene)
-    for name, material, chosen in (
-        ("joint.inset", scene.joint, ~scene.joints.inner),
-        ("inner_joint.inset", scene.inner_joint, scene.joints.inner),
-    ):
-        length = scene.joints.length[chosen]
-        if material is not None and len(length) and 2 * material.inset >= length.min():
-            raise SceneError(
-                name, f"must be less than half the shortest joint, {length.min():.4g} m long", material.inset
-            )
+    for k, material in enumerate(scene.joint_materials):
+        length = scene.joints.length[scene.material_of_joint == k]
+        if len(length) and 2 * material.inset >= length.min():
+            what = f"must be less than half the shortest joint, {length.min():.4g} m long"
+            raise SceneError(f"{table_of(material)}.inset", what, material.inset)
+    if not scene.load.live:
+        raise SceneError("load.live", "is missing: nothing is multiplied by λ")
+    if (scene.settlement or any(key.startswith("beam.drive") for key in scene.extras)) and len(scene.load.live) > 1:
+        raise SceneError("load.live", "must be alone where a support or the beam is moved by a displacement")
     for key, load in scene.load.named():
         load.check(scene, key)
+        if isinstance(load, Settlement):
+            continue
         forces = load.forces(scene)
         size = sum(float(np.abs(part).sum()) for part in (forces.acceleration, forces.moment, forces.force))
         if not 0 < size < np.inf:
             raise SceneError(key, "must put finite forces on the blocks, not all of them zero", load)
+
+
+def table_of(material: BlockMaterial | JointMaterial) -> str:
+    """Table of a scene file that a material is described in."""
+    if material.name in ("block", "joint", "inner_joint"):
+        return material.name
+    return f"{'materials' if isinstance(material, BlockMaterial) else 'joints'}.{material.name}"
 
 
 def _refuse_floating_blocks(scene: Scene) -> None:
@@ -256,7 +385,7 @@ def _refuse_floating_blocks(scene: Scene) -> None:
     n = len(scene.blocks)
     a, b = scene.joints.block.T
     _, component = connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)
-    held = np.union1d(np.flatnonzero(scene.fixed), scene.pins.block)
+    held = np.union1d(np.flatnonzero(scene.fixed), scene.pins.block[scene.pins.direction.any(axis=1)])
     floating = ~np.isin(component, component[held])
     if floating.any():
         raise SceneError(

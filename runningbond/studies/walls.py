@@ -10,7 +10,7 @@ Friction follows the pressure, and the pressure the inertia of what moves; (1) l
 block, whose pressure does not change.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import TypeAlias
 
@@ -50,13 +50,12 @@ def one_block(width: float, height: float, friction: float, stiffness: float) ->
 
 def inset_wall(name: str) -> Scene:
     """A published wall with its contacts `INSET` from the ends of the joints."""
-    scene = published_scene(name)
-    return replace(scene, joint=replace(scene.joint, inset=INSET))
+    return published_scene(name).with_joint(inset=INSET)
 
 
 def bonded(scene: Scene) -> Scene:
     """The same wall with joints that neither open nor slide."""
-    return replace(scene, joint=replace(scene.joint, cohesion=HOLDS, tensile_strength=HOLDS))
+    return scene.with_joint(cohesion=HOLDS, tensile_strength=HOLDS)
 
 
 def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:

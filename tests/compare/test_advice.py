@@ -1,7 +1,6 @@
 """`advise`: the answer is right where one is known, every rung has its reason, and economies keep the answer."""
 
 import json
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from runningbond.compare.advice.knowledge import block_compliance, sliding_dilat
 from runningbond.compare.advice.steps import WORTH
 from runningbond.limit import limit
 from runningbond.results import Outcome
-from runningbond.scene import BlockMaterial, Scene
+from runningbond.scene import Scene
 from tests.walls import courses, panel
 
 KNOWN = {
@@ -143,7 +142,7 @@ def test_a_wall_that_falls_by_itself_needs_no_more_than_limit() -> None:
 def test_deformability_is_of_no_account_where_the_certificates_suffice() -> None:
     """Admissible forces and rigid mechanisms do not know E: blocks of rubber leave the interval as it is."""
     scene = published_scene("wall-w1")
-    soft = replace(scene, block=BlockMaterial(scene.block.density, 2e9, 0.0))
+    soft = scene.with_block(young=2e9, poisson=0.0)
     assert block_compliance(soft) > TOLERANCE
     assert climbed(advise(soft))[-1] == "limit-nonassociated"
 
@@ -179,7 +178,7 @@ def test_curve_past_the_peak_is_no_part_of_the_bracket() -> None:
 
 def test_soft_blocks_call_for_fem_where_a_history_is_followed() -> None:
     scene = published_scene("wall-w3")
-    soft = replace(scene, block=BlockMaterial(scene.block.density, 1e11, 0.0))
+    soft = scene.with_block(young=1e11, poisson=0.0)
     advice = advise(soft)
     assert climbed(advice) == ["homog", "limit", "limit-nonassociated", "fem"]
     assert "must deform" in advice.rungs[2].next.reason

@@ -6,7 +6,6 @@ project began; the paper itself prints none. The paper's own columns are printed
 """
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -147,5 +146,5 @@ def test_concentrated_loads_lock_between_held_corners(b: float, a: float) -> Non
 def test_without_cohesion_the_concentrated_load_needs_no_force_at_all() -> None:
     """Dry and weightless on pin and roller nothing ties the thrust: λ = 0, and not a failure."""
     scene = published_scene("point-load-4")
-    dry = replace(scene, joint=replace(scene.joint, cohesion=0.0, tensile_strength=0.0))
+    dry = scene.with_joint(cohesion=0.0, tensile_strength=0.0)
     assert limit(dry).multiplier == pytest.approx(0, abs=1e-9)

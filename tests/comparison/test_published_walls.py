@@ -1,7 +1,5 @@
 """The walls W1–W3 of Ferris & Tin-Loi (2001), associated and with true friction, sharp and rounded corners."""
 
-from dataclasses import replace
-
 import pytest
 
 from runningbond.compare import published_scene
@@ -34,7 +32,7 @@ def test_true_friction_lies_inside_the_certified_interval(name: str, interval: t
 def test_rounded_corners_make_it_one_number(name: str, multiplier: float) -> None:
     """Contacts 20 mm in from the joint ends: the interval closes on the recorded value, 1 % at most."""
     scene = published_scene(name)
-    outcome = limit_nonassociated(replace(scene, joint=replace(scene.joint, inset=0.02)))
+    outcome = limit_nonassociated(scene.with_joint(inset=0.02))
     assert outcome.status == "collapse"
     assert outcome.lower == pytest.approx(multiplier, rel=1e-3)
     assert outcome.upper == pytest.approx(multiplier, rel=1e-3)

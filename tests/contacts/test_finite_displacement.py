@@ -30,7 +30,7 @@ from tests.walls import panel
 def dry(blocks: list[Array], friction: float = 0.6, stiffness: float = 1e9, inset: float = 0.0) -> Scene:
     """Blocks of 1800 kg/m³ on flat ground, 0.12 m thick."""
     scene = pile(blocks, friction)
-    return replace(scene, joint=replace(scene.joint, elasticity=Stiffness(stiffness, stiffness), inset=inset))
+    return scene.with_joint(elasticity=Stiffness(stiffness, stiffness), inset=inset)
 
 
 def weight(scene: Scene, block: int) -> float:
@@ -302,7 +302,7 @@ def test_a_toppling_block_loses_resistance_as_the_tangent(inset: float) -> None:
     """
     half_width, half_height = 0.125 - inset, 0.5 - inset
     scene = block_on_base(0.25, 1.0, 2.0, stiffness=1e10)
-    run = Run(finite_system(replace(scene, joint=replace(scene.joint, inset=inset))), local=0.05, viscous=0.5)
+    run = Run(finite_system(scene.with_joint(inset=inset)), local=0.05, viscous=0.5)
     state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=0.1))
     speed = GRAVITY * 0.12 / (600_000 * run.dt)
@@ -523,7 +523,7 @@ def softer(name: str, factor: float) -> Scene:
     scene = published_scene(name)
     assert isinstance(scene.joint.elasticity, Mortar)
     elasticity = replace(scene.joint.elasticity, young=scene.joint.elasticity.young * factor)
-    return replace(scene, joint=replace(scene.joint, inset=0.02, elasticity=elasticity))
+    return scene.with_joint(inset=0.02, elasticity=elasticity)
 
 
 @pytest.mark.parametrize("name", ["wall-w1", "wall-w2"])

@@ -342,8 +342,8 @@ def test_newmark_block_slides_as_far_as_it_should() -> None:
 def test_shear_box_slides_at_cohesion_and_friction(force: float, cohesion: float, friction: float) -> None:
     """Pushed slowly, a flat block under N resists c A + N tan φ."""
     scene = block_on_base(1.0, 0.01, friction, mass=force / GRAVITY, stiffness=1e10)
-    strength = replace(scene.joint, cohesion=cohesion, tensile_strength=cohesion / friction)
-    run = Run(rigid_system(replace(scene, joint=strength)), local=0.5)
+    glued = scene.with_joint(cohesion=cohesion, tensile_strength=cohesion / friction)
+    run = Run(rigid_system(glued), local=0.5)
     state = State.at_rest(run.system)
     settle(run, state, 0.0, Criteria(collapse=1.0))
     pushed = drive(run, state, 1e-3, 40_000)
@@ -399,7 +399,7 @@ def test_energy_is_accounted_for_through_a_collapse() -> None:
 
 def test_a_wall_that_falls_under_its_weight_is_infeasible() -> None:
     scene = pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)], 0.5)
-    stiff = replace(scene, joint=replace(scene.joint, elasticity=Mortar(1e9, 0.2, 0.01)))
+    stiff = scene.with_joint(elasticity=Mortar(1e9, 0.2, 0.01))
     assert dem_dynamic(stiff).status == "infeasible"
 
 

@@ -42,9 +42,8 @@ def wall(young: float = 1e10, **changes: Any) -> Scene:
 def dry(blocks: list[Array], friction: float, stiffness: float, inset: float, young: float = 1e10) -> Scene:
     """Blocks of 2000 kg/m³ on flat ground, 0.1 m thick."""
     scene = pile(blocks, friction)
-    material = replace(scene.block, young=young, poisson=0.2)
-    joint = replace(scene.joint, elasticity=Stiffness(stiffness, stiffness), inset=inset)
-    return replace(scene, block=material, joint=joint)
+    elasticity = Stiffness(stiffness, stiffness)
+    return scene.with_block(young=young, poisson=0.2).with_joint(elasticity=elasticity, inset=inset)
 
 
 def weight(scene: Scene, block: int) -> float:
@@ -296,9 +295,9 @@ def test_scenes_of_another_kind_are_refused(changes: dict[str, Any], key: str) -
 def test_materials_without_a_stiffness_are_refused() -> None:
     scene = wall()
     with pytest.raises(SceneError, match="block.young"):
-        node_outline(replace(scene, block=replace(scene.block, young=None)))
+        node_outline(scene.with_block(young=None))
     with pytest.raises(SceneError, match="joint"):
-        finite_system(node_outline(replace(scene, joint=replace(scene.joint, elasticity=None))))
+        finite_system(node_outline(scene.with_joint(elasticity=None)))
 
 
 # --- one block -----------------------------------------------------------------------------------------------
@@ -389,8 +388,8 @@ def test_a_glued_block_slides_once_its_joint_is_broken_and_is_dry_wherever_it_co
     """Pushed, it resists by cohesion and friction, and then by friction alone, on its own place and on the next."""
     mu, width, energy = 0.3, 0.4, 20.0
     scene = dry([rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2), rectangle(0.55, 0.2, width, 0.2)], mu, 1e9, 0.01)
-    glue = replace(scene.joint, cohesion=1e4, tensile_strength=1e4, fracture_energy_1=energy, fracture_energy_2=energy)
-    blocks = node_outline(replace(scene, joint=glue))
+    glue = {"cohesion": 1e4, "tensile_strength": 1e4, "fracture_energy_1": energy, "fracture_energy_2": energy}
+    blocks = node_outline(scene.with_joint(**glue))
     system = finite_system(blocks)
     alone = np.zeros_like(system.live)
     alone[system.rigid[2]] = system.live[system.rigid[2]]
@@ -423,7 +422,7 @@ def test_a_glued_wall_breaks_as_at_small_displacements() -> None:
     """Pushed by a millimetre, past its peak and into softening: the same multiplier within 1 % of the peak."""
     mortar = {**MORTAR, "young": 1e8}
     scene = wall(joint__mortar=mortar, joint__cohesion=2e4, joint__tensile_strength=1e4, joint__inset=0.005)
-    scene = replace(scene, joint=replace(scene.joint, fracture_energy_1=5.0, fracture_energy_2=10.0))
+    scene = scene.with_joint(fracture_energy_1=5.0, fracture_energy_2=10.0)
     run: Run
     curves = []
     for run in (
@@ -453,8 +452,7 @@ def softer(name: str, factor: float, young: float = 1e10) -> Scene:
     scene = published_scene(name)
     assert isinstance(scene.joint.elasticity, Mortar)
     elasticity = replace(scene.joint.elasticity, young=scene.joint.elasticity.young * factor)
-    block = replace(scene.block, young=young, poisson=0.2)
-    return replace(scene, block=block, joint=replace(scene.joint, inset=0.02, elasticity=elasticity))
+    return scene.with_block(young=young, poisson=0.2).with_joint(inset=0.02, elasticity=elasticity)
 
 
 def smoothed(curve: Array, at: list[float]) -> Array:

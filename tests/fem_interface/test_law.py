@@ -1,7 +1,5 @@
 """Fracture energies and what joints spend."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -50,8 +48,7 @@ def test_energies_need_a_mortar_to_follow_from() -> None:
 def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
     """Point by point, through rest and collapse; c = f_t = G = 0 among them."""
     scene = wall(1e10, joint__cohesion=cohesion)
-    joint = replace(scene.joint, fracture_energy_1=energy, fracture_energy_2=energy)
-    run = Run(system_of(modal_wall(replace(scene, joint=joint))))
+    run = Run(system_of(modal_wall(scene.with_joint(fracture_energy_1=energy, fracture_energy_2=energy))))
     state = check_dissipation(run, 100)
     assert state.history[FRICTION_WORK].max() > 0
     if energy is not None:
@@ -60,8 +57,8 @@ def test_dissipation_never_falls(cohesion: float, energy: float | None) -> None:
 
 def test_no_strength_and_no_energy_comes_to_an_outcome() -> None:
     scene = wall(1e12)
-    dry = replace(scene.joint, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=0.0, fracture_energy_2=0.0)
-    outcome = fem(replace(scene, joint=dry))
+    dry = scene.with_joint(cohesion=0.0, tensile_strength=0.0, fracture_energy_1=0.0, fracture_energy_2=0.0)
+    outcome = fem(dry)
     assert outcome.status == "collapse"
     plastic = fem(scene)
     assert outcome.multiplier == pytest.approx(plastic.multiplier, rel=0.01)

@@ -1,6 +1,5 @@
 """The model `fem`: stiff blocks beside rigid ones, published walls, and refusals."""
 
-from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -19,7 +18,7 @@ from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.joints import Rule, gauss, lobatto
 from runningbond.limit import limit
 from runningbond.results import Outcome
-from runningbond.scene import BlockMaterial, Scene, SceneError
+from runningbond.scene import Scene, SceneError
 from tests.walls import courses, panel
 
 from .walls import GLUE, MORTAR, joint_stiffness_of, wall, whole
@@ -89,7 +88,7 @@ def test_loads_of_panel_7_scatter_as_far_apart_in_one_model_as_in_two() -> None:
     their means lie within 1 %."""
     scene = published_scene("panel-07")
     density = scene.block.density
-    walls = [replace(scene, block=replace(scene.block, density=density * (1 + k * 1e-9))) for k in range(5)]
+    walls = [scene.with_block(density=density * (1 + k * 1e-9)) for k in range(5)]
     rigid = [dem_dynamic(wall, 0.005) for wall in walls]
     deformable = [fem(wall, 0.005, points="joints") for wall in walls]
     of_rigid, of_deformable = (
@@ -180,7 +179,7 @@ def test_blocks_glued_onto_one_that_is_held_at_both_corners_only_deform() -> Non
 def test_walls_with_contacts_20_mm_in_fall_at_the_published_load(name: str, published: float) -> None:
     """Ferris & Tin-Loi's walls with friction: numerically unique with contacts moved in, within 1.5 %."""
     scene = published_scene(name)
-    scene = replace(scene, block=BlockMaterial(1800.0, 1e12), joint=replace(scene.joint, inset=0.02))
+    scene = scene.with_block(density=1800.0, young=1e12, poisson=0.0).with_joint(inset=0.02)
     outcome = fem(scene, 0.005)
     assert outcome.status == "collapse"
     assert outcome.multiplier == pytest.approx(published, rel=0.015)

@@ -151,7 +151,7 @@ def test_work_done_on_a_point_and_not_stored_in_it_never_falls(
     lost = np.concatenate([[0.0], np.cumsum(done) - stored[1:]])
     # The trapezium is off where a step passes a kink, by what the springs store over that step; legs have few kinks.
     passing = 1e11 * np.abs(np.diff(opening)).max() ** 2 + 4e10 * np.abs(np.diff(slip)).max() ** 2
-    assert (np.maximum.accumulate(lost) - lost).max() <= len(corners) * passing
+    assert (np.maximum.accumulate(lost) - lost).max() <= len(corners) * passing + 1e-300  # no denormal number
 
 
 def test_brittle_joints_carry_less_than_ductile_ones_and_tough_ones_as_much() -> None:
@@ -160,8 +160,7 @@ def test_brittle_joints_carry_less_than_ductile_ones_and_tough_ones_as_much() ->
     scene = panel(wall__length=0.48, wall__height=0.36, joint__cohesion=2e3, joint__mortar=stiff)
 
     def lower(energy: float | None) -> float:
-        joint = replace(scene.joint, fracture_energy_1=energy, fracture_energy_2=energy)
-        outcome = dem_dynamic(replace(scene, joint=joint))
+        outcome = dem_dynamic(scene.with_joint(fracture_energy_1=energy, fracture_energy_2=energy))
         assert outcome.status == "collapse"
         assert outcome.lower is not None
         return outcome.lower

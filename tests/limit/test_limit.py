@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -196,7 +195,7 @@ def test_a_horizontal_point_load_slides_or_topples_a_block(height: float, fricti
     """Pushed at its top a block 1 × h resists P = W min(μ, 1 / (2 h))."""
     live = PointLoad((0.0, height), (1.0, 0.0))
     scene = pile([rectangle(0, 0, 1, height)], friction, live)
-    scene = replace(scene, block=BlockMaterial(weight / (9.81 * 0.1 * height)))
+    scene = scene.with_block(density=weight / (9.81 * 0.1 * height))
     assert multiplier(scene) == pytest.approx(weight * min(friction, 1 / (2 * height)), rel=1e-6)
 
 
@@ -245,7 +244,7 @@ def mapped(scene: Scene, change: Callable[[Array], Array], *, turn: Callable[[Ar
         block=scene.block,
         joint=scene.joint,
         load=Load((float(gravity[0]), float(gravity[1])), (Lateral((float(push[0]), float(push[1]))),)),
-        ground=outlines[-1],
+        grounds=outlines[-1:],
     )
 
 
@@ -418,7 +417,7 @@ def test_friction_alone_does_not_hold_a_wedge_but_a_fitting_slope_does() -> None
             block=BlockMaterial(1.0),
             joint=JointMaterial(friction),
             load=Load(),
-            ground=ground,
+            grounds=[ground],
         )
         return limit(scene).status
 
@@ -452,7 +451,7 @@ def test_a_wall_that_locks_by_friction_says_what_is_proved_of_it(
     )
     assert limit(scene).status == "unbounded"
     assert is_self_locking(scene)
-    assert not is_self_locking(replace(scene, joint=JointMaterial(0.0)))
+    assert not is_self_locking(scene.with_joint(friction=0.0))
     outcome = limit_nonassociated(scene)
     assert outcome.status == "unbounded", outcome.message
     assert "no collapse certified in 40 programs, which does not exclude one" in outcome.message

@@ -231,7 +231,7 @@ def built(polygons: list[Array], ground: Array | None = None) -> Scene:
         block=BlockMaterial(1800.0),
         joint=JointMaterial(friction=0.6),
         load=Load(),
-        ground=ground,
+        grounds=() if ground is None else [ground],
     )
 
 

@@ -3,7 +3,6 @@
 import statistics
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -71,7 +70,7 @@ def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: 
 
 def _turned(model: str, scene: Scene, speed: float = SPEED, **settings: Any) -> Answer:
     """λ of one block that has turned by `TURNED`: read off a parabola through its curve on either side."""
-    scene = replace(scene, joint=replace(scene.joint, elasticity=Stiffness(SOFT, SOFT)))
+    scene = scene.with_joint(elasticity=Stiffness(SOFT, SOFT))
     system, height = _system(model, scene), scene.lowest_block
     distance, steps, push = height * np.sin(1.5 * TURNED), None, MODELS[model].pushover
     if "drive" in settings:

@@ -1,7 +1,7 @@
 """Walls whose answer is known: exactly, as published to some digits, or as an interval of certified loads."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal, TypeAlias
 
@@ -9,7 +9,7 @@ from homog import Moduli, elastic_moduli
 from runningbond.compare.published import published_scene
 from runningbond.joints import joint_stiffness
 from runningbond.limit import limit_nonassociated
-from runningbond.scene import BlockMaterial, Scene, scene_from_dict
+from runningbond.scene import Scene, scene_from_dict
 from runningbond.studies.walls import inset_wall
 
 Known: TypeAlias = Literal["exact", "published", "certified", ""]  # what an answer is worth, where one is known
@@ -135,8 +135,8 @@ def growth_walls() -> dict[str, Wall]:
 @cache
 def stiffness_walls() -> dict[str, Wall]:
     """One wall whose blocks are ever stiffer."""
-    stiff = {power: BlockMaterial(1800.0, 10.0**power) for power in range(9, 14)}
-    return {f"stiff-1e{n}": Wall(replace(square_panel(12), block=stiff[n]), "physical second") for n in stiff}
+    stiff = {n: square_panel(12).with_block(density=1800.0, young=10.0**n, poisson=0.0) for n in range(9, 14)}
+    return {f"stiff-1e{n}": Wall(scene, "physical second") for n, scene in stiff.items()}
 
 
 @cache

@@ -30,8 +30,7 @@ PART, STEP, SHIFT = "W1, its blocks ever stiffer", "time step [µs]", f"largest 
 
 def wall(young: float) -> Scene:
     """W1 of blocks of a Young's modulus [Pa], its joints inset, so that its λ is one number."""
-    scene = inset_wall("wall-w1")
-    return replace(scene, block=replace(scene.block, young=young))
+    return inset_wall("wall-w1").with_block(young=young)
 
 
 def uniformly_scaled(result: ModalWall, system: BlockSystem, target: float) -> BlockSystem:

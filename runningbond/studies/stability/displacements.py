@@ -43,7 +43,7 @@ def scene_of(name: str) -> tuple[Scene, float]:
     assert isinstance(mortar, Mortar)
     assert scene.bond is not None
     softer = replace(mortar, young=SOFTER * mortar.young)
-    return replace(scene, joint=replace(scene.joint, elasticity=softer)), scene.bond.width
+    return scene.with_joint(elasticity=softer), scene.bond.width
 
 
 def curves(scene: Scene, width: float, speed: float) -> tuple[float, Array, Array, Array]:

@@ -4,8 +4,6 @@ Soft joints let blocks sink into each other, by ρ g H / k_n at the base, until 
 a collapse does. Stiff ones ask for short time steps, until the budget ends before the wall has had the time to fall.
 """
 
-from dataclasses import replace
-
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -31,8 +29,7 @@ CONDITION = "condition number"
 
 def wall(normal: float) -> Scene:
     """W1 with inset joints of a normal stiffness [Pa/m]."""
-    scene = inset_wall("wall-w1")
-    return replace(scene, joint=replace(scene.joint, elasticity=Stiffness(normal, RATIO * normal)))
+    return inset_wall("wall-w1").with_joint(elasticity=Stiffness(normal, RATIO * normal))
 
 
 def overlap(scene: Scene, normal: float) -> float:

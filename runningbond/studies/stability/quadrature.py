@@ -11,7 +11,6 @@ has its points at the ends of the joints, has it with that inset. Blocks are rig
 joints; `benchmarks/studies/fem_study.py` lets them deform, which at 1000 GPa leaves the brackets as they are.
 """
 
-from dataclasses import replace
 from functools import cache
 from itertools import product
 
@@ -60,7 +59,7 @@ def measure(name: str, rule: str, cells: int) -> Row:
         row |= {"measured": result, "theory": theory, "allowed": 1e-3}
     elif name == "W1":
         inset = inset_of(scene, RULES[rule], cells)
-        theory = _middle(dem_static(replace(scene, joint=replace(scene.joint, inset=inset))))
+        theory = _middle(dem_static(scene.with_joint(inset=inset)))
         row |= {"measured": result, "theory": theory, "allowed": USUAL}
     return row
 

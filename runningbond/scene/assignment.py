@@ -1,0 +1,177 @@
+"""Which material each block and each joint is of: the default one, unless an entry of ``[[assign]]`` says another."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from .arrays import Indices, Mask
+from .blocks import Blocks
+from .errors import SceneError
+from .ranges import one_of
+from .segments import Joints
+from .settlement import read_box
+from .table import Table
+
+ANY = "*"
+GROUND, BEAM = "ground", "beam"
+"""Names that ``between`` has for blocks that are of no material: the ground, and the beam."""
+
+ORIENTATIONS = ("bed", "head")
+"""Joints that lie flatter than 45°, and the others."""
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """An entry: a material, and the blocks or joints that are of it. What is None does not choose."""
+
+    key: str
+    material: str
+    of_joints: bool
+    box: tuple[tuple[float, float], tuple[float, float]] | None = None
+    layer: str | None = None
+    blocks: tuple[int, ...] | None = None
+    between: tuple[str, str] | None = None
+    orientation: str | None = None
+
+
+def read_assignments(content: Any, block_names: Sequence[str], joint_names: Sequence[str]) -> tuple[Assignment, ...]:
+    """The entries of ``[[assign]]``, in their order."""
+    if not isinstance(content, list):
+        raise SceneError("assign", "must be tables, [[assign]] with keys of their own", content)
+    return tuple(_read(Table(f"assign[{k}]", one), block_names, joint_names) for k, one in enumerate(content))
+
+
+def _read(table: Table, block_names: Sequence[str], joint_names: Sequence[str]) -> Assignment:
+    of_joints = "joint" in table
+    if of_joints == ("block" in table):
+        raise SceneError(table.name, "must have one of block and joint, the name of a material")
+    material = table.choice("joint", joint_names) if of_joints else table.choice("block", block_names)
+    ways = ("between", "box", "layer") if of_joints else ("box", "layer", "blocks")
+    given = [way for way in ways if way in table]
+    orientation = table.choice("orientation", ORIENTATIONS) if of_joints and "orientation" in table else None
+    if len(given) > 1 or not (given or orientation):
+        raise SceneError(table.name, f"must have one of {', '.join(ways)}{'; or orientation' if of_joints else ''}")
+    way = given[0] if given else ""
+    value = table.value(way) if given else None
+    table.finish()
+    key = table.key(way)
+    if way == "box":
+        value = read_box(key, value)
+    elif way == "layer" and not isinstance(value, str):
+        raise SceneError(key, "must be the name of a layer", value)
+    elif way == "blocks":
+        value = _numbers(key, value)
+    elif way == "between":
+        value = _pair(key, value, (ANY, *block_names, GROUND, BEAM))
+    return Assignment(table.name, material, of_joints, orientation=orientation, **{way: value} if way else {})
+
+
+def _numbers(key: str, value: Any) -> tuple[int, ...]:
+    if not isinstance(value, list) or not value or not all(type(one) is int and one >= 0 for one in value):
+        raise SceneError(key, "must be a list of block numbers, from 0", value)
+    return tuple(value)
+
+
+def _pair(key: str, value: Any, options: Sequence[str]) -> tuple[str, str]:
+    if not isinstance(value, list) or len(value) != 2:
+        raise SceneError(key, f'must be two names of block materials, "{ANY}" for any', value)
+    first, second = (one_of(f"{key}[{k}]", name, options) for k, name in enumerate(value))
+    return first, second
+
+
+def assign_blocks(
+    blocks: Blocks, names: Sequence[str], layers: Sequence[str], given: Mapping[int, str], entries: Sequence[Assignment]
+) -> Indices:
+    """Material of each block of a wall, ``(nb,)``: its place among names.
+
+    Parameters
+    ----------
+    names
+        Names of the materials, the default one first.
+    layers
+        Layer of each block; empty where there are none.
+    given
+        Names of materials that single blocks have from their description, as lintels do.
+    """
+    material = np.zeros(len(blocks), dtype=np.int64)
+    for block, name in given.items():
+        material[block] = names.index(name)
+    for entry in entries:
+        if not entry.of_joints:
+            material[_chosen_blocks(entry, blocks, layers)] = names.index(entry.material)
+    return material
+
+
+def _chosen_blocks(entry: Assignment, blocks: Blocks, layers: Sequence[str]) -> Mask:
+    chosen: Mask = np.zeros(len(blocks), dtype=np.bool_)
+    if entry.blocks is not None:
+        if max(entry.blocks) >= len(blocks):
+            raise SceneError(
+                f"{entry.key}.blocks", f"must be below {len(blocks)}, the number of blocks", max(entry.blocks)
+            )
+        chosen[list(entry.blocks)] = True
+    elif entry.layer is not None:
+        chosen = _on_layer(entry, len(blocks), layers)
+    elif entry.box is not None:
+        chosen = np.all((blocks.centroid >= entry.box[0]) & (blocks.centroid <= entry.box[1]), axis=1)
+    return _some(entry, chosen, "block")
+
+
+def assign_joints(
+    joints: Joints,
+    names: Sequence[str],
+    material_names: Sequence[str],
+    layers: Sequence[str],
+    entries: Sequence[Assignment],
+    beam: tuple[int, str] | None = None,
+) -> Indices:
+    """Material of each joint, ``(nj,)``: its place among names; that of potential cracks is not touched.
+
+    Parameters
+    ----------
+    material_names
+        What ``between`` calls each block.
+    beam
+        Number of the beam, and the name of the material of its joints.
+    """
+    material = np.zeros(len(joints), dtype=np.int64)
+    if beam:
+        material[(joints.block == beam[0]).any(axis=1)] = names.index(beam[1])
+    for entry in entries:
+        if entry.of_joints:
+            material[_chosen_joints(entry, joints, material_names, layers)] = names.index(entry.material)
+    return np.where(joints.inner, names.index("inner_joint") if joints.inner.any() else 0, material)
+
+
+def _chosen_joints(entry: Assignment, joints: Joints, material_names: Sequence[str], layers: Sequence[str]) -> Mask:
+    chosen: Mask = ~joints.inner
+    if entry.box is not None:
+        middle = joints.ends.mean(axis=1)
+        chosen &= np.all((middle >= entry.box[0]) & (middle <= entry.box[1]), axis=1)
+    elif entry.layer is not None:
+        chosen &= _on_layer(entry, len(material_names), layers)[joints.block].any(axis=1)
+    elif entry.between is not None:
+        of = np.array(material_names, dtype=object)[joints.block]
+        first, second = (np.ones(of.shape, dtype=bool) if name == ANY else of == name for name in entry.between)
+        chosen &= (first[:, 0] & second[:, 1]) | (first[:, 1] & second[:, 0])
+    if entry.orientation is not None:
+        run = np.abs(joints.ends[:, 1] - joints.ends[:, 0])
+        chosen &= (run[:, 0] > run[:, 1]) == (entry.orientation == "bed")
+    return _some(entry, chosen, "joint")
+
+
+def _on_layer(entry: Assignment, n: int, layers: Sequence[str]) -> Mask:
+    if not layers:
+        raise SceneError(f"{entry.key}.layer", "needs a drawing, whose blocks have layers", entry.layer)
+    if entry.layer is not None and entry.layer not in layers:
+        one_of(f"{entry.key}.layer", entry.layer, sorted(set(layers)))
+    on = np.array([layer == entry.layer for layer in layers], dtype=np.bool_)
+    return np.append(on, np.zeros(n - len(on), dtype=np.bool_))
+
+
+def _some(entry: Assignment, chosen: Mask, what: str) -> Mask:
+    if not chosen.any():
+        raise SceneError(entry.key, f"chooses no {what}; boxes hold centroids of blocks and middles of joints")
+    return chosen

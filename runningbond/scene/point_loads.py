@@ -1,0 +1,201 @@
+"""Loads at points of blocks: forces, forces along a line, moments."""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+import shapely
+
+from .actions import Action, nonzero_vector, unit_vector
+from .arrays import Array, Indices
+from .errors import SceneError, keys_of
+from .forces import Arrow, Forces
+from .ranges import Range, vector
+from .table import Table
+
+if TYPE_CHECKING:
+    from .wall import Scene
+
+
+@dataclass(frozen=True)
+class PointLoad(Action):
+    """A force [N] at a point [m], shared equally by the movable blocks that touch it."""
+
+    at: tuple[float, float]
+    force: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "at", vector("load.live.at", self.at))
+        object.__setattr__(self, "force", nonzero_vector("load.live.force", self.force))
+
+    def blocks(self, scene: "Scene") -> Indices:
+        """Movable blocks that share the load, ``(n,)``."""
+        touching = scene.blocks.containing(np.array(self.at))
+        return touching[~scene.fixed[touching]]
+
+    def forces(self, scene: "Scene") -> Forces:
+        """An equal share of the force on each block."""
+        block = self.blocks(scene)
+        return Forces.on(scene, block=block, at=self.at, force=np.array(self.force) / max(1, len(block)))
+
+    def check(self, scene: "Scene", key: str) -> None:
+        """Refuse a point that nothing is at."""
+        if len(self.blocks(scene)) == 0:
+            (x0, y0), (x1, y1) = scene.blocks.extent(scene.wall)
+            spans = f"x {x0:.4g} … {x1:.4g} m, y {y0:.4g} … {y1:.4g} m"
+            raise SceneError(f"{key}.at", f"touches no block that can move; the wall spans {spans}", list(self.at))
+
+
+@dataclass(frozen=True)
+class LineLoad(Action):
+    """A force per length [N/m] along a straight line [m], taken up by the movable blocks that it runs along.
+
+    Between two blocks it is on the one that it presses on: floors laid into a wall load the course below.
+    """
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    force: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        for name, key in (("start", "from"), ("end", "to")):
+            object.__setattr__(self, name, vector(f"load.live.{key}", getattr(self, name)))
+        object.__setattr__(self, "force", nonzero_vector("load.live.force", self.force))
+        if self.start == self.end:
+            raise SceneError("load.live.to", "must lie apart from the line's other end", list(self.end))
+
+    @classmethod
+    def read(cls, table: Table) -> "LineLoad":
+        """The load of a table with two ends and a force per length."""
+        return cls(table.vector("from"), table.vector("to"), table.vector("force"))
+
+    def parts(self, scene: "Scene") -> tuple[Indices, Array]:
+        """Movable blocks that it is on ``(n,)``, and the parts of the line on each, as shares of it ``(n, 2)``."""
+        start, run = np.array(self.start), np.subtract(self.end, self.start)
+        length, blocks = float(np.hypot(*run)), scene.blocks
+        line = shapely.LineString([self.start, self.end])
+        low, high = blocks.boxes
+        reach = blocks.tolerance
+        near = (high >= np.minimum(self.start, self.end) - reach) & (low <= np.maximum(self.start, self.end) + reach)
+        owners: list[int] = []
+        shares: list[tuple[float, float]] = []
+        for block in np.flatnonzero(near.all(axis=1) & ~scene.fixed):
+            common = shapely.intersection(shapely.buffer(shapely.Polygon(blocks.polygon(int(block))), reach), line)
+            for piece in shapely.get_parts(common):
+                along = np.sort((shapely.get_coordinates(piece) - start) @ run) / length**2
+                if along[-1] - along[0] > 3 * reach / length:
+                    owners.append(int(block))
+                    shares.append((float(along[0]), float(along[-1])))
+        return self._each_part_once(scene, np.array(owners, dtype=np.int64), np.reshape(shares, (-1, 2)))
+
+    def _each_part_once(self, scene: "Scene", owner: Indices, share: Array) -> tuple[Indices, Array]:
+        """Cut the line where blocks begin and end, and give each of its parts to one of the blocks there."""
+        length = float(np.hypot(*np.subtract(self.end, self.start)))
+        close = 3 * scene.blocks.tolerance / length
+        cuts = np.unique(np.concatenate([[0.0, 1.0], share.ravel()]))
+        cuts = cuts[np.append(True, np.diff(cuts) > close)]
+        cuts[-1] = 1.0
+        given: list[tuple[int, float, float]] = []
+        for low, high in pairwise(cuts):
+            here = owner[(share[:, 0] < (low + high) / 2) & (share[:, 1] > (low + high) / 2)]
+            given.append((self._pressed(scene, here, low, high), float(low), float(high)))
+        return np.array([part[0] for part in given]), np.array([part[1:] for part in given])
+
+    def _pressed(self, scene: "Scene", blocks: Indices, low: float, high: float) -> int:
+        """The one of some blocks beside a part of the line that the force presses on."""
+        if len(blocks) == 1:
+            return int(blocks[0])
+        at = np.array(self.start) + (low + high) / 2 * np.subtract(self.end, self.start)
+        middle = ", ".join(f"{x:.4g}" for x in at)
+        if len(blocks) == 0:
+            what = f"runs at ({middle}) along no block that can move"
+            raise SceneError("load.live.from", what, list(self.start))
+        inwards = (scene.blocks.centroid[blocks] - at) @ np.array(self.force)
+        pressed = blocks[inwards > 1e-6 * np.abs(inwards).max()]
+        if len(pressed) != 1:
+            what = f"is at ({middle}) on more than one block, and presses on neither alone; move the line into one"
+            raise SceneError("load.live.from", what, list(self.start))
+        return int(pressed[0])
+
+    def forces(self, scene: "Scene") -> Forces:
+        """Two forces on each part, at its Gauss points: of the same resultant and the same first two moments."""
+        block, share = self.parts(scene)
+        run = np.subtract(self.end, self.start)
+        width = np.diff(share, axis=1)
+        at = (share.mean(axis=1)[:, None] + width * np.array([-0.5, 0.5]) / math.sqrt(3)).ravel()
+        size = np.repeat(width.ravel() * float(np.hypot(*run)) / 2, 2)
+        return Forces.on(
+            scene,
+            block=np.repeat(block, 2),
+            at=np.array(self.start) + at[:, None] * run,
+            force=size[:, None] * np.array(self.force),
+        )
+
+    def check(self, scene: "Scene", key: str) -> None:
+        """Refuse a line of which a part is on no block, or on two that share it."""
+        with keys_of(key, "load.live"):
+            self.parts(scene)
+
+    def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
+        """A row of arrows along the line."""
+        block, share = self.parts(scene)
+        places = np.linspace(0.0, 1.0, 9)[1::2]
+        of = block[np.minimum(np.searchsorted(share[:, 1], places), len(block) - 1)]
+        tips = np.array(self.start) + places[:, None] * np.subtract(self.end, self.start)
+        direction = unit_vector(np.array(self.force))
+        return tuple(Arrow(direction, tip, np.array([one])) for tip, one in zip(tips, of, strict=True))
+
+
+@dataclass(frozen=True)
+class Moment(Action):
+    """A moment [N m], counter-clockwise, on the block that holds a point [m]."""
+
+    at: tuple[float, float]
+    moment: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "at", vector("load.live.at", self.at))
+        object.__setattr__(self, "moment", Range().take("load.live.moment", self.moment))
+        if not self.moment:
+            raise SceneError("load.live.moment", "must not be zero", self.moment)
+
+    @classmethod
+    def read(cls, table: Table) -> "Moment":
+        """The load of a table with a point and a moment."""
+        return cls(table.vector("at"), table.number("moment", Range()))
+
+    def forces(self, scene: "Scene") -> Forces:
+        """The moment on its block."""
+        moment = np.zeros(len(scene.blocks))
+        moment[self._blocks(scene)] = self.moment
+        return Forces.on(scene, moment=moment)
+
+    def check(self, scene: "Scene", key: str) -> None:
+        """Refuse a point that is in no movable block, or on the joint of two."""
+        if len(self._blocks(scene)) != 1:
+            what = "must lie in one block that can move, and not on a joint"
+            raise SceneError(f"{key}.at", what, list(self.at))
+
+    def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
+        """One arrow, on the side of the block that the moment moves down."""
+        block = self._blocks(scene)
+        low, high = scene.blocks.extent(int(block[0]))
+        x = low[0] if self.moment > 0 else high[0]
+        return (Arrow(np.array([0.0, -1.0]), np.array([x, high[1]]), block),)
+
+    def _blocks(self, scene: "Scene") -> Indices:
+        touching = scene.blocks.containing(np.array(self.at))
+        return touching[~scene.fixed[touching]]
+
+
+@dataclass(frozen=True, eq=False)
+class GivenForces(Action):
+    """Forces as they are: what a record keeps of a load of a user's own."""
+
+    given: Forces
+
+    def forces(self, scene: "Scene") -> Forces:
+        """These forces."""
+        return self.given

@@ -1,0 +1,133 @@
+"""Settlement: a part of the ground that moves, and takes the wall with it."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+from shapely.geometry.polygon import orient
+
+from .actions import Action
+from .arrays import Array, Mask
+from .errors import SceneError
+from .forces import Arrow, Forces
+from .ranges import Range, vector
+from .table import Table
+
+if TYPE_CHECKING:
+    from .wall import Scene
+
+LARGEST_ANGLE = 10.0
+"""Rotation of a support [degrees] up to which it counts as small."""
+
+
+@dataclass(frozen=True)
+class Settlement(Action):
+    """Ground, or fixed blocks, inside a box that move; λ of limit analysis is the share of the reaction that is left.
+
+    Parameters
+    ----------
+    box
+        Lower left and upper right corner [m]. Ground is cut at its left and right side; what is inside moves.
+    by
+        Displacement [m] at λ = 1.
+    rotation_angle
+        Rotation [degrees] at λ = 1, counter-clockwise.
+    about
+        Point about which it turns [m]; None is the middle of the box.
+    """
+
+    box: tuple[tuple[float, float], tuple[float, float]]
+    by: tuple[float, float] = (0.0, 0.0)
+    rotation_angle: float = 0.0
+    about: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "box", read_box("load.live.box", self.box))
+        object.__setattr__(self, "by", vector("load.live.by", self.by))
+        angle = Range(least=-LARGEST_ANGLE, most=LARGEST_ANGLE).take("load.live.rotation_angle", self.rotation_angle)
+        object.__setattr__(self, "rotation_angle", angle)
+        if self.about is not None:
+            object.__setattr__(self, "about", vector("load.live.about", self.about))
+        if not any(self.by) and not self.rotation_angle:
+            raise SceneError("load.live.by", "must move the support, or rotation_angle must turn it", list(self.by))
+
+    @classmethod
+    def read(cls, table: Table) -> "Settlement":
+        """The load of a table with a box, and a displacement or a rotation."""
+        box = table.required("box", "two corners [[x0, y0], [x1, y1]]")
+        by = table.vector("by") if "by" in table or "rotation_angle" not in table else (0.0, 0.0)
+        angle = table.optional_number("rotation_angle", Range())
+        about = table.vector("about") if "about" in table else None
+        return cls(box, by, angle or 0.0, about)
+
+    def forces(self, scene: "Scene") -> Forces:
+        """None: it moves the ground."""
+        return Forces.on(scene)
+
+    def moving(self, scene: "Scene") -> Mask:
+        """Fixed blocks that move, ``(nb,)``."""
+        low, high = np.array(self.box)
+        centre = scene.blocks.centroid
+        inside = (centre[:, 0] > low[0]) & (centre[:, 0] < high[0]) & (scene.blocks.boxes[0][:, 1] < high[1])
+        moving: Mask = scene.fixed & inside
+        return moving
+
+    def motion(self, scene: "Scene") -> Array:
+        """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``; zero of what stays."""
+        about = np.mean(self.box, axis=0) if self.about is None else np.array(self.about)
+        turn = math.radians(self.rotation_angle)
+        arm = scene.blocks.centroid - about
+        motion = np.column_stack(
+            [self.by[0] - turn * arm[:, 1], self.by[1] + turn * arm[:, 0], np.full(len(arm), turn)]
+        )
+        return np.where(self.moving(scene)[:, None], motion, 0.0)
+
+    def check(self, scene: "Scene", key: str) -> None:
+        """Refuse a box in which nothing is held, or everything, and pinned corners."""
+        if len(scene.pins) and not scene.fixed.any():
+            raise SceneError(key, 'needs support.kind "base" or "fixed-first-course": a ground that moves')
+        moving = self.moving(scene)
+        borne = (moving[scene.joints.block] & ~scene.fixed[scene.joints.block[:, ::-1]]).any()
+        if not borne:
+            raise SceneError(f"{key}.box", "holds no ground that bears a block", [list(corner) for corner in self.box])
+
+    def control(self, scene: "Scene") -> Any:
+        """The moving ground: its first block, at its highest middle, along its displacement there."""
+        block = np.flatnonzero(self.moving(scene))[:1]
+        low, high = scene.blocks.extent(int(block[0]))
+        at = np.array([(low[0] + high[0]) / 2, high[1]])
+        dx, dy, turn = self.motion(scene)[block[0]]
+        x, y = at - scene.blocks.centroid[block[0]]
+        move = np.array([dx - turn * y, dy + turn * x])
+        return block, at, move / (np.hypot(*move) or 1.0)
+
+    def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
+        """An arrow at the moving ground."""
+        block, at, direction = self.control(scene)
+        return (Arrow(direction, at, block),)
+
+
+def cut_ground(grounds: Sequence[Array], settlements: Sequence[Settlement]) -> list[Array]:
+    """Cut grounds ``(n, 2)`` [m] at the left and right sides of the boxes of settlements, where these reach them."""
+    pieces = [shapely.Polygon(ground) for ground in grounds]
+    for settlement in settlements:
+        (x0, _), (x1, y1) = settlement.box
+        deep = min((piece.bounds[1] for piece in pieces), default=0.0) - 1.0
+        inside = shapely.box(x0, deep, x1, max(y1, deep))
+        parts = [part for piece in pieces for part in (piece.intersection(inside), piece.difference(inside))]
+        pieces = [one for part in parts for one in shapely.get_parts(part) if one.area > 0]
+    return [np.array(orient(piece).exterior.coords)[:-1] for piece in pieces]
+
+
+def read_box(key: str, value: Any) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Two corners of a box, lower left before upper right."""
+    corners = list(value) if isinstance(value, (list, tuple, np.ndarray)) else []
+    if len(corners) != 2:
+        raise SceneError(key, "must be two corners [[x0, y0], [x1, y1]]", value)
+    low, high = (vector(f"{key}[{k}]", corner) for k, corner in enumerate(corners))
+    if not (low[0] < high[0] and low[1] < high[1]):
+        raise SceneError(key, "must have its lower left corner first, then the upper right one", value)
+    return low, high
