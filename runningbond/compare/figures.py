@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -23,7 +22,6 @@ TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # what to call b
 SLENDERNESS = (("0.5", 0.5), ("1", 1.0), ("2", 2.0))
 COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
 PRINTED = {"FEM/DEM": "P", "DEM": "X", "HOMO": "d"}
-
 MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
 
 
@@ -99,7 +97,7 @@ def table_2(comparison: Comparison) -> Figure:
     if hollow:
         label = "hollow: a bound only, or none (at 0)"
         handles.append(Line2D([], [], color="0.3", marker="o", mfc="white", ms=5, mew=1, ls="none", label=label))
-    legend_below(figure, handles, columns=5)
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     return figure
 
 
@@ -144,10 +142,9 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
     if source == FERRIS:
         walls = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
     handles = [Line2D([], [], color=colour, label=wall) for wall, colour in zip(walls, COLOURS, strict=False)]
-    for model in (*estimates, *models):
-        width = 0.8 if model.kind == "estimate" else 1.4
-        handles.append(Line2D([], [], color="0.3", ls=model.line, lw=width, label=model.name))
-    legend_below(figure, handles)
+    widths = [(model, 0.8 if model.kind == "estimate" else 1.4) for model in (*estimates, *models)]
+    handles += [Line2D([], [], color="0.3", ls=model.line, lw=width, label=model.name) for model, width in widths]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return figure
 
 
@@ -169,11 +166,6 @@ def panel_figure(
         bare(axes)
         columns.append((axes, panels[4 * column : 4 * column + 4]))
     return figure, columns
-
-
-def legend_below(figure: Figure, handles: Sequence[Artist], columns: int = 4) -> None:
-    """A legend under all axes."""
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
 
 
 def bare(axes: Axes) -> None:
