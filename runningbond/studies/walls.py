@@ -113,14 +113,14 @@ class KnownWall:
         return run, state
 
 
-SLIDING, TOPPLING, W1, W2 = "block that slides", "block that topples", "rounded W1", "rounded W2"
+SLIDING, TOPPLING, W1, W2 = KNOWN = ("block that slides", "block that topples", "rounded W1", "rounded W2")
 """Names of walls whose load is known: a block twice as long as high with λ = tan φ, one twice as high as long with
 λ = b/h, and walls with rounded corners, whose one collapse load limit analysis certifies."""
 
 
 @cache
 def known_wall(name: str) -> KnownWall:
-    """A wall of one of these names."""
+    """A wall of `KNOWN`."""
     exact = {SLIDING: SLIDES, TOPPLING: TOPPLES}.get(name)
     if exact is None:
         scene = inset_wall(f"wall-{name.split()[-1].lower()}")
