@@ -1,0 +1,100 @@
+"""Labels of a drawing, each put where it hides nothing: neither another label nor an arrow."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from runningbond.scene import Array
+
+from .style import DARK, TYPE
+
+GAP, PAD = 2.5, 0.8
+"""Distance of a label from what it is about, and air around it [pt]."""
+
+AWAY = 9
+"""Steps of half a line that a label may move farther away."""
+
+
+@dataclass(frozen=True, eq=False)
+class Spot:
+    """A place for a label: a point ``(2,)`` [m], and on which side of it, ``(±1 or 0, ±1 or 0)``."""
+
+    at: Array
+    side: tuple[float, float]
+    upright: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Label:
+    """A text and the places where it may stand, the best first."""
+
+    text: str
+    spots: Sequence[Spot]
+    colour: str = DARK
+    size: float = TYPE
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedLabel:
+    """A label in its place: the middle of its box ``(2,)``, and half that box's sides ``(2,)`` [m]."""
+
+    label: Label
+    middle: Array
+    half: Array
+    upright: bool
+
+    @property
+    def box(self) -> Array:
+        """Lower left and upper right corner, ``(2, 2)`` [m]."""
+        return np.array([self.middle - self.half, self.middle + self.half])
+
+
+@cache
+def text_size(text: str, size: float) -> tuple[float, float]:
+    """Width and height of a line of text [pt]."""
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextToPath
+
+    width, height, _ = TextToPath().get_text_width_height_descent(text, FontProperties(size=size), ismath=False)
+    return float(width), max(float(height), 0.95 * size)
+
+
+def place_labels(labels: Sequence[Label], obstacles: Array, point: float) -> list[PlacedLabel]:
+    """Put labels one after another where they cover least: no label, and as few obstacles as can be.
+
+    Parameters
+    ----------
+    obstacles : (n, 2, 2) float
+        Boxes of what labels had better not hide [m].
+    point
+        Metres that a point of the type takes in the drawing.
+    """
+    placed: list[PlacedLabel] = []
+    for label in labels:
+        candidates = list(_candidates(label, point))
+        taken = np.array([one.box for one in placed]).reshape(-1, 2, 2)
+        costs = [rank + 1e3 * _covered(one.box, taken) + 30 * _covered(one.box, obstacles) for rank, one in candidates]
+        placed.append(candidates[int(np.argmin(costs))][1])
+    return placed
+
+
+def _candidates(label: Label, point: float) -> list[tuple[float, PlacedLabel]]:
+    """Places for a label, and how much worse each is than the first."""
+    width, height = text_size(label.text, label.size)
+    found = []
+    for rank, spot in enumerate(label.spots):
+        size = np.array([height, width] if spot.upright else [width, height]) / 2 + PAD
+        side = np.array(spot.side)
+        for step in range(AWAY):
+            away = GAP + step * label.size / 2
+            middle = spot.at + point * side * (size + away / max(1.0, float(np.hypot(*side))))
+            found.append((0.5 * rank + 1.5 * step, PlacedLabel(label, middle, point * size, spot.upright)))
+    return found
+
+
+def _covered(box: Array, others: Array) -> float:
+    """Share of a box ``(2, 2)`` that others ``(n, 2, 2)`` cover."""
+    sides = np.minimum(box[1], others[:, 1]) - np.maximum(box[0], others[:, 0])
+    return float(np.prod(np.maximum(sides, 0.0), axis=1).sum() / np.prod(box[1] - box[0]))

@@ -1,0 +1,275 @@
+"""Arrows of loads, with their sizes: live ones dark and times λ, dead ones blue."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from runningbond.scene import (
+    Action,
+    Array,
+    Beam,
+    BeamLoad,
+    Body,
+    Indices,
+    Lateral,
+    LineLoad,
+    Moment,
+    PointLoad,
+    Settlement,
+    Tilt,
+)
+from runningbond.scene.actions import unit_vector
+
+from .captions import is_force
+from .deformed_shape import DeformedShape
+from .labels import Spot
+from .quantities import millimetres, minus, readable, times_lambda, vector_text
+from .sketch import Sketch
+from .style import DARK, DEAD, MOTION
+
+EARTH = (0.0, -9.81)
+
+TILT, STEEPEST = 2.2, math.radians(12)
+"""How deep tilted ground is drawn to fall at most, in units of length, and its steepest slope."""
+
+
+class LoadDrawing:
+    """Draws the loads of a wall into a sketch, one after another, each clear of those before it."""
+
+    def __init__(self, sketch: Sketch, shape: DeformedShape) -> None:
+        self.sketch, self.shape, self.scene, self.a = sketch, shape, shape.scene, sketch.a
+        self.low, self.high = self.scene.blocks.extent(self.scene.wall)
+        self.rows: list[Array] = []
+
+    def draw(self) -> None:
+        """Draw all loads: along lines first, then at points, and on the whole wall last."""
+        load = self.scene.load
+        loads = [(action, False) for action in load.dead] + [(action, True) for action in load.live]
+        order: tuple[Any, ...] = (LineLoad, (PointLoad, BeamLoad), Moment)
+        ranks = [next((k for k, kinds in enumerate(order) if isinstance(one, kinds)), 3) for one, _ in loads]
+        for k in np.argsort(ranks, kind="stable"):
+            self._draw(*loads[k])
+        if load.gravity != EARTH and any(load.gravity):
+            self._gravity(load.gravity)
+
+    def _draw(self, action: Action, live: bool) -> None:
+        colour, name = (DARK, "live load") if live else (DEAD, "dead load")
+        match action:
+            case LineLoad():
+                self._line(action, live, colour, name)
+            case PointLoad():
+                self._point(np.array(action.at), action.blocks(self.scene), action.force, live, colour, name)
+            case BeamLoad():
+                self._beam(action, live)
+            case Moment():
+                at = np.array(action.at)
+                self._turn(self._moved(at, self.scene.blocks.containing(at)[:1]), action.moment, live, colour, name)
+            case Tilt():
+                self._tilt(action.direction)
+            case Lateral():
+                self._push(np.array(action.direction), times_lambda("weight", live=live), colour, name)
+            case Body():
+                size = readable(math.hypot(*action.acceleration), "m/s²")
+                self._push(unit_vector(np.array(action.acceleration)), times_lambda(size, live=live), colour, name)
+            case Settlement():
+                pass  # drawn with the support that it moves
+            case _:
+                self._own(action, live, colour, name)
+
+    def _own(self, action: Action, live: bool, colour: str, name: str) -> None:
+        """A load of a user's own, by the arrows that it gives and the forces there."""
+        forces = action.forces(self.scene)
+        for arrow in action.arrows(self.scene):
+            if arrow.at is None:
+                self._push(arrow.direction, times_lambda("forces on mass", live=live), colour, name)
+                continue
+            force = forces.force[(forces.at == arrow.at).all(axis=1)].sum(axis=0)
+            self._point(arrow.at, arrow.block, (float(force[0]), float(force[1])), live, colour, name)
+        for block in np.flatnonzero(forces.moment):
+            self._turn(self.scene.blocks.centroid[block], float(forces.moment[block]), live, colour, name)
+
+    def _moved(self, at: Array, block: Indices) -> Array:
+        return np.asarray(at + self.shape.drawn_displacement(block, at))
+
+    def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
+        size = "P" if live and is_force(self.scene) else times_lambda(vector_text(force, "N"), live=live)
+        self._force(self._moved(at, block), unit_vector(np.array(force)), size, colour, name)
+
+    def _force(self, tip: Array, direction: Array, text: str, colour: str, name: str, *, both: bool = False) -> None:
+        """An arrow to a point, or from it where it would else run through the wall, and its size beside it."""
+        a = self.a
+        if self._inside(tip - 0.5 * a * direction) and not self._inside(tip + 0.5 * a * direction):
+            tip = tip + 2.2 * a * direction
+        tail = tip - 2.2 * a * direction
+        while self._meets_row(tail, tip) or self._along_another(tail, tip):
+            tail = tail - 0.6 * a * direction
+            tip = tip - 0.6 * a * direction if self._along_another(tail, tip) else tip
+        self.sketch.arrow(name, [tail, tip], colour, both=both)
+        across = np.array([-direction[1], direction[0]])
+        beside = tail + 0.7 * a * direction
+        sides = [-across, across] if across[0] < -0.1 else [across, -across]
+        spots = [Spot(beside, _side(one)) for one in sides] + [Spot(tail, _side(-direction))]
+        self.sketch.label(text, spots if abs(direction[1]) > 0.5 else [*spots[::-1]][:1] + spots[:2], colour)
+
+    def _inside(self, at: Array) -> bool:
+        found = self.scene.blocks.containing(at)
+        return bool(self.scene.wall[found].any())
+
+    def _meets_row(self, tail: Array, tip: Array) -> bool:
+        """Whether an arrow starts within a row of arrows."""
+        return any(((box[0] <= tail) & (box[1] >= tail)).all() for box in self.rows)
+
+    def _along_another(self, tail: Array, tip: Array) -> bool:
+        """Whether an arrow would lie over another one that stands alone."""
+        for mark in self.sketch.marks:
+            if mark.kind == "arrow" and len(mark.points) == 2 and mark.name.endswith("force"):
+                other = mark.points
+                if np.hypot(*(other[1] - tip)) < 0.3 * self.a and (other[1] - other[0]) @ (tip - tail) > 0:
+                    return True
+        return False
+
+    def _line(self, load: LineLoad, live: bool, colour: str, name: str) -> None:
+        """A row of arrows under a bar, moved outwards until no other row is in its way."""
+        a, direction = self.a, unit_vector(np.array(load.force))
+        block, share = load.parts(self.scene)
+        run = np.subtract(load.end, load.start)
+        along = run / np.hypot(*run)
+        n = int(np.clip(np.hypot(*run) / (1.5 * a) + 1, 2, 60))
+        places = np.linspace(0.0, 1.0, n)
+        of = block[np.minimum(np.searchsorted(share[:, 1], places), len(block) - 1)]
+        tips = np.array(
+            [
+                self._moved(np.array(load.start) + place * run, np.array([one]))
+                for place, one in zip(places, of, strict=True)
+            ]
+        )
+        text = times_lambda(vector_text(load.force, "N/m"), live=live)
+        if abs(along @ direction) > 0.97:
+            tails = tips - 0.9 * a * direction
+        else:
+            tails = tips - 1.5 * a * direction
+        both = np.concatenate([tails, tips])
+        while any(_meet(both, box) for box in self.rows):
+            both = both - 0.5 * a * direction
+        tails, tips = both[:n], both[n:]
+        self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
+        for tail, tip in zip(tails, tips, strict=True):
+            self.sketch.arrow(name, [tail, tip], colour)
+        self.sketch.line(name, [tails[0], tails[-1]], color=colour, lw=1.2, zorder=6)
+        ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
+        middle = tails.mean(axis=0)
+        spots = [Spot(middle, _side(-direction)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
+        self.sketch.label(text, spots, colour)
+
+    def _beam(self, load: BeamLoad, live: bool) -> None:
+        """A force on the beam, up to its edge; a displacement that it is given in the colour of motions."""
+        beam = self.scene.beam
+        assert beam is not None
+        forces = load.forces(self.scene)
+        at, number = forces.at[0], forces.block
+        direction = unit_vector(np.array(load.force))
+        low, high = self.scene.blocks.extent(int(number[0]))
+        half, middle = (high - low) / 2, (low + high) / 2
+        reach = min(half[k] / abs(direction[k]) for k in (0, 1) if abs(direction[k]) > 1e-9)
+        tip = middle - reach * direction
+        if load.height is not None and abs(direction[0]) > 0.5:
+            tip[1] = at[1]
+        edge = self._moved(np.clip(tip, low, high), number)
+        tip = self._moved(tip, number)
+        text, colour, name, both = self._drive_text(beam, load, live)
+        if not low[1] <= at[1] <= high[1]:
+            text += f", {minus(at[1] - self.low[1])} m above the base"
+            aside = np.array([-math.copysign(1.2 * self.a, direction[0]), 0.0])
+            tip = np.array([edge[0], tip[1]]) + aside
+            shoulder = np.array([edge[0], middle[1]])
+            self.sketch.line("beam", [shoulder, shoulder + aside, tip], lw=1.8)
+        self._force(tip, direction, text, colour, name, both=both)
+
+    def _drive_text(self, beam: Beam, load: BeamLoad, live: bool) -> tuple[str, str, str, bool]:
+        path = beam.drive.path if beam.drive and live else ()
+        if not path:
+            unit = live and is_force(self.scene)
+            text = "P" if unit else times_lambda(vector_text(load.force, "N"), live=live)
+            return text, DARK if live else DEAD, "live load" if live else "dead load", False
+        if len(path) == 1:
+            return f"u = {millimetres(path[0])}", MOTION, "motion", False
+        low, high = min(path), max(path)
+        span = f"±{millimetres(high)}" if low == -high else f"{minus(1e3 * low)} … {millimetres(high)}"
+        return f"u = {span}, {len(path)} moves", MOTION, "motion", True
+
+    def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str) -> None:
+        a = self.a
+        self.sketch.turn(name, at, 0.9 * a, colour, clockwise=moment < 0)
+        text = times_lambda(readable(abs(moment), "N m"), live=live)
+        sides = [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
+        self.sketch.label(text, [Spot(at + 0.9 * a * np.array(side), side) for side in sides], colour)
+
+    def _push(self, direction: Array, text: str, colour: str, name: str) -> None:
+        """A row of arrows along the side on which all blocks are pushed, and what they are."""
+        a, low, high = self.a, self.low, self.high
+        across = np.array([-direction[1], direction[0]])
+        reach, width = float((high - low) @ np.abs(direction)) / 2, float((high - low) @ np.abs(across)) / 2
+        places = width * np.linspace(-0.8, 0.8, int(np.clip(width / a, 2, 5)))
+        middle = (low + high) / 2 - (reach + 2.2 * a) * direction + places[:, None] * across
+        ends = np.concatenate([middle, middle + 1.5 * a * direction])
+        while any(_meet(ends, box) for box in self.rows) or self._arrow_in(ends):
+            ends = ends - 0.6 * a * direction
+        self.rows.append(np.array([ends.min(axis=0), ends.max(axis=0)]))
+        tails, tips = ends[: len(places)], ends[len(places) :]
+        for tail, tip in zip(tails, tips, strict=True):
+            self.sketch.arrow(name, [tail, tip], colour)
+        flat = abs(direction[0]) > abs(direction[1])
+        highest = max(tails, key=lambda tail: float(tail[1])) + 0.3 * a * direction
+        beside = Spot(tails.mean(axis=0), _side(-direction), upright=flat)
+        above = Spot(highest, (float(-np.sign(direction[0])) if flat else 0.0, 1.0))
+        length = 4 * len(text) * self.sketch.point
+        self.sketch.label(text, [beside, above] if not flat or 1.6 * width > length else [above], colour)
+
+    def _arrow_in(self, ends: Array) -> bool:
+        """Whether an arrow at a point is in the way of a row."""
+        return self.sketch.overlaps(np.array([ends.min(axis=0), ends.max(axis=0)]))
+
+    def _tilt(self, direction: tuple[float, float]) -> None:
+        """A ground line that falls to the side of the direction, below the level one, and the angle between them."""
+        a, sense = self.a, math.copysign(1.0, direction[0])
+        base = self.low[1] - 0.9 * a
+        start, end = (self.low[0] - a, self.high[0] + a)[:: int(sense)]
+        fall = min(TILT * a, abs(end - start) * math.tan(STEEPEST))
+        self.sketch.line("live load", [(start, base), (end, base)], lw=0.6, ls=(0, (4, 2)))
+        self.sketch.line("live load", [(start, base), (end, base - fall)], lw=1.2)
+        near = end - sense * 0.12 * abs(end - start)
+        self.sketch.arrow("live load", [(near, base), (near, base - 0.88 * fall)], DARK)
+        place = np.array([near - sense * 0.4 * a, base - 0.9 * fall])
+        self.sketch.label(
+            "λ = tan α", [Spot(place, (-sense, -1.0)), Spot(np.array([end, base - fall]), (-sense, -1.0))]
+        )
+        at = np.array([near - sense * 0.2 * a, base - 0.5 * fall])
+        self.sketch.label("α", [Spot(at, (-sense, 0.0)), Spot(at + sense * np.array([0.6 * a, 0]), (sense, 0.0))])
+
+    def _gravity(self, gravity: tuple[float, float]) -> None:
+        """The vector of gravity beside the wall, on the side that fewer loads come from."""
+        a = self.a
+        boxes = np.array(self.rows).reshape(-1, 2, 2).mean(axis=1)
+        sense = -1.0 if (boxes[:, 0] > self.high[0]).sum() > (boxes[:, 0] < self.low[0]).sum() else 1.0
+        x = self.high[0] + 2 * a if sense > 0 else self.low[0] - 2 * a
+        middle = np.array([x, self.low[1] + 0.75 * (self.high[1] - self.low[1])])
+        size = math.hypot(*gravity)
+        half = 1.2 * a * np.array(gravity) / size
+        self.sketch.arrow("gravity", [middle - half, middle + half], DEAD)
+        at = middle + half
+        text = f"g = {minus(size)} m/s²" if not gravity[0] else f"g = ({minus(gravity[0])}, {minus(gravity[1])}) m/s²"
+        self.sketch.label(text, [Spot(at, (0.0, -1.0)), Spot(middle, (sense, 0.0)), Spot(at, (sense, -1.0))], DEAD)
+
+
+def _side(direction: Array) -> tuple[float, float]:
+    """The side of a point that a direction leads to, one of eight."""
+    x, y = np.rint(1.2 * unit_vector(direction) / np.abs(unit_vector(direction)).max())
+    return float(np.clip(x, -1, 1)), float(np.clip(y, -1, 1))
+
+
+def _meet(points: Array, box: Array) -> bool:
+    """Whether the box around points ``(n, 2)`` shares an area with another ``(2, 2)`` [m]."""
+    sides = np.minimum(points.max(axis=0), box[1]) - np.maximum(points.min(axis=0), box[0])
+    slack = 1e-9 * np.abs(box).max()
+    return bool((sides > -slack).all() and sides.max() > slack)

@@ -1,0 +1,33 @@
+"""Quantities as people read them: 12 kN instead of 12000 N."""
+
+import math
+
+PREFIXES = {1e9: "G", 1e6: "M", 1e3: "k", 1.0: ""}
+
+
+def readable(value: float, unit: str) -> str:
+    """A value in SI, in the multiple of its unit in which it is between 1 and 1000; below that in the unit itself."""
+    size = next((size for size in PREFIXES if abs(value) >= size * (1 - 1e-9)), 1.0)
+    return f"{minus(value / size)} {PREFIXES[size]}{unit}"
+
+
+def millimetres(value: float) -> str:
+    """A length [m] in mm."""
+    return f"{minus(1e3 * value)} mm"
+
+
+def minus(value: float) -> str:
+    """A number with four digits and a true minus sign."""
+    return f"{value + 0.0:.4g}".replace("-", "−")
+
+
+def times_lambda(text: str, *, live: bool) -> str:
+    """What a load's label says: a live one is multiplied."""
+    return f"λ · {text}" if live else text
+
+
+def vector_text(vector: tuple[float, float], unit: str) -> str:
+    """A vector along an axis by its size, any other by its components and its size."""
+    x, y = vector
+    size = readable(math.hypot(x, y), unit)
+    return size if not (x and y) else f"{size} ({minus(x / math.hypot(x, y))}, {minus(y / math.hypot(x, y))})"

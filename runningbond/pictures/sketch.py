@@ -1,0 +1,145 @@
+"""What is drawn around a wall: marks in metres, and labels whose type has its size on paper."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from runningbond.scene import Array
+
+from .deformed_shape import Extent
+from .labels import Label, PlacedLabel, Spot, place_labels
+from .style import DARK, TYPE, UNIT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """A line, an area or an arrow through points ``(n, 2)`` [m]; what is said with it is its name."""
+
+    kind: str
+    name: str
+    points: Array
+    style: dict[str, Any]
+    counts: bool = True
+    """Whether the drawing makes room for all of it."""
+
+
+@dataclass(eq=False)
+class Sketch:
+    """Marks and labels, gathered by those who know what they are about.
+
+    Parameters
+    ----------
+    point
+        Metres that a point of the type takes in the drawing.
+    """
+
+    point: float
+    marks: list[Mark] = field(default_factory=list)
+    labels: list[Label] = field(default_factory=list)
+
+    @property
+    def a(self) -> float:
+        """Length [m] in which marks are measured."""
+        return UNIT * self.point
+
+    def line(self, name: str, points: ArrayLike, *, counts: bool = True, **style: Any) -> None:
+        """A line through points ``(n, 2)`` [m]."""
+        self.marks.append(Mark("line", name, np.array(points), {"color": DARK, "lw": 0.9, "zorder": 5} | style, counts))
+
+    def area(self, name: str, points: ArrayLike, *, counts: bool = True, **style: Any) -> None:
+        """A polygon ``(n, 2)`` [m]."""
+        look = {"fc": "white", "ec": DARK, "lw": 0.8, "zorder": 5} | style
+        self.marks.append(Mark("area", name, np.array(points), look, counts))
+
+    def disc(self, name: str, middle: ArrayLike, radius: float, **style: Any) -> None:
+        """A disc [m]."""
+        turn = np.linspace(0, 2 * np.pi, 25)[:-1]
+        self.area(name, np.asarray(middle) + radius * np.column_stack([np.cos(turn), np.sin(turn)]), **style)
+
+    def arrow(self, name: str, points: ArrayLike, colour: str, *, both: bool = False) -> None:
+        """An arrow along a line ``(n, 2)`` [m], with a head at its end or at both."""
+        head = "-|>" if not both else "<|-|>"
+        style = {"arrowstyle": f"{head},head_width=0.16,head_length=0.32", "color": colour, "lw": 1.0, "zorder": 6}
+        self.marks.append(Mark("arrow", name, np.array(points), style))
+
+    def turn(self, name: str, middle: ArrayLike, radius: float, colour: str, *, clockwise: bool) -> None:
+        """An arrow three quarters of the way round a point ``(2,)`` [m]."""
+        angle = np.radians(np.linspace(-45, 225, 40))
+        around = np.asarray(middle) + radius * np.column_stack([np.cos(angle), np.sin(angle)])
+        self.arrow(name, around[::-1] if clockwise else around, colour)
+
+    def label(self, text: str, spots: list[Spot], colour: str = DARK, size: float = TYPE) -> None:
+        """A text, and where it may stand."""
+        self.labels.append(Label(text, spots, colour, size))
+
+    def overlaps(self, box: Array) -> bool:
+        """Whether a box ``(2, 2)`` [m] meets an arrow."""
+        arrows = (mark.points for mark in self.marks if mark.kind == "arrow")
+        return any((points.min(axis=0) <= box[1]).all() and (points.max(axis=0) >= box[0]).all() for points in arrows)
+
+    @cached_property
+    def placed(self) -> list[PlacedLabel]:
+        """The labels where they stand; to be asked for when all marks are there."""
+        return place_labels(self.labels, self._obstacles(), self.point)
+
+    def _obstacles(self) -> Array:
+        """Boxes of pieces of the marks that a label may not hide, ``(n, 2, 2)`` [m]."""
+        pieces = [np.zeros((0, 2, 2))]
+        for mark in self.marks:
+            if mark.kind == "area":
+                if mark.counts:
+                    pieces.append(np.array([[mark.points.min(axis=0), mark.points.max(axis=0)]]))
+                continue
+            share = np.linspace(0, 1, 9)[:, None]
+            for start, stop in zip(mark.points, mark.points[1:], strict=False):
+                along = start + share * (stop - start)
+                ends = np.stack([along[:-1], along[1:]], axis=1)
+                air = (0.25 if mark.kind == "arrow" else 0.05) * self.a
+                pieces.append(np.stack([ends.min(axis=1) - air, ends.max(axis=1) + air], axis=1))
+        return np.concatenate(pieces)
+
+    @property
+    def extent(self) -> Extent | None:
+        """What shows all of it; None of nothing."""
+        points = [mark.points for mark in self.marks if mark.counts] + [one.box for one in self.placed]
+        if not points:
+            return None
+        (left, bottom), (right, top) = (pick(np.concatenate(points), axis=0) for pick in (np.min, np.max))
+        air = 2 * self.point
+        return float(left - air), float(right + air), float(bottom - air), float(top + air)
+
+    def draw(self, axes: "Axes") -> None:
+        """Draw it into axes that show its extent at its scale."""
+        from matplotlib.lines import Line2D
+        from matplotlib.patches import FancyArrowPatch, Polygon
+        from matplotlib.patheffects import withStroke
+        from matplotlib.path import Path
+
+        for mark in self.marks:
+            if mark.kind == "arrow":
+                drawn: Any = FancyArrowPatch(path=Path(mark.points), mutation_scale=10, joinstyle="miter", **mark.style)
+            elif mark.kind == "area":
+                drawn = Polygon(mark.points, **mark.style)
+            else:
+                drawn = Line2D(*mark.points.T, **mark.style)
+            drawn.set_label(mark.name)
+            axes.add_artist(drawn)
+        for one in self.placed:
+            axes.text(
+                float(one.middle[0]),
+                float(one.middle[1]),
+                one.label.text,
+                ha="center",
+                va="center",
+                rotation=90 if one.upright else 0,
+                fontsize=one.label.size,
+                color=one.label.colour,
+                path_effects=[withStroke(linewidth=2.2, foreground="white")],
+                zorder=8,
+            )
