@@ -1,10 +1,12 @@
 """What engineers draw around a wall: supports, ties, loads with their sizes; and room for all of it on paper."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from .deformed_shape import DeformedShape, Extent
 from .loads import LoadDrawing
+from .numbers import block_numbers
 from .sketch import Sketch
 from .style import UNIT
 from .supports import draw_beam, draw_supports
@@ -13,13 +15,24 @@ from .ties import draw_ties
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROUNDS = 12
-"""How often room is made anew: a drawing that shows more is smaller, and its type larger in metres."""
+ROUNDS = 20
+"""How often room is made anew at most: a drawing that shows more is smaller, and its type larger in metres."""
+
+SHARES, CROWDED = (1.0, 0.85, 0.7), 1.7
+"""Sizes of type and arrows to be tried, and how much smaller than alone a wall may be drawn for them."""
 
 
-def sketch_around(shape: DeformedShape, point: float) -> Sketch:
-    """Everything around a wall, where a point of the type takes so many metres."""
-    sketch = Sketch(point)
+@dataclass(frozen=True)
+class Room:
+    """What a drawing shows, an extent, and how large type and arrows are in it, as a share of their usual size."""
+
+    extent: Extent
+    share: float = 1.0
+
+
+def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False) -> Sketch:
+    """Everything around a wall, where a point of the type takes so many metres; with the numbers of blocks in it."""
+    sketch = Sketch(point, block_numbers(shape.scene, point) if numbers else [])
     draw_supports(sketch, shape)
     draw_beam(sketch, shape)
     draw_ties(sketch, shape)
@@ -27,18 +40,41 @@ def sketch_around(shape: DeformedShape, point: float) -> Sketch:
     return sketch
 
 
-def annotated_extent(shapes: Sequence[DeformedShape], extent: Extent, size: tuple[float, float]) -> Extent:
-    """An extent with room for supports and loads of a wall in some shapes, in a drawing at most so wide and high [in]."""
-    base = float(shapes[0].scene.blocks.extent(shapes[0].scene.wall)[0][1])
-    shown = extent
-    for _ in range(ROUNDS):
-        point = metres_of_point(shown, size)
-        last, shown = shown, (*extent[:2], min(extent[2], base - 1.2 * UNIT * point), extent[3])
-        for shape in shapes:
-            shown = _both(shown, sketch_around(shape, point).extent or extent)
-        if max(abs(a - b) for a, b in zip(last, shown, strict=True)) < 0.3 * point:
+def room_for(
+    shapes: Sequence[DeformedShape], extent: Extent, size: tuple[float, float], *, numbers: bool = False
+) -> Room:
+    """Room for supports and loads around a wall in some shapes, in a drawing at most so wide and high [in].
+
+    What is around the wall is made smaller where it would leave too little of the drawing to the wall.
+    """
+    least = metres_of_point(extent, size)
+    for share in SHARES:
+        shown = _extent_with_room(shapes, extent, size, share, numbers)
+        if metres_of_point(shown, size) < CROWDED * least:
             break
+    return Room(shown, share)
+
+
+def _extent_with_room(
+    shapes: Sequence[DeformedShape], extent: Extent, size: tuple[float, float], share: float, numbers: bool
+) -> Extent:
+    """An extent with room for what is around the wall, which takes the more metres the more is shown."""
+    base = float(shapes[0].scene.blocks.extent(shapes[0].scene.wall)[0][1])
+    point, shown = metres_of_point(extent, size), extent
+    for _ in range(ROUNDS):
+        extents = [sketch_around(shape, share * point, numbers=numbers).extent for shape in shapes]
+        floor = (*extent[:2], min(extent[2], base - 1.2 * UNIT * share * point), extent[3])
+        shown = _around([floor, *(one for one in extents if one)])
+        needed = metres_of_point(shown, size)
+        if needed <= (1 + 1e-3) * point:
+            break
+        point += 1.3 * (needed - point)
     return shown
+
+
+def _around(extents: Sequence[Extent]) -> Extent:
+    lefts, rights, bottoms, tops = zip(*extents, strict=True)
+    return min(lefts), max(rights), min(bottoms), max(tops)
 
 
 def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:
@@ -47,14 +83,10 @@ def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:
     return max((right - left) / size[0], (top - bottom) / size[1]) / 72
 
 
-def _both(one: Extent, other: Extent) -> Extent:
-    (a, b, c, d), (e, f, g, h) = one, other
-    return min(a, e), max(b, f), min(c, g), max(d, h)
-
-
-def annotate(axes: "Axes", shape: DeformedShape) -> None:
-    """Draw the supports of a wall, its ties and its loads into axes that have room for them."""
-    sketch_around(shape, metres_of_point((*axes.get_xlim(), *axes.get_ylim()), axes_size(axes))).draw(axes)
+def annotate(axes: "Axes", shape: DeformedShape, share: float, *, numbers: bool = False) -> None:
+    """Draw the supports of a wall, its ties and its loads into axes that have room for them, `Room.share` as large."""
+    point = metres_of_point((*axes.get_xlim(), *axes.get_ylim()), axes_size(axes))
+    sketch_around(shape, share * point, numbers=numbers).draw(axes, share)
 
 
 def axes_size(axes: "Axes") -> tuple[float, float]:

@@ -11,14 +11,14 @@ import numpy as np
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 
-from .annotations import annotate, annotated_extent, axes_size, metres_of_point
+from .annotations import Room, annotate, axes_size, metres_of_point, room_for
 from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mechanism_caption, show_extent
 from .deformed_shape import DeformedShape, outline, undeformed_shape
 from .joint_state import VISIBLE, JointState
-from .labels import text_size
 from .legend import block_colours, joint_colour, used_joint_materials, wall_caption
 from .mechanism import mechanism_shape
-from .style import DARK, EDGE, OUTLINE, SMALL_TYPE, STATE_COLOURS, tint
+from .numbers import block_numbers
+from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, tint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,10 +44,7 @@ def draw_wall(axes: "Axes", scene: Scene, *, numbers: bool = False) -> None:
 
     With `numbers` each block has the number that ``assign`` knows it by.
     """
-    shape, caption = undeformed_shape(scene), wall_caption(scene)
-    _draw(axes, shape, caption)
-    if numbers:
-        _write_numbers(axes, scene)
+    _draw(axes, undeformed_shape(scene), wall_caption(scene), numbers=numbers)
 
 
 def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
@@ -64,22 +61,28 @@ def figure_of(scene: Scene, outcome: Outcome | None = None, *, numbers: bool = F
     With numbers of blocks it is as much larger as these need to be read.
     """
     shape, caption = (undeformed_shape(scene), wall_caption(scene)) if outcome is None else _mechanism(scene, outcome)
-    size, enlarged = (WIDTH, TALLEST), 1.0
-    room = annotated_extent([shape], shape.extent, size)
+    room, enlarged = room_for([shape], shape.extent, (WIDTH, TALLEST), numbers=numbers), 1.0
     if numbers:
-        type_size = min(size for _, _, size in block_numbers(scene, metres_of_point(room, size)))
-        enlarged = float(np.clip(SMALLEST_NUMBER / type_size, 1.0, LARGEST_SHEET))
-        room = annotated_extent([shape], shape.extent, (enlarged * WIDTH, enlarged * TALLEST))
-    figure, axes = figure_with_room(room, caption, enlarged)
-    _draw(axes, shape, caption, is_mechanism=outcome is not None)
-    if numbers:
-        _write_numbers(axes, scene)
+        smallest = min(one.label.size for one in block_numbers(scene, metres_of_point(room.extent, (WIDTH, TALLEST))))
+        enlarged = float(np.clip(SMALLEST_NUMBER / smallest, 1.0, LARGEST_SHEET))
+        room = room_for([shape], shape.extent, (enlarged * WIDTH, enlarged * TALLEST), numbers=numbers)
+    figure, axes = figure_with_room(room.extent, caption, enlarged)
+    _draw(axes, shape, caption, room, is_mechanism=outcome is not None, numbers=numbers)
     return figure
 
 
-def _draw(axes: "Axes", shape: DeformedShape, caption: Caption, *, is_mechanism: bool = False) -> None:
+def _draw(
+    axes: "Axes",
+    shape: DeformedShape,
+    caption: Caption,
+    room: Room | None = None,
+    *,
+    is_mechanism: bool = False,
+    numbers: bool = False,
+) -> None:
     scene = shape.scene
-    show_extent(axes, annotated_extent([shape], shape.extent, axes_size(axes)))
+    room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers)
+    show_extent(axes, room.extent)
     width = _line_width(axes, scene)
     if is_mechanism:
         _draw_ghost(axes, scene, width)
@@ -92,7 +95,7 @@ def _draw(axes: "Axes", shape: DeformedShape, caption: Caption, *, is_mechanism:
         for number in used_joint_materials(scene):
             lines, colour = scene.joints.ends[scene.material_of_joint == number], joint_colour(number)
             _draw_lines(axes, lines, colour, (1.0 if number else 0.6) * width, "solid")
-    annotate(axes, shape)
+    annotate(axes, shape, room.share, numbers=numbers)
     caption.write(axes)
 
 
@@ -105,32 +108,6 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption]:
     hinge = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if len(_hinges(shape)) else []
     key = [*hinge, *colour_key(shape.states, dashes=DASHES)]
     return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None)
-
-
-def _write_numbers(axes: "Axes", scene: Scene) -> None:
-    """The number of each block in its middle."""
-    from matplotlib.patheffects import withStroke
-
-    point = metres_of_point((*axes.get_xlim(), *axes.get_ylim()), axes_size(axes))
-    halo = [withStroke(linewidth=1.0, foreground="white")]
-    for text, (x, y), size in block_numbers(scene, point):
-        axes.text(x, y, text, ha="center", va="center", fontsize=size, color="black", path_effects=halo, zorder=7)
-
-
-def block_numbers(scene: Scene, point: float) -> list[tuple[str, Array, float]]:
-    """The number of each block, a point inside it [m], and the size of type that fits there [pt]."""
-    import shapely
-
-    numbers = []
-    for number in range(int(scene.part_of.max()) + 1):
-        parts = [shapely.Polygon(scene.blocks.polygon(int(k))) for k in np.flatnonzero(scene.part_of == number)]
-        outline = shapely.union_all(parts)
-        middle = outline.centroid if outline.contains(outline.centroid) else outline.representative_point()
-        x0, y0, x1, y1 = parts[0].bounds if len(parts) == 1 else outline.bounds
-        width, height = text_size(str(number), 1.0)
-        fits = min(0.8 * (x1 - x0) / width, 0.75 * (y1 - y0) / height) / point
-        numbers.append((str(number), np.array([middle.x, middle.y]), float(min(fits, SMALL_TYPE))))
-    return numbers
 
 
 def _line_width(axes: "Axes", scene: Scene) -> float:

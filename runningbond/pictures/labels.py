@@ -53,12 +53,13 @@ class PlacedLabel:
 
 @cache
 def text_size(text: str, size: float) -> tuple[float, float]:
-    """Width and height of a line of text [pt]."""
+    """Width and height of text in lines [pt]."""
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import TextToPath
 
-    width, height, _ = TextToPath().get_text_width_height_descent(text, FontProperties(size=size), ismath=False)
-    return float(width), max(float(height), 0.95 * size)
+    font, lines = FontProperties(size=size), text.split("\n")
+    width = max(TextToPath().get_text_width_height_descent(line, font, ismath=False)[0] for line in lines)
+    return float(width), (1.2 * len(lines) - 0.25) * size
 
 
 def place_labels(labels: Sequence[Label], obstacles: Array, point: float) -> list[PlacedLabel]:
@@ -73,10 +74,11 @@ def place_labels(labels: Sequence[Label], obstacles: Array, point: float) -> lis
     """
     placed: list[PlacedLabel] = []
     for label in labels:
-        candidates = list(_candidates(label, point))
+        ranks, candidates = zip(*_candidates(label, point), strict=True)
+        boxes = np.array([one.box for one in candidates])
         taken = np.array([one.box for one in placed]).reshape(-1, 2, 2)
-        costs = [rank + 1e3 * _covered(one.box, taken) + 30 * _covered(one.box, obstacles) for rank, one in candidates]
-        placed.append(candidates[int(np.argmin(costs))][1])
+        costs = np.array(ranks) + 1e3 * _covered(boxes, taken) + 30 * _covered(boxes, obstacles)
+        placed.append(candidates[int(costs.argmin())])
     return placed
 
 
@@ -94,7 +96,8 @@ def _candidates(label: Label, point: float) -> list[tuple[float, PlacedLabel]]:
     return found
 
 
-def _covered(box: Array, others: Array) -> float:
-    """Share of a box ``(2, 2)`` that others ``(n, 2, 2)`` cover."""
-    sides = np.minimum(box[1], others[:, 1]) - np.maximum(box[0], others[:, 0])
-    return float(np.prod(np.maximum(sides, 0.0), axis=1).sum() / np.prod(box[1] - box[0]))
+def _covered(boxes: Array, others: Array) -> Array:
+    """Share of each box ``(k, 2, 2)`` that others ``(n, 2, 2)`` cover, ``(k,)``."""
+    sides = np.minimum(boxes[:, None, 1], others[:, 1]) - np.maximum(boxes[:, None, 0], others[:, 0])
+    common = np.prod(np.maximum(sides, 0.0), axis=2).sum(axis=1)
+    return np.asarray(common / np.prod(boxes[:, 1] - boxes[:, 0], axis=1))

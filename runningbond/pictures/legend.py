@@ -8,7 +8,7 @@ import numpy as np
 from runningbond.scene import Array, JointMaterial, Scene
 
 from .captions import Caption, wall_title
-from .quantities import readable
+from .quantities import counted, readable
 from .style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
 from .ties import TIE, tie_kinds
 
@@ -30,7 +30,7 @@ def wall_caption(scene: Scene) -> Caption:
     density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
     density += "" if any(scene.load.gravity) else ", no gravity"
     n = int(scene.part_of.max()) + 1
-    size = f"{length:.4g} × {height:.4g} m, {n} block{'s' * (n > 1)}, {len(scene.joints)} joints{density}"
+    size = f"{length:.4g} × {height:.4g} m, {counted(n, 'block')}, {counted(len(scene.joints), 'joint')}{density}"
     key = [*_materials(scene), *_bodies(scene), *_loads(scene)]
     return Caption(wall_title(scene.title), "", [size], key, columns=1)
 
@@ -95,7 +95,7 @@ def _materials(scene: Scene) -> list[Any]:
         material = scene.joint_materials[k]
         lies = " (bed)" if bed[own].all() else " (head)" if not bed[own].any() else ""
         name = {"joint": "joints", "inner_joint": "potential cracks"}.get(material.name, f"{material.name} joints")
-        text = f"{name}{lies if several else ''}: {strength(material)}"
+        text = f"{name}{lies if several and material.name != 'inner_joint' else ''}: {strength(material)}"
         handles.append(Line2D([], [], color=joint_colour(k), lw=1.2, label=_wrapped(text)))
     return handles
 
@@ -125,14 +125,18 @@ def _loads(scene: Scene) -> list[Any]:
     """Colours of loads, where there are dead ones beside the weight."""
     from matplotlib.lines import Line2D
 
-    if not scene.load.dead:
-        return []
     look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
-    dead = Line2D([0, 1], [0, 0], color=DEAD, label="dead load", **look)
-    if scene.settlement is not None or (scene.beam and scene.beam.drive and scene.beam.drive.path):
-        return [dead]
-    return [dead, Line2D([0, 1], [0, 0], color=DARK, label="live load, times λ", **look)]
+    is_moved = scene.settlement is None and scene.beam is not None and scene.beam.drive and scene.beam.drive.path
+    kinds = {
+        "dead load": (DEAD, bool(scene.load.dead)),
+        "live load, times λ": (DARK, bool(scene.load.dead) and scene.settlement is None and not is_moved),
+        "given displacement": (MOTION, bool(is_moved)),
+    }
+    return [
+        Line2D([0, 1], [0, 0], color=colour, label=name, **look) for name, (colour, there) in kinds.items() if there
+    ]
 
 
 def _wrapped(text: str) -> str:
-    return "\n".join(textwrap.wrap(text, LONGEST))
+    held = text.replace(" ", "\xa0").replace(",\xa0", ", ").replace(":\xa0", ": ")
+    return "\n".join(textwrap.wrap(held, LONGEST)).replace("\xa0", " ")

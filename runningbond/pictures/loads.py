@@ -24,7 +24,7 @@ from runningbond.scene.actions import unit_vector
 from .captions import is_force
 from .deformed_shape import DeformedShape
 from .labels import Spot
-from .quantities import millimetres, minus, readable, times_lambda, vector_text
+from .quantities import millimetres, minus, readable, times_lambda
 from .sketch import Sketch
 from .style import DARK, DEAD, MOTION
 
@@ -41,6 +41,8 @@ class LoadDrawing:
         self.sketch, self.shape, self.scene, self.a = sketch, shape, shape.scene, sketch.a
         self.low, self.high = self.scene.blocks.extent(self.scene.wall)
         self.rows: list[Array] = []
+        self.alone: list[Array] = []
+        self.pushes: dict[tuple[bool, float, float], list[str]] = {}
 
     def draw(self) -> None:
         """Draw all loads: along lines first, then at points, and on the whole wall last."""
@@ -50,11 +52,13 @@ class LoadDrawing:
         ranks = [next((k for k, kinds in enumerate(order) if isinstance(one, kinds)), 3) for one, _ in loads]
         for k in np.argsort(ranks, kind="stable"):
             self._draw(*loads[k])
+        for (live, x, y), texts in self.pushes.items():
+            self._push(np.array([x, y]), "\n+ ".join(texts), *_look(live))
         if load.gravity != EARTH and any(load.gravity):
             self._gravity(load.gravity)
 
     def _draw(self, action: Action, live: bool) -> None:
-        colour, name = (DARK, "live load") if live else (DEAD, "dead load")
+        colour, name = _look(live)
         match action:
             case LineLoad():
                 self._line(action, live, colour, name)
@@ -68,10 +72,10 @@ class LoadDrawing:
             case Tilt():
                 self._tilt(action.direction)
             case Lateral():
-                self._push(np.array(action.direction), times_lambda("weight", live=live), colour, name)
+                self._on_mass(np.array(action.direction), "weight", live)
             case Body():
                 size = readable(math.hypot(*action.acceleration), "m/s²")
-                self._push(unit_vector(np.array(action.acceleration)), times_lambda(size, live=live), colour, name)
+                self._on_mass(unit_vector(np.array(action.acceleration)), size, live)
             case Settlement():
                 pass  # drawn with the support that it moves
             case _:
@@ -82,7 +86,7 @@ class LoadDrawing:
         forces = action.forces(self.scene)
         for arrow in action.arrows(self.scene):
             if arrow.at is None:
-                self._push(arrow.direction, times_lambda("forces on mass", live=live), colour, name)
+                self._on_mass(arrow.direction, "forces on mass", live)
                 continue
             force = forces.force[(forces.at == arrow.at).all(axis=1)].sum(axis=0)
             self._point(arrow.at, arrow.block, (float(force[0]), float(force[1])), live, colour, name)
@@ -93,7 +97,7 @@ class LoadDrawing:
         return np.asarray(at + self.shape.drawn_displacement(block, at))
 
     def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
-        size = "P" if live and is_force(self.scene) else times_lambda(vector_text(force, "N"), live=live)
+        size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
         self._force(self._moved(at, block), unit_vector(np.array(force)), size, colour, name)
 
     def _force(self, tip: Array, direction: Array, text: str, colour: str, name: str, *, both: bool = False) -> None:
@@ -102,9 +106,14 @@ class LoadDrawing:
         if self._inside(tip - 0.5 * a * direction) and not self._inside(tip + 0.5 * a * direction):
             tip = tip + 2.2 * a * direction
         tail = tip - 2.2 * a * direction
-        while self._meets_row(tail, tip) or self._along_another(tail, tip):
+        for other in self.alone:
+            run = other[1] - other[0]
+            if np.hypot(*(other[1] - tip)) < 0.5 * a and run @ direction > 0.9 * np.hypot(*run):
+                tip = other[0] - 0.2 * a * direction
+                tail = tip - 2.2 * a * direction
+        while any(_meet(np.array([tail, tail + 1.3 * a * direction]), box) for box in self.rows):
             tail = tail - 0.6 * a * direction
-            tip = tip - 0.6 * a * direction if self._along_another(tail, tip) else tip
+        self.alone.append(np.array([tail, tip]))
         self.sketch.arrow(name, [tail, tip], colour, both=both)
         across = np.array([-direction[1], direction[0]])
         beside = tail + 0.7 * a * direction
@@ -115,19 +124,6 @@ class LoadDrawing:
     def _inside(self, at: Array) -> bool:
         found = self.scene.blocks.containing(at)
         return bool(self.scene.wall[found].any())
-
-    def _meets_row(self, tail: Array, tip: Array) -> bool:
-        """Whether an arrow starts within a row of arrows."""
-        return any(((box[0] <= tail) & (box[1] >= tail)).all() for box in self.rows)
-
-    def _along_another(self, tail: Array, tip: Array) -> bool:
-        """Whether an arrow would lie over another one that stands alone."""
-        for mark in self.sketch.marks:
-            if mark.kind == "arrow" and len(mark.points) == 2 and mark.name.endswith("force"):
-                other = mark.points
-                if np.hypot(*(other[1] - tip)) < 0.3 * self.a and (other[1] - other[0]) @ (tip - tail) > 0:
-                    return True
-        return False
 
     def _line(self, load: LineLoad, live: bool, colour: str, name: str) -> None:
         """A row of arrows under a bar, moved outwards until no other row is in its way."""
@@ -144,11 +140,8 @@ class LoadDrawing:
                 for place, one in zip(places, of, strict=True)
             ]
         )
-        text = times_lambda(vector_text(load.force, "N/m"), live=live)
-        if abs(along @ direction) > 0.97:
-            tails = tips - 0.9 * a * direction
-        else:
-            tails = tips - 1.5 * a * direction
+        text = times_lambda(readable(math.hypot(*load.force), "N/m"), live=live)
+        tails = tips - (0.9 if abs(along @ direction) > 0.97 else 1.5) * a * direction
         both = np.concatenate([tails, tips])
         while any(_meet(both, box) for box in self.rows):
             both = both - 0.5 * a * direction
@@ -179,24 +172,34 @@ class LoadDrawing:
         tip = self._moved(tip, number)
         text, colour, name, both = self._drive_text(beam, load, live)
         if not low[1] <= at[1] <= high[1]:
-            text += f", {minus(at[1] - self.low[1])} m above the base"
             aside = np.array([-math.copysign(1.2 * self.a, direction[0]), 0.0])
             tip = np.array([edge[0], tip[1]]) + aside
             shoulder = np.array([edge[0], middle[1]])
             self.sketch.line("beam", [shoulder, shoulder + aside, tip], lw=1.8)
+            self._height(tip, at[1] - self.low[1], -math.copysign(1.0, direction[0]))
         self._force(tip, direction, text, colour, name, both=both)
+
+    def _height(self, at: Array, height: float, side: float) -> None:
+        """The height of a point above the base of the wall, as a dimension."""
+        foot = np.array([at[0], at[1] - height])
+        self.sketch.line("dimension", [foot, at], lw=0.5)
+        for end in (foot, at):
+            self.sketch.line("dimension", [end - 0.25 * self.a, end + 0.25 * self.a], lw=0.7)
+        middle = (foot + at) / 2
+        spots = [Spot(middle, (one, 0.0), upright=True) for one in (side, -side)]
+        self.sketch.label(f"{minus(height)} m", spots)
 
     def _drive_text(self, beam: Beam, load: BeamLoad, live: bool) -> tuple[str, str, str, bool]:
         path = beam.drive.path if beam.drive and live else ()
         if not path:
             unit = live and is_force(self.scene)
-            text = "P" if unit else times_lambda(vector_text(load.force, "N"), live=live)
-            return text, DARK if live else DEAD, "live load" if live else "dead load", False
+            text = "P" if unit else times_lambda(readable(math.hypot(*load.force), "N"), live=live)
+            return text, *_look(live), False
         if len(path) == 1:
             return f"u = {millimetres(path[0])}", MOTION, "motion", False
         low, high = min(path), max(path)
         span = f"±{millimetres(high)}" if low == -high else f"{minus(1e3 * low)} … {millimetres(high)}"
-        return f"u = {span}, {len(path)} moves", MOTION, "motion", True
+        return f"u = {span}\n{len(path)} moves", MOTION, "motion", True
 
     def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str) -> None:
         a = self.a
@@ -205,15 +208,21 @@ class LoadDrawing:
         sides = [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
         self.sketch.label(text, [Spot(at + 0.9 * a * np.array(side), side) for side in sides], colour)
 
+    def _on_mass(self, direction: Array, size: str, live: bool) -> None:
+        """Note a load on the mass of all blocks: those along one direction share their arrows."""
+        x, y = np.round(direction, 6).tolist()
+        self.pushes.setdefault((live, x, y), []).append(times_lambda(size, live=live))
+
     def _push(self, direction: Array, text: str, colour: str, name: str) -> None:
         """A row of arrows along the side on which all blocks are pushed, and what they are."""
         a, low, high = self.a, self.low, self.high
         across = np.array([-direction[1], direction[0]])
         reach, width = float((high - low) @ np.abs(direction)) / 2, float((high - low) @ np.abs(across)) / 2
-        places = width * np.linspace(-0.8, 0.8, int(np.clip(width / a, 2, 5)))
+        places = width * np.linspace(-0.8, 0.8, int(np.clip(width / (0.6 * a), 2, 5)))
         middle = (low + high) / 2 - (reach + 2.2 * a) * direction + places[:, None] * across
         ends = np.concatenate([middle, middle + 1.5 * a * direction])
-        while any(_meet(ends, box) for box in self.rows) or self._arrow_in(ends):
+        taken = [*self.rows, *self.sketch.taken()]
+        while any(_meet(ends, box) for box in taken):
             ends = ends - 0.6 * a * direction
         self.rows.append(np.array([ends.min(axis=0), ends.max(axis=0)]))
         tails, tips = ends[: len(places)], ends[len(places) :]
@@ -223,12 +232,8 @@ class LoadDrawing:
         highest = max(tails, key=lambda tail: float(tail[1])) + 0.3 * a * direction
         beside = Spot(tails.mean(axis=0), _side(-direction), upright=flat)
         above = Spot(highest, (float(-np.sign(direction[0])) if flat else 0.0, 1.0))
-        length = 4 * len(text) * self.sketch.point
-        self.sketch.label(text, [beside, above] if not flat or 1.6 * width > length else [above], colour)
-
-    def _arrow_in(self, ends: Array) -> bool:
-        """Whether an arrow at a point is in the way of a row."""
-        return self.sketch.overlaps(np.array([ends.min(axis=0), ends.max(axis=0)]))
+        length = max(map(len, text.split("\n"))) * 4 * self.sketch.point
+        self.sketch.label(text, [beside, above] if not flat or 2.5 * width > length else [above, beside], colour)
 
     def _tilt(self, direction: tuple[float, float]) -> None:
         """A ground line that falls to the side of the direction, below the level one, and the angle between them."""
@@ -248,18 +253,23 @@ class LoadDrawing:
         self.sketch.label("α", [Spot(at, (-sense, 0.0)), Spot(at + sense * np.array([0.6 * a, 0]), (sense, 0.0))])
 
     def _gravity(self, gravity: tuple[float, float]) -> None:
-        """The vector of gravity beside the wall, on the side that fewer loads come from."""
-        a = self.a
-        boxes = np.array(self.rows).reshape(-1, 2, 2).mean(axis=1)
-        sense = -1.0 if (boxes[:, 0] > self.high[0]).sum() > (boxes[:, 0] < self.low[0]).sum() else 1.0
-        x = self.high[0] + 2 * a if sense > 0 else self.low[0] - 2 * a
-        middle = np.array([x, self.low[1] + 0.75 * (self.high[1] - self.low[1])])
-        size = math.hypot(*gravity)
+        """The vector of gravity beside everything else, on the side that fewer loads come from."""
+        a, size = self.a, math.hypot(*gravity)
+        left, right, *_ = self.sketch.room() or (0.0, 0.0)
+        left, right = min(left, self.low[0]), max(right, self.high[0])
+        sense = 1.0 if right - self.high[0] <= self.low[0] - left else -1.0
         half = 1.2 * a * np.array(gravity) / size
+        x = (right if sense > 0 else left) + sense * (0.8 * a + abs(half[0]))
+        middle = np.array([x, self.low[1] + 0.6 * (self.high[1] - self.low[1])])
         self.sketch.arrow("gravity", [middle - half, middle + half], DEAD)
-        at = middle + half
         text = f"g = {minus(size)} m/s²" if not gravity[0] else f"g = ({minus(gravity[0])}, {minus(gravity[1])}) m/s²"
-        self.sketch.label(text, [Spot(at, (0.0, -1.0)), Spot(middle, (sense, 0.0)), Spot(at, (sense, -1.0))], DEAD)
+        spot = Spot(middle + [sense * abs(half[0]), 0.0], (sense, 0.0), upright=True)
+        self.sketch.label(text, [spot, Spot(middle, (sense, 0.0))], DEAD)
+
+
+def _look(live: bool) -> tuple[str, str]:
+    """Colour and name of live or dead loads."""
+    return (DARK, "live load") if live else (DEAD, "dead load")
 
 
 def _side(direction: Array) -> tuple[float, float]:

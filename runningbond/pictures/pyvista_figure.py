@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
-from .annotations import annotate, annotated_extent
+from .annotations import annotate, room_for
 from .captions import (
     TALLEST,
     WIDTH,
@@ -44,7 +44,7 @@ def frame_figure(
     painter: Painter,
     last: DeformedShape | None = None,
 ) -> "Figure":
-    """Figure of one moment of a run; with the extent and the key of another, the last one, so that several make a film."""
+    """Figure of one moment of a run; with the extent and the key of the last, so that several make a film."""
     last = last or shape
     load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
@@ -53,11 +53,11 @@ def frame_figure(
 
 
 def _figure(shape: DeformedShape, painter: Painter, caption: Caption, last: DeformedShape) -> "Figure":
-    room = annotated_extent([last, undeformed_shape(shape.scene)], last.extent, (WIDTH, TALLEST))
-    figure, axes = figure_with_room(room, caption)
+    room = room_for([last, undeformed_shape(shape.scene)], last.extent, (WIDTH, TALLEST))
+    figure, axes = figure_with_room(room.extent, caption)
     draw_painted(axes, shape, painter, last.extent)
-    show_extent(axes, room)
-    annotate(axes, shape)
+    show_extent(axes, room.extent)
+    annotate(axes, shape, room.share)
     caption.write(axes)
     return figure
 

@@ -1,7 +1,5 @@
 """Quantities as people read them: 12 kN instead of 12000 N."""
 
-import math
-
 PREFIXES = {1e9: "G", 1e6: "M", 1e3: "k", 1.0: ""}
 
 
@@ -26,8 +24,6 @@ def times_lambda(text: str, *, live: bool) -> str:
     return f"λ · {text}" if live else text
 
 
-def vector_text(vector: tuple[float, float], unit: str) -> str:
-    """A vector along an axis by its size, any other by its components and its size."""
-    x, y = vector
-    size = readable(math.hypot(x, y), unit)
-    return size if not (x and y) else f"{size} ({minus(x / math.hypot(x, y))}, {minus(y / math.hypot(x, y))})"
+def counted(n: int, what: str) -> str:
+    """So many of something."""
+    return f"{n} {what}{'' if n == 1 else 's'}"

@@ -1,5 +1,6 @@
 """What is drawn around a wall: marks in metres, and labels whose type has its size on paper."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -37,9 +38,12 @@ class Sketch:
     ----------
     point
         Metres that a point of the type takes in the drawing.
+    numbers
+        Numbers of blocks, in their places.
     """
 
     point: float
+    numbers: Sequence[PlacedLabel] = ()
     marks: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
 
@@ -78,19 +82,20 @@ class Sketch:
         """A text, and where it may stand."""
         self.labels.append(Label(text, spots, colour, size))
 
-    def overlaps(self, box: Array) -> bool:
-        """Whether a box ``(2, 2)`` [m] meets an arrow."""
-        arrows = (mark.points for mark in self.marks if mark.kind == "arrow")
-        return any((points.min(axis=0) <= box[1]).all() and (points.max(axis=0) >= box[0]).all() for points in arrows)
+    def taken(self) -> Array:
+        """Boxes of arrows, and of labels where they would stand now, ``(n, 2, 2)`` [m]."""
+        arrows = [mark.points for mark in self.marks if mark.kind == "arrow"]
+        boxes = [np.array([points.min(axis=0), points.max(axis=0)]) for points in arrows]
+        return np.array([*boxes, *(one.box for one in self._labels_now())]).reshape(-1, 2, 2)
 
     @cached_property
     def placed(self) -> list[PlacedLabel]:
         """The labels where they stand; to be asked for when all marks are there."""
-        return place_labels(self.labels, self._obstacles(), self.point)
+        return self._labels_now()
 
     def _obstacles(self) -> Array:
         """Boxes of pieces of the marks that a label may not hide, ``(n, 2, 2)`` [m]."""
-        pieces = [np.zeros((0, 2, 2))]
+        pieces = [np.zeros((0, 2, 2)), *(one.box[None] for one in self.numbers)]
         for mark in self.marks:
             if mark.kind == "area":
                 if mark.counts:
@@ -107,30 +112,42 @@ class Sketch:
     @property
     def extent(self) -> Extent | None:
         """What shows all of it; None of nothing."""
-        points = [mark.points for mark in self.marks if mark.counts] + [one.box for one in self.placed]
+        return self._around(self.placed)
+
+    def room(self) -> Extent | None:
+        """What it takes so far, its labels where they would stand now; None of nothing."""
+        return self._around(self._labels_now())
+
+    def _labels_now(self) -> list[PlacedLabel]:
+        return place_labels(self.labels, self._obstacles(), self.point)
+
+    def _around(self, labels: Sequence[PlacedLabel]) -> Extent | None:
+        points = [mark.points for mark in self.marks if mark.counts] + [one.box for one in labels]
         if not points:
             return None
         (left, bottom), (right, top) = (pick(np.concatenate(points), axis=0) for pick in (np.min, np.max))
         air = 2 * self.point
         return float(left - air), float(right + air), float(bottom - air), float(top + air)
 
-    def draw(self, axes: "Axes") -> None:
-        """Draw it into axes that show its extent at its scale."""
+    def draw(self, axes: "Axes", share: float) -> None:
+        """Draw it into axes that show its extent at its scale, type and heads of arrows as large as so many times."""
         from matplotlib.lines import Line2D
         from matplotlib.patches import FancyArrowPatch, Polygon
-        from matplotlib.patheffects import withStroke
         from matplotlib.path import Path
+        from matplotlib.patheffects import withStroke
 
         for mark in self.marks:
             if mark.kind == "arrow":
-                drawn: Any = FancyArrowPatch(path=Path(mark.points), mutation_scale=10, joinstyle="miter", **mark.style)
+                drawn: Any = FancyArrowPatch(
+                    path=Path(mark.points), mutation_scale=10 * share, joinstyle="miter", **mark.style
+                )
             elif mark.kind == "area":
                 drawn = Polygon(mark.points, **mark.style)
             else:
                 drawn = Line2D(*mark.points.T, **mark.style)
             drawn.set_label(mark.name)
             axes.add_artist(drawn)
-        for one in self.placed:
+        for one in (*self.placed, *self.numbers):
             axes.text(
                 float(one.middle[0]),
                 float(one.middle[1]),
@@ -138,8 +155,8 @@ class Sketch:
                 ha="center",
                 va="center",
                 rotation=90 if one.upright else 0,
-                fontsize=one.label.size,
+                fontsize=share * one.label.size,
                 color=one.label.colour,
-                path_effects=[withStroke(linewidth=2.2, foreground="white")],
+                path_effects=[withStroke(linewidth=0.3 * share * one.label.size, foreground="white")],
                 zorder=8,
             )

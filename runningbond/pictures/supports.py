@@ -18,7 +18,7 @@ GREY = "0.45"
 def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
     """Hatch what does not move, put triangles under pins, on rollers where these may move aside."""
     scene, a = shape.scene, sketch.a
-    low, high = scene.blocks.extent(scene.wall)
+    low, _ = scene.blocks.extent(scene.wall)
     ground = np.flatnonzero(~scene.wall)
     moving = np.zeros(len(scene.blocks), np.bool_) if scene.settlement is None else scene.settlement.moving(scene)
     is_level = len(ground) > 0 and scene.blocks.extent(~scene.wall)[1][1] <= low[1] + scene.blocks.tolerance

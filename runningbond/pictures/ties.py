@@ -31,7 +31,8 @@ def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
         for end, block, outward in zip(ends, ties.block[k], (-along, along), strict=True):
             plate = end + np.outer([-0.6 * a, 0.6 * a], across)
             if block == ANCHOR:
-                back = plate[::-1] + 0.6 * a * outward
+                plate = end + np.outer([-a, a], across)
+                back = plate[::-1] + 0.9 * a * outward
                 sketch.area("anchor", [*plate, *back], fc="white", ec="0.45", hatch="//////", lw=0)
             sketch.line("anchor" if block == ANCHOR else "tie plate", plate, color=TIE, lw=2.2)
         if len(kinds) > 1:
@@ -53,6 +54,7 @@ def tie_kinds(scene: Scene) -> dict[str, list[int]]:
     kinds: dict[str, list[int]] = {}
     for k in range(len(ties)):
         preload = f", preload {readable(ties.preload[k], 'N')}" if ties.preload[k] else ""
-        text = f"E A = {readable(ties.young[k] * ties.area[k], 'N')}, yields at {readable(ties.yield_force[k], 'N')}{preload}"
+        stiffness, strength = readable(ties.young[k] * ties.area[k], "N"), readable(ties.yield_force[k], "N")
+        text = f"E A = {stiffness}, yields at {strength}{preload}"
         kinds.setdefault(text, []).append(k)
     return kinds

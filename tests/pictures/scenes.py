@@ -35,11 +35,29 @@ def point(x: float, y: float, fx: float, fy: float) -> dict[str, Any]:
 def facade() -> dict[str, Any]:
     """Two storeys with a door and windows, oak lintels, mortared piers, floors and a roof, pushed to the left."""
     full, half = [1.0] * 12, [0.5, *[1.0] * 11, 0.5]
-    door = ([1.0] * 2 + [-2.0] + [1.0] * 3 + [-2.0] + [1.0] * 3, [0.5, 1, 0.5, -2.0, 0.5, 1, 1, 0.5, -2.0, 0.5, 1, 1, 0.5])
+    door = (
+        [1.0] * 2 + [-2.0] + [1.0] * 3 + [-2.0] + [1.0] * 3,
+        [0.5, 1, 0.5, -2.0, 0.5, 1, 1, 0.5, -2.0, 0.5, 1, 1, 0.5],
+    )
     solid = ([1.0] * 2 + [-2.0] + [1.0] * 8, [0.5, 1, 0.5, -2.0, 0.5, *[1.0] * 7, 0.5])
     lintels = [1.0] + [4.0] + [1.0] + [4.0] + [1.0] * 2
     upper = [[0.5, 1, 0.5, -2, 0.5, 1, 1, 0.5, -2, 0.5, 1, 1, 0.5], [1.0, 1, -2, 1, 1, 1, -2, 1, 1, 1]]
-    rows = [*solid, *solid[:1], door[1], door[0], door[1], lintels, half, full, half, *upper, *upper[:1], lintels, half, full]
+    rows = [
+        *solid,
+        *solid[:1],
+        door[1],
+        door[0],
+        door[1],
+        lintels,
+        half,
+        full,
+        half,
+        *upper,
+        *upper[:1],
+        lintels,
+        half,
+        full,
+    ]
     courses = [[float(x) for x in row] for row in rows]
     return wall(0, 0) | {
         "title": "Façade of two storeys",
@@ -72,7 +90,13 @@ def settling_portal() -> dict[str, Any]:
 
 def turning_support() -> dict[str, Any]:
     """The same with a support that moves outwards and turns."""
-    live = {"kind": "settlement", "box": [[-9.0, -1.0], [1.1, 0.1]], "by": [-0.005, 0.0], "rotation_angle": 0.5}
+    live = {
+        "kind": "settlement",
+        "box": [[-9.0, -1.0], [1.1, 0.1]],
+        "by": [-0.005, 0.0],
+        "rotation_angle": 0.5,
+        "about": [1.0, 0.0],
+    }
     return settling_portal() | {"title": "Spreading support", "load": {"gravity": 9.81, "live": live}}
 
 
@@ -179,7 +203,13 @@ def one_block() -> dict[str, Any]:
 
 
 def large() -> dict[str, Any]:
-    return wall(10.0, 5.0, (0.25, 0.1)) | {"title": "2025 blocks", "joints": {"mortar": MORTAR}, "materials": {"oak": OAK}, "assign": [{"joint": "mortar", "box": [[0, 2], [10, 3]]}, {"block": "oak", "box": [[0, 4.5], [10, 5]]}], "load": {"gravity": 9.81, "live": [{"kind": "lateral"}, line(5.0, 0, 10, [0, -1e4])]}}
+    return wall(10.0, 5.0, (0.25, 0.1)) | {
+        "title": "2025 blocks",
+        "joints": {"mortar": MORTAR},
+        "materials": {"oak": OAK},
+        "assign": [{"joint": "mortar", "box": [[0, 2], [10, 3]]}, {"block": "oak", "box": [[0, 4.5], [10, 5]]}],
+        "load": {"gravity": 9.81, "live": [{"kind": "lateral"}, line(5.0, 0, 10, [0, -1e4])]},
+    }
 
 
 def arch(folder: Path) -> Scene:
@@ -187,7 +217,8 @@ def arch(folder: Path) -> Scene:
     ground = [(-500, -600), (2500, -600), (2500, 100), (-500, 400)]
     feet = [[(x, 350 - 0.1 * x), (x + 400, 310 - 0.1 * x), (x + 400, 600), (x, 600)] for x in (0, 1400)]
     tops = [[(x, 600), (x + 400, 600), (x + 400, 900), (x, 900)] for x in (0, 1400)]
-    write_drawing([ground, *feet, *tops, [(0, 900), (1800, 900), (1800, 1100), (0, 1100)]], folder / "wall.dxf")
+    outlines = [ground, *feet, *tops, [(0, 900), (1800, 900), (1800, 1100), (0, 1100)]]
+    write_drawing([[(float(x), float(y)) for x, y in outline] for outline in outlines], folder / "wall.dxf")
     scene = wall(0, 0) | {
         "title": "On sloping ground",
         "wall": {"drawing": "wall.dxf", "units": "mm", "thickness": 0.3},
