@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from runningbond.scene import Array, JointMaterial, Scene
+from runningbond.scene import Array, JointMaterial, Mask, Scene
 
 from .captions import Caption, wall_title
 from .quantities import counted, readable
@@ -59,10 +59,10 @@ def used_joint_materials(scene: Scene) -> list[int]:
     return [int(k) for k in np.unique(scene.material_of_joint)]
 
 
-def is_bed(scene: Scene) -> Array:
+def is_bed(scene: Scene) -> Mask:
     """Whether each joint lies flatter than 45°, ``(nj,)``."""
     run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
-    return np.asarray(run[:, 0] > run[:, 1])
+    return np.asarray(run[:, 0] > run[:, 1], dtype=np.bool_)
 
 
 def strength(material: JointMaterial) -> str:

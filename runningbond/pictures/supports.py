@@ -47,7 +47,10 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
 
 
 def _draw_motion(sketch: Sketch, shape: DeformedShape, settlement: Settlement, moving: Mask) -> None:
-    """Where supports move to, larger than they do, and arrows with their displacement and their rotation."""
+    """Where supports move to, larger than they do, and arrows with their displacement and their rotation.
+
+    Where supports are drawn moved, the arrows alone.
+    """
     scene, a = shape.scene, sketch.a
     low, high = scene.blocks.extent(scene.wall)
     numbers = np.flatnonzero(moving)
@@ -57,9 +60,11 @@ def _draw_motion(sketch: Sketch, shape: DeformedShape, settlement: Settlement, m
     surface = np.stack([ends, np.repeat(level[:, None], 2, axis=1)], axis=2)
     moved = carried(scene.blocks, np.repeat(numbers, 2), surface.reshape(-1, 2), settlement.motion(scene))
     visible = 1.1 * a / np.hypot(*moved.T).max() * moved.reshape(-1, 2, 2)
-    for line in surface + visible:
-        sketch.line("motion", line, color=MOTION, lw=1.0, ls=(0, (3, 1.5)))
     at = np.array([(ends.min() + ends.max()) / 2, level.min() - 0.9 * a])
+    drawn = shape.drawn_displacement(numbers[:1], at)
+    for line in surface + visible if not drawn.any() else []:
+        sketch.line("motion", line, color=MOTION, lw=1.0, ls=(0, (3, 1.5)))
+    at = at + drawn
     by = np.array(settlement.by)
     if by.any():
         direction = by / np.hypot(*by)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from runningbond.commands.command_line import command
-from runningbond.commands.show import rows
+from runningbond.commands.inventory import rows
 from runningbond.compare import published_scene
 
 from ..walls import panel
@@ -17,13 +17,13 @@ def test_show_tells_what_the_panel_weighs() -> None:
     mass = 1800 * 1.44 * 0.72 * 0.12
     assert told["blocks"] == f"{6 * 6 + 6 * 7}, of which 0 held"
     assert told["mass of the wall"] == f"{mass:.5g} kg"
-    assert told["weight of what moves"] == f"{9.81 * mass:.5g} N"
-    assert told["live load at λ = 1"] == f"({9.81 * mass:.5g}, 0) N"
+    assert told["weight of what moves"] == f"{9.81e-3 * mass:.4g} kN"
+    assert told["live load at λ = 1"].startswith(f"({9.81e-3 * mass:.4g}, 0) kN, −")
 
 
 def test_a_push_to_the_left_is_shown_as_one() -> None:
     told = dict(rows(panel(load__live={"kind": "lateral", "direction": "left"})))
-    assert told["live load at λ = 1"].startswith("(-")
+    assert told["live load at λ = 1"].startswith("(−")
 
 
 @pytest.mark.parametrize(("suffix", "begins"), [(".svg", b"<?xml"), (".PNG", b"\x89PNG")])

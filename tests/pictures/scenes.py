@@ -214,11 +214,13 @@ def large() -> dict[str, Any]:
 
 def arch(folder: Path) -> Scene:
     """Drawn in millimetres: two piers on a slope, and a lintel on them."""
-    ground = [(-500, -600), (2500, -600), (2500, 100), (-500, 400)]
-    feet = [[(x, 350 - 0.1 * x), (x + 400, 310 - 0.1 * x), (x + 400, 600), (x, 600)] for x in (0, 1400)]
-    tops = [[(x, 600), (x + 400, 600), (x + 400, 900), (x, 900)] for x in (0, 1400)]
-    outlines = [ground, *feet, *tops, [(0, 900), (1800, 900), (1800, 1100), (0, 1100)]]
-    write_drawing([[(float(x), float(y)) for x, y in outline] for outline in outlines], folder / "wall.dxf")
+    ground: list[tuple[float, float]] = [(-500, -600), (2500, -600), (2500, 100), (-500, 400)]
+    feet: list[list[tuple[float, float]]] = [
+        [(x, 350 - 0.1 * x), (x + 400, 310 - 0.1 * x), (x + 400, 600), (x, 600)] for x in (0, 1400)
+    ]
+    tops: list[list[tuple[float, float]]] = [[(x, 600), (x + 400, 600), (x + 400, 900), (x, 900)] for x in (0, 1400)]
+    outlines: list[list[tuple[float, float]]] = [ground, *feet, *tops, [(0, 900), (1800, 900), (1800, 1100), (0, 1100)]]
+    write_drawing(outlines, folder / "wall.dxf")
     scene = wall(0, 0) | {
         "title": "On sloping ground",
         "wall": {"drawing": "wall.dxf", "units": "mm", "thickness": 0.3},
