@@ -103,8 +103,8 @@ class LoadDrawing:
     def _force(self, tip: Array, direction: Array, text: str, colour: str, name: str, *, both: bool = False) -> None:
         """An arrow to a point, or from it where it would else run through the wall, and its size beside it."""
         a = self.a
-        if self._inside(tip - 0.5 * a * direction) and not self._inside(tip + 0.5 * a * direction):
-            tip = tip + 2.2 * a * direction
+        pulls = self._inside(tip - 0.5 * a * direction) and not self._inside(tip + 0.5 * a * direction)
+        tip = tip + 2.2 * a * direction if pulls else tip
         tail = tip - 2.2 * a * direction
         for other in self.alone:
             run = other[1] - other[0]
@@ -118,8 +118,9 @@ class LoadDrawing:
         across = np.array([-direction[1], direction[0]])
         beside = tail + 0.7 * a * direction
         sides = [-across, across] if across[0] < -0.1 else [across, -across]
-        spots = [Spot(beside, _side(one)) for one in sides] + [Spot(tail, _side(-direction))]
-        self.sketch.label(text, spots if abs(direction[1]) > 0.5 else [*spots[::-1]][:1] + spots[:2], colour)
+        spots = [Spot(beside, _side(one)) for one in sides]
+        end = Spot(tip, _side(direction)) if pulls else Spot(tail, _side(-direction))
+        self.sketch.label(text, [*spots, end] if abs(direction[1]) > 0.5 else [end, *spots], colour)
 
     def _inside(self, at: Array) -> bool:
         found = self.scene.blocks.containing(at)
@@ -141,18 +142,27 @@ class LoadDrawing:
             ]
         )
         text = times_lambda(readable(math.hypot(*load.force), "N/m"), live=live)
-        tails = tips - (0.9 if abs(along @ direction) > 0.97 else 1.5) * a * direction
-        both = np.concatenate([tails, tips])
+        middle = tips.mean(axis=0)
+        is_shear = abs(along @ direction) > 0.97
+        away = np.array([-along[1], along[0]]) if is_shear else -direction
+        if self._inside(middle + 0.5 * a * away) and not self._inside(middle - 0.5 * a * away):
+            away = -away
+        if is_shear:
+            tips = tips + 0.6 * a * away
+        elif away @ direction > 0:  # it pulls
+            tips = tips + 1.5 * a * direction
+        both = np.concatenate([tips - (0.9 if is_shear else 1.5) * a * direction, tips])
         while any(_meet(both, box) for box in self.rows):
-            both = both - 0.5 * a * direction
+            both = both + 0.5 * a * away
         tails, tips = both[:n], both[n:]
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
         for tail, tip in zip(tails, tips, strict=True):
             self.sketch.arrow(name, [tail, tip], colour)
-        self.sketch.line(name, [tails[0], tails[-1]], color=colour, lw=1.2, zorder=6)
+        if not is_shear:
+            self.sketch.line(name, [tails[0], tails[-1]], color=colour, lw=1.2, zorder=6)
         ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
-        middle = tails.mean(axis=0)
-        spots = [Spot(middle, _side(-direction)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
+        outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ away))
+        spots = [Spot(outer, _side(away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
         self.sketch.label(text, spots, colour)
 
     def _beam(self, load: BeamLoad, live: bool) -> None:
@@ -216,21 +226,23 @@ class LoadDrawing:
     def _push(self, direction: Array, text: str, colour: str, name: str) -> None:
         """A row of arrows along the side on which all blocks are pushed, and what they are."""
         a, low, high = self.a, self.low, self.high
-        across = np.array([-direction[1], direction[0]])
-        reach, width = float((high - low) @ np.abs(direction)) / 2, float((high - low) @ np.abs(across)) / 2
-        places = width * np.linspace(-0.8, 0.8, int(np.clip(width / (0.6 * a), 2, 5)))
-        middle = (low + high) / 2 - (reach + 2.2 * a) * direction + places[:, None] * across
-        ends = np.concatenate([middle, middle + 1.5 * a * direction])
+        flat = abs(direction[0]) >= abs(direction[1])
+        inwards = np.array([np.sign(direction[0]), 0.0] if flat else [0.0, np.sign(direction[1])])
+        across = np.abs(inwards[::-1])
+        reach, width = float((high - low) @ np.abs(inwards)) / 2, float((high - low) @ across) / 2
+        n = int(np.clip(width / (0.6 * a), 2, 5))
+        places = width * np.linspace(-0.8, 0.8, n) if n > 2 else np.array([-0.4, 0.4]) * width
+        tips = (low + high) / 2 - (reach + 0.7 * a) * inwards + places[:, None] * across
+        ends = np.concatenate([tips - 1.5 * a * direction, tips])
         taken = [*self.rows, *self.sketch.taken()]
         while any(_meet(ends, box) for box in taken):
-            ends = ends - 0.6 * a * direction
+            ends = ends - 0.6 * a * inwards
         self.rows.append(np.array([ends.min(axis=0), ends.max(axis=0)]))
         tails, tips = ends[: len(places)], ends[len(places) :]
         for tail, tip in zip(tails, tips, strict=True):
             self.sketch.arrow(name, [tail, tip], colour)
-        flat = abs(direction[0]) > abs(direction[1])
         highest = max(tails, key=lambda tail: float(tail[1])) + 0.3 * a * direction
-        beside = Spot(tails.mean(axis=0), _side(-direction), upright=flat)
+        beside = Spot(tails.mean(axis=0), _side(-inwards), upright=flat)
         above = Spot(highest, (float(-np.sign(direction[0])) if flat else 0.0, 1.0))
         length = max(map(len, text.split("\n"))) * 4 * self.sketch.point
         self.sketch.label(text, [beside, above] if not flat or 2.5 * width > length else [above, beside], colour)

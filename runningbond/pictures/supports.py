@@ -22,9 +22,10 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
     ground = np.flatnonzero(~scene.wall)
     moving = np.zeros(len(scene.blocks), np.bool_) if scene.settlement is None else scene.settlement.moving(scene)
     is_level = len(ground) > 0 and scene.blocks.extent(~scene.wall)[1][1] <= low[1] + scene.blocks.tolerance
-    if not len(ground) and scene.fixed.any():
-        (x0, _), (x1, _) = scene.blocks.extent(scene.fixed)
-        _hatched(sketch, "support", [(x0, low[1]), (x1, low[1])], 0.55 * a)
+    for block in np.flatnonzero(scene.fixed & scene.wall):
+        (x0, _), (x1, _) = scene.blocks.extent(int(block))
+        colour = MOTION if moving[block] else GREY
+        _hatched(sketch, "support", [(x0, low[1]), (x1, low[1])], 0.55 * a, colour)
     for block in ground:
         colour = MOTION if moving[block] else GREY
         outline = scene.blocks.polygon(int(block))
