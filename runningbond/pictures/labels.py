@@ -13,7 +13,7 @@ from .style import DARK, TYPE
 GAP, PAD = 2.5, 0.8
 """Distance of a label from what it is about, and air around it [pt]."""
 
-AWAY = 9
+AWAY = 16
 """Steps of half a line that a label may move farther away."""
 
 

@@ -152,7 +152,8 @@ class LoadDrawing:
         elif away @ direction > 0:  # it pulls
             tips = tips + 1.5 * a * direction
         both = np.concatenate([tips - (0.9 if is_shear else 1.5) * a * direction, tips])
-        while any(_meet(both, box) for box in self.rows):
+        air = 0.35 * a * away if is_shear else np.zeros(2)
+        while any(_meet(np.concatenate([both - air, both + air]), box) for box in self.rows):
             both = both + 0.5 * a * away
         tails, tips = both[:n], both[n:]
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))

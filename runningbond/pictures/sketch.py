@@ -101,12 +101,13 @@ class Sketch:
                 if mark.counts:
                     pieces.append(np.array([[mark.points.min(axis=0), mark.points.max(axis=0)]]))
                 continue
-            share = np.linspace(0, 1, 9)[:, None]
-            for start, stop in zip(mark.points, mark.points[1:], strict=False):
-                along = start + share * (stop - start)
-                ends = np.stack([along[:-1], along[1:]], axis=1)
-                air = (0.25 if mark.kind == "arrow" else 0.05) * self.a
-                pieces.append(np.stack([ends.min(axis=1) - air, ends.max(axis=1) + air], axis=1))
+            air = (0.25 if mark.kind == "arrow" else 0.05) * self.a
+            start, run = mark.points[:-1, None], np.diff(mark.points, axis=0)[:, None]
+            # A slanting line is within several small boxes, where one would hold much of nothing.
+            share = np.linspace(0, 1, 2 if len(run) > 1 or np.abs(run).min() < 1e-9 * np.abs(run).max() else 9)
+            along = start + share[:, None] * run
+            ends = np.stack([along[:, :-1], along[:, 1:]], axis=2).reshape(-1, 2, 2)
+            pieces.append(np.stack([ends.min(axis=1) - air, ends.max(axis=1) + air], axis=1))
         return np.concatenate(pieces)
 
     @property
