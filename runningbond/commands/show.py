@@ -13,7 +13,7 @@ from runningbond.results import write_atomically
 from runningbond.scene import SceneError, read_scene
 
 from .inventory import rows
-from .terminal import DONE, Flag, SceneName, print_table
+from .terminal import DONE, Flag, SceneName, print_table, remarks
 
 WRITERS = {".svg": to_svg, ".png": to_png}
 
@@ -44,4 +44,6 @@ def show(
     print_table(Sheet(wall.title, ("quantity", "value"), rows(wall)))
     if out is not None:
         print(out)
+    for line in remarks(wall):
+        print(line)
     return DONE
