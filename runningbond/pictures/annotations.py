@@ -15,19 +15,30 @@ from .ties import draw_ties
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-ROUNDS = 20
-"""How often room is made anew at most: a drawing that shows more is smaller, and its type larger in metres."""
-
 SHARES, CROWDED = (1.0, 0.85, 0.7), 1.7
 """Sizes of type and arrows to be tried, and how much smaller than alone a wall may be drawn for them."""
+
+HOPELESS = 20.0
+"""How much smaller than alone a wall is not drawn, even if what is around it is cut off."""
 
 
 @dataclass(frozen=True)
 class Room:
-    """What a drawing shows, an extent, and how large type and arrows are in it, as a share of their usual size."""
+    """Room for what is around a wall in a drawing.
+
+    Parameters
+    ----------
+    extent
+        What the drawing shows.
+    point
+        Metres that a point of the type takes in it, or somewhat more.
+    share
+        How large type and arrows are, as a share of their usual size.
+    """
 
     extent: Extent
-    share: float = 1.0
+    point: float
+    share: float
 
 
 def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False) -> Sketch:
@@ -48,28 +59,27 @@ def room_for(
     What is around the wall is made smaller where it would leave too little of the drawing to the wall.
     """
     least = metres_of_point(extent, size)
-    for share in SHARES:
-        shown = _extent_with_room(shapes, extent, size, share, numbers)
-        if metres_of_point(shown, size) < CROWDED * least:
-            break
-    return Room(shown, share)
+    rooms = (_room(shapes, extent, size, share, numbers) for share in SHARES)
+    for room in rooms:
+        if room.point < CROWDED * room.share * least:
+            return room
+    return room
 
 
-def _extent_with_room(
+def _room(
     shapes: Sequence[DeformedShape], extent: Extent, size: tuple[float, float], share: float, numbers: bool
-) -> Extent:
-    """An extent with room for what is around the wall, which takes the more metres the more is shown."""
+) -> Room:
+    """Room for what is around the wall, which takes the more metres the more is shown."""
     base = float(shapes[0].scene.blocks.extent(shapes[0].scene.wall)[0][1])
-    point, shown = metres_of_point(extent, size), extent
-    for _ in range(ROUNDS):
+    point = least = metres_of_point(extent, size)
+    while True:
         extents = [sketch_around(shape, share * point, numbers=numbers).extent for shape in shapes]
         floor = (*extent[:2], min(extent[2], base - 1.2 * UNIT * share * point), extent[3])
         shown = _around([floor, *(one for one in extents if one)])
         needed = metres_of_point(shown, size)
-        if needed <= (1 + 1e-3) * point:
-            break
-        point += 1.3 * (needed - point)
-    return shown
+        if needed <= point * (1 + 1e-12) or point > HOPELESS * least:
+            return Room(shown, share * point, share)
+        point += max(1.3 * (needed - point), 0.002 * point)
 
 
 def _around(extents: Sequence[Extent]) -> Extent:
@@ -83,10 +93,9 @@ def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:
     return max((right - left) / size[0], (top - bottom) / size[1]) / 72
 
 
-def annotate(axes: "Axes", shape: DeformedShape, share: float, *, numbers: bool = False) -> None:
-    """Draw the supports of a wall, its ties and its loads into axes that have room for them, `Room.share` as large."""
-    point = metres_of_point((*axes.get_xlim(), *axes.get_ylim()), axes_size(axes))
-    sketch_around(shape, share * point, numbers=numbers).draw(axes, share)
+def annotate(axes: "Axes", shape: DeformedShape, room: Room, *, numbers: bool = False) -> None:
+    """Draw the supports of a wall, its ties and its loads into axes that have room for them."""
+    sketch_around(shape, room.point, numbers=numbers).draw(axes, room.share)
 
 
 def axes_size(axes: "Axes") -> tuple[float, float]:

@@ -95,7 +95,7 @@ def _draw(
         for number in used_joint_materials(scene):
             lines, colour = scene.joints.ends[scene.material_of_joint == number], joint_colour(number)
             _draw_lines(axes, lines, colour, (1.0 if number else 0.6) * width, "solid")
-    annotate(axes, shape, room.share, numbers=numbers)
+    annotate(axes, shape, room, numbers=numbers)
     caption.write(axes)
 
 

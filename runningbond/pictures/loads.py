@@ -23,6 +23,7 @@ from runningbond.scene.actions import unit_vector
 
 from .captions import is_force
 from .deformed_shape import DeformedShape
+from .gravity import draw_gravity, draw_tilt
 from .labels import Spot
 from .quantities import millimetres, minus, readable, times_lambda
 from .sketch import Sketch
@@ -30,8 +31,8 @@ from .style import DARK, DEAD, MOTION
 
 EARTH = (0.0, -9.81)
 
-TILT, STEEPEST = 2.2, math.radians(12)
-"""How deep tilted ground is drawn to fall at most, in units of length, and its steepest slope."""
+MANY = 4
+"""Forces of one load from which on each has an arrow, but not a size of its own."""
 
 
 class LoadDrawing:
@@ -55,7 +56,7 @@ class LoadDrawing:
         for (live, x, y), texts in self.pushes.items():
             self._push(np.array([x, y]), "\n+ ".join(texts), *_look(live))
         if load.gravity != EARTH and any(load.gravity):
-            self._gravity(load.gravity)
+            draw_gravity(self.sketch, self.low, self.high, load.gravity)
 
     def _draw(self, action: Action, live: bool) -> None:
         colour, name = _look(live)
@@ -70,7 +71,7 @@ class LoadDrawing:
                 at = np.array(action.at)
                 self._turn(self._moved(at, self.scene.blocks.containing(at)[:1]), action.moment, live, colour, name)
             case Tilt():
-                self._tilt(action.direction)
+                draw_tilt(self.sketch, self.low, self.high, action.direction)
             case Lateral():
                 self._on_mass(np.array(action.direction), "weight", live)
             case Body():
@@ -82,16 +83,30 @@ class LoadDrawing:
                 self._own(action, live, colour, name)
 
     def _own(self, action: Action, live: bool, colour: str, name: str) -> None:
-        """A load of a user's own, by the arrows that it gives and the forces there."""
+        """A load of a user's own, by the arrows that it gives and the forces there; of many only the sum is said."""
         forces = action.forces(self.scene)
-        for arrow in action.arrows(self.scene):
-            if arrow.at is None:
-                self._on_mass(arrow.direction, "forces on mass", live)
+        arrows = action.arrows(self.scene)
+        tips = [(arrow, arrow.at) for arrow in arrows if arrow.at is not None]
+        for arrow, at in tips:
+            force = forces.force[(forces.at == at).all(axis=1)].sum(axis=0)
+            if len(tips) <= MANY:
+                self._point(at, arrow.block, (float(force[0]), float(force[1])), live, colour, name)
                 continue
-            force = forces.force[(forces.at == arrow.at).all(axis=1)].sum(axis=0)
-            self._point(arrow.at, arrow.block, (float(force[0]), float(force[1])), live, colour, name)
-        for block in np.flatnonzero(forces.moment):
-            self._turn(self.scene.blocks.centroid[block], float(forces.moment[block]), live, colour, name)
+            tip = self._moved(at, arrow.block)
+            self.sketch.arrow(name, [tip - 1.5 * self.a * arrow.direction, tip], colour)
+            self.rows.append(np.sort([tip - 1.5 * self.a * arrow.direction, tip], axis=0))
+        if len(tips) > MANY:
+            arrow, at = tips[len(tips) // 2]
+            total = f"Σ {readable(float(np.hypot(*forces.force.sum(axis=0))), 'N')}"
+            spot = Spot(self._moved(at, arrow.block) - 1.5 * self.a * arrow.direction, _side(-arrow.direction))
+            self.sketch.label(times_lambda(total, live=live), [spot], colour)
+        for arrow in arrows[len(tips) :]:
+            self._on_mass(arrow.direction, "forces on mass", live)
+        turned = np.flatnonzero(forces.moment)
+        for block in turned:
+            said = "" if len(turned) <= MANY else "Σ " if block == turned[0] else None
+            moment = float(forces.moment.sum() if said else forces.moment[block])
+            self._turn(self.scene.blocks.centroid[block], moment, live, colour, name, said)
 
     def _moved(self, at: Array, block: Indices) -> Array:
         return np.asarray(at + self.shape.drawn_displacement(block, at))
@@ -212,10 +227,13 @@ class LoadDrawing:
         span = f"±{millimetres(high)}" if low == -high else f"{minus(1e3 * low)} … {millimetres(high)}"
         return f"u = {span}\n{len(path)} moves", MOTION, "motion", True
 
-    def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str) -> None:
+    def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str, said: str | None = "") -> None:
+        """A moment's arrow, and its size after what is to be said of it; None for no word."""
         a = self.a
         self.sketch.turn(name, at, 0.9 * a, colour, clockwise=moment < 0)
-        text = times_lambda(readable(abs(moment), "N m"), live=live)
+        if said is None:
+            return
+        text = times_lambda(said + readable(abs(moment), "N m"), live=live)
         sides = [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
         self.sketch.label(text, [Spot(at + 0.9 * a * np.array(side), side) for side in sides], colour)
 
@@ -247,37 +265,6 @@ class LoadDrawing:
         above = Spot(highest, (float(-np.sign(direction[0])) if flat else 0.0, 1.0))
         length = max(map(len, text.split("\n"))) * 4 * self.sketch.point
         self.sketch.label(text, [beside, above] if not flat or 2.5 * width > length else [above, beside], colour)
-
-    def _tilt(self, direction: tuple[float, float]) -> None:
-        """A ground line that falls to the side of the direction, below the level one, and the angle between them."""
-        a, sense = self.a, math.copysign(1.0, direction[0])
-        base = self.low[1] - 0.9 * a
-        start, end = (self.low[0] - a, self.high[0] + a)[:: int(sense)]
-        fall = min(TILT * a, abs(end - start) * math.tan(STEEPEST))
-        self.sketch.line("live load", [(start, base), (end, base)], lw=0.6, ls=(0, (4, 2)))
-        self.sketch.line("live load", [(start, base), (end, base - fall)], lw=1.2)
-        near = end - sense * 0.12 * abs(end - start)
-        self.sketch.arrow("live load", [(near, base), (near, base - 0.88 * fall)], DARK)
-        place = np.array([near - sense * 0.4 * a, base - 0.9 * fall])
-        self.sketch.label(
-            "λ = tan α", [Spot(place, (-sense, -1.0)), Spot(np.array([end, base - fall]), (-sense, -1.0))]
-        )
-        at = np.array([near - sense * 0.2 * a, base - 0.5 * fall])
-        self.sketch.label("α", [Spot(at, (-sense, 0.0)), Spot(at + sense * np.array([0.6 * a, 0]), (sense, 0.0))])
-
-    def _gravity(self, gravity: tuple[float, float]) -> None:
-        """The vector of gravity beside everything else, on the side that fewer loads come from."""
-        a, size = self.a, math.hypot(*gravity)
-        left, right, *_ = self.sketch.room() or (0.0, 0.0)
-        left, right = min(left, self.low[0]), max(right, self.high[0])
-        sense = 1.0 if right - self.high[0] <= self.low[0] - left else -1.0
-        half = 1.2 * a * np.array(gravity) / size
-        x = (right if sense > 0 else left) + sense * (0.8 * a + abs(half[0]))
-        middle = np.array([x, self.low[1] + 0.6 * (self.high[1] - self.low[1])])
-        self.sketch.arrow("gravity", [middle - half, middle + half], DEAD)
-        text = f"g = {minus(size)} m/s²" if not gravity[0] else f"g = ({minus(gravity[0])}, {minus(gravity[1])}) m/s²"
-        spot = Spot(middle + [sense * abs(half[0]), 0.0], (sense, 0.0), upright=True)
-        self.sketch.label(text, [spot, Spot(middle, (sense, 0.0))], DEAD)
 
 
 def _look(live: bool) -> tuple[str, str]:

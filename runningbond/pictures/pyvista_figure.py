@@ -1,12 +1,13 @@
 """Figures with a wall painted by PyVista: a mechanism, or one moment of a run."""
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
-from .annotations import annotate, room_for
+from .annotations import Room, annotate, room_for
 from .captions import (
     TALLEST,
     WIDTH,
@@ -53,13 +54,19 @@ def frame_figure(
 
 
 def _figure(shape: DeformedShape, painter: Painter, caption: Caption, last: DeformedShape) -> "Figure":
-    room = room_for([last, undeformed_shape(shape.scene)], last.extent, (WIDTH, TALLEST))
+    room = _room(last)
     figure, axes = figure_with_room(room.extent, caption)
     draw_painted(axes, shape, painter, last.extent)
     show_extent(axes, room.extent)
-    annotate(axes, shape, room.share)
+    annotate(axes, shape, room)
     caption.write(axes)
     return figure
+
+
+@lru_cache(maxsize=1)
+def _room(last: DeformedShape) -> Room:
+    """Room for all frames of a film, from the wall at rest to the last one."""
+    return room_for([last, undeformed_shape(last.scene)], last.extent, (WIDTH, TALLEST))
 
 
 def draw_painted(axes: "Axes", shape: DeformedShape, painter: Painter, extent: Extent) -> None:

@@ -158,6 +158,6 @@ class Sketch:
                 rotation=90 if one.upright else 0,
                 fontsize=share * one.label.size,
                 color=one.label.colour,
-                path_effects=[withStroke(linewidth=0.3 * share * one.label.size, foreground="white")],
+                path_effects=[withStroke(linewidth=0.42 * share * one.label.size, foreground="white")],
                 zorder=8,
             )
