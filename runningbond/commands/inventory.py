@@ -128,7 +128,9 @@ def _kind(scene: Scene, load: Action) -> str:
         case BeamLoad():
             path = scene.beam.drive.path if scene.beam and scene.beam.drive and load.key == "beam.drive" else ()
             moves = ", ".join(minus(1e3 * x) for x in path[:8]) + (", …" if len(path) > 8 else "")
-            return f"moved to {moves} mm, the force that takes" if path else "on the beam"
+            rate = scene.beam.drive.rate if path and scene.beam and scene.beam.drive else None
+            speed = f" at {millimetres(rate)}/s" if rate else ""
+            return f"moved to {moves} mm{speed}, the force that takes" if path else "on the beam"
         case LineLoad():
             length = float(np.hypot(*np.subtract(load.end, load.start)))
             return f"{readable(float(np.hypot(*load.force)), 'N/m')} along {length:.4g} m"

@@ -225,7 +225,8 @@ class LoadDrawing:
             return f"u = {millimetres(path[0])}", MOTION, "motion", False
         low, high = min(path), max(path)
         span = f"±{millimetres(high)}" if low == -high else f"{minus(1e3 * low)} … {millimetres(high)}"
-        return f"u = {span}\n{len(path)} moves", MOTION, "motion", True
+        moves = int(np.count_nonzero(np.diff([0.0, *path])))
+        return f"u = {span}\n{moves} moves", MOTION, "motion", True
 
     def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str, said: str | None = "") -> None:
         """A moment's arrow, and its size after what is to be said of it; None for no word."""

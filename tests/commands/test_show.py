@@ -95,7 +95,7 @@ def test_the_beam_and_what_drives_it_are_told() -> None:
     told = dict(rows(scene_from_dict(SCENES["shear_wall"]())))
     assert told["beam"] == "0.25 m high, 500 kg, 4.905 kN, kept level, free to rise, on joints of mortar"
     assert told["beam.drive"].startswith(
-        "moved to 0, 1, −1, 2, −2, 4, −4 mm, the force that takes: (1, 0) N, −0.625 N m"
+        "moved to 0, 1, −1, 2, −2, 4, −4 mm at 1 mm/s, the force that takes: (1, 0) N, −0.625 N m"
     )
     assert told["beam.force"] == "on the beam: (0, −100) kN, −50 kN m about (0, 0)"
     driven = SCENES["kept_beam"]()
