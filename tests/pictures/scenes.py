@@ -1,11 +1,13 @@
 """Scenes for pictures, which together have every key of a scene file that is drawn."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from runningbond.scene import Scene, scene_from_dict
 
 from ..scenes import write_drawing
+
+Outline: TypeAlias = list[tuple[float, float]]
 
 MORTAR = {"friction": 0.75, "cohesion": 1e5, "tensile_strength": 5e4}
 OAK = {"density": 700.0}
@@ -212,17 +214,14 @@ def large() -> dict[str, Any]:
     }
 
 
-def arch(folder: Path) -> Scene:
-    """Drawn in millimetres: two piers on a slope, and a lintel on them."""
-    ground: list[tuple[float, float]] = [(-500, -600), (2500, -600), (2500, 100), (-500, 400)]
-    feet: list[list[tuple[float, float]]] = [
-        [(x, 350 - 0.1 * x), (x + 400, 310 - 0.1 * x), (x + 400, 600), (x, 600)] for x in (0, 1400)
-    ]
-    tops: list[list[tuple[float, float]]] = [[(x, 600), (x + 400, 600), (x + 400, 900), (x, 900)] for x in (0, 1400)]
-    outlines: list[list[tuple[float, float]]] = [ground, *feet, *tops, [(0, 900), (1800, 900), (1800, 1100), (0, 1100)]]
-    write_drawing(outlines, folder / "wall.dxf")
+def on_a_step(folder: Path) -> Scene:
+    """Drawn in millimetres: a pier on a step, another one below it, and a lintel on both."""
+    ground: Outline = [(-500, -600), (2500, -600), (2500, 0), (900, 0), (900, 300), (-500, 300)]
+    sides = [(0, 300, 400, 600), (0, 600, 400, 900), (1400, 0, 1800, 450), (1400, 450, 1800, 900), (0, 900, 1800, 1100)]
+    blocks: list[Outline] = [[(a, b), (c, b), (c, d), (a, d)] for a, b, c, d in sides]
+    write_drawing([ground, *blocks], folder / "wall.dxf")
     scene = wall(0, 0) | {
-        "title": "On sloping ground",
+        "title": "On a step",
         "wall": {"drawing": "wall.dxf", "units": "mm", "thickness": 0.3},
         "load": {"gravity": 9.81, "live": [point(0.9, 1.1, 0, -1e3), {"kind": "lateral", "direction": [-1, 0]}]},
     }

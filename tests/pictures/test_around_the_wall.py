@@ -27,7 +27,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Action, Array, Forces, Scene, scene_from_dict
 
 from ..scene.test_loads import Wind
-from .scenes import SCENES, arch, facade, large, line, point, settling_portal, wall
+from .scenes import SCENES, facade, large, line, on_a_step, point, settling_portal, wall
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Own(Action):
         return Forces.on(scene, (1.0, 0.0), moment)
 
 
-NAMES = [*SCENES, "arch"]
+NAMES = [*SCENES, "on_a_step"]
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,9 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Sce
 
     def draw(name: str) -> tuple[Scene, Figure]:
         if name not in made:
-            scene = arch(tmp_path_factory.mktemp("arch")) if name == "arch" else scene_from_dict(SCENES[name]())
+            scene = (
+                on_a_step(tmp_path_factory.mktemp("step")) if name == "on_a_step" else scene_from_dict(SCENES[name]())
+            )
             figure = figure_of(scene)
             made[name] = scene, figure
         return made[name]
@@ -156,7 +158,7 @@ LIVE, DEAD_LOAD, MOVED = "live load", "dead load", "motion"
         ("tilted", ["g = 1.62 m/s²", "α", "λ = tan α"], {LIVE: 1, "gravity": 1}),
         ("cracked", ["P"], {LIVE: 1}),
         ("one_block", ["λ · 1.044 kN/m"], {LIVE: 5}),
-        ("arch", ["λ · 1 kN", "λ · weight"], {LIVE: 6}),
+        ("on_a_step", ["λ · 1 kN", "λ · weight"], {LIVE: 6}),
     ],
 )
 def test_each_load_is_drawn_with_its_size(name: str, said: list[str], counts: dict[str, int], drawn: Any) -> None:
@@ -373,7 +375,7 @@ def test_numbers_can_be_read_in_a_wall_of_two_thousand_blocks() -> None:
 
 @pytest.mark.parametrize("numbers", [False, True])
 def test_pictures_of_both_kinds_are_written(numbers: bool, tmp_path: Path) -> None:
-    scene = arch(tmp_path)
+    scene = on_a_step(tmp_path)
     assert to_svg(figure_of(scene, numbers=numbers)).startswith(b"<?xml")
     assert to_svg(figure_of(scene, numbers=numbers)) == to_svg(figure_of(scene, numbers=numbers))
     assert to_png(figure_of(scene, numbers=numbers)).startswith(b"\x89PNG")
