@@ -92,7 +92,7 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     for line, (shapes, captions, extent), label in zip(grid, rows, labels, strict=True):
         _write(line[0], -0.04, 0.5, "\n".join(label), ha="right", va="center", fontsize=7.5)
         for axes, shape, caption in zip(line, shapes, captions, strict=True):
-            draw_painted(axes, shape, painter, extent, annotated=False)
+            draw_painted(axes, shape, painter, extent)
             _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
     handles = colour_key((JointState.SLIDE, JointState.OPEN))
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
