@@ -21,13 +21,15 @@ from threadpoolctl import threadpool_limits
 
 from runningbond.joints import stiffness_note
 from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
+from runningbond.limit.equilibrium import equilibrium
 from runningbond.limit.kinematics import control_row, movable_freedoms
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
+from .led import is_led, lead_along
 from .pushover import LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
 from .relaxation import relax
-from .static_system import Control, StaticSystem, static_system
+from .static_system import Control, StaticSystem, static_system, with_late_pins
 
 FIRST_STEP = 0.03
 """First load, in units of `Equilibrium`."""
@@ -95,12 +97,18 @@ def dem_static(
         if rest.verdict != "rest":
             outcome = _fallen(replace(outcome, steps=rest.solves), system)
         else:
+            if len(scene.late_pins):
+                system, late = with_late_pins(system, rest.x)
+                rest = replace(rest, x=late)
             path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
             observe(system, path.rests[0])
-            undecided = _climb(path, first_step, tolerance, past)
-            for state in path.past:
-                observe(system, state)
-            outcome = _judge(outcome, path, undecided)
+            if is_led(scene):
+                outcome = lead_along(outcome, path, tolerance, first_step)
+            else:
+                undecided = _climb(path, first_step, tolerance, past)
+                for state in path.past:
+                    observe(system, state)
+                outcome = _judge(outcome, path, undecided)
             message = "; ".join(part for part in (outcome.message, _window(path)) if part)
             outcome = replace(outcome, message=message, steps=budget - path.budget)
     return replace(outcome, seconds=time.perf_counter() - start)
@@ -109,7 +117,8 @@ def dem_static(
 def _window(path: LoadPath) -> str:
     """What there is to say of the stiffness of joints: at rest under the dead load."""
     equations, law, unit = path.system.equilibrium, path.system.law, path.system.length_unit
-    overlap = unit * float((-path.rests[0].force[:, 0] / law.normal_stiffness).max(initial=0.0))
+    normal = path.rests[0].force[:, 0]
+    overlap = unit * float((-normal / law.normal_stiffness[: len(normal)]).max(initial=0.0))
     stiffest = float(max(law.normal_stiffness.max(initial=0.0), law.shear_stiffness.max(initial=0.0)))
     spring, size = equations.force_unit / unit, equations.scene.lowest_block
     return stiffness_note(overlap, path.far * unit, size, spring * stiffest, equations.force_unit)
@@ -171,6 +180,6 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:
     """Outcome of a wall that was not brought to rest under its dead load."""
-    if not stands_under_dead_load(system.equilibrium):
+    if not stands_under_dead_load(equilibrium(system.equilibrium.scene)):
         return replace(result, status="infeasible", message=NO_EQUILIBRIUM)
     return replace(result, message="no equilibrium was found under the dead load, though forces exist that balance it")
