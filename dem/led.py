@@ -160,7 +160,7 @@ def _run(path: LoadPath, lead: Lead, share: float) -> Run:
     states = [path.rests[0]]
     for value, turns in lead.stops(share):
         now = states[-1]
-        guesses = [] if turns else [(lead.onward(states[-2], now, value), False)]
+        guesses = [] if turns else [(lead.onward(states[-2], now, value), True)]
         for guess, creeps in (*guesses, (lead.elastically(now, value), True)):
             result = path.hold(guess, now.plastic_slip, lead.control(value), LONGEST, creeps)
             if result.verdict == "rest":
@@ -248,7 +248,7 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     if formed:
         message = f"no answer: other steps change it by more than the bracket; {what}"
         return replace(outcome, lower=lower, upper=upper, message=message)
-    reached = f"{number(answers[-1])} at {at}"
+    reached = f"{number(answers[-1])} at {outcome.curve[:, 0].max():.4g} m"
     if lead.settles:
         message = f"no answer: the support still sheds load where its settlement ends, it bears {reached}; {what}"
         return replace(so_far, message=message)

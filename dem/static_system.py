@@ -201,18 +201,13 @@ class StaticSystem:
         """Where the entries of the tangent go: the joint points' 6 × 6 tangents, the springs at ties' ends, C twice."""
         nd, own, scene = self.freedoms, self._freedoms_of_points, self.equilibrium.scene
         pins, ends = self.equilibrium.reaction.tocoo(), self._freedoms_of_ends
-        row: list[Indices] = [
-            np.repeat(own, 6, axis=1).ravel(),
-            np.repeat(ends, 3, axis=1).ravel(),
-            pins.row,
-            nd + pins.col,
-        ]
-        column: list[Indices] = [np.tile(own, 6).ravel(), np.tile(ends, 3).ravel(), nd + pins.col, pins.row]
+        row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), np.repeat(ends, 3, axis=1).ravel()])
+        column = np.concatenate([np.tile(own, 6).ravel(), np.tile(ends, 3).ravel()])
+        row, column = np.concatenate([row, pins.row, nd + pins.col]), np.concatenate([column, nd + pins.col, pins.row])
         home = np.repeat(scene.blocks.centroid[~scene.fixed], 3, axis=0)
         held = np.empty((pins.shape[1], 2))
         held[pins.col] = home[pins.row]
-        position = np.concatenate([home, held])
-        return band(np.concatenate(row), np.concatenate(column), position, 0.1 * scene.lowest_block)
+        return band(row, column, np.concatenate([home, held]), 0.1 * scene.lowest_block)
 
 
 def _independent(pins: csc_array) -> csc_array:
