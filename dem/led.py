@@ -11,28 +11,18 @@ it has changed by less than the tolerance, or the wall falls. Else the wall stil
 load, where the way ends, and the answer bounds the collapse from one side only.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from runningbond.limit.associated import is_self_locking
-from runningbond.limit.kinematics import control_row
-from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.results.outcome import number
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array
 
+from .lead import Lead
 from .pushover import LoadPath, StaticState, state_of
-from .relaxation import LONGEST, Rest
-from .static_system import Control, StaticSystem
-
-STEPS = 25
-"""Least number of steps in the longest leg of a way."""
-
-GROWTH = 1.3
-"""Growth of steps from one to the next."""
+from .relaxation import Rest
 
 RUNS = 4
 """Runs, each in steps half as long as those before, after which a way is left undecided."""
@@ -40,106 +30,11 @@ RUNS = 4
 LAST = 0.1
 """Part of a way over which a force that has formed a mechanism no longer changes."""
 
+HALVINGS = 20
+"""Steps to the fall of a wall from its last rest, each half as long as the last one."""
+
 LITTLE = 0.01
 """Share of the dead load below which a reaction need not be relatively accurate."""
-
-REGULAR = 1e-6
-"""Share of the elastic stiffness by which the tangent of a first guess is made regular."""
-
-
-def is_led(scene: Scene) -> bool:
-    """Whether displacements are prescribed to a scene, not loads."""
-    return scene.settlement is not None or any(key.startswith("beam.drive.displacement") for key in scene.extras)
-
-
-@dataclass(frozen=True, eq=False)
-class Lead:
-    """What leads a wall: the beam's drive, or the supports with a share of their settlement."""
-
-    system: StaticSystem
-    origin: StaticState  # at rest under the dead load
-    first_step: float  # load that an elastic first step is worth
-
-    @property
-    def scene(self) -> Scene:
-        """The scene."""
-        return self.system.equilibrium.scene
-
-    @property
-    def settles(self) -> bool:
-        """Whether supports are led, not the beam."""
-        return self.scene.settlement is not None
-
-    @cached_property
-    def metre(self) -> float:
-        """Displacement [m] that counts as 1: the settlement asked for, or the unit of f_live · q."""
-        if self.settles:
-            moved = float(control_row(self.scene) @ self.scene.support_motion.ravel())
-            return moved or largest_displacement(self.scene)
-        return self.system.equilibrium.force_unit / self.system.equilibrium.live_unit * self.system.length_unit
-
-    @cached_property
-    def goals(self) -> Array:
-        """Values that are led to one after the other."""
-        drive = self.scene.beam.drive if self.scene.beam else None
-        return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path) / self.metre
-
-    @cached_property
-    def elastic_step(self) -> float:
-        """First step."""
-        system, state = self.system, self.origin
-        if system.support_jump is not None:
-            return self.first_step / float(np.abs(system.support_jump).max())
-        tangent = system.respond(state.x, state.plastic_slip).tangent + REGULAR * system.elastic
-        load = np.append(np.zeros(system.unknowns - 1), self.first_step)
-        step = system.solve(tangent, Control(self.first_step, multiplier=True), load)
-        return abs(float(system.equilibrium.live @ step[: system.freedoms]))
-
-    def stops(self, share: float) -> Iterator[tuple[float, bool]]:
-        """Values to hold on the way, each with whether it is the first of a leg, in steps of that share's length."""
-        at, goals = 0.0, self.goals
-        longest = np.abs(np.diff(goals, prepend=0.0)).max() / STEPS
-        for goal in goals:
-            lengths = [0.0]
-            step = min(self.elastic_step, longest)
-            while lengths[-1] < abs(goal - at):
-                lengths.append(lengths[-1] + share * step)
-                step = min(step * GROWTH**share, longest)
-            for k, length in enumerate(lengths[1:]):
-                yield float(at + (goal - at) * length / lengths[-1]), k == 0
-            at = goal
-
-    def control(self, value: float) -> Control:
-        """The equation that holds a value."""
-        return Control(value if self.settles else self.origin.displacement + value, multiplier=self.settles)
-
-    def value(self, state: StaticState) -> float:
-        """The value that is held in a state."""
-        return state.multiplier if self.settles else state.displacement - self.origin.displacement
-
-    def force(self, state: StaticState) -> float:
-        """Reaction of the drive along its first move [N], or of the supports against theirs, as a share."""
-        system, jump = self.system, self.system.support_jump
-        if jump is None:
-            return system.equilibrium.live_unit * state.multiplier
-        work = float((jump[:, : len(state.force)] * state.force.T).sum() + jump[0, len(state.force) :] @ state.pull)
-        return -work * system.equilibrium.force_unit * system.length_unit / reaction_unit(self.scene)
-
-    def onward(self, before: StaticState, now: StaticState, value: float) -> Array:
-        """Unknowns ahead, if the wall goes on as in its last step."""
-        ahead = (value - self.value(now)) / (self.value(now) - self.value(before))
-        return np.asarray(now.x + ahead * (now.x - before.x))
-
-    def elastically(self, now: StaticState, value: float) -> Array:
-        """Unknowns ahead, if no point opens or slides farther."""
-        if self.settles:
-            return np.append(now.x[:-1], value)
-        response = self.system.respond(now.x, now.plastic_slip)
-        pressed = (response.normal != 0)[:, None, None]
-        tangent = self.system.elastic * np.where(pressed, 1.0, REGULAR)
-        ahead = self.control(value)
-        right = np.append(np.zeros(self.system.unknowns - 1), ahead.value - now.displacement)
-        return np.asarray(now.x + self.system.solve(tangent, ahead, right))
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,16 +54,39 @@ class Run:
 def _run(path: LoadPath, lead: Lead, share: float) -> Run:
     states = [path.rests[0]]
     for value, turns in lead.stops(share):
-        now = states[-1]
-        guesses = [] if turns else [(lead.onward(states[-2], now, value), True)]
-        for guess, creeps in (*guesses, (lead.elastically(now, value), True)):
-            result = path.hold(guess, now.plastic_slip, lead.control(value), LONGEST, creeps)
-            if result.verdict == "rest":
-                break
-        else:
+        result = _hold(path, lead, states, value, turns)
+        if result.verdict == "fall":
+            return _closer(path, lead, Run(states, result, value), turns)
+        if result.verdict == "undecided":
             return Run(states, result, value)
         states.append(state_of(path.system, result))
     return Run(states, None, value)
+
+
+def _hold(path: LoadPath, lead: Lead, states: list[StaticState], value: float, turns: bool) -> Rest:
+    """Hold a value after some states, the first one of a leg where the way `turns`, until the wall rests or falls."""
+    now = states[-1]
+    if not turns:
+        guess = lead.onward(states[-2], now, value)
+        if (result := path.hold(guess, now.plastic_slip, lead.control(value))).verdict == "rest":
+            return result
+    return path.hold(lead.elastically(now, value), now.plastic_slip, lead.control(value))
+
+
+def _closer(path: LoadPath, lead: Lead, run: Run, turns: bool) -> Run:
+    """A run that ended in a fall, with the states between its last rest and there."""
+    states, fall, aim = [*run.states], run.stopped, run.aim
+    for _ in range(HALVINGS):
+        value = (lead.value(states[-1]) + aim) / 2
+        result = _hold(path, lead, states, value, turns)
+        if result.verdict == "undecided":
+            break
+        if result.verdict == "fall":
+            fall, aim = result, value
+        else:
+            states.append(state_of(path.system, result))
+            turns = False
+    return Run(states, fall, aim)
 
 
 def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: float) -> Outcome:
@@ -241,7 +159,7 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
         return replace(so_far, message=f"no answer: at {at} it neither rested nor fell; {what}")
     formed = run.fell or _formed(lead, outcome.curve, tolerance)
     if formed and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
-        fall = f"; the wall falls on its way to {at}, this is of its last rest before" if run.fell else ""
+        fall = f"; the wall falls at {at}, this is of its last rest" if run.fell else ""
         return replace(
             outcome, status="collapse", multiplier=answers[-1], lower=lower, upper=upper, message=what + fall
         )

@@ -112,7 +112,9 @@ class LoadPath:
             stride = min(stride * lengthened(result.solves), STRIDE * (states[-1].displacement - origin))
         self.past = states[2:]
 
-    def hold(self, start: Array, plastic_slip: Array, control: Control, budget: int, creeps: bool = True) -> Rest:
+    def hold(
+        self, start: Array, plastic_slip: Array, control: Control, budget: int = LONGEST, creeps: bool = True
+    ) -> Rest:
         """Let the wall come to rest or fall, and count the linear systems."""
         result = relax(self.system, start, plastic_slip, control, self.far, min(budget, self.budget), creeps=creeps)
         self.budget -= result.solves

@@ -26,7 +26,8 @@ from runningbond.limit.kinematics import control_row, movable_freedoms
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
-from .led import is_led, lead_along
+from .lead import is_led
+from .led import lead_along
 from .pushover import LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system, with_late_pins

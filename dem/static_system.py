@@ -19,6 +19,7 @@ from scipy.sparse import csc_array, csr_array, hstack
 from runningbond.joints import PointLaw, PointResponse, static_law, wall_stiffness
 from runningbond.limit.equilibrium import Equilibrium, equilibrium
 from runningbond.limit.kinematics import jump_operator, movable_freedoms, pin_operator
+from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Indices, Scene
 
 from .band import Band, band
@@ -230,7 +231,7 @@ def static_system(scene: Scene) -> StaticSystem:
     Raises
     ------
     SceneError
-        If the scene gives its joints no stiffness, or a law that has no tangent.
+        If the scene gives its joints no stiffness, or a law that has no tangent; for a support under a weightless wall.
     """
     system, ties = equilibrium(scene), scene.ties
     system = replace(system, reaction=_independent(_rows(system, pin_operator(scene))))
@@ -251,6 +252,7 @@ def static_system(scene: Scene) -> StaticSystem:
         system = replace(system, opening=opening, slip=slip)
     support_jump = None
     if scene.settlement is not None:
+        reaction_unit(scene)  # refuses a wall that nothing moves
         system = replace(system, live=np.zeros(system.freedoms), live_unit=1.0)
         moved, jump = scene.support_motion.ravel() / length, jump_operator(system.points, scene.blocks.centroid)
         normal_jump, none = np.append(jump.opening @ moved, longer @ moved), np.zeros(len(ties))
