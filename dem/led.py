@@ -33,6 +33,9 @@ LAST = 0.1
 HALVINGS = 20
 """Steps to the fall of a wall from its last rest, each half as long as the last one."""
 
+STILL = 1e-6
+"""Change of a share that counts as none, beside the tolerance's part of all its change."""
+
 LITTLE = 0.01
 """Share of the dead load below which a reaction need not be relatively accurate."""
 
@@ -182,7 +185,7 @@ def _formed(lead: Lead, curve: Array, tolerance: float) -> bool:
     value, force = curve.T
     late = value >= (1 - LAST) * value.max()
     if lead.settles:
-        return bool(np.ptp(force[late]) <= tolerance * max(float(np.abs(force[late]).max()), LITTLE))
+        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + STILL)
     most = float(force[late].max())
     return most - float(force[~late].max(initial=0.0)) <= tolerance * most
 

@@ -122,8 +122,8 @@ def test_tie_on_the_side_of_the_push_goes_slack() -> None:
 
 @pytest.mark.parametrize("preload", [0.0, 400.0])
 def test_lifted_block_follows_the_line_of_its_joint_and_then_of_its_tie(preload: float) -> None:
-    """With e the lift above the stress-free joint: λ = W + P + (k_n A + K) e below e = 0, where a tie without preload is
-    slack, W + P + K e above, and W + Y at the end; at rest (k_n A + K) e = −W − P."""
+    """With e the lift above the stress-free joint: λ = W + P + (k_n A + K) e below e = 0 (K = 0 there
+    without preload), W + P + K e above, and W + Y at the end; (k_n A + K) e = −W − P at rest."""
     k, most, joint = 3e6, 1e3, 1e10 * 0.05
     pressed = joint + (k if preload else 0.0)
     hanging = tied([PIER], [tie((0.25, 1.0), (0.25, -0.1), k, most, preload)], PointLoad((0.25, 2.0), (0.0, 1.0)))
