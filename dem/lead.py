@@ -55,6 +55,11 @@ class Lead:
         return self.system.equilibrium.force_unit / self.system.equilibrium.live_unit * self.system.length_unit
 
     @cached_property
+    def joule(self) -> float:
+        """Work on the wall [J] of a force that counts as 1, on the way of 1."""
+        return -reaction_unit(self.scene) if self.settles else self.metre
+
+    @cached_property
     def goals(self) -> Array:
         """Values that are led to one after the other."""
         drive = self.scene.beam.drive if self.scene.beam else None

@@ -16,7 +16,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runningbond.limit.associated import is_self_locking
-from runningbond.results import Outcome, fastest_corner_by_one
+from runningbond.limit.kinematics import dead_load
+from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.scene import Array
 
@@ -63,6 +64,7 @@ def _run(path: LoadPath, lead: Lead, share: float) -> Run:
         if result.verdict == "undecided":
             return Run(states, result, value)
         states.append(state_of(path.system, result))
+        path.past = states[1:]
     return Run(states, None, value)
 
 
@@ -120,7 +122,7 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
             break
     path.past = runs[-1].states[1:]
     for state in path.past:
-        path.observe(path.system, state)
+        path.observe(path, state)
     return _judge(_arrays(outcome, lead, runs[-1]), lead, runs, answers, tolerance)
 
 
@@ -142,11 +144,16 @@ def _arrays(outcome: Outcome, lead: Lead, run: Run) -> Outcome:
     else:
         before = states[0 if lead.settles else max(farthest - 1, 0)]
         moving = system.motion(states[farthest].x) - system.motion(before.x)
+    forces = [system.equilibrium.force_unit * state.force for state in states]
+    dead = np.array([state.x[: system.freedoms] for state in states]) @ system.per_freedom(dead_load(lead.scene))
+    live = np.append(0.0, np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(value))) * lead.joule
+    held = Supports(lead.scene, system.equilibrium.points)
     return replace(
         outcome,
         curve=np.column_stack([lead.metre * value, force]),
         motion=fastest_corner_by_one(lead.scene.blocks, moving) if moving.any() else np.zeros((0, 3)),
-        force=system.equilibrium.force_unit * states[most].force,
+        force=forces[most],
+        **held.path(forces, force, np.column_stack([dead, live])),
     )
 
 

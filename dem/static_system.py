@@ -79,6 +79,11 @@ class StaticSystem:
         motion[movable_freedoms(scene)] = x[: self.freedoms] * self.equilibrium.scale * self.length_unit
         return motion.reshape(-1, 3)
 
+    def per_freedom(self, row: Array) -> Array:
+        """A row ``(3 nb,)`` per motion of the blocks [m, rad] as one per scaled freedom, ``(nd,)``."""
+        system = self.equilibrium
+        return np.asarray(row[movable_freedoms(system.scene)] * system.scale * self.length_unit)
+
     def unbalanced(self, x: Array, response: PointResponse, control: Control) -> Array:
         """Residual of all equations, ``(n,)``."""
         system, nd = self.equilibrium, self.freedoms

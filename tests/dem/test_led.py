@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dem.pushover import StaticState
+from dem.pushover import LoadPath, StaticState
 from dem.static import dem_static
-from dem.static_system import StaticSystem
 from runningbond.compare import MODELS, run_model
 from runningbond.compare.recording import StaticRecorder
 from runningbond.limit.settlement import reaction_unit
@@ -83,6 +82,28 @@ def test_block_under_a_level_beam_bends_doubly_and_bears_twice_what_it_does_unde
     check(dem_static(under_beam(condition, drive)), exact, upper=None if drive.path else 0.01)
 
 
+def test_reactions_at_the_end_of_a_drive_are_those_by_hand() -> None:
+    """The level beam is held by N b/2 against the press at one of its corners, the ground bears N + W and −H; the drive
+    has done the work of the plateau, and that of its elastic start at half the force."""
+    outcome = dem_static(under_beam("level", PUSHES[1]))
+    most = (1e4 + WEIGHT) / 2
+    end = dict(zip(outcome.path_columns, outcome.path[-1], strict=True))
+    moment = next(value for name, value in end.items() if name.startswith("beam moment"))
+    assert moment == pytest.approx(5e3, rel=1e-6)
+    assert end["ground vertical [N]"] == pytest.approx(1e4 + 2 * WEIGHT, rel=1e-6)
+    assert end["ground horizontal [N]"] == pytest.approx(-most, rel=1e-6)
+    assert 0.99 * 0.01 * most < end["work of the live load [J]"] < 0.01 * most
+
+
+def test_settling_support_takes_what_the_dead_load_gives() -> None:
+    """A block that sinks with all its ground: W s from the dead load, and as much against the support's reaction."""
+    outcome = dem_static(wall([rectangle(0, 0, 1, 1)], ground_moves(-3.0, 3.0, (0.0, -0.01))))
+    check(outcome, 1.0)
+    dead, live = outcome.path[:, -3:-1].T
+    assert dead[-1] - dead[0] == pytest.approx(WEIGHT * 0.01)
+    assert live[-1] == pytest.approx(-WEIGHT * 0.01)
+
+
 @pytest.mark.parametrize("condition", ["level", "free"])
 def test_driven_beam_slides_at_the_friction_of_its_own_joint(condition: Condition) -> None:
     """μ N, the weight of the block below it not counting; its curve stays there."""
@@ -114,20 +135,20 @@ def test_wall_under_a_beam_of_fixed_height_is_a_strut_that_hardens() -> None:
 
 def test_fixed_height_lets_the_dead_load_settle_the_wall_before_it_holds() -> None:
     """At rest joints carry N + W and N, and none of it hangs in what holds the beam."""
-    seen: list[tuple[StaticSystem, StaticState]] = []
+    seen: list[tuple[LoadPath, StaticState]] = []
     dem_static(under_beam("fixed-height", PUSHES[1]), observe=lambda *state: seen.append(state))
-    system, rest = seen[0]
+    system, rest = seen[0][0].system, seen[0][1]
     pressed = rest.force[:, 0] * system.equilibrium.force_unit
     assert sorted(pressed) == pytest.approx([-5e3 - WEIGHT] * 2 + [-5e3] * 2, rel=1e-9)
     assert rest.x[system.freedoms : -1] == pytest.approx(0.0, abs=1e-9)
-    heights = [system.motion(state.x)[1, 1] for system, state in seen]
+    heights = [system.motion(state.x)[1, 1] for _, state in seen]
     assert heights == pytest.approx([heights[0]] * len(heights), rel=1e-9)
 
 
 def test_cyclic_drive_of_a_sliding_beam_dissipates_the_area_of_its_loop() -> None:
     """Rigid-plastic ± μ N on an elastic slope k: from a to −a and back 4 μ N (a − μ N / k), all of it in friction."""
     a, most, states = 1e-3, 300.0, []
-    seen: list[tuple[StaticSystem, StaticState]] = []
+    seen: list[tuple[LoadPath, StaticState]] = []
     drive = Drive.along((a, -a, a), 2.0)
     outcome = dem_static(under_beam("level", drive, 1e3, friction=0.3), observe=lambda *state: seen.append(state))
     check(outcome, most)
@@ -137,10 +158,13 @@ def test_cyclic_drive_of_a_sliding_beam_dissipates_the_area_of_its_loop() -> Non
     start, end = (int(k) for k in np.flatnonzero(np.isclose(d, a, rtol=1e-9)))
     assert np.isclose(d[start:end].min(), -a)
     loop = float(((force[start + 1 : end + 1] + force[start:end]) / 2 * np.diff(d[start : end + 1])).sum())
+    work = outcome.path[:, outcome.path_columns.index("work of the live load [J]")]
+    assert work[end] - work[start] == pytest.approx(loop)
     slope = force[1] / d[1]
     assert loop == pytest.approx(4 * most * (a - most / slope), rel=1e-2)
     states = [state for _, state in seen][start : end + 1]
-    unit = seen[0][0].equilibrium.force_unit * seen[0][0].length_unit
+    system = seen[0][0].system
+    unit = system.equilibrium.force_unit * system.length_unit
     slid = np.diff([state.plastic_slip for state in states], axis=0)
     dissipated = unit * float((slid * np.array([state.force[:, 1] for state in states[1:]])).sum())
     assert dissipated == pytest.approx(4 * most * (a - most / slope), rel=1e-3)
