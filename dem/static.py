@@ -157,7 +157,8 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
     unit = equations.live_unit
     q = np.array([state.x[: system.freedoms] for state in states])
     loads = np.array([unit * state.multiplier for state in states])
-    moved, dead, live = (q @ system.per_freedom(row(equations.scene)) for row in (control_row, dead_load, live_load))
+    moved, dead, live = (system.per_freedom(row(equations.scene)) for row in (control_row, dead_load, live_load))
+    dead, live = q @ dead, q @ live
     mean = (loads[1:] + loads[:-1]) / 2
     works = np.column_stack([dead, loads[0] * live[0] + np.append(0.0, np.cumsum(mean * np.diff(live)))])
     forces = [equations.force_unit * state.force for state in states]
@@ -166,7 +167,7 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
         result,
         lower=unit * peak.multiplier,
         upper=None if path.upper is None else unit * path.upper,
-        curve=np.column_stack([moved - moved[0], loads]),
+        curve=np.column_stack([(q - q[0]) @ moved, loads]),
         motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
         force=equations.force_unit * peak.force,
         **Supports(equations.scene, equations.points).path(forces, loads, works),

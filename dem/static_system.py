@@ -119,9 +119,9 @@ class StaticSystem:
         jump, live = self._jump, self.equilibrium.live
         own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[: len(jump)]), jump).ravel()
         border = np.concatenate([live, np.zeros(self.unknowns - 1 - len(live))])
-        terms = np.concatenate([own, self._springs, self._pins, self._pins])
+        loads = [right[:-1], border] if len(tangent) == len(jump) else [right[:-1], border, self._tie_ends]
         # The border of λ is eliminated by hand: q = a + λ b.
-        a, b, *ends = self._band.solve(terms, np.column_stack([right[:-1], border, self._tie_ends])).T
+        a, b, *ends = self._band.solve(np.concatenate([own, self._constant]), np.column_stack(loads)).T
         if ends:
             a, b = self._tied(tangent[len(jump) :, 0, 0], np.array([a, b]), np.array(ends))
         multiplier = right[-1] if control.multiplier else (right[-1] - border @ a) / (border @ b)
@@ -160,23 +160,18 @@ class StaticSystem:
         return ends
 
     @cached_property
-    def _springs(self) -> Array:
-        """Entries of the springs at the ties' ends, ``(18 nt,)``."""
-        nt = len(self.equilibrium.scene.ties)
+    def _constant(self) -> Array:
+        """Entries of the springs at the ties' ends, then of C in the order of its columns, twice."""
         own = np.take_along_axis(self._tie_ends, self._freedoms_of_ends.T, axis=0).T
         stiffness = np.tile(self.law.normal_stiffness[len(self._jump) :], 2)
-        return np.einsum("k,ki,kj->kij", stiffness, own, own).ravel() if nt else np.zeros(0)
+        pins = self.equilibrium.reaction.tocoo().data
+        return np.concatenate([np.einsum("k,ki,kj->kij", stiffness, own, own).ravel(), pins, pins])
 
     @cached_property
     def _freedoms_of_ends(self) -> Indices:
         """Freedoms of the block at each end of a tie, ``(2 nt, 3)``; −1 where none moves."""
         block = self.equilibrium.scene.ties.block.T.ravel()
         return np.where(block[:, None] >= 0, self._freedoms_of_blocks[block], -1)
-
-    @cached_property
-    def _pins(self) -> Array:
-        """Entries of C in the order of its columns."""
-        return np.asarray(self.equilibrium.reaction.tocoo().data)
 
     @cached_property
     def _freedoms_of_points(self) -> Indices:
