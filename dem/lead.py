@@ -82,7 +82,7 @@ class Lead:
         longest = np.abs(np.diff(goals, prepend=0.0)).max() / STEPS
         for goal in goals:
             lengths = [0.0]
-            step = min(self.elastic_step, longest)
+            step = min(self.elastic_step or longest, longest)
             while lengths[-1] < abs(goal - at):
                 lengths.append(lengths[-1] + share * step)
                 step = min(step * GROWTH**share, longest)

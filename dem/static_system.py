@@ -23,7 +23,7 @@ from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Indices, Scene
 
 from .band import Band, band
-from .tied_law import TiedLaw, tie_ends
+from .tied_law import TiedLaw, elongation, tie_ends
 
 
 @dataclass(frozen=True)
@@ -162,9 +162,11 @@ class StaticSystem:
     @cached_property
     def _constant(self) -> Array:
         """Entries of the springs at the ties' ends, then of C in the order of its columns, twice."""
+        pins = self.equilibrium.reaction.tocoo().data
+        if len(self.equilibrium.scene.ties) == 0:
+            return np.concatenate([pins, pins])
         own = np.take_along_axis(self._tie_ends, self._freedoms_of_ends.T, axis=0).T
         stiffness = np.tile(self.law.normal_stiffness[len(self._jump) :], 2)
-        pins = self.equilibrium.reaction.tocoo().data
         return np.concatenate([np.einsum("k,ki,kj->kij", stiffness, own, own).ravel(), pins, pins])
 
     @cached_property
@@ -234,7 +236,7 @@ def static_system(scene: Scene) -> StaticSystem:
         If the scene gives its joints no stiffness, or a law that has no tangent; for a support under a weightless wall.
     """
     system, ties = equilibrium(scene), scene.ties
-    system = replace(system, reaction=_independent(_rows(system, pin_operator(scene))))
+    system = replace(system, reaction=_independent(system.reaction))
     normal, shear = (k * system.points.area for k in wall_stiffness(scene, system.points.joint))
     # A single block held at both corners has no joint, and does not move.
     stiffest = float(max(k.max(initial=0.0) for k in (normal, shear, ties.stiffness))) or 1.0
@@ -242,12 +244,10 @@ def static_system(scene: Scene) -> StaticSystem:
     scale = length / system.force_unit
     joints = static_law(scene, system.strength, normal * scale, shear * scale)
     law: PointLaw | TiedLaw = joints
-    ends = tie_ends(scene)
-    longer = csr_array(ends[: len(ties)] + ends[len(ties) :])
     if len(ties):
         forces = ties.yield_force / system.force_unit, ties.preload / system.force_unit
         law = TiedLaw(joints, ties.stiffness * scale, *forces)
-        pull = _rows(system, longer)
+        pull = _rows(system, elongation(scene))
         opening, slip = csc_array(hstack([system.opening, pull])), csc_array(hstack([system.slip, 0.0 * pull]))
         system = replace(system, opening=opening, slip=slip)
     support_jump = None
@@ -255,8 +255,8 @@ def static_system(scene: Scene) -> StaticSystem:
         reaction_unit(scene)  # refuses a wall that nothing moves
         system = replace(system, live=np.zeros(system.freedoms), live_unit=1.0)
         moved, jump = scene.support_motion.ravel() / length, jump_operator(system.points, scene.blocks.centroid)
-        normal_jump, none = np.append(jump.opening @ moved, longer @ moved), np.zeros(len(ties))
-        support_jump = np.array([normal_jump, np.append(jump.slip @ moved, none)])
+        opened, slid = np.append(jump.opening @ moved, elongation(scene) @ moved), jump.slip @ moved
+        support_jump = np.array([opened, np.append(slid, np.zeros(len(ties)))])
     return StaticSystem(system, law, length, support_jump)
 
 

@@ -70,3 +70,9 @@ def tie_ends(scene: Scene) -> csr_array:
         along = np.where(held[:, None], sense * ties.direction, 0.0)
         ends.append(point_operator(np.where(held, ties.block[:, k], 0), ties.ends[:, k], along, centroid))
     return csr_array(vstack(ends))
+
+
+def elongation(scene: Scene) -> csr_array:
+    """Elongation of each tie, ``(nt, 3 nb)``."""
+    ends = tie_ends(scene)
+    return csr_array(ends[: len(scene.ties)] + ends[len(scene.ties) :])
