@@ -22,7 +22,7 @@ from runningbond.results.outcome import number
 from runningbond.scene import Array
 
 from .lead import Lead
-from .pushover import LoadPath, StaticState, state_of
+from .pushover import NOISE, LoadPath, StaticState, state_of
 from .relaxation import Rest
 
 RUNS = 4
@@ -128,9 +128,12 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
 
 def _spread(lead: Lead, answers: list[float]) -> float:
     """Width of a bracket, relative to its larger end."""
-    least = LITTLE if lead.settles else 0.0
-    width = max(answers) - min(answers)
-    return width / max(*np.abs(answers), least) if width else 0.0
+    return (max(answers) - min(answers)) / max(*np.abs(answers), _least(lead))
+
+
+def _least(lead: Lead) -> float:
+    """Force below which a bracket need not be relatively narrow."""
+    return LITTLE if lead.settles else NOISE * lead.system.equilibrium.live_unit
 
 
 def _arrays(outcome: Outcome, lead: Lead, run: Run) -> Outcome:
@@ -194,7 +197,7 @@ def _formed(lead: Lead, curve: Array, tolerance: float) -> bool:
     if lead.settles:
         return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + STILL)
     most = float(force[late].max())
-    return most - float(force[~late].max(initial=0.0)) <= tolerance * most
+    return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, _least(lead))
 
 
 def _notes(lead: Lead, outcome: Outcome) -> str:

@@ -15,6 +15,9 @@ from runningbond.scene import Array
 from .relaxation import LONGEST, Rest, relax
 from .static_system import Control, StaticSystem
 
+NOISE = 1e-6
+"""Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
+
 EASY = 30
 """Linear systems of a step after which the next is as long."""
 

@@ -28,7 +28,7 @@ from runningbond.scene import Scene
 
 from .lead import is_led
 from .led import lead_along
-from .pushover import LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
+from .pushover import NOISE, LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system, with_late_pins
 
@@ -37,9 +37,6 @@ FIRST_STEP = 0.03
 
 U_CRIT = 0.05
 """Motion of a block that is a fall unless it slows down, in heights of the lowest block."""
-
-NOISE = 1e-6
-"""Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
 
 LARGEST_LOAD = 1e6
 """Multiplier, in first steps, beyond which no collapse is looked for."""

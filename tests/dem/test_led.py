@@ -112,6 +112,13 @@ def test_driven_beam_slides_at_the_friction_of_its_own_joint(condition: Conditio
     assert outcome.curve[-1] == pytest.approx([5e-3, 1e3], rel=1e-6)
 
 
+@pytest.mark.parametrize("path", [(5e-3,), (1e-3, -1e-3)])
+def test_beam_without_weight_slides_off_under_no_force(path: tuple[float, ...]) -> None:
+    outcome = dem_static(under_beam("free", Drive.along(path, 2.0), 0.0))
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.multiplier == pytest.approx(0.0, abs=1e-3)
+
+
 def test_height_of_the_drive_counts_from_the_base_and_pushes_to_the_left_are_mirrored() -> None:
     """Free beam, H at 2.2 m: H 2.2 = (N + W) b / 2; to either side the same curve, to rounding."""
     right, left = (dem_static(under_beam("free", Drive.along((d,), 2.2))) for d in (4e-3, -4e-3))
