@@ -67,13 +67,12 @@ class Lead:
 
     @cached_property
     def elastic_step(self) -> float:
-        """First step."""
-        system, state = self.system, self.origin
+        """First step, of a wall that has not opened anywhere."""
+        system = self.system
         if system.support_jump is not None:
             return self.first_step / float(np.abs(system.support_jump).max())
-        tangent = system.respond(state.x, state.plastic_slip).tangent + REGULAR * system.elastic
         load = np.append(np.zeros(system.unknowns - 1), self.first_step)
-        step = system.solve(tangent, Control(self.first_step, multiplier=True), load)
+        step = system.solve(system.elastic, Control(self.first_step, multiplier=True), load)
         return abs(float(system.equilibrium.live @ step[: system.freedoms]))
 
     def stops(self, share: float) -> Iterator[tuple[float, bool]]:
@@ -82,7 +81,7 @@ class Lead:
         longest = np.abs(np.diff(goals, prepend=0.0)).max() / STEPS
         for goal in goals:
             lengths = [0.0]
-            step = min(self.elastic_step or longest, longest)
+            step = min(self.elastic_step, longest)
             while lengths[-1] < abs(goal - at):
                 lengths.append(lengths[-1] + share * step)
                 step = min(step * GROWTH**share, longest)

@@ -128,7 +128,7 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
 
 def _spread(lead: Lead, answers: list[float]) -> float:
     """Width of a bracket, relative to its larger end."""
-    return (max(answers) - min(answers)) / max(*np.abs(answers), _least(lead))
+    return (max(answers) - min(answers)) / max(*map(abs, answers), _least(lead))
 
 
 def _least(lead: Lead) -> float:

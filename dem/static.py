@@ -11,6 +11,8 @@ rises again many times over motions of a few elastic lengths. Under a displaceme
 depends on the steps; under a load it falls to its next rest, or for good. Hence the bracket is one of loads. Friction
 remembers: loads in longer steps may bring a wall down earlier or later. `benchmarks/static_pushover.py` prints what
 steps half as long make of each published wall, and what it costs.
+
+A beam or supports that are moved by displacements take the wall along, step by step (`led`).
 """
 
 import time
@@ -82,7 +84,9 @@ def dem_static(
     -------
     Outcome
         `lower` is the largest load in equilibrium, `upper` the smallest under which the wall fell. `curve` has the
-        states at rest, past the largest load under prescribed displacements; `force` is of `lower`.
+        states at rest, past the largest load under prescribed displacements; `force` is of `lower`. Of a wall that is
+        led `curve` has its whole way and `force` is of the answer, and `lower` and `upper` are the answers in the last
+        steps and in those twice as long.
     """
     start = time.perf_counter()
     system = static_system(scene)
