@@ -24,6 +24,18 @@ STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_s
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
 ELASTIC = SOFTENING | {"block.young", "block.poisson"}
 
+EXTRAS = frozenset(
+    {
+        "tie",
+        "beam",
+        "beam.condition fixed-height",
+        "beam.drive.displacement",
+        "beam.drive.displacement, cyclic",
+        "load.live settlement",
+    }
+)
+"""All that a model may know of `Scene.extras`."""
+
 KERNELS = 3.0
 """Seconds until the kernels of blocks in motion are loaded."""
 
@@ -75,6 +87,7 @@ _EVERY_MODEL = (
         observer=_STATIC_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "StaticProgress"),
         cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
+        takes=EXTRAS,
         colour="#7c3aed",
         marker="v",
     ),

@@ -28,10 +28,11 @@ class StaticProgress:
         if path is None:
             return "settles under its dead load"
         unit, nd = path.system.equilibrium.live_unit, path.system.freedoms
-        moved = path.system.length_unit * np.abs(path.rests[-1].x[:nd] - path.rests[0].x[:nd])
+        last = path.past[-1] if path.past and path.upper is None else path.rests[-1]  # of a wall that is led
+        moved = path.system.length_unit * np.abs(last.x[:nd] - path.rests[0].x[:nd])
         upper = None if path.upper is None else unit * path.upper
         spent = f"{1 - path.budget / STATIC_BUDGET:.0%} of the budget"
-        return f"{_bracket(unit * path.lower, upper)}; moved {1e3 * moved.max(initial=0.0):.2g} mm, {spent}"
+        return f"{_bracket(unit * last.multiplier, upper)}; moved {1e3 * moved.max(initial=0.0):.2g} mm, {spent}"
 
 
 class MotionProgress:

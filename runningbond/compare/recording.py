@@ -10,7 +10,6 @@ from dem.rigid_system import contact_points
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
-from runningbond.limit.kinematics import movable_freedoms
 from runningbond.pictures.deformed_shape import wall_size
 from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.joint_state import states_under_load
@@ -80,14 +79,12 @@ class StaticRecorder(SeriesRecorder):
     def __call__(self, path: LoadPath, state: StaticState) -> None:
         """Write a state."""
         scene, points, system = self.discretisation.scene, self.discretisation.points, path.system
-        equations = system.equilibrium
-        motion = np.zeros(3 * len(scene.blocks))
-        motion[movable_freedoms(scene)] = state.x[: system.freedoms] * equations.scale * system.length_unit
-        opening, slip = rigid_jumps(scene.blocks, points, motion.reshape(-1, 3))
+        equations, motion = system.equilibrium, system.motion(state.x)
+        opening, slip = rigid_jumps(scene.blocks, points, motion)
         normal, tangential = (equations.force_unit * state.force / points.area[:, None]).T
         kinds = states_under_load(scene, points, opening, normal, tangential, np.zeros(len(points)))
         load = equations.live_unit * state.multiplier
-        self.keep(Frame(load, motion.reshape(-1, 3), opening, slip, normal, tangential, kinds))
+        self.keep(Frame(load, motion, opening, slip, normal, tangential, kinds))
 
 
 class MotionRecorder(SeriesRecorder):

@@ -214,9 +214,11 @@ class Scene:
 
     @property
     def lowest_block(self) -> float:
-        """Smallest height of a movable block [m]."""
+        """Smallest height of a movable block [m]; of the beam only where nothing else moves."""
         low, high = self.blocks.boxes
-        return float((high - low)[~self.fixed, 1].min())
+        movable = np.flatnonzero(~self.fixed)
+        masonry = movable[movable != self.beam.block] if self.beam else movable
+        return float((high - low)[masonry if len(masonry) else movable, 1].min())
 
 
 def build_scene(
