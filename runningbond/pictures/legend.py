@@ -7,8 +7,8 @@ import numpy as np
 
 from runningbond.scene import Array, JointMaterial, Mask, Scene
 
-from .captions import Caption, wall_title
-from .quantities import counted, readable
+from .captions import Caption, is_force, wall_title
+from .quantities import counted, minus, readable
 from .style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
 from .ties import TIE, tie_kinds
 
@@ -30,9 +30,10 @@ def wall_caption(scene: Scene) -> Caption:
     density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
     density += "" if any(scene.load.gravity) else ", no gravity"
     n = int(scene.part_of.max()) + 1
-    size = f"{length:.4g} × {height:.4g} m, {counted(n, 'block')}, {counted(len(scene.joints), 'joint')}{density}"
+    size = f"{length:.4g} × {height:.4g} m, {scene.thickness:.4g} m thick{density}"
+    counts = f"{counted(n, 'block')}, {counted(len(scene.joints), 'joint')}"
     key = [*_materials(scene), *_bodies(scene), *_loads(scene)]
-    return Caption(wall_title(scene.title), "", [size], key, columns=1)
+    return Caption(wall_title(scene.title), "", [size, counts], key, columns=1)
 
 
 def block_colours(scene: Scene) -> Array:
@@ -122,15 +123,17 @@ def _bodies(scene: Scene) -> list[Any]:
 
 
 def _loads(scene: Scene) -> list[Any]:
-    """Colours of loads, where there are dead ones beside the weight."""
+    """Colours of loads, where there are dead ones beside the weight, and the path of a beam that is driven."""
     from matplotlib.lines import Line2D
 
     look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
-    is_moved = scene.settlement is None and scene.beam is not None and scene.beam.drive and scene.beam.drive.path
+    path = scene.beam.drive.path if scene.beam and scene.beam.drive else ()
+    has_live = scene.settlement is None and not path
     kinds = {
         "dead load": (DEAD, bool(scene.load.dead)),
-        "live load, times λ": (DARK, bool(scene.load.dead) and scene.settlement is None and not is_moved),
-        "given displacement": (MOTION, bool(is_moved)),
+        "live load P, which grows": (DARK, has_live and is_force(scene)),
+        "live load, times λ": (DARK, has_live and bool(scene.load.dead) and not is_force(scene)),
+        _wrapped(f"given displacement: {', '.join(minus(1e3 * u) for u in path)} mm"): (MOTION, bool(path)),
     }
     return [
         Line2D([0, 1], [0, 0], color=colour, label=name, **look) for name, (colour, there) in kinds.items() if there
