@@ -254,5 +254,5 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
         motion=system.motion(forces.motion),
         force=system.point_forces(forces.pressure, forces.tangential),
         pull=system.force_unit * forces.tie,
-        held=system.force_unit * forces.reaction,
+        held=-system.force_unit * forces.reaction,
     )

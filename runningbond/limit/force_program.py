@@ -39,6 +39,8 @@ class ForceSet:
         Bounds of s.
     tie_low, tie_high : (nt,) float or None
         Bounds of the ties' pulls; None is all from nothing to their yield force.
+    late_least : float
+        Least reaction of motions that are held once the dead load is on; 0 is one that only adds to the dead load.
     """
 
     slopes: Sequence[Array]
@@ -47,6 +49,7 @@ class ForceSet:
     shear_high: Array
     tie_low: Array | None = None
     tie_high: Array | None = None
+    late_least: float = -np.inf
 
     @property
     def has_shear(self) -> bool:
@@ -111,6 +114,7 @@ def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -
     bounds[-1 - n_pins - n_ties : -1 - n_pins, 0] = 0.0 if forces.tie_low is None else forces.tie_low
     bounds[-1 - n_pins - n_ties : -1 - n_pins, 1] = system.tie_yield if forces.tie_high is None else forces.tie_high
     bounds[-1 - n_pins : -1] = -np.inf, np.inf
+    bounds[-1 - max(0, n_pins - len(system.scene.pins)) : -1, 0] = forces.late_least
     bounds[-1] = (0.0, 0.0) if aim == "zero" else (system.least, np.inf)
     cost = np.zeros(matrix.shape[1])
     cost[-1] = {"largest": -1.0, "smallest": 1.0, "zero": 0.0}[aim] * _mechanism_scale(system)

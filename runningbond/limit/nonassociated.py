@@ -50,8 +50,8 @@ class Certificate:
 def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
     """Forces that obey Coulomb's law on a mechanism ``(nd,)``: none where it opens, at the limit where it slides.
 
-    A tie that lengthens is at yield, and one that shortens is slack. None for a mechanism whose blocks run into each
-    other.
+    A tie that lengthens is at yield, and one that shortens is slack. What holds a beam at its height presses it down,
+    if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other.
     """
     opening, slip = system.opening.T @ motion, system.slip.T @ motion
     largest = float(np.abs(motion).max(initial=0.0))
@@ -68,11 +68,12 @@ def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
         np.where(backward, cone.shear_low, cone.shear_high),
         np.where(longer > NO_JUMP * largest, system.tie_yield, 0.0),
         np.where(longer < -NO_JUMP * largest, 0.0, system.tie_yield),
+        late_least=0.0,
     )
 
 
 def certify(system: Equilibrium, motion: Array) -> Certificate | None:
-    """Look for the loads that drive a mechanism; None where there are none."""
+    """Look for the loads that drive a mechanism; None where there are none. Of loads without end, the least counts."""
     forces = driving_forces(system, motion)
     if forces is None:
         return None
@@ -80,6 +81,8 @@ def certify(system: Equilibrium, motion: Array) -> Certificate | None:
     if least.status != "optimal":
         return None
     most = solve_forces(system, forces, "largest")
+    if most.status == "unbounded":
+        return Certificate(motion, least, least)
     return Certificate(motion, least, most) if most.status == "optimal" else None
 
 
@@ -129,13 +132,15 @@ def search(system: Equilibrium, pressure: Array, high: float = np.inf) -> Search
     return Search(certificates, PROGRAM_BUDGET, growing=growing)
 
 
-def certified_loads(certificates: Sequence[Certificate], load: Callable[[float], float]) -> list[tuple[float, float]]:
+def certified_loads(
+    certificates: Sequence[Certificate], load: Callable[[float], float], *, falling: bool = False
+) -> list[tuple[float, float]]:
     """Loads at which collapse is certified, as intervals that do not touch, in order.
 
-    The load of a multiplier may fall as it grows.
+    `load` makes them of multipliers; `falling` if it falls as they grow.
     """
-    ends = (sorted((load(c.least.multiplier), load(c.most.multiplier))) for c in certificates)
-    pairs = sorted((low, high) for low, high in ends)
+    ends = [(load(c.least.multiplier), load(c.most.multiplier)) for c in certificates]
+    pairs = sorted((high, low) if falling else (low, high) for low, high in ends)
     merged = [pairs[0]]
     for low, high in pairs[1:]:
         if low <= merged[-1][1] + 1e-9 * abs(merged[-1][1]):
@@ -203,7 +208,7 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
     if not certificates:
         return _uncertified(outcome, result, cut, associated.multiplier if bounded else None)
     lowest = min(certificates, key=lambda certificate: certificate.least.multiplier)
-    loads = certified_loads(certificates, cut.load)
+    loads = certified_loads(certificates, cut.load, falling=cut.has_support)
     lower, upper = loads[0][0], loads[-1][1]
     if cut.has_support and upper <= NOTHING and may_leave(cut):
         return _bridged(outcome, cut)
@@ -227,7 +232,7 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         motion=cut.motion(lowest.motion),
         force=cut.point_forces(least.pressure, least.tangential),
         pull=cut.force_unit * least.tie,
-        held=cut.force_unit * least.reaction,
+        held=-cut.force_unit * least.reaction,
     )
 
 
