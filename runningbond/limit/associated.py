@@ -16,7 +16,7 @@ from runningbond.scene import Array, Scene
 
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
-from .moving_support import support_verdict
+from .moving_support import JAMMED, support_verdict
 from .remarks import remarks
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
@@ -205,7 +205,7 @@ def judge(state: LimitState) -> tuple[Status, str]:
         return "undecided", "the linear program ran out of iterations"
     if _balances_any_multiple(system):
         if system.has_support:
-            return "unbounded", "self-locking: the wall holds the support against any force that drives it"
+            return "unbounded", JAMMED
         return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
     return "failed", f"the linear program was not solved: {program}"
 

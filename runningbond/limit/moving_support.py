@@ -15,6 +15,8 @@ NOTHING = 1e-6
 
 BRIDGED = "no settlement brings it down: it bridges the support, without which forces balance the dead load"
 
+JAMMED = "self-locking: the wall holds the support against any force that drives it"
+
 
 def may_leave(system: Equilibrium) -> bool:
     """Whether the support can leave the wall at rest: it runs into no block and opens the joints that it slides on."""

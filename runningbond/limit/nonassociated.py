@@ -22,7 +22,7 @@ from runningbond.scene import Array, Scene
 from .associated import LimitState, judge, limit_state, spends_cut_strength
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSet, ForceSolution, coulomb, frozen_friction, solve_forces
-from .moving_support import BRIDGED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
+from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
 from .remarks import remarks
 
 PROGRAM_BUDGET = 40
@@ -140,7 +140,7 @@ def certified_loads(
     `load` makes them of multipliers; `falling` if it falls as they grow.
     """
     ends = [(load(c.least.multiplier), load(c.most.multiplier)) for c in certificates]
-    pairs = sorted((high, low) if falling else (low, high) for low, high in ends)
+    pairs = sorted((min(pair), max(pair)) if falling else pair for pair in ends)
     merged = [pairs[0]]
     for low, high in pairs[1:]:
         if low <= merged[-1][1] + 1e-9 * abs(merged[-1][1]):
@@ -246,7 +246,7 @@ def _uncertified(outcome: Outcome, result: Search, system: Equilibrium, bound: f
     """Outcome of a wall without a certified collapse, under the associated multiplier if there is one."""
     programs = f"no collapse certified in {result.programs} programs"
     if result.frictionless:
-        message = "self-locking: normal forces carry any multiple of the live load"
+        message = JAMMED if system.has_support else "self-locking: normal forces carry any multiple of the live load"
         return replace(outcome, status="unbounded", message=message)
     if bound is not None and system.has_support:
         share = system.load(bound)
