@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-MOST = 1e-5
+MOST = 1e-6
 """Most that a measure may be, relative to the largest force, motion or multiplier."""
 
 CONTACT = 1e-4

@@ -15,7 +15,7 @@ from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.results import Outcome, save_outcome
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from tests.random_scenes import mirrored, random_scene
-from tests.walls import panel
+from tests.walls import courses
 
 CHECKER = Path(__file__).parents[2] / "tools" / "check_limit.py"
 LIMITS = ("limit", "limit-nonassociated")
@@ -120,8 +120,8 @@ def test_a_mirrored_scene_has_the_mirrored_answer(seed: int) -> None:
 @pytest.mark.parametrize("array", ["force", "pull", "motion", "multiplier"])
 def test_the_checker_sees_what_is_wrong(array: str, checker: Any, tmp_path: Path, capsys: Any) -> None:
     """A force, a pull or a motion that is a thousandth off, a multiplier that is."""
-    tie = {"from": [0.03, 0.69], "to": [-1.0, 0.69], "area": 1e-4, "young": 2e11, "yield": 5.0}
-    scene = panel(wall__length=0.48, tie=[tie])
+    tie = {"from": [0.03, 0.5], "to": [-1.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 5.0}
+    scene = courses([[1], [1]], width=0.1, height=0.3, tie=[tie])
     outcome = run_model("limit", scene)
     assert outcome.status == "collapse"
     _proved(checker, outcome, scene, tmp_path)
