@@ -1,4 +1,9 @@
-"""Verdicts on a support that moves: what it still bears of the wall, or that the wall does without it."""
+"""Verdicts on a support that moves: what it still bears of the wall, or that the wall does without it.
+
+As the support gives way its reaction falls to the least that admissible forces balance, and the mechanism that this
+least belongs to goes with it (Portioli & Cascini 2017). The theorems hold with their roles exchanged: admissible
+forces bear no less than the least, and no mechanism proves more.
+"""
 
 import numpy as np
 
