@@ -46,11 +46,11 @@ class StaticState:
         return float(self.x[-1])
 
 
-StaticObserver: TypeAlias = Callable[[StaticSystem, StaticState], None]
-"""Looks at a state of rest as it is found, and changes nothing."""
+StaticObserver: TypeAlias = Callable[["LoadPath", StaticState], None]
+"""Looks at a state of rest as it is found, and at the path so far, and changes nothing."""
 
 
-def no_observer(system: StaticSystem, state: StaticState) -> None:
+def no_observer(path: "LoadPath", state: StaticState) -> None:
     """Observe nothing."""
 
 
@@ -79,7 +79,7 @@ class LoadPath:
         result = self._relax(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
         if result.verdict == "rest":
             self.rests.append(state_of(self.system, result))
-            self.observe(self.system, self.rests[-1])
+            self.observe(self, self.rests[-1])
         elif result.verdict == "fall":
             self.upper, self.fall = multiplier, result.last
         return result

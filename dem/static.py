@@ -21,9 +21,9 @@ from threadpoolctl import threadpool_limits
 
 from runningbond.joints import stiffness_note
 from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
-from runningbond.limit.kinematics import control_row, movable_freedoms
-from runningbond.results import Outcome
-from runningbond.scene import Scene
+from runningbond.limit.kinematics import control_row, dead_load, live_load, movable_freedoms
+from runningbond.results import Outcome, Supports
+from runningbond.scene import Array, Scene
 
 from .pushover import LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
 from .relaxation import relax
@@ -96,10 +96,10 @@ def dem_static(
             outcome = _fallen(replace(outcome, steps=rest.solves), system)
         else:
             path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-            observe(system, path.rests[0])
+            observe(path, path.rests[0])
             undecided = _climb(path, first_step, tolerance, past)
             for state in path.past:
-                observe(system, state)
+                observe(path, state)
             outcome = _judge(outcome, path, undecided)
             message = "; ".join(part for part in (outcome.message, _window(path)) if part)
             outcome = replace(outcome, message=message, steps=budget - path.budget)
@@ -144,17 +144,22 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
     """Verdict on a climb, and its arrays."""
     system, states = path.system, [*path.rests, *path.past]
     equations, peak = system.equilibrium, _peak(path)
-    unit, nd = equations.live_unit, system.freedoms
-    row = control_row(equations.scene)[movable_freedoms(equations.scene)] * equations.scale * system.length_unit
-    q = np.array([state.x[:nd] for state in states])
+    unit = equations.live_unit
+    q = np.array([state.x[: system.freedoms] for state in states])
+    loads = np.array([unit * state.multiplier for state in states])
+    moved, dead, live = (q @ _per_freedom(system, row(equations.scene)) for row in (control_row, dead_load, live_load))
+    mean = (loads[1:] + loads[:-1]) / 2
+    works = np.column_stack([dead, loads[0] * live[0] + np.append(0.0, np.cumsum(mean * np.diff(live)))])
+    forces = [equations.force_unit * state.force for state in states]
     moving = path.fall if path.fall is not None else q[-1] - q[-2] if len(q) > 1 else None
     result = replace(
         result,
         lower=unit * peak.multiplier,
         upper=None if path.upper is None else unit * path.upper,
-        curve=np.column_stack([(q - q[0]) @ row, [unit * state.multiplier for state in states]]),
+        curve=np.column_stack([moved - moved[0], loads]),
         motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
         force=equations.force_unit * peak.force,
+        **Supports(equations.scene, equations.points).path(forces, loads, works),
     )
     if not undecided:
         heights = path.far * system.length_unit / equations.scene.lowest_block
@@ -167,6 +172,12 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
         message = f"self-locking: {undecided}, and joint forces balance any multiple of it"
         return replace(result, status="unbounded", lower=None, message=message)
     return replace(result, message=f"no answer: {undecided}")
+
+
+def _per_freedom(system: StaticSystem, row: Array) -> Array:
+    """A row ``(3 nb,)`` per motion of the blocks [m, rad] as one per scaled freedom, ``(nd,)``."""
+    equations = system.equilibrium
+    return np.asarray(row[movable_freedoms(equations.scene)] * equations.scale * system.length_unit)
 
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:

@@ -13,7 +13,7 @@ from runningbond.pictures.flat import figure_of
 from runningbond.results import write_atomically
 from runningbond.scene import JointMaterial, Scene, SceneError, read_scene
 
-from .terminal import DONE, SceneName, print_table
+from .terminal import DONE, SceneName, print_table, remarks
 
 WRITERS = {".svg": to_svg, ".png": to_png}
 
@@ -34,6 +34,8 @@ def show(scene: SceneName, /, *, out: Annotated[Path | None, Parameter(name=("--
     print_table(Sheet(wall.title, ("quantity", "value"), rows(wall)))
     if out is not None:
         print(out)
+    for line in remarks(wall):
+        print(line)
     return DONE
 
 

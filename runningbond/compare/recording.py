@@ -5,9 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from dem.pushover import StaticState
+from dem.pushover import LoadPath, StaticState
 from dem.rigid_system import contact_points
-from dem.static_system import StaticSystem
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
@@ -78,9 +77,10 @@ class StaticRecorder(SeriesRecorder):
     def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(Discretisation.of_rigid_blocks(scene), folder)
 
-    def __call__(self, system: StaticSystem, state: StaticState) -> None:
+    def __call__(self, path: LoadPath, state: StaticState) -> None:
         """Write a state."""
-        scene, points, equations = self.discretisation.scene, self.discretisation.points, system.equilibrium
+        scene, points, system = self.discretisation.scene, self.discretisation.points, path.system
+        equations = system.equilibrium
         motion = np.zeros(3 * len(scene.blocks))
         motion[movable_freedoms(scene)] = state.x[: system.freedoms] * equations.scale * system.length_unit
         opening, slip = rigid_jumps(scene.blocks, points, motion.reshape(-1, 3))

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.results import Outcome
+from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene
 
 from .associated import LimitState, judge, limit_state, spends_cut_strength
@@ -219,20 +219,22 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         message = f"collapse is certified at {listed}, and nothing is proved in between or {beyond}"
     elif upper - lower > tolerance * abs(upper):
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
-    least = lowest.least
+    least, multiplier = lowest.least, cut.load(lowest.least.multiplier)
     if cut.has_support:
-        message = f"{message}; {reaction_note(cut.scene, cut.load(least.multiplier))}"
+        message = f"{message}; {reaction_note(cut.scene, multiplier)}"
+    force = cut.point_forces(least.pressure, least.tangential)
     return replace(
         outcome,
         status="collapse",
-        multiplier=cut.load(least.multiplier),
+        multiplier=multiplier,
         lower=lower,
         upper=max(lower, upper),
         message=message,
         motion=cut.motion(lowest.motion),
-        force=cut.point_forces(least.pressure, least.tangential),
+        force=force,
         pull=cut.force_unit * least.tie,
         held=-cut.force_unit * least.reaction,
+        **collapse_state(cut.scene, cut.points, force, multiplier),
     )
 
 

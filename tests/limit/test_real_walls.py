@@ -390,7 +390,7 @@ def test_the_reaction_is_the_work_of_the_joint_forces_on_the_support() -> None:
     live = {"kind": "settlement", "box": [[0.8, -1], [3, 0.01]], "by": [0.0, -0.01]}
     scene = panel(load__live=live)
     outcome, system = limit(scene), equilibrium(scene)
-    moving = scene.support_motion.any(axis=1)
+    moving = np.asarray(scene.support_motion.any(axis=1))
     sense = moving[system.points.block[:, 1]].astype(float) - moving[system.points.block[:, 0]]
     upwards = (outcome.force[:, :1] * system.points.normal + outcome.force[:, 1:] * system.points.tangent)[:, 1]
     weight = -dead_load(scene).reshape(-1, 3)[scene.wall, 1].sum()

@@ -135,11 +135,13 @@ def run_beyond(model: str, times: float = MUCH) -> Outcome:
     scene = published_scene(WALL)
     if model == "fem":
         wall = modal_wall(scene)
-        system, order = system_of(wall), wall.elements.listing
+        system, points, order = system_of(wall), wall.elements.points, wall.elements.listing
     else:
-        system, order = rigid_system(scene), np.argsort(contact_points(scene).joint, kind="stable")
+        system, points = rigid_system(scene), contact_points(scene)
+        order = np.argsort(points.joint, kind="stable")
     step = times * 2 / float(vibrations(system)[0][-1])
-    return collapse_by_steps(scene, model, Run(system, dt=step), 0.01, point_order=order, is_self_locking=lambda: False)
+    run = Run(system, dt=step)
+    return collapse_by_steps(scene, model, run, 0.01, points=points, point_order=order, is_self_locking=lambda: False)
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
