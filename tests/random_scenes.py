@@ -1,6 +1,7 @@
 """Random scenes over all keys of a scene file, by a seed: most stand, and every run of one makes the same."""
 
 import random
+from itertools import accumulate
 from typing import Any
 
 from runningbond.scene import SceneError, scene_from_dict
@@ -19,15 +20,30 @@ class Draw:
         self.bricks, self.density = self.random.randint(2, 4), self.random.choice([1800.0, 2400.0])
         first = self.random.randint(0, 1)
         self.courses = [self._course(row + first) for row in range(self.random.randint(2, 5))]
-        if self.bricks > 2 and len(self.courses) > 3 and self.random.random() < 0.25:
-            self._open()
-        self.length, self.top = self.bricks * self.width, len(self.courses) * self.height
+        uneven, count = self.random.random() < 0.3, len(self.courses)
+        heights = [self.height * (self.random.choice([0.75, 1.0, 1.5]) if uneven else 1.0) for _ in range(count)]
+        self.levels = [0.0, *accumulate(heights)]
+        self.wall: dict[str, Any] = {"block_width": self.width, "thickness": 0.1, "courses": self.courses}
+        self.wall |= {"course_heights": heights} if uneven else {"block_height": self.height}
+        self.length, self.top = self.bricks * self.width, self.levels[-1]
+        if self.bricks > 2 and count > 3:
+            self.random.choice([self._leave_out, self._open, dict])()
         self.brick = self.width * self.height * 0.1 * self.density * 9.81  # weight [N]
 
     def _course(self, row: int) -> list[float]:
         return [0.5, *[1.0] * (self.bricks - 1), 0.5] if row % 2 else [1.0] * self.bricks
 
     def _open(self) -> None:
+        """Cut a door or a window into the wall, under a lintel or a brick."""
+        left, low = self.width * self.random.choice([0.8, 1.0, 1.25]), self.random.choice([0, 1])
+        right, high = left + self.width * self.random.choice([0.5, 0.7, 1.0]), self.levels[low + 1]
+        opening: dict[str, Any] = {"from": [left, self.levels[low]], "to": [right, high]}
+        if self.random.random() < 0.7:
+            height = self.levels[low + 2] - high
+            opening["lintel"] = {"height": height, "bearing": 0.3 * self.width, "material": "light"}
+        self.wall["opening"] = [opening]
+
+    def _leave_out(self) -> None:
         """Take a brick out of the second course."""
         course = self.courses[1]
         inside = range(1, len(course) - 1)
@@ -47,7 +63,7 @@ class Draw:
         standing = [k for k, share in enumerate(self.courses[row]) if share > 0]
         k = self.random.choice(standing)
         x = sum(map(abs, self.courses[row][:k])) + self.courses[row][k] / 2
-        return [x * self.width, (row + 0.5) * self.height]
+        return [x * self.width, (self.levels[row] + self.levels[row + 1]) / 2]
 
     def along_top(self) -> float:
         """A place on the top, away from joints."""
@@ -163,12 +179,7 @@ def _drawn(seed: int) -> dict[str, Any]:
     draw = Draw(seed)
     scene: dict[str, Any] = {
         "title": f"random {seed}",
-        "wall": {
-            "block_width": draw.width,
-            "block_height": draw.height,
-            "thickness": 0.1,
-            "courses": draw.courses,
-        },
+        "wall": draw.wall,
         "block": {"density": draw.density, "young": 1e10},
         "joint": draw.joint(),
         "materials": {"heavy": {"density": 3000.0, "young": 1e10}, "light": {"density": 800.0, "young": 1e10}},
@@ -201,6 +212,9 @@ def mirrored(scene: Any, span: float | None = None, key: str = "") -> Any:
     """A scene of `random_scene` with left and right exchanged."""
     if span is None:
         span = scene["wall"]["block_width"] * sum(map(abs, scene["wall"]["courses"][0]))
+    if isinstance(scene, dict) and key == "opening":
+        (x0, y0), (x1, y1) = scene["from"], scene["to"]
+        return scene | {"from": [span - x1, y0], "to": [span - x0, y1]}
     if isinstance(scene, dict):
         whole = {name: mirrored(value, span, name) for name, value in scene.items()}
         if "blocks" in whole:
