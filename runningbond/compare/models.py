@@ -24,11 +24,17 @@ STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_s
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
 ELASTIC = SOFTENING | {"block.young", "block.poisson"}
 
-LIMIT_EXTRAS = frozenset(
-    {"tie", "beam", "beam.condition fixed-height", "beam.drive.displacement", "load.live settlement"}
-    | {"beam.drive.displacement, cyclic"}
+EXTRAS = frozenset(
+    {
+        "tie",
+        "beam",
+        "beam.condition fixed-height",
+        "beam.drive.displacement",
+        "beam.drive.displacement, cyclic",
+        "load.live settlement",
+    }
 )
-"""What limit analysis takes of `Scene.extras`: all of it, and it says what it makes of it."""
+"""All that a model may know of `Scene.extras`."""
 
 KERNELS = 3.0
 """Seconds until the kernels of blocks in motion are loaded."""
@@ -64,7 +70,7 @@ _EVERY_MODEL = (
     ),
     Model(
         *("limit", "limit analysis of the blocks", limit, STRENGTH, "bound"),
-        takes=LIMIT_EXTRAS,
+        takes=EXTRAS,
         cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
         colour="#0b559f",
         marker="o",
@@ -72,7 +78,7 @@ _EVERY_MODEL = (
     Model(
         *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
         kind="certificate",
-        takes=LIMIT_EXTRAS,
+        takes=EXTRAS,
         cost=Cost(0.22, 1.87, 1.48),
         colour="#c2410c",
         marker="s",
