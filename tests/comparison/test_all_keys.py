@@ -1,6 +1,7 @@
 """Random scenes over all keys: no model bears more than `limit` proves, and what it proves is checked by others."""
 
 import copy
+import subprocess
 import sys
 from dataclasses import replace
 from importlib.util import module_from_spec, spec_from_file_location
@@ -106,7 +107,7 @@ def test_no_model_bears_more_than_limit_proves_at_length(start: int, checker: An
     assert found.count("collapse") > 0.5 * len(found)
 
 
-@pytest.mark.parametrize("seed", range(100, 124))
+@pytest.mark.parametrize("seed", range(100, 112))
 def test_a_mirrored_scene_has_the_mirrored_answer(seed: int) -> None:
     content = random_scene(seed)
     if content["support"]["kind"] == "corners":  # one of them a roller
@@ -118,8 +119,8 @@ def test_a_mirrored_scene_has_the_mirrored_answer(seed: int) -> None:
 
 
 @pytest.mark.parametrize("array", ["force", "pull", "motion", "multiplier"])
-def test_the_checker_sees_what_is_wrong(array: str, checker: Any, tmp_path: Path, capsys: Any) -> None:
-    """A force, a pull or a motion that is a thousandth off, a multiplier that is."""
+def test_the_checker_sees_what_is_wrong(array: str, checker: Any, tmp_path: Path) -> None:
+    """A force, a pull or a motion that is a thousandth off, a multiplier that is: run as a script, it ends with 1."""
     tie = {"from": [0.03, 0.5], "to": [-1.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 5.0}
     scene = courses([[1], [1]], width=0.1, height=0.3, tie=[tie])
     outcome = run_model("limit", scene)
@@ -134,8 +135,9 @@ def test_the_checker_sees_what_is_wrong(array: str, checker: Any, tmp_path: Path
         spoilt[largest] *= 1.001
         changed = {array: spoilt}
     save_outcome(replace(outcome, **changed), tmp_path, "", scene)
-    assert not checker.check(tmp_path)
-    assert "WRONG" in capsys.readouterr().out
+    found = subprocess.run([sys.executable, str(CHECKER), str(tmp_path)], capture_output=True, text=True, check=False)
+    assert found.returncode == 1
+    assert "WRONG" in found.stdout
 
 
 def test_the_checker_needs_numpy_alone() -> None:
