@@ -27,7 +27,9 @@ class Draw:
         self.wall |= {"course_heights": heights} if uneven else {"block_height": self.height}
         self.length, self.top = self.bricks * self.width, self.levels[-1]
         if self.bricks > 2 and count > 3:
-            self.random.choice([self._leave_out, self._open, dict])()
+            change = self.random.choice([self._leave_out, self._open, None])
+            if change:
+                change()
         self.brick = self.width * self.height * 0.1 * self.density * 9.81  # weight [N]
 
     def _course(self, row: int) -> list[float]:
