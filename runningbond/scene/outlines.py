@@ -10,7 +10,7 @@ import numpy as np
 from .arrays import Array
 from .bond import Bond, Ends, FirstCourse, bonded_rows, pattern_rows, rectangles
 from .cutting import cut_openings
-from .drawing import METRES, read_drawing
+from .drawings import METRES, read_drawing
 from .errors import SceneError
 from .openings import read_openings
 from .ranges import ABOVE_ZERO
@@ -65,8 +65,9 @@ def read_outlines(wall: Table, folder: Path, block_names: Sequence[str]) -> Outl
     """
     _refuse_mixed_descriptions(wall)
     if "drawing" in wall:
-        blocks, ground = read_drawing(folder / wall.text("drawing"), wall.choice("units", METRES))
-        return Outlines(blocks, [ground])
+        path, heal = folder / wall.text("drawing"), wall.optional_number("heal", ABOVE_ZERO)
+        drawing = read_drawing(path, wall.choice("units", METRES), heal)
+        return Outlines(drawing.blocks, drawing.grounds, layers=drawing.layers, notes=drawing.notes)
     width = wall.number("block_width", ABOVE_ZERO)
     heights = _course_heights(wall)
     bond = Bond(width, float(heights[0])) if heights is not None and np.ptp(heights) <= ALIKE * heights[0] else None
@@ -120,8 +121,8 @@ def _refuse_mixed_descriptions(wall: Table) -> None:
     bonded = ("block_width", "block_height", "course_heights", "opening")
     for description, strangers in (
         ("drawing", ("courses", *by_size, *bonded)),
-        ("courses", ("units", *by_size)),
-        ("length", ("units",)),
+        ("courses", ("units", "heal", *by_size)),
+        ("length", ("units", "heal")),
     ):
         if description in wall:
             for key in strangers:
