@@ -70,6 +70,7 @@ _EVERY_MODEL = (
     ),
     Model(
         *("limit", "limit analysis of the blocks", limit, STRENGTH, "bound"),
+        takes=EXTRAS,
         cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
         colour="#0b559f",
         marker="o",
@@ -77,6 +78,7 @@ _EVERY_MODEL = (
     Model(
         *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
         kind="certificate",
+        takes=EXTRAS,
         cost=Cost(0.22, 1.87, 1.48),
         colour="#c2410c",
         marker="s",

@@ -16,6 +16,8 @@ from runningbond.scene import Array, Scene
 
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+from .moving_support import JAMMED, support_verdict
+from .remarks import remarks
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
 ZERO = 1e-6
@@ -54,6 +56,7 @@ class LimitState:
         """Multiplier at which the mechanism's loads do the work that its joints dissipate, in scaled units."""
         system, motion = self.system, self.forces.motion
         dissipated = system.strength.dissipation(*self.jumps).sum()
+        dissipated += system.tie_yield @ system.elongation(motion).clip(min=0.0)
         return float((dissipated - system.dead @ motion) / (system.live @ motion))
 
     @property
@@ -66,28 +69,33 @@ class LimitState:
         """Everything that is zero for an exact answer.
 
         - ``residual``: largest unbalanced force or moment, relative to the largest force.
-        - ``violation``: largest distance of a point's forces from its cone of strength, relative to the largest force.
+        - ``violation``: largest distance of a point's forces from its cone of strength, or of a tie's pull from its
+          range, relative to the largest force.
         - ``penetration``: largest violation of the flow rule, opening ≥ tan φ |slip|, relative to the largest motion.
         - ``gap``: distance between static and kinematic multiplier, relative to the larger of them and 1.
-        - ``complementarity``: power of the forces short of the dissipation, point by point, relative.
+        - ``complementarity``: power of the forces short of the dissipation, by points and ties, relative.
         """
         system, forces, strength = self.system, self.forces, self.system.strength
         multiplier, tangential, motion = forces.multiplier, forces.tangential, forces.motion
         normal, (opening, slip) = strength.tension - forces.pressure, self.jumps
         in_joints = system.opening @ normal + system.slip @ tangential
+        in_joints = in_joints + system.tie @ forces.tie
         unbalanced = in_joints + system.reaction @ forces.reaction - multiplier * system.live - system.dead
         outside = strength.violation(normal, tangential) / np.hypot(1.0, strength.friction)
-        parts = (forces.pressure, tangential, system.dead)
-        largest = max(multiplier, *(np.abs(part).max(initial=0.0) for part in parts)) or 1.0
+        beyond = np.maximum(-forces.tie, forces.tie - system.tie_yield)
+        parts = (forces.pressure, tangential, forces.tie, system.dead)
+        largest = max(abs(multiplier), *(np.abs(part).max(initial=0.0) for part in parts)) or 1.0
         fastest = np.abs(motion).max(initial=0.0)
         short = strength.dissipation(opening, slip) - (normal * opening + tangential * slip)
-        power = np.abs(system.live @ motion) * max(1.0, multiplier)
+        longer = system.elongation(motion)
+        held_back = system.tie_yield * longer.clip(min=0.0) - forces.tie * longer
+        power = np.abs(system.live @ motion) * max(1.0, abs(multiplier))
         measures = {
             "residual": np.abs(unbalanced).max() / largest,
-            "violation": outside.max(initial=0.0) / largest,
+            "violation": max(outside.max(initial=0.0), beyond.max(initial=0.0)) / largest,
             "penetration": (strength.friction * np.abs(slip) - opening).max(initial=0.0) / (fastest or np.inf),
             "gap": abs(self.kinematic_multiplier - multiplier) / max(1.0, abs(multiplier)),
-            "complementarity": np.abs(short).max(initial=0.0) / power,
+            "complementarity": np.abs(np.append(short, held_back)).max(initial=0.0) / power,
         }
         return {name: float(value) for name, value in measures.items()}
 
@@ -163,11 +171,14 @@ def stands_under_dead_load(system: Equilibrium) -> bool | None:
 
 def is_self_locking(scene: Scene) -> bool:
     """Whether admissible joint forces balance any multiple of a scene's live load."""
-    return _balances_any_multiple(equilibrium(scene))
+    return _balances_any_multiple(equilibrium(scene).under_live_load())
 
 
 def _balances_any_multiple(system: Equilibrium) -> bool:
-    """Whether forces of dry joints balance the live load alone; they may then be added any number of times."""
+    """Whether forces of dry joints balance the live load alone; they may then be added any number of times.
+
+    Those of ties may not, for they are bounded.
+    """
     dry = system.without_strength(system.live)
     return solve_forces(dry, coulomb(dry.strength), "zero").status == "optimal"
 
@@ -179,7 +190,7 @@ def judge(state: LimitState) -> tuple[Status, str]:
     load that no forces balance, or forces that lock.
     """
     system, program = state.system, state.forces.status
-    stands = stands_under_dead_load(system)
+    stands = stands_under_dead_load(system.under_dead_load())
     if stands is None:
         return "failed", "the solver cannot tell whether the wall stands under its dead load"
     if not stands:
@@ -187,10 +198,14 @@ def judge(state: LimitState) -> tuple[Status, str]:
     if program == "optimal":
         if not state.sound:
             return "failed", f"forces and mechanism disagree: {state.measures}"
+        if system.has_support:
+            return support_verdict(system, system.load(state.forces.multiplier))
         return "collapse", "static and kinematic bound, associated joints; true friction may collapse earlier"
     if program == "budget":
         return "undecided", "the linear program ran out of iterations"
     if _balances_any_multiple(system):
+        if system.has_support:
+            return "unbounded", JAMMED
         return "unbounded", "self-locking: admissible forces balance any multiple of the live load"
     return "failed", f"the linear program was not solved: {program}"
 
@@ -206,14 +221,19 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     Returns
     -------
     Outcome
-        `lower` from the forces, `upper` from the mechanism; `motion` is the mechanism, `force` the forces.
+        `lower` from the forces, `upper` from the mechanism; `motion` is the mechanism, `force` the forces. Of a support
+        that moves λ is the least share of the dead load that it can bear, `lower` is from the mechanism and `upper`
+        from the forces; one below zero has to be driven along its motion.
     """
     start = time.perf_counter()
-    system = equilibrium(scene)
+    system = equilibrium(scene).under_live_load()
     state = limit_state(system)
     status, message = judge(state)
     outcome = Outcome(
-        scene.title, "limit", "undecided", dofs=system.freedoms, steps=state.forces.iterations, message=message
+        *(scene.title, "limit", "undecided"),
+        dofs=system.freedoms - system.has_support,
+        steps=state.forces.iterations,
+        message=remarks(scene, message),
     )
     outcome = _bracketed(outcome, state, tolerance) if status == "collapse" else replace(outcome, status=status)
     return replace(outcome, seconds=time.perf_counter() - start)
@@ -221,9 +241,9 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
 
 def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome:
     system, forces = state.system, state.forces
-    static, kinematic = (system.live_unit * max(0.0, x) for x in (forces.multiplier, state.kinematic_multiplier))
+    static, kinematic = system.load(forces.multiplier), system.load(state.kinematic_multiplier)
     lower, upper = min(static, kinematic), max(static, kinematic)
-    if upper - lower > tolerance * max(upper, system.live_unit * ZERO):
+    if upper - lower > tolerance * max(abs(lower), abs(upper), system.live_unit * ZERO):
         return replace(outcome, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
     force = system.point_forces(forces.pressure, forces.tangential)
     return replace(
@@ -234,5 +254,7 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
         upper=upper,
         motion=system.motion(forces.motion),
         force=force,
+        pull=system.force_unit * forces.tie,
+        held=-system.force_unit * forces.reaction,
         **collapse_state(system.scene, system.points, force, static),
     )

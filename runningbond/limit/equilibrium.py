@@ -1,8 +1,9 @@
 """Equilibrium of rigid blocks, without dimensions.
 
-    B_nᵀ f_n + B_tᵀ f_t + Cᵀ r − λ f_live = f_dead
+    B_nᵀ f_n + B_tᵀ f_t + Eᵀ N + Cᵀ r − λ f_live = f_dead
 
-with point forces f (tension positive) and reactions r of pinned points. Lengths are measured in block sizes,
+with point forces f (tension positive), pulls 0 ≤ N ≤ yield force of ties and reactions r of pinned points. What a tie
+is preloaded by, and how stiff it is, has no influence on what it can carry. Lengths are measured in block sizes,
 forces in the largest dead load (for a weightless wall, in the strongest joint point), each block's equations in its
 share of the largest block, and the live load in its largest entry, so that a wall of any size, density and unit of
 load gives the same numbers.
@@ -11,13 +12,14 @@ load gives the same numbers.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array, csr_array, hstack, vstack
 
 from runningbond.joints import JointPoints, PointStrength, wall_points, wall_strength
 from runningbond.results import fastest_corner_by_one
 from runningbond.scene import Array, Scene
 
-from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator
+from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator, tie_operator
+from .settlement import largest_displacement, reaction_unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +36,10 @@ class Equilibrium:
         Transposed jump operators of the movable degrees of freedom.
     reaction : (nd, n_pins) sparse array
         Transposed pin operator.
+    tie : (nd, nt) sparse array
+        Transposed elongations of ties.
+    tie_yield : (nt,) float
+        Yield forces of ties, in force units.
     dead, live : (nd,) float
         Loads.
     force_unit, live_unit : float
@@ -49,6 +55,8 @@ class Equilibrium:
     opening: csc_array
     slip: csc_array
     reaction: csc_array
+    tie: csc_array
+    tie_yield: Array
     dead: Array
     live: Array
     force_unit: float
@@ -60,26 +68,91 @@ class Equilibrium:
         """Number of movable degrees of freedom."""
         return len(self.dead)
 
+    @property
+    def has_support(self) -> bool:
+        """Whether the last equation is that of a moving support."""
+        return self.freedoms > len(movable_freedoms(self.scene))
+
+    @property
+    def least(self) -> float:
+        """Least multiplier that counts: a load does not change its sense, but a support may be pulled or pushed."""
+        return -np.inf if self.has_support else 0.0
+
+    def load(self, multiplier: float) -> float:
+        """λ of the scene: of a moving support what it bears, of loads what they are, not less than zero."""
+        return self.live_unit * (0.0 - multiplier if self.has_support else max(0.0, multiplier))
+
     def motion(self, multipliers: Array) -> Array:
         """Motion ``(nb, 3)`` [m, m, rad] from multipliers of equations ``(nd,)``; its fastest corner moves by 1 m."""
+        free, moved = movable_freedoms(self.scene), multipliers * self.scale
         motion = np.zeros(3 * len(self.scene.blocks))
-        motion[movable_freedoms(self.scene)] = multipliers * self.scale
+        motion[free] = moved[: len(free)]
+        if self.has_support:
+            motion += moved[-1] * unit_support_motion(self.scene)
         return fastest_corner_by_one(self.scene.blocks, motion.reshape(-1, 3))
 
     def point_forces(self, pressure: Array, tangential: Array) -> Array:
         """Normal and tangential force at each point ``(np, 2)`` [N] from scaled ones, tension positive."""
         return self.force_unit * np.column_stack([self.strength.tension - pressure, tangential])
 
+    def elongation(self, multipliers: Array) -> Array:
+        """Elongation rates of ties, ``(nt,)``, from multipliers of equations ``(nd,)``."""
+        return np.asarray(self.tie.T @ multipliers)
+
     def in_forces_of(self, unit: float) -> "Equilibrium":
         """The same equations, forces measured in so many of what counts as 1 here."""
         strength = PointStrength(self.strength.friction, self.strength.tension / unit, self.strength.shear / unit)
         dead, force_unit, live_unit = self.dead / unit, self.force_unit * unit, self.live_unit * unit
-        return replace(self, strength=strength, dead=dead, force_unit=force_unit, live_unit=live_unit)
+        pull = self.tie_yield / unit
+        return replace(self, strength=strength, tie_yield=pull, dead=dead, force_unit=force_unit, live_unit=live_unit)
 
     def without_strength(self, load: Array) -> "Equilibrium":
-        """The same blocks under another dead load, their joints dry."""
+        """The same blocks under another dead load, their joints dry and without ties."""
         nothing = np.zeros(len(self.points))
-        return replace(self, dead=load, strength=PointStrength(self.strength.friction, nothing, nothing))
+        strength = PointStrength(self.strength.friction, nothing, nothing)
+        return replace(self, dead=load, strength=strength, tie_yield=np.zeros_like(self.tie_yield))
+
+    def under_dead_load(self) -> "Equilibrium":
+        """The same equations without what `under_live_load` adds to them."""
+        n = len(movable_freedoms(self.scene))
+        parts = {name: getattr(self, name)[:n] for name in ("opening", "slip", "tie", "dead", "live", "scale")}
+        return replace(self, reaction=self.reaction[:n, : len(self.scene.pins)], **parts)
+
+    def under_live_load(self) -> "Equilibrium":
+        """The equations while λ grows: with the motions that are held then only, and with a support that moves.
+
+        That support has one equation more, the virtual work of the forces on it per unit displacement: its live load is
+        the dead load's resultant, and λ the share of it that drives the support along its motion. What the support
+        bears of the wall is −λ.
+        """
+        scene, late = self.scene, self.scene.late_pins
+        system = self
+        if len(late):
+            held = pin_operator(scene, late)[:, movable_freedoms(scene)].T * self.scale[:, None]
+            system = replace(self, reaction=csc_array(hstack([self.reaction, held])))
+        if scene.settlement is None:
+            return system
+        motion, jump = unit_support_motion(scene), jump_operator(self.points, scene.blocks.centroid)
+
+        def extended(rows: csc_array, last: Array) -> csc_array:
+            return csc_array(vstack([rows, csc_array(last[None])]))
+
+        return replace(
+            system,
+            opening=extended(self.opening, jump.opening @ motion),
+            slip=extended(self.slip, jump.slip @ motion),
+            tie=extended(self.tie, tie_operator(scene) @ motion),
+            reaction=extended(system.reaction, np.zeros(system.reaction.shape[1])),
+            dead=np.append(self.dead, 0.0),
+            live=np.append(self.live, 1.0),
+            live_unit=self.force_unit * largest_displacement(scene) / reaction_unit(scene),
+            scale=np.append(self.scale, 1.0),
+        )
+
+
+def unit_support_motion(scene: Scene) -> Array:
+    """Motion of moving supports, ``(3 nb,)``, that displaces the end of a joint on them by 1 m and none by more."""
+    return np.asarray(scene.support_motion.ravel() / largest_displacement(scene))
 
 
 def equilibrium(scene: Scene) -> Equilibrium:
@@ -94,7 +167,8 @@ def equilibrium(scene: Scene) -> Equilibrium:
 
     dead, live = dead_load(scene)[free] * scale, live_load(scene)[free] * scale
     live_size = float(np.abs(live).max()) or 1.0
-    force_unit = float(np.abs(dead).max()) or strength.strongest or live_size
+    pull = scene.ties.yield_force
+    force_unit = float(np.abs(dead).max()) or max(strength.strongest, pull.max(initial=0.0)) or live_size
 
     def rows(operator: csr_array) -> csc_array:
         return csc_array(operator[:, free].T * scale[:, None])
@@ -106,6 +180,8 @@ def equilibrium(scene: Scene) -> Equilibrium:
         rows(jump.opening),
         rows(jump.slip),
         rows(pin_operator(scene)),
+        rows(tie_operator(scene)),
+        pull / force_unit,
         dead / force_unit,
         live / live_size,
         force_unit,

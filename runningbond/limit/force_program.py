@@ -6,7 +6,7 @@ which HiGHS's interior point solves several times faster than rows of friction i
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -37,12 +37,19 @@ class ForceSet:
         Largest p on each ray at each point; inf where the ray is free, 0 where it is shut.
     shear_low, shear_high : (np,) float
         Bounds of s.
+    tie_low, tie_high : (nt,) float or None
+        Bounds of the ties' pulls; None is all from nothing to their yield force.
+    late_least : float
+        Least reaction of motions that are held once the dead load is on; 0 is one that only adds to the dead load.
     """
 
     slopes: Sequence[Array]
     most: Sequence[Array]
     shear_low: Array
     shear_high: Array
+    tie_low: Array | None = None
+    tie_high: Array | None = None
+    late_least: float = -np.inf
 
     @property
     def has_shear(self) -> bool:
@@ -79,6 +86,8 @@ class ForceSolution:
         Multipliers of the equilibrium equations: the collapse mechanism, f_live · q = 1.
     iterations
         Of the solver.
+    tie : (nt,) float
+        Pulls of ties.
     """
 
     status: ProgramStatus
@@ -88,20 +97,25 @@ class ForceSolution:
     reaction: Array
     motion: Array
     iterations: int
+    tie: Array = field(default_factory=lambda: np.zeros(0))
 
 
 def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> dict[str, Any]:
     """Arguments of `scipy.optimize.linprog` that look for a multiplier which forces of a set can balance."""
-    n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
+    n, n_pins, n_rays, n_ties = len(system.points), system.reaction.shape[1], len(forces.slopes), len(system.tie_yield)
     rays = [system.slip.multiply(slope).tocsc() - system.opening for slope in forces.slopes]
     shear = [system.slip] if forces.has_shear else []
-    matrix = csc_array(hstack([*rays, *shear, system.reaction, csc_array(-system.live[:, None])], format="csc"))
+    others = [*shear, system.tie, system.reaction, csc_array(-system.live[:, None])]
+    matrix = csc_array(hstack([*rays, *others], format="csc"))
     bounds = np.zeros((matrix.shape[1], 2))
     bounds[: n_rays * n, 1] = np.concatenate(list(forces.most))
     if forces.has_shear:
         bounds[n_rays * n : (n_rays + 1) * n] = np.column_stack([forces.shear_low, forces.shear_high])
+    bounds[-1 - n_pins - n_ties : -1 - n_pins, 0] = 0.0 if forces.tie_low is None else forces.tie_low
+    bounds[-1 - n_pins - n_ties : -1 - n_pins, 1] = system.tie_yield if forces.tie_high is None else forces.tie_high
     bounds[-1 - n_pins : -1] = -np.inf, np.inf
-    bounds[-1, 1] = 0.0 if aim == "zero" else np.inf
+    bounds[-1 - max(0, n_pins - len(system.scene.pins)) : -1, 0] = forces.late_least
+    bounds[-1] = (0.0, 0.0) if aim == "zero" else (system.least, np.inf)
     cost = np.zeros(matrix.shape[1])
     cost[-1] = {"largest": -1.0, "smallest": 1.0, "zero": 0.0}[aim] * _mechanism_scale(system)
     right = system.dead - system.opening @ system.strength.tension
@@ -117,6 +131,7 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
         none = np.zeros(0)
         return ForceSolution(status, np.nan, none, none, none, none, int(result.nit))
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
+    ties = slice(len(result.x) - 1 - n_pins - len(system.tie_yield), len(result.x) - 1 - n_pins)
     rays = result.x[: n_rays * n].reshape(n_rays, n)
     tangential = (np.asarray(forces.slopes) * rays).sum(axis=0)
     if forces.has_shear:
@@ -129,6 +144,7 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
         result.x[-1 - n_pins : -1],
         np.asarray(result.eqlin.marginals) / _mechanism_scale(system),
         int(result.nit),
+        result.x[ties],
     )
 
 
@@ -138,4 +154,4 @@ def _mechanism_scale(system: Equilibrium) -> float:
     With unit power the motions of a wall of a thousand blocks are a thousandth each, and its smallest
     jumps are lost in HiGHS's 1e-7.
     """
-    return float(np.abs(system.live).sum())
+    return float(np.abs(system.live).sum()) or 1.0

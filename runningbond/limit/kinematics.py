@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Forces, Indices, Pins, Scene
+from runningbond.scene import ANCHOR, Array, Forces, Indices, Pins, Scene
 
 
 def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
@@ -50,6 +50,18 @@ def pin_operator(scene: Scene, pins: Pins | None = None) -> csr_array:
     at_points = point_operator(pins.block, pins.point, pins.direction, scene.blocks.centroid)
     turn = coo_array((pins.turn, (np.arange(len(pins)), 3 * pins.block + 2)), shape=at_points.shape)
     return csr_array(at_points + turn)
+
+
+def tie_operator(scene: Scene) -> csr_array:
+    """Elongation of each tie, ``(nt, 3 nb)``; an anchor does not move."""
+    ties, shape = scene.ties, (len(scene.ties), 3 * len(scene.blocks))
+    elongation = csr_array(shape)
+    for end, sense in enumerate((-1.0, 1.0)):
+        held = ties.block[:, end] != ANCHOR
+        along = np.where(held[:, None], sense * ties.direction, 0.0)
+        block = np.where(held, ties.block[:, end], 0)
+        elongation = elongation + point_operator(block, ties.ends[:, end], along, scene.blocks.centroid)
+    return csr_array(elongation)
 
 
 def mass_matrix_diagonal(scene: Scene) -> Array:

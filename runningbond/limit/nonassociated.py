@@ -9,8 +9,9 @@ vanish where the mechanism opens and are at the limit, against the motion, where
 such forces are an interval, every point of which is a load at which the wall can collapse.
 """
 
+import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,8 @@ from runningbond.scene import Array, Scene
 from .associated import LimitState, judge, limit_state, spends_cut_strength
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSet, ForceSolution, coulomb, frozen_friction, solve_forces
+from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
+from .remarks import remarks
 
 PROGRAM_BUDGET = 40
 """Programs of the sequence after which it ends without a certificate."""
@@ -47,13 +50,15 @@ class Certificate:
 def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
     """Forces that obey Coulomb's law on a mechanism ``(nd,)``: none where it opens, at the limit where it slides.
 
-    None for a mechanism whose blocks run into each other.
+    A tie that lengthens is at yield, and one that shortens is slack. What holds a beam at its height presses it down,
+    if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other.
     """
     opening, slip = system.opening.T @ motion, system.slip.T @ motion
     largest = float(np.abs(motion).max(initial=0.0))
     if largest == 0.0 or opening.min(initial=0.0) < -PENETRATION * largest:
         return None
     opens, forward, backward = opening > NO_JUMP * largest, slip > NO_JUMP * largest, slip < -NO_JUMP * largest
+    longer = system.elongation(motion)
     cone = coulomb(system.strength)
     up, down = cone.most
     return ForceSet(
@@ -61,11 +66,14 @@ def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
         (np.where(opens | backward, 0.0, up), np.where(opens | forward, 0.0, down)),
         np.where(forward, cone.shear_high, cone.shear_low),
         np.where(backward, cone.shear_low, cone.shear_high),
+        np.where(longer > NO_JUMP * largest, system.tie_yield, 0.0),
+        np.where(longer < -NO_JUMP * largest, 0.0, system.tie_yield),
+        late_least=0.0,
     )
 
 
 def certify(system: Equilibrium, motion: Array) -> Certificate | None:
-    """Look for the loads that drive a mechanism; None where there are none."""
+    """Look for the loads that drive a mechanism; None where there are none. Of loads without end, the least counts."""
     forces = driving_forces(system, motion)
     if forces is None:
         return None
@@ -73,6 +81,8 @@ def certify(system: Equilibrium, motion: Array) -> Certificate | None:
     if least.status != "optimal":
         return None
     most = solve_forces(system, forces, "largest")
+    if most.status == "unbounded":
+        return Certificate(motion, least, least)
     return Certificate(motion, least, most) if most.status == "optimal" else None
 
 
@@ -122,12 +132,18 @@ def search(system: Equilibrium, pressure: Array, high: float = np.inf) -> Search
     return Search(certificates, PROGRAM_BUDGET, growing=growing)
 
 
-def certified_loads(certificates: Sequence[Certificate], unit: float) -> list[tuple[float, float]]:
-    """Loads at which collapse is certified, as intervals that do not touch, in order."""
-    pairs = sorted((unit * max(0.0, c.least.multiplier), unit * max(0.0, c.most.multiplier)) for c in certificates)
+def certified_loads(
+    certificates: Sequence[Certificate], load: Callable[[float], float], *, falling: bool = False
+) -> list[tuple[float, float]]:
+    """Loads at which collapse is certified, as intervals that do not touch, in order.
+
+    `load` makes them of multipliers; `falling` if it falls as they grow.
+    """
+    ends = [(load(c.least.multiplier), load(c.most.multiplier)) for c in certificates]
+    pairs = sorted((min(pair), max(pair)) if falling else pair for pair in ends)
     merged = [pairs[0]]
     for low, high in pairs[1:]:
-        if low <= merged[-1][1] * (1 + 1e-9):
+        if low <= merged[-1][1] + 1e-9 * abs(merged[-1][1]):
             merged[-1] = merged[-1][0], max(high, merged[-1][1])
         else:
             merged.append((low, high))
@@ -150,7 +166,8 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
         `multiplier` is the smallest; smaller ones are not excluded, and where several mechanisms were
         certified at loads apart from each other the message says at which. `motion` and `force` belong to it.
         Without a certificate the status is ``undecided`` and `upper` the associated load, which no true
-        collapse load exceeds.
+        collapse load exceeds. Of a support that moves, `multiplier` is the largest share of the dead load that it was
+        found to bear as the wall gives way, and the associated share is a lower bound.
 
     Notes
     -----
@@ -161,15 +178,16 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
     proved.
     """
     start = time.perf_counter()
-    system = equilibrium(scene)
+    system = equilibrium(scene).under_live_load()
     state = limit_state(system)
     status, message = judge(state)
-    outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=system.freedoms, steps=1, message=message)
+    dofs = system.freedoms - system.has_support
+    outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=dofs, steps=1, message=message)
     if status in ("collapse", "unbounded"):
         outcome = _collapse(outcome, system, state, tolerance)
     else:
         outcome = replace(outcome, status=status)
-    return replace(outcome, seconds=time.perf_counter() - start)
+    return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
 
 
 def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float) -> Outcome:
@@ -178,8 +196,9 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
     bounded = associated.status == "optimal"
     first = associated if bounded else solve_forces(cut, coulomb(cut.strength), "zero")
     # A certificate within the tolerance of the associated bound leaves nothing to search for.
-    high = (1 - tolerance) * associated.multiplier if bounded else np.inf
-    result = search(cut, first.pressure, high)
+    high = (1 - math.copysign(tolerance, associated.multiplier)) * associated.multiplier if bounded else np.inf
+    pressure = first.pressure if first.status == "optimal" else np.zeros(len(cut.points))
+    result = search(cut, pressure, high)
     outcome = replace(outcome, steps=1 + result.programs)
     certificates = [
         certificate
@@ -187,38 +206,58 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         if not spends_cut_strength(system, cut, certificate.motion, dilatancy=0.0)
     ]
     if not certificates:
-        return _uncertified(outcome, result, cut.live_unit * associated.multiplier if bounded else None)
+        return _uncertified(outcome, result, cut, associated.multiplier if bounded else None)
     lowest = min(certificates, key=lambda certificate: certificate.least.multiplier)
-    loads = certified_loads(certificates, cut.live_unit)
+    loads = certified_loads(certificates, cut.load, falling=cut.has_support)
     lower, upper = loads[0][0], loads[-1][1]
-    message = "collapse is certified at every load of the interval; smaller ones are not excluded"
+    if cut.has_support and upper <= NOTHING and may_leave(cut):
+        return _bridged(outcome, cut)
+    others, beyond = ("larger", "above") if cut.has_support else ("smaller", "below")
+    message = f"collapse is certified at every load of the interval; {others} ones are not excluded"
     if len(loads) > 1:
         listed = ", ".join(f"{low:.6g} … {high:.6g}" for low, high in loads)
-        message = f"collapse is certified at {listed}, and nothing is proved in between or below"
-    elif upper - lower > tolerance * upper:
+        message = f"collapse is certified at {listed}, and nothing is proved in between or {beyond}"
+    elif upper - lower > tolerance * abs(upper):
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
-    force = cut.point_forces(lowest.least.pressure, lowest.least.tangential)
+    least, multiplier = lowest.least, cut.load(lowest.least.multiplier)
+    if cut.has_support:
+        message = f"{message}; {reaction_note(cut.scene, multiplier)}"
+    force = cut.point_forces(least.pressure, least.tangential)
     return replace(
         outcome,
         status="collapse",
-        multiplier=lower,
+        multiplier=multiplier,
         lower=lower,
         upper=max(lower, upper),
         message=message,
         motion=cut.motion(lowest.motion),
         force=force,
-        **collapse_state(cut.scene, cut.points, force, lower),
+        pull=cut.force_unit * least.tie,
+        held=-cut.force_unit * least.reaction,
+        **collapse_state(cut.scene, cut.points, force, multiplier),
     )
 
 
-def _uncertified(outcome: Outcome, result: Search, bound: float | None) -> Outcome:
-    """Outcome of a wall without a certified collapse, under the associated bound if there is one."""
+def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
+    """Outcome of a wall that bridges its moving support."""
+    proof = "by normal forces alone" if bridges_without_friction(system) else "with friction that may come to rest so"
+    return replace(outcome, status="unbounded", message=f"{BRIDGED}, {proof}")
+
+
+def _uncertified(outcome: Outcome, result: Search, system: Equilibrium, bound: float | None) -> Outcome:
+    """Outcome of a wall without a certified collapse, under the associated multiplier if there is one."""
     programs = f"no collapse certified in {result.programs} programs"
     if result.frictionless:
-        message = "self-locking: normal forces carry any multiple of the live load"
+        message = JAMMED if system.has_support else "self-locking: normal forces carry any multiple of the live load"
         return replace(outcome, status="unbounded", message=message)
+    if bound is not None and system.has_support:
+        share = system.load(bound)
+        if is_bridged(system, share):
+            return _bridged(outcome, system)
+        return replace(outcome, lower=share, message=f"{programs}; lower is the associated bound")
     if bound is not None:
-        return replace(outcome, upper=bound, message=f"{programs}; upper is the associated bound")
+        message = f"{programs}; upper is the associated bound"
+        return replace(outcome, upper=system.live_unit * bound, message=message)
     message = "forces within Coulomb's law balance any multiple of the live load"
     if result.growing:
         message = f"self-locking: {message}; {programs}, which does not exclude one"

@@ -45,7 +45,7 @@ class MechanismCheck:
     total
         Work of the dead load and λ times the live load [J].
     scale
-        Sum of the absolute values of those two [J], by which `total` is judged.
+        Sum of the absolute values of those two [J], by which `total` is judged; inf where a support drives the motion.
     overlap
         Largest overlap of two blocks at the ends of a joint, per motion of the fastest corner.
     """
@@ -94,6 +94,6 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
     return MechanismCheck(
         by_live if multiplier and live.any() else None,
         by_dead + multiplier * by_live,
-        abs(by_dead) + abs(multiplier * by_live),
+        abs(by_dead) + abs(multiplier * by_live) if scene.settlement is None else np.inf,
         float(max(0.0, -opening.min(initial=0.0))),
     )

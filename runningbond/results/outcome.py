@@ -38,6 +38,11 @@ class Outcome:
         moving by one metre. Empty without one.
     force : (np, 2) float
         Normal and tangential force at each contact point [N], tension positive. Empty without them.
+    pull : (nt, 1) float
+        Pull of each tie [N]. Empty without them.
+    held : (n, 1) float
+        What each held motion of a block is held with, those of `Scene.pins` and then `Scene.late_pins`: a force on the
+        block along the pin's direction [N], or a moment [N m]. Empty without them.
     curve : (n, 2) float
         Pushover curve: displacement of the control point along the live load [m], and λ. Empty for models
         that follow no path. The control point is where a point load acts, or the wall's highest corner that
@@ -62,6 +67,8 @@ class Outcome:
     message: str = ""
     motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
     force: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    pull: Array = field(default_factory=lambda: np.zeros((0, 1)))
+    held: Array = field(default_factory=lambda: np.zeros((0, 1)))
     curve: Array = field(default_factory=lambda: np.zeros((0, 2)))
     path: Array = field(default_factory=lambda: np.zeros((0, 0)))
     path_columns: tuple[str, ...] = ()
@@ -95,7 +102,7 @@ class Outcome:
 
 
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")
-ARRAYS = {"motion": 3, "force": 2, "curve": 2}
+ARRAYS = {"motion": 3, "force": 2, "pull": 1, "held": 1, "curve": 2}
 """Array fields and their number of columns."""
 
 

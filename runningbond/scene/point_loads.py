@@ -95,8 +95,9 @@ class LineLoad(Action):
         length = float(np.hypot(*np.subtract(self.end, self.start)))
         close = 3 * scene.blocks.tolerance / length
         cuts = np.unique(np.concatenate([[0.0, 1.0], share.ravel()]))
-        cuts = cuts[np.append(True, np.diff(cuts) > close)]
-        cuts[-1] = 1.0
+        # One block ends as far beyond its neighbour's beginning as contact reaches: the cut is in the middle.
+        groups = np.split(cuts, np.flatnonzero(np.diff(cuts) > close) + 1)
+        cuts = np.array([0.0, *(group.mean() for group in groups[1:-1]), 1.0])
         given: list[tuple[int, float, float]] = []
         for low, high in pairwise(cuts):
             here = owner[(share[:, 0] < (low + high) / 2) & (share[:, 1] > (low + high) / 2)]

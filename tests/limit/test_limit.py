@@ -470,7 +470,7 @@ def test_disjoint_certificates_are_named() -> None:
     assert outcome.status == "collapse"
     if "nothing is proved in between" not in outcome.message:
         assert "every load of the interval" in outcome.message
-    merged = certified_loads([_certificate(3, 4), _certificate(1, 2), _certificate(1.5, 2.5)], 10.0)
+    merged = certified_loads([_certificate(3, 4), _certificate(1, 2), _certificate(1.5, 2.5)], lambda x: 10 * x)
     assert merged == [(10, 25), (30, 40)]
 
 

@@ -167,3 +167,16 @@ def test_what_is_no_load_is_refused_in_python() -> None:
     with pytest.raises(SceneError, match=r"load\.live"):
         Load(live=(3,))  # type: ignore[arg-type]
     assert Load(live=Lateral()) == Load()  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("ends", [(0.0, 1.44), (0.1, 0.5), (0.3, 1.2)])
+def test_a_line_load_is_cut_at_the_joints_to_the_last_digit(ends: tuple[float, float]) -> None:
+    """Along the top each block gets the force per length times the length on it, about its own middle."""
+    live = {"kind": "line", "from": [ends[0], 0.72], "to": [ends[1], 0.72], "force": [20.0, -100.0]}
+    scene = panel(load__live=live)
+    load = live_load(scene).reshape(-1, 3)
+    low, high = (corner[:, 0].clip(*ends) for corner in scene.blocks.boxes)
+    on = scene.wall & (scene.blocks.boxes[1][:, 1] > 0.719)
+    run, middle = (high - low) * on, (high + low) / 2 - scene.blocks.centroid[:, 0]
+    expected = np.column_stack([20.0 * run, -100.0 * run, -100.0 * run * middle - 20.0 * run * 0.03])
+    assert load == pytest.approx(expected, abs=1e-12)

@@ -1,0 +1,145 @@
+"""Random scenes over all keys: no model bears more than `limit` proves, and what it proves is checked by others."""
+
+import copy
+import subprocess
+import sys
+from dataclasses import replace
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.compare.models import MODELS, run_model
+from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.results import Outcome, save_outcome
+from runningbond.scene import Scene, SceneError, scene_from_dict
+from tests.random_scenes import mirrored, random_scene
+from tests.walls import courses
+
+CHECKER = Path(__file__).parents[2] / "tools" / "check_limit.py"
+LIMITS = ("limit", "limit-nonassociated")
+SLACK = 1e-4
+"""Load, in weights of the heaviest block, that the criterion of rest cannot see."""
+
+BUDGETS = {"dem-static": {"budget": 300}, "dem-dynamic": {"budget": 10_000}, "fem": {"budget": 10_000}}
+
+
+@pytest.fixture(scope="module")
+def checker() -> Any:
+    """The script that shares no code with the suite."""
+    spec = spec_from_file_location("check_limit", CHECKER)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _unit(scene: Scene) -> float:
+    """Multiplier at which the live load is as large as the heaviest block; of a moving support the whole weight."""
+    live = float(np.abs(live_load(scene)).max())
+    return float(np.abs(dead_load(scene)).max()) / live if live else 1.0
+
+
+def _proved(checker: Any, outcome: Outcome, scene: Scene, folder: Path) -> None:
+    save_outcome(outcome, folder, "", scene)
+    assert checker.check(folder)
+
+
+def _within(outcome: Outcome, bound: Outcome, scene: Scene) -> None:
+    """No load beyond the bound, and no support that bears less."""
+    exact, unit = outcome.model in LIMITS, _unit(scene)
+    slack = 1e-6 if exact else SLACK
+    if bound.status == "infeasible":
+        assert outcome.status in ("infeasible", "undecided")
+    if bound.status != "collapse" or outcome.status == "failed":
+        return
+    assert bound.lower is not None
+    assert bound.upper is not None
+    width = 0.0 if exact or outcome.upper is None or outcome.lower is None else outcome.upper - outcome.lower
+    room = width + slack * (unit + abs(bound.upper))
+    if scene.settlement is not None:
+        if outcome.upper is not None:
+            assert outcome.upper >= bound.lower - room
+        return
+    assert outcome.status != "unbounded"
+    if outcome.lower is not None:
+        assert outcome.lower <= bound.upper + room
+
+
+def _outcome(model: str, scene: Scene) -> Outcome | None:
+    """What a model says of a scene; None where it refuses it by name."""
+    try:
+        return run_model(model, scene, **BUDGETS.get(model, {}))  # type: ignore[arg-type]
+    except SceneError:
+        return None
+
+
+def _holds(seed: int, models: tuple[str, ...], checker: Any, folder: Path) -> str:
+    scene = scene_from_dict(random_scene(seed))
+    bound = run_model("limit", scene)
+    assert bound.status in ("collapse", "unbounded", "infeasible"), bound.message
+    _proved(checker, bound, scene, folder / "limit")
+    for model in models:
+        outcome = _outcome(model, scene)
+        if outcome is None:
+            continue
+        assert model != "limit-nonassociated" or outcome.status != "failed", outcome.message
+        if model == "limit-nonassociated":
+            _proved(checker, outcome, scene, folder / model)
+        if model != "homog":  # an estimate, on either side
+            _within(outcome, bound, scene)
+    return bound.status
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_model_bears_more_than_limit_proves(seed: int, checker: Any, tmp_path: Path) -> None:
+    _holds(seed, ("limit-nonassociated", "dem-static"), checker, tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("start", range(0, 300, 30))
+def test_no_model_bears_more_than_limit_proves_at_length(start: int, checker: Any, tmp_path: Path) -> None:
+    others = tuple(model for model in MODELS if model != "limit")
+    found = [_holds(seed, others, checker, tmp_path) for seed in range(start, start + 30)]
+    assert found.count("collapse") > len(found) / 3
+
+
+@pytest.mark.parametrize("seed", range(100, 112))
+def test_a_mirrored_scene_has_the_mirrored_answer(seed: int) -> None:
+    content = random_scene(seed)
+    if content["support"]["kind"] == "corners":  # one of them a roller
+        content["support"]["kind"] = "pinned-corners"
+    content["assign"] = [entry for entry in content.get("assign", []) if "blocks" not in entry]
+    one, two = (run_model("limit", scene_from_dict(tables)) for tables in (content, mirrored(copy.deepcopy(content))))
+    assert one.status == two.status
+    assert (one.multiplier or 0.0) == pytest.approx(two.multiplier or 0.0, rel=1e-7, abs=1e-9)
+
+
+@pytest.mark.parametrize("array", ["force", "pull", "motion", "multiplier"])
+def test_the_checker_sees_what_is_wrong(array: str, checker: Any, tmp_path: Path) -> None:
+    """A force, a pull or a motion that is a thousandth off, a multiplier that is: run as a script, it ends with 1."""
+    tie = {"from": [0.03, 0.5], "to": [-1.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 5.0}
+    scene = courses([[1], [1]], width=0.1, height=0.3, tie=[tie])
+    outcome = run_model("limit", scene)
+    assert outcome.status == "collapse"
+    _proved(checker, outcome, scene, tmp_path)
+    value: Any = getattr(outcome, array)
+    if array == "multiplier":
+        changed = dict.fromkeys(("lower", "multiplier", "upper"), 1.001 * value)
+    else:
+        largest = np.unravel_index(np.abs(value).argmax(), value.shape)
+        spoilt = np.array(value)
+        spoilt[largest] *= 1.001
+        changed = {array: spoilt}
+    save_outcome(replace(outcome, **changed), tmp_path, "", scene)
+    found = subprocess.run([sys.executable, str(CHECKER), str(tmp_path)], capture_output=True, text=True, check=False)
+    assert found.returncode == 1
+    assert "WRONG" in found.stdout
+
+
+def test_the_checker_needs_numpy_alone() -> None:
+    imported = [line.split()[1] for line in CHECKER.read_text().splitlines() if line.startswith(("import ", "from "))]
+    assert {name.partition(".")[0] for name in imported} <= {*sys.stdlib_module_names, "numpy"}

@@ -1,0 +1,409 @@
+"""Limit analysis of ties, of a beam on top and of supports that move, against answers by hand."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.compare.models import run_model
+from runningbond.limit import equilibrium, limit, limit_state
+from runningbond.limit.kinematics import dead_load
+from runningbond.limit.settlement import largest_displacement
+from runningbond.results import Outcome, load_outcome, save_outcome
+from runningbond.scene import (
+    Array,
+    BlockMaterial,
+    JointMaterial,
+    Lateral,
+    Load,
+    Scene,
+    SceneError,
+    Settlement,
+    Tie,
+    build_scene,
+)
+from tests.limit.test_limit import rectangle
+from tests.walls import panel
+
+MODELS = ("limit", "limit-nonassociated")
+BOTH = pytest.mark.parametrize("model", MODELS)
+WIDTH, HEIGHT, DENSITY, THICKNESS = 0.5, 1.2, 2000.0, 0.1
+WEIGHT = WIDTH * HEIGHT * DENSITY * 9.81 * THICKNESS
+
+
+def built(blocks: list[Array], friction: float, load: Load | None = None, **more: Any) -> Scene:
+    return build_scene(
+        "by hand",
+        blocks,
+        thickness=THICKNESS,
+        block=BlockMaterial(DENSITY),
+        joint=JointMaterial(friction),
+        load=load or Load(),
+        **more,
+    )
+
+
+def collapse(model: str, scene: Scene) -> float:
+    """λ of a scene whose bracket is as narrow as numbers are."""
+    outcome = run_model(model, scene)
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.multiplier is not None
+    assert outcome.lower == pytest.approx(outcome.upper, rel=1e-6, abs=1e-7)
+    return outcome.multiplier
+
+
+# --- ties ------------------------------------------------------------------------------------------------------
+
+
+@BOTH
+@pytest.mark.parametrize("friction", [0.1, 0.3, 2.0])
+@pytest.mark.parametrize("pull", [0.0, 0.05, 0.3])
+def test_a_tie_holds_a_block_by_its_yield_force(model: str, friction: float, pull: float) -> None:
+    """Tied to an anchor from its top: λ = min(μ + T/W, (b/2 + h T/W) / (h/2)); pulled the other way it is slack."""
+    tie = [Tie((0.0, HEIGHT), (-1.0, HEIGHT), 1e-4, 2e11, pull * WEIGHT)] if pull else []
+    for direction, held in ((1.0, pull), (-1.0, 0.0)):
+        scene = built([rectangle(0, 0, WIDTH, HEIGHT)], friction, Load(live=(Lateral((direction, 0.0)),)), ties=tie)
+        exact = min(friction + held, (WIDTH / 2 + HEIGHT * held) / (HEIGHT / 2))
+        assert collapse(model, scene) == pytest.approx(exact, rel=1e-7)
+
+
+@BOTH
+def test_a_tie_makes_two_columns_topple_as_one(model: str) -> None:
+    """Pushed right, the left column leans on nothing but the tie that ends at the right one: it is short, and slack."""
+    columns = [rectangle(0, 0, WIDTH, HEIGHT), rectangle(2, 0, 2 * WIDTH, HEIGHT)]
+    slender, wide = WIDTH / HEIGHT, 2 * WIDTH / HEIGHT
+    tie = Tie((WIDTH, HEIGHT), (2.0, HEIGHT), 1e-4, 2e11, 100 * WEIGHT)
+    for direction, exact in ((1.0, slender), (-1.0, (slender + 2 * wide) / 3)):
+        # To the left the slender column is ahead and pulls the tie, until both lean at once.
+        scene = built(columns, 5.0, Load(live=(Lateral((direction, 0.0)),)), ties=[tie])
+        assert collapse(model, scene) == pytest.approx(exact, rel=1e-7)
+
+
+def test_preload_and_stiffness_of_a_tie_have_no_influence_and_are_said_to_have_none() -> None:
+    ends = ((0.0, HEIGHT), (-1.0, HEIGHT))
+    ties = [Tie(*ends, 1e-4, 2e11, 100.0), Tie(*ends, 1e-3, 1e9, 100.0, 90.0)]
+    found = [limit(built([rectangle(0, 0, WIDTH, HEIGHT)], 1.0, ties=[tie])) for tie in ties]
+    assert found[0].multiplier == found[1].multiplier
+    assert "ties count by their yield force alone" in found[0].message
+
+
+@BOTH
+def test_no_multiple_of_a_load_hangs_on_a_tie(model: str) -> None:
+    """Lifted straight up a block comes off at W and what the tie holds; pressed down it locks as ever."""
+    tie = Tie((0.25, 0.1), (0.25, -1.5), 1e-4, 2e11, 500.0)
+    for force, exact in (([0.0, 1.0], WEIGHT + 500.0), ([0.0, -1.0], None)):
+        live = {"kind": "point", "at": [0.25, HEIGHT], "force": force}
+        scene = panel(
+            wall={"block_width": WIDTH, "block_height": HEIGHT, "thickness": THICKNESS, "courses": [[1]]},
+            block={"density": DENSITY},
+            load={"gravity": 9.81, "live": live},
+            tie=[{"from": list(tie.start), "to": list(tie.end), "area": 1e-4, "young": 2e11, "yield": 500.0}],
+        )
+        outcome = run_model(model, scene)
+        if exact is None:
+            assert outcome.status == "unbounded"
+        else:
+            assert outcome.multiplier == pytest.approx(exact, rel=1e-7)
+
+
+def test_forces_and_mechanism_with_ties_prove_each_other() -> None:
+    """And the ties that lengthen are at yield, those that shorten slack, the others in between."""
+    walls = [panel(wall__height=1.44, joint__friction=0.9, tie=_ties(pull)) for pull in (20.0, 200.0, 2e4)]
+    for scene in walls:
+        state = limit_state(equilibrium(scene))
+        assert max(state.measures.values()) < 1e-9, state.measures
+        assert limit(scene).multiplier == pytest.approx(state.system.load(state.forces.multiplier))
+    loads = [limit(scene).multiplier or 0.0 for scene in walls]
+    assert loads == sorted(loads)
+    assert loads[-1] > loads[0] * 1.05
+
+
+def _ties(pull: float) -> list[dict[str, Any]]:
+    size = {"area": 1e-4, "young": 2e11, "yield": pull}
+    return [{"from": [0.05, 1.41], "to": [-1.0, 0.2]} | size, {"from": [0.05, 1.29], "to": [1.4, 1.35]} | size]
+
+
+# --- the beam --------------------------------------------------------------------------------------------------
+
+
+def under_beam(condition: str, friction: float = 5.0, **beam: Any) -> Scene:
+    """One block under a beam without mass that bears 3 W."""
+    return panel(
+        wall={"block_width": WIDTH, "block_height": HEIGHT, "thickness": THICKNESS, "courses": [[1]]},
+        block={"density": DENSITY},
+        joint={"friction": friction},
+        load={"gravity": 9.81},
+        beam={"height": 0.2, "condition": condition, "force": [0, -3 * WEIGHT], "drive": {"force": [1, 0]}} | beam,
+    )
+
+
+@BOTH
+@pytest.mark.parametrize("at", [0.3, HEIGHT, 2.0])
+def test_a_level_beam_bends_a_wall_double_wherever_it_is_driven(model: str, at: float) -> None:
+    """H = (N + W/2) b / h: the block leans from one corner of the beam to the other of the ground."""
+    drive = {"force": [1, 0], "at": at}
+    assert collapse(model, under_beam("level", drive=drive)) == pytest.approx(3.5 * WEIGHT * WIDTH / HEIGHT, rel=1e-7)
+
+
+@BOTH
+def test_a_free_beam_leans_with_its_wall(model: str) -> None:
+    """H = (N + W) b / (2 h), driven at the wall's top: of a light wall half of what a level beam needs."""
+    drive = {"force": [1, 0], "at": HEIGHT}
+    assert collapse(model, under_beam("free", drive=drive)) == pytest.approx(2 * WEIGHT * WIDTH / HEIGHT, rel=1e-7)
+
+
+@BOTH
+@pytest.mark.parametrize("condition", ["free", "level"])
+def test_a_beam_slides_on_its_wall(model: str, condition: str) -> None:
+    drive = {"force": [1, 0], "at": HEIGHT}
+    assert collapse(model, under_beam(condition, 0.2, drive=drive)) == pytest.approx(0.2 * 3 * WEIGHT, rel=1e-7)
+
+
+def test_a_beam_held_at_its_height_locks_the_wall_and_says_what_holds_it() -> None:
+    """Its vertical force is whatever the strut under it needs."""
+    for friction in (0.2, 0.6):
+        outcome = run_model("limit", under_beam("fixed-height", friction))
+        assert outcome.status == "unbounded"
+        assert "whatever vertical force" in outcome.message
+
+
+def test_without_dilatancy_a_wall_slides_under_a_beam_that_is_held_at_its_height() -> None:
+    """At μ N with the dead N where the strut from corner to corner slides, μ < b / h; a steeper one does not."""
+    outcome = run_model("limit-nonassociated", under_beam("fixed-height", 0.2))
+    assert outcome.status == "collapse"
+    assert outcome.multiplier == pytest.approx(0.2 * 3 * WEIGHT, rel=1e-7)
+    outcome = run_model("limit-nonassociated", under_beam("fixed-height", 0.6))
+    assert outcome.status == "undecided"
+    assert "balance any multiple of the live load" in outcome.message
+
+
+@BOTH
+def test_a_path_is_a_force_along_its_first_move_and_says_so(model: str) -> None:
+    pushed = collapse(model, under_beam("level"))
+    for displacement in ([0.01, 0], [[0, 0.001, -0.001]]):
+        outcome = run_model(model, under_beam("level", drive={"displacement": displacement}))
+        assert outcome.multiplier == pytest.approx(pushed, rel=1e-9)
+        assert "λ is the force on the beam [N]" in outcome.message
+        assert ("first direction" in outcome.message) == isinstance(displacement[0], list)
+
+
+def test_what_holds_a_beam_balances_its_moments() -> None:
+    """Level: the moment is that of N, half a width from the beam's middle, and of H about its own height."""
+    outcome = limit(under_beam("level", drive={"force": [1, 0], "at": HEIGHT + 0.1}))
+    force = 3.5 * WEIGHT * WIDTH / HEIGHT
+    assert outcome.held.ravel() == pytest.approx([3 * WEIGHT * WIDTH / 2 + force * 0.1], rel=1e-7)
+
+
+# --- moving supports --------------------------------------------------------------------------------------------
+
+
+def on_moving(blocks: list[Array], box: tuple[tuple[float, float], tuple[float, float]], **more: Any) -> Scene:
+    friction, grounds = more.pop("friction", 0.6), more.pop("grounds", ())
+    return built(blocks, friction, Load(live=(Settlement(box, **more),)), grounds=grounds)
+
+
+@BOTH
+@pytest.mark.parametrize("cut", [0.05, 0.2, 0.24])
+def test_ground_that_sinks_under_one_end_of_a_block_bears_it_at_its_far_corner(model: str, cut: float) -> None:
+    """On [0, c] that stays and [c, b] that sinks the block turns about c: λ = (b/2 − c) / (b − c)."""
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), by=(0.0, -0.02))
+    assert collapse(model, scene) == pytest.approx((WIDTH / 2 - cut) / (WIDTH - cut), rel=1e-6, abs=1e-9)
+
+
+@BOTH
+@pytest.mark.parametrize("cut", [0.26, 0.4])
+def test_a_block_whose_weight_is_over_what_stays_does_without_the_rest(model: str, cut: float) -> None:
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), by=(0.0, -0.02))
+    outcome = run_model(model, scene)
+    assert outcome.status == "unbounded"
+    assert "bridges the support" in outcome.message
+
+
+@BOTH
+@pytest.mark.parametrize("width", [0.2, 1e-3])
+def test_a_lintel_on_two_supports_leaves_half_of_its_weight_on_the_one_that_sinks(model: str, width: float) -> None:
+    """Of bearing a and span L: R = W (L/2 − a) / (L − a), half of W on bearings without width."""
+    span = 2.0
+    grounds = [rectangle(0, -1, width, 1), rectangle(span - width, -1, width, 1)]
+    scene = on_moving([rectangle(0, 0, span, 0.3)], ((1, -2), (3, 0.1)), by=(0.0, -0.01), grounds=grounds)
+    found = collapse(model, scene)
+    assert found == pytest.approx((span / 2 - width) / (span - width), rel=1e-6)
+    assert found == pytest.approx(0.5, rel=width)
+
+
+def portal(*, mirrored: bool = False, **motion: Any) -> Scene:
+    """A lintel 2.0 × 0.3 on two piers 0.4 × 1.5, the right one (or the left) on ground that moves."""
+    blocks = [rectangle(0, 0, 0.4, 1.5), rectangle(1.6, 0, 0.4, 1.5), rectangle(0, 1.5, 2.0, 0.3)]
+    box = ((-0.1, -1.0), (0.5, 0.1)) if mirrored else ((1.5, -1.0), (2.1, 0.1))
+    return on_moving(blocks, box, **motion)
+
+
+PIER, LINTEL = 0.4 * 1.5, 2.0 * 0.3
+
+
+@BOTH
+def test_a_portal_one_of_whose_piers_sinks_hinges_at_the_bearings(model: str) -> None:
+    """The lintel turns about the inner edge of the pier that stays, and lies on the outer edge of the other.
+
+    R = W_pier + W_lintel (L/2 − a) / (L − a).
+    """
+    scene = portal(by=(0.0, -0.02))
+    exact = (PIER + LINTEL * 0.6 / 1.6) / (2 * PIER + LINTEL)
+    assert collapse(model, scene) == pytest.approx(exact, rel=1e-7)
+    outcome = run_model(model, scene)
+    sunk = outcome.motion / outcome.motion[1, 1]
+    assert sunk[0] == pytest.approx([0, 0, 0], abs=1e-9)
+    assert sunk[1] == pytest.approx([0, 1, 0], abs=1e-9)
+    assert sunk[2] == pytest.approx([-0.15 / 1.6, 0.6 / 1.6, 1 / 1.6], abs=1e-9)
+    moving = scene.support_motion.any(axis=1)
+    assert sunk[moving] == pytest.approx(np.array([[0, 1, 0]]), abs=1e-9)
+    newtons = exact * (2 * PIER + LINTEL) * DENSITY * 9.81 * THICKNESS
+    assert f"bears {newtons:.6g} N" in outcome.message
+
+
+@BOTH
+@pytest.mark.parametrize("by", [(0.0, -0.02), (0.01, 0.0), (0.005, -0.01)])
+def test_a_mirrored_settlement_has_the_mirrored_answer(model: str, by: tuple[float, float]) -> None:
+    mirrored = portal(mirrored=True, by=(-by[0], by[1]))
+    assert collapse(model, mirrored) == pytest.approx(collapse(model, portal(by=by)), rel=1e-9)
+
+
+@BOTH
+@pytest.mark.parametrize("size", [1e-6, 1.0, 7.0])
+def test_the_size_of_a_settlement_scales_out(model: str, size: float) -> None:
+    found = collapse(model, portal(by=(0.0, -size)))
+    assert found == pytest.approx(collapse(model, portal(by=(0.0, -0.02))), rel=1e-9)
+
+
+@BOTH
+@pytest.mark.parametrize("friction", [0.6, 1.2, 3.0])
+def test_three_blocks_between_abutments_push_as_far_as_friction_or_their_depth_asks(
+    model: str, friction: float
+) -> None:
+    """A flat arch of three blocks b × h on friction alone, one abutment giving way: H = W max(b / h, 1.5 / μ)."""
+    b, h = 0.4, 0.3
+    blocks = [rectangle(k * b, 0, b, h) for k in range(3)]
+    grounds = [rectangle(-1, -0.5, 1, 1), rectangle(3 * b, -0.5, 1, 1)]
+    scene = on_moving(blocks, ((3 * b - 0.1, -1), (5, 2)), by=(0.01, 0.0), grounds=grounds, friction=friction)
+    outcome = run_model(model, scene)
+    exact = max(b / h, 1.5 / friction) / 3
+    if model == "limit":
+        assert outcome.multiplier == pytest.approx(exact, rel=1e-7)
+    # Without dilatancy the arch may let go earlier; from a larger thrust, never from a smaller one.
+    elif outcome.status == "collapse":
+        assert outcome.lower is not None
+        assert outcome.lower >= exact * (1 - 1e-7)
+    else:
+        assert outcome.lower == pytest.approx(exact, rel=1e-7)
+
+
+def arch(blocks: int, radius: float, depth: float) -> Scene:
+    """Half a ring of voussoirs between two abutments, the right one of which gives way."""
+    angles = np.linspace(math.pi, 0, blocks + 1)
+    ring = np.array([np.cos(angles), np.sin(angles)]).T
+    inner, outer = (radius - depth / 2) * ring, (radius + depth / 2) * ring
+    voussoirs = [np.array([inner[k], inner[k + 1], outer[k + 1], outer[k]]) for k in range(blocks)]
+    grounds = [rectangle(-radius - 1, -1, 2, 1), rectangle(radius - 1, -1, 2, 1)]
+    return on_moving(voussoirs, ((0.1, -2), (9, 0.01)), by=(0.01, 0.0), grounds=grounds, friction=0.8)
+
+
+@BOTH
+def test_an_arch_whose_abutment_spreads_hinges_where_its_thrust_is_least(model: str) -> None:
+    """Coulomb: hinges at the crown's top and at the inner edge of the joint of the largest M_j / rise, which is H."""
+    n, radius, depth = 10, 1.0, 0.25
+    scene = arch(n, radius, depth)
+    inside, top = radius - depth / 2, radius + depth / 2
+    area, centre = scene.blocks.area[: n // 2][::-1], scene.blocks.centroid[: n // 2, 0][::-1]
+    thrust = []
+    for j in range(1, n // 2 + 1):  # joints from the crown to the left springing
+        angle = math.pi / 2 + j * math.pi / n
+        x, y = inside * math.cos(angle), inside * math.sin(angle)
+        thrust.append(float((area[:j] * (centre[:j] - x)).sum() / (top - y)))
+    exact = max(thrust) / scene.blocks.area[:n].sum()
+    outcome = run_model(model, scene)
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.multiplier == pytest.approx(exact, rel=1e-7)
+    turning = np.flatnonzero(np.abs(np.diff(outcome.motion[:n, 2])) > 1e-6)
+    hinge = int(np.argmax(thrust)) + 1
+    springing = hinge == n // 2
+    assert sorted({*turning}) == sorted({n // 2 - 1, *(() if springing else (n // 2 - 1 - hinge, n // 2 - 1 + hinge))})
+
+
+@BOTH
+@pytest.mark.parametrize("about", [0.1, 0.0, -1.0])
+def test_ground_that_turns_bears_a_block_at_its_far_corner(model: str, about: float) -> None:
+    """Down to the right, about any point at its level left of it: the same force at the same corner."""
+    cut = 0.1
+    scene = on_moving(
+        [rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), rotation_angle=-1.0, about=(about, 0.0), friction=2.0
+    )
+    assert collapse(model, scene) == pytest.approx((WIDTH / 2 - cut) / (WIDTH - cut), rel=1e-6)
+
+
+def test_ground_that_turns_about_the_corner_that_bears_brings_nothing_down() -> None:
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.1, -1), (2, 0.1)), rotation_angle=1.0, about=(WIDTH, 0.0))
+    assert limit(scene).status == "unbounded"
+
+
+@BOTH
+def test_ground_that_is_lifted_has_to_be_driven(model: str) -> None:
+    """Under one end of a block: λ = −(b/2) / b, for it turns about its other end."""
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.4, -1), (2, 0.1)), by=(0.0, 0.01), friction=2.0)
+    outcome = run_model(model, scene)
+    assert outcome.status == "collapse"
+    # It bears at c = 0.4, the corner nearest to the hinge at 0: R c = W b / 2.
+    assert outcome.multiplier == pytest.approx(-WIDTH / 2 / 0.4, rel=1e-6)
+    assert "has to be driven" in outcome.message
+
+
+@BOTH
+def test_a_wall_that_falls_as_it_stands_is_infeasible_before_anything_sinks(model: str) -> None:
+    blocks = [rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)]
+    assert run_model(model, on_moving(blocks, ((0.8, -1), (2, 0.1)), by=(0.0, -1.0))).status == "infeasible"
+
+
+@BOTH
+def test_a_wall_without_weight_follows_no_support(model: str) -> None:
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.1, -1), (2, 0.1)), by=(0.0, -0.02))
+    with pytest.raises(SceneError, match="gravity"):
+        run_model(model, build_scene_without_weight(scene))
+
+
+def build_scene_without_weight(scene: Scene) -> Scene:
+    load = Load((0.0, 0.0), scene.load.live)
+    return built([scene.blocks.polygon(0)], 0.6, load)
+
+
+def test_settled_forces_and_mechanism_prove_each_other() -> None:
+    """On a running bond, half of whose ground sinks, with and without cohesion, and with a tie from it."""
+    live = {"kind": "settlement", "box": [[0.8, -1], [3, 0.01]], "by": [0.0, -0.01]}
+    tie = {"from": [1.4, 0.65], "to": [0.05, 0.65], "area": 1e-4, "young": 2e11, "yield": 100.0}
+    for more in ({}, {"joint__cohesion": 500.0}, {"tie": [tie]}, {"joint__inset": 0.004}):
+        scene = panel(load__live=live, **more)
+        state = limit_state(equilibrium(scene).under_live_load())
+        assert max(state.measures.values()) < 1e-9, state.measures
+
+
+def test_the_reaction_is_the_work_of_the_joint_forces_on_the_support() -> None:
+    """Summed from the forces in the outcome, not from the program's multiplier."""
+    live = {"kind": "settlement", "box": [[0.8, -1], [3, 0.01]], "by": [0.0, -0.01]}
+    scene = panel(load__live=live)
+    outcome, system = limit(scene), equilibrium(scene)
+    moving = np.asarray(scene.support_motion.any(axis=1))
+    sense = moving[system.points.block[:, 1]].astype(float) - moving[system.points.block[:, 0]]
+    upwards = (outcome.force[:, :1] * system.points.normal + outcome.force[:, 1:] * system.points.tangent)[:, 1]
+    weight = -dead_load(scene).reshape(-1, 3)[scene.wall, 1].sum()
+    assert outcome.multiplier == pytest.approx((sense @ upwards) / weight, rel=1e-9)
+    assert largest_displacement(scene) == pytest.approx(0.01)
+
+
+# --- what is kept -----------------------------------------------------------------------------------------------
+
+
+def test_pulls_and_held_motions_come_back_from_disk(tmp_path: Any) -> None:
+    outcome = Outcome("scene", "limit", "unbounded", pull=np.array([1.0, 2.0]), held=np.array([[3.0]]))
+    save_outcome(outcome, tmp_path)
+    found, _ = load_outcome(tmp_path)
+    assert found.pull.tolist() == [[1.0], [2.0]]
+    assert found.held.tolist() == [[3.0]]

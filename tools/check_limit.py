@@ -1,0 +1,362 @@
+#!/usr/bin/env python3
+"""Check results of ``runningbond run --model limit`` or ``limit-nonassociated --out DIR`` with nothing but numpy.
+
+    python tools/check_limit.py DIR [DIR …]
+
+From the scene and the arrays in each folder, and none of the suite's code, it sums up weights, loads, joint forces,
+ties and reactions block by block, holds every joint point against Mohr and Coulomb, follows the mechanism, and works
+the multiplier out a second and a third time. It prints each measure beside the most that it may be, and ends with 1
+where one is larger.
+"""
+
+import io
+import json
+import math
+import sys
+from itertools import pairwise
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+MOST = 1e-6
+"""Most that a measure may be, relative to the largest force, motion or multiplier."""
+
+CONTACT = 1e-4
+"""Gap that counts as contact, in sizes (root of the area) of the smallest block."""
+
+
+def read(folder: Path) -> tuple[Any, dict[str, Any], dict[str, np.ndarray]]:
+    """Scene, record and arrays of a result folder; of the scene each part has its fields as attributes."""
+    record = json.loads((folder / "outcome.json").read_text())
+    with np.load(io.BytesIO((folder / record["arrays"]).read_bytes())) as stored:
+        arrays = dict(stored)
+
+    def decoded(value: Any) -> Any:
+        if isinstance(value, dict):
+            return (
+                arrays[value["array"]]
+                if "array" in value
+                else SimpleNamespace(**dict(zip(value, map(decoded, value.values()), strict=True)))
+            )
+        return [decoded(one) for one in value] if isinstance(value, list) else value
+
+    return decoded(json.loads(arrays["scene"].tobytes())), record, arrays
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Cross product of plane vectors ``(…, 2)``."""
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+class Wall:
+    """Blocks, joint points, ties and held motions of a scene, worked out from its file."""
+
+    def __init__(self, scene: Any) -> None:
+        self.scene, first = scene, scene.blocks.first
+        self.outlines = [scene.blocks.vertices[i:j] for i, j in pairwise(first)]
+        self.n, self.fixed = len(self.outlines), scene.fixed
+        self.area, self.centre = (np.array(part) for part in zip(*map(area_and_centre, self.outlines), strict=True))
+        self.gap = CONTACT * math.sqrt(self.area.min())
+        density = np.array([scene.block_materials[k].density for k in scene.material_of_block])
+        self.mass = density * self.area * scene.thickness
+        if scene.beam is not None:
+            self.mass[scene.beam.block] = scene.beam.mass
+        self.base = min(
+            float(outline[:, 1].min()) for outline, inside in zip(self.outlines, scene.wall, strict=True) if inside
+        )
+        self._points()
+        pins, late = scene.pins, scene.beam is not None and scene.beam.condition == "fixed-height"
+        self.held = list(zip(pins.block, pins.point, pins.direction, pins.turn, strict=True))
+        self.held += [(scene.beam.block, self.centre[scene.beam.block], np.array([0.0, 1.0]), 0.0)] if late else []
+
+    def _points(self) -> None:
+        """Two points a joint, at its ends or an inset from them, with the strength of half the joint each."""
+        joints, materials = self.scene.joints, [self.scene.joint_materials[k] for k in self.scene.material_of_joint]
+        if any(material.law is not None for material in materials):
+            sys.exit("a joint has a law of its own: not checked")
+        run = joints.ends[:, 1] - joints.ends[:, 0]
+        length = np.hypot(*run.T)
+        tangent = run / length[:, None]
+        inset = np.array([material.inset for material in materials])[:, None] * tangent
+        self.at = np.stack([joints.ends[:, 0] + inset, joints.ends[:, 1] - inset], axis=1).reshape(-1, 2)
+        self.tangent = np.repeat(tangent, 2, axis=0)
+        self.normal = np.column_stack([self.tangent[:, 1], -self.tangent[:, 0]])
+        self.pair = np.repeat(joints.block, 2, axis=0)
+        area = np.repeat(length * self.scene.thickness / 2, 2)
+        self.friction = np.repeat([material.friction for material in materials], 2)
+        self.cohesion = np.repeat([material.cohesion for material in materials], 2) * area
+        self.tension = np.repeat([tensile_strength(material) for material in materials], 2) * area
+
+    def on_blocks(self, block: Any, at: Any, force: Any) -> np.ndarray:
+        """Forces at points as forces and moments on all blocks about their centroids, ``(nb, 3)``."""
+        block, at, force = np.atleast_1d(block), np.reshape(at, (-1, 2)), np.reshape(force, (-1, 2))
+        total = np.zeros((self.n, 3))
+        np.add.at(total, block, np.column_stack([force, cross(at - self.centre[block], force)]))
+        return total
+
+    def moved(self, motion: np.ndarray, block: np.ndarray, at: np.ndarray) -> np.ndarray:
+        """Displacements of points of blocks."""
+        arm, turn = at - self.centre[block], motion[block, 2]
+        return np.asarray(motion[block, :2] + np.column_stack([-turn * arm[:, 1], turn * arm[:, 0]]))
+
+    def holding(self, point: np.ndarray) -> list[int]:
+        """Movable blocks that hold or touch a point."""
+        return [k for k in range(self.n) if not self.fixed[k] and holds(self.outlines[k], point, self.gap)]
+
+    def load(self, action: Any) -> np.ndarray:
+        """A load of the file, as forces and moments on the blocks, ``(nb, 3)``."""
+        kind, gravity = action.part, float(np.hypot(*self.scene.load.gravity))
+        if kind in ("Lateral", "Tilt", "Body"):
+            pull = np.array(action.acceleration) if kind == "Body" else gravity * np.array(action.direction)
+            return self.on_blocks(np.arange(self.n), self.centre, self.mass[:, None] * pull)
+        if kind == "PointLoad":
+            blocks = self.holding(np.array(action.at))
+            return self.on_blocks(
+                blocks, [action.at] * len(blocks), [np.array(action.force) / len(blocks)] * len(blocks)
+            )
+        if kind == "Moment":
+            total = np.zeros((self.n, 3))
+            total[self.holding(np.array(action.at)), 2] = action.moment
+            return total
+        if kind == "BeamLoad":
+            x, y = self.centre[self.scene.beam.block]
+            return self.on_blocks(
+                self.scene.beam.block, (x, y if action.height is None else self.base + action.height), action.force
+            )
+        if kind == "LineLoad":
+            return self.line(np.array(action.start), np.array(action.end), np.array(action.force))
+        return np.zeros((self.n, 3))  # a settlement
+
+    def line(self, start: np.ndarray, end: np.ndarray, force: np.ndarray) -> np.ndarray:
+        """A load per length: between two corners on it, it is on the block that it presses on."""
+        run, total = end - start, np.zeros((self.n, 3))
+        length = float(np.hypot(*run))
+        cuts = [0.0, 1.0]
+        for outline in self.outlines:
+            for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+                if abs(cross(a - start, run)) <= 3 * self.gap * length:
+                    cuts.append(float((a - start) @ run) / length**2)
+                elif abs(slope := float(cross(b - a, run))) > 1e-9 * length**2:
+                    share = float(cross(start - a, run)) / slope
+                    cuts += [float((a + share * (b - a) - start) @ run) / length**2] if 0 <= share <= 1 else []
+        ordered = sorted(min(max(cut, 0.0), 1.0) for cut in cuts)
+        for low, high in pairwise(ordered):
+            middle = start + (low + high) / 2 * run
+            here = self.holding(middle) if high - low > 1e-12 else []
+            if here:
+                block = max(here, key=lambda k: float((self.centre[k] - middle) @ force))
+                total += self.on_blocks(block, middle, (high - low) * length * force)
+        return total
+
+    def support_motion(self) -> np.ndarray:
+        """Motion of the supports at λ = 1, ``(nb, 3)``; zero of what stays."""
+        motion = np.zeros((self.n, 3))
+        for load in self.scene.load.live:
+            if load.part == "Settlement":
+                (x0, _), (x1, y1) = load.box
+                about = np.mean(load.box, axis=0) if load.about is None else np.array(load.about)
+                turn = math.radians(load.rotation_angle)
+                for k in np.flatnonzero(self.fixed):
+                    arm = self.centre[k] - about
+                    if x0 < self.centre[k, 0] < x1 and self.outlines[k][:, 1].min() < y1:
+                        motion[k] = load.by[0] - turn * arm[1], load.by[1] + turn * arm[0], turn
+        return motion
+
+
+def area_and_centre(outline: np.ndarray) -> tuple[float, np.ndarray]:
+    """Area and centroid of a polygon."""
+    here = outline - outline[0]
+    there = np.roll(here, -1, axis=0)
+    twice = cross(here, there)
+    return float(twice.sum() / 2), outline[0] + ((here + there) * twice[:, None]).sum(axis=0) / (3 * twice.sum())
+
+
+def holds(outline: np.ndarray, point: np.ndarray, gap: float) -> bool:
+    """Whether a polygon holds a point, or has it within a gap of its outline."""
+    return distance(outline, point) <= gap or crossings(outline, point) % 2 == 1
+
+
+def distance(outline: np.ndarray, point: np.ndarray) -> float:
+    """Distance of a point from an outline."""
+    edge = np.roll(outline, -1, axis=0) - outline
+    share = (((point - outline) * edge).sum(axis=1) / (edge**2).sum(axis=1)).clip(0.0, 1.0)
+    return float(np.hypot(*(outline + share[:, None] * edge - point).T).min())
+
+
+def crossings(outline: np.ndarray, point: np.ndarray) -> int:
+    """Edges that a ray to the right of a point crosses."""
+    a, b = outline, np.roll(outline, -1, axis=0)
+    spans = (a[:, 1] > point[1]) != (b[:, 1] > point[1])
+    a, b = a[spans], b[spans]
+    return int((a[:, 0] + (point[1] - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0]) > point[0]).sum())
+
+
+def tensile_strength(material: Any) -> float:
+    """Tensile strength [Pa]: the one given, at most the apex c / tan φ."""
+    apex = float(material.cohesion / material.friction) if material.friction else math.inf
+    if material.tensile_strength is None:
+        return apex if material.friction else 0.0
+    return float(min(material.tensile_strength, apex))
+
+
+class Result:
+    """A collapse of a scene, with the forces and motions that belong to it."""
+
+    def __init__(self, scene: Any, record: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
+        self.scene, self.record, self.wall = scene, record, Wall(scene)
+        wall, loads = self.wall, scene.load
+        self.dilatant = record["model"] == "limit"
+        self.settles = any(load.part == "Settlement" for load in loads.live)
+        self.multiplier = record["multiplier"]
+        self.normal, self.tangential = arrays["force"].T
+        self.pull, self.held, self.motion = arrays["pull"].ravel(), arrays["held"].ravel(), arrays["motion"]
+        self.pressure = wall.tension - self.normal
+        self.shear = wall.cohesion - wall.friction * wall.tension
+        along = scene.ties.ends[:, 1] - scene.ties.ends[:, 0]
+        self.along = along / np.hypot(*along.T)[:, None]
+        weight = wall.on_blocks(np.arange(wall.n), wall.centre, wall.mass[:, None] * np.array(loads.gravity))
+        self.dead = sum((wall.load(load) for load in loads.dead), weight)
+        self.live = sum((wall.load(load) for load in loads.live), np.zeros((wall.n, 3)))
+        self.support = wall.support_motion()
+        ends = np.repeat(scene.joints.block, 2, axis=0), scene.joints.ends.reshape(-1, 2)
+        self.settlement = max(np.hypot(*wall.moved(self.support, side, ends[1]).T).max() for side in ends[0].T)
+        self.weight = float(np.hypot(*self.dead[~wall.fixed, :2].sum(axis=0)))
+        self.inner = self._inner()
+        self._follow()
+
+    def _inner(self) -> np.ndarray:
+        """What joints, ties and pins do to each block ``(nb, 3)``; a joint pulls its blocks together by its force."""
+        wall, ties = self.wall, self.scene.ties
+        joint = self.normal[:, None] * wall.normal + self.tangential[:, None] * wall.tangent
+        inner = wall.on_blocks(wall.pair[:, 0], wall.at, joint) - wall.on_blocks(wall.pair[:, 1], wall.at, joint)
+        for end, sense in ((0, 1.0), (1, -1.0)):
+            on = ties.block[:, end] >= 0
+            force = sense * self.pull[:, None] * self.along
+            inner += wall.on_blocks(ties.block[on, end], ties.ends[on, end], force[on])
+        for (block, at, direction, turn), size in zip(wall.held, self.held, strict=True):
+            inner += wall.on_blocks(block, at, size * direction)
+            inner[block, 2] += size * turn
+        return inner
+
+    def _follow(self) -> None:
+        """Jumps of the joint points and elongations of the ties in the mechanism."""
+        wall, ties, motion = self.wall, self.scene.ties, self.motion
+        first, second = (wall.moved(motion, side, wall.at) for side in wall.pair.T)
+        self.opening = ((second - first) * wall.normal).sum(axis=1)
+        self.slip = ((second - first) * wall.tangent).sum(axis=1)
+        first, second = (
+            np.where(ties.block[:, [end]] >= 0, wall.moved(motion, ties.block[:, end], ties.ends[:, end]), 0.0)
+            for end in (0, 1)
+        )
+        self.longer = ((second - first) * self.along).sum(axis=1)
+        owner = np.repeat(np.arange(wall.n), np.diff(self.scene.blocks.first))
+        self.fastest = float(np.abs(wall.moved(motion, owner, self.scene.blocks.vertices)).max())
+        self.driven = float((motion * self.support).sum() / (self.support**2).sum()) if self.settles else 0.0
+
+    def forces(self) -> dict[str, float]:
+        """Balance and strength."""
+        wall, free = self.wall, ~self.wall.fixed
+        given = self.dead if self.settles else self.dead + self.multiplier * self.live
+        unbalanced = np.abs((self.inner + given)[free])
+        parts = (self.normal, self.tangential, self.pull, given[free, :2])
+        self.largest = max(float(np.abs(part).max(initial=0.0)) for part in parts)
+        beyond = np.abs(self.tangential) - self.shear - wall.friction * self.pressure
+        found = {
+            "unbalanced force": unbalanced[:, :2].max(),
+            "unbalanced moment": (unbalanced[:, 2] / np.sqrt(wall.area[free])).max(),
+            "tension beyond the strength": -self.pressure.min(initial=0.0),
+            "shear beyond Coulomb": beyond.max(initial=0.0),
+            "ties that push": -self.pull.min(initial=0.0),
+            "ties beyond their yield": (self.pull - self.scene.ties.yield_force).max(initial=0.0),
+        }
+        return {name: value / self.largest for name, value in found.items()}
+
+    def mechanism(self) -> dict[str, float]:
+        """What moves that must not, and what runs into each other."""
+        wall, motion = self.wall, self.motion
+        held = [
+            wall.moved(motion, np.array([block]), at[None])[0] @ direction + turn * motion[block, 2]
+            for block, at, direction, turn in wall.held
+        ]
+        least = wall.friction * np.abs(self.slip) if self.dilatant else 0.0
+        found = {
+            "supports that do not move as they should": np.abs(motion - self.driven * self.support)[wall.fixed].max(
+                initial=0.0
+            ),
+            "held motions that move": np.abs(held).max(initial=0.0),
+            "opening less than the flow rule's": (least - self.opening).max(initial=0.0),
+        }
+        return {name: value / self.fastest for name, value in found.items()}
+
+    def power(self) -> dict[str, float]:
+        """The multiplier from the mechanism: in `limit` by what the joints dissipate, else by the forces."""
+        free, ties = ~self.wall.fixed, self.scene.ties
+        by_dead, by_live = (float((load * self.motion)[free].sum()) for load in (self.dead, self.live))
+        if self.settles:
+            by_live = -self.driven * self.settlement * self.weight
+        if self.dilatant:
+            spent = self.wall.tension @ self.opening + self.shear @ np.abs(self.slip)
+            spent += ties.yield_force @ self.longer.clip(min=0.0)
+        else:
+            spent = self.normal @ self.opening + self.tangential @ self.slip + self.pull @ self.longer
+        lower, upper, here = self.record["lower"], self.record["upper"], self.multiplier
+        found = {
+            "multiplier of the mechanism": abs((spent - by_dead) / by_live - here),
+            "multiplier outside its bracket": max(lower - here, here - upper, 0.0),
+            "width of the bracket": upper - lower if self.dilatant else 0.0,
+        }
+        if self.settles:
+            moving = np.abs(self.support).max(axis=1) > 0
+            work = float((self.inner * self.support)[moving].sum())
+            found["share of the support"] = abs(work / (self.settlement * self.weight) - here)
+        unit = abs(by_dead / by_live) + abs(spent / by_live) + abs(here) or 1.0
+        backwards = by_live >= 0 if self.settles else by_live <= 0
+        return {name: value / unit for name, value in found.items()} | {"a load against the motion": float(backwards)}
+
+    def friction(self) -> dict[str, float]:
+        """Without dilatancy: that the forces are those which the mechanism goes with."""
+        opens, slides = self.opening > MOST * self.fastest, np.abs(self.slip) > MOST * self.fastest
+        most = np.sign(self.slip) * (self.shear + self.wall.friction * self.pressure)
+        short = self.scene.ties.yield_force - self.pull
+        found = {
+            "pressure where it opens": np.abs(self.pressure[opens]),
+            "friction that does not oppose slip at its limit": np.abs(self.tangential - most)[slides],
+            "ties that lengthen below their yield": short[self.longer > MOST * self.fastest],
+            "ties that pull while they shorten": self.pull[self.longer < -MOST * self.fastest],
+        }
+        return {name: value.max(initial=0.0) / self.largest for name, value in found.items()}
+
+    def measures(self) -> dict[str, float]:
+        """Everything that is zero for an exact answer."""
+        found = {"joints off the outlines of their blocks": off_outlines(self.wall) * MOST}
+        found |= self.forces() | self.mechanism() | self.power()
+        return found if self.dilatant else found | self.friction()
+
+
+def off_outlines(wall: Wall) -> float:
+    """Largest distance of an end of a joint from the outlines of its blocks, in contact gaps."""
+    joints = wall.scene.joints
+    pairs = zip(np.repeat(joints.block, 2, axis=0), joints.ends.reshape(-1, 2), strict=True)
+    return max((distance(wall.outlines[k], at) for pair, at in pairs for k in pair), default=0.0) / (2 * wall.gap)
+
+
+def check(folder: Path) -> bool:
+    """Check a folder, print what was found, and say whether all is well."""
+    scene, record, arrays = read(folder)
+    print(f"{folder}: {record['model']}, {record['status']}, λ = {record['multiplier']}")
+    if record["status"] != "collapse":
+        print("  no collapse: nothing to check")
+        return True
+    found = Result(scene, record, arrays).measures()
+    for name, value in found.items():
+        print(f"  {value:9.2e}  {'' if value <= MOST else 'WRONG: '}{name}")
+    return all(value <= MOST for value in found.values())
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    wrong = [name for name in sys.argv[1:] if not check(Path(name))]
+    sys.exit(1 if wrong else 0)
