@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from runningbond.dynamics import BlockSystem, Interface, Restraint, force_unit
+from runningbond.dynamics import BlockSystem, Interface, Restraint, force_unit, tie_rows
 from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
 from runningbond.scene import Array, Indices
@@ -63,6 +63,9 @@ def block_system(
     """The blocks of a wall with scaled modes, under its loads, on an interface."""
     scene, pieces = wall.scene, wall.pieces
     dead, live = wall.load(scene.dead_forces, loads), wall.load(scene.live_forces, loads)
+    dead[np.isinf(wall.mass)] = live[np.isinf(wall.mass)] = 0.0
+    carried = np.zeros_like(wall.mass)
+    carried[wall.rigid] = scene.support_motion
     return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,
@@ -75,6 +78,9 @@ def block_system(
         owner=pieces.owner,
         restraint=_restraint(wall),
         interface=interface,
+        ties=tie_rows(scene.ties, wall.place[:, 0] >= 0, wall.displacement_row),
+        late=wall.rigid[scene.late_pins.block, 1],
+        carried=carried,
         block_motion=None if pieces.are_blocks else motion_of_blocks(pieces),
         source=wall,
     )

@@ -7,6 +7,7 @@ from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
 from .system import BlockSystem, ContactSearch, Interface, Restraint, force_unit
+from .ties import tie_rows
 from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
 
 __all__ = [
@@ -35,4 +36,5 @@ __all__ = [
     "settle",
     "settled_drive",
     "stable_step",
+    "tie_rows",
 ]

@@ -122,6 +122,17 @@ class Scene:
         return density
 
     @cached_property
+    def inertial_density(self) -> Array:
+        """Density with which each block resists acceleration, ``(nb,)`` [kg/m³]: a beam's is at least the default one.
+
+        One of hardly any mass would ask models of motion for hardly any time step; at rest it makes no difference.
+        """
+        density = self.density.copy()
+        if self.beam is not None:
+            density[self.beam.block] = max(density[self.beam.block], self.block.density)
+        return density
+
+    @cached_property
     def mass(self) -> Array:
         """Mass of each block, ``(nb,)`` [kg]."""
         return self.density * self.thickness * self.blocks.area
@@ -204,9 +215,12 @@ class Scene:
 
     @property
     def lowest_block(self) -> float:
-        """Smallest height of a movable block [m]."""
+        """Smallest height of a movable block [m]; the beam is none."""
         low, high = self.blocks.boxes
-        return float((high - low)[~self.fixed, 1].min())
+        height = np.where(self.fixed, np.inf, (high - low)[:, 1])
+        if self.beam is not None:
+            height[self.beam.block] = np.inf
+        return float(height.min())
 
 
 def build_scene(
