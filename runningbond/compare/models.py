@@ -24,6 +24,18 @@ STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_s
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
 ELASTIC = SOFTENING | {"block.young", "block.poisson"}
 
+EXTRAS = frozenset(
+    {
+        "tie",
+        "beam",
+        "beam.condition fixed-height",
+        "beam.drive.displacement",
+        "beam.drive.displacement, cyclic",
+        "load.live settlement",
+    }
+)
+"""All that a model may know of `Scene.extras`."""
+
 KERNELS = 3.0
 """Seconds until the kernels of blocks in motion are loaded."""
 
@@ -83,6 +95,7 @@ _EVERY_MODEL = (
         observer=_MOTION_RECORDER,
         interruptible=True,
         cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
+        takes=EXTRAS,
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
         colour="#2a9d8f",
         marker="^",
@@ -94,6 +107,7 @@ _EVERY_MODEL = (
         observer=_MOTION_RECORDER,
         interruptible=True,
         cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
+        takes=EXTRAS,
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),
         colour="#be185d",
         marker="D",

@@ -83,6 +83,7 @@ class Run:
     ) -> None:
         self.system, self.local, self.viscous = system, local, viscous
         self._given_step = dt
+        self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
         self._update = None if search is None else ContactUpdate(system, search)
@@ -173,6 +174,24 @@ class Run:
             if not stable:
                 raise Unstable(state.steps, self.dt, self.safe_step)
         return total
+
+    def held_late(self, state: State) -> "Run":
+        """The run of the system whose dead load is on (`BlockSystem.held_late`); a state is brought to rest there."""
+        system = self.system.held_late
+        if system is self.system:
+            return self
+        state.velocity[self.system.late] = 0.0
+        return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
+
+    def unaccounted(self, state: State) -> float:
+        """Share of the work of the loads that the energy ledger misses.
+
+        Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
+        """
+        ledger = self.ledger(state)
+        dead = float(self.system.dead @ state.motion)
+        work = abs(dead) + abs(ledger.external - dead)
+        return abs(ledger.residual) / work if work else 0.0
 
     def given(self, state: State) -> float:
         """Energy [J] of a state that its loads did not supply: of ties' preloads, or of being set in motion by hand."""

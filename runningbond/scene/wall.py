@@ -215,12 +215,11 @@ class Scene:
 
     @property
     def lowest_block(self) -> float:
-        """Smallest height of a movable block [m]; the beam is none."""
+        """Smallest height of a movable block [m]; of the beam only where nothing else moves."""
         low, high = self.blocks.boxes
-        height = np.where(self.fixed, np.inf, (high - low)[:, 1])
-        if self.beam is not None:
-            height[self.beam.block] = np.inf
-        return float(height.min())
+        movable = np.flatnonzero(~self.fixed)
+        masonry = movable[movable != self.beam.block] if self.beam else movable
+        return float((high - low)[masonry if len(masonry) else movable, 1].min())
 
 
 def build_scene(

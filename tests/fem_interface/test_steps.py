@@ -85,7 +85,7 @@ def test_a_wall_at_the_stable_step_stays_bounded(make: Any, young: float) -> Non
     """With local, joint and modal damping at work, and joints that never break."""
     scene = make()
     block, joint = replace(scene.block, young=young), JointMaterial(0.6, 1e9, 1e9, Mortar(1e9, 0.2, 0.01))
-    scene = replace(scene, block=block, joint=joint)
+    scene = replace(scene, block_materials=(block,), joint_materials=(joint,))
     run = Run(system_of(modal_wall(scene)))
     state = State.at_rest(run.system)
     moving = np.isfinite(run.system.mass)

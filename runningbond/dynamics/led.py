@@ -1,0 +1,292 @@
+"""Walls that are led: a beam is pushed along a path at a slow speed, or supports are moved from rest to rest.
+
+The whole way is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
+along its first move, or the share of the dead load that supports bear at the settlement asked for. It is one of a
+collapse if a mechanism has formed: if over the last tenth of the way it has changed by less than the tolerance, or the
+wall falls. Else the wall still hardens, or the support still sheds load, where the way ends.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from runningbond.limit.settlement import largest_displacement, reaction_unit
+from runningbond.results import Outcome, fastest_corner_by_one
+from runningbond.results.outcome import number
+from runningbond.scene import Array, Indices, Scene
+
+from .collapse import Criteria, Verdict, hold_load, settle
+from .run import Observer, Run, Unstable
+from .state import State
+
+ROWS, LEAST_ROWS = 200, 40
+"""Rows of the curve in the longest leg of a drive, and at least in each."""
+
+SOFT = 10
+"""Rows in which a leg gathers its speed, and in which it slows down to turn."""
+
+SEEN = 10
+"""Rows between two looks of an observer, and over which a mechanism is drawn."""
+
+STAGES = 20
+"""Rests on the way of a settlement."""
+
+STEPS = 20_000
+"""Time steps of the longest leg the first time, where no rate is given."""
+
+LAST = 0.1
+"""Part of a way over which a force that has formed a mechanism no longer changes."""
+
+LITTLE = 0.01
+"""Share of the dead load below which a reaction need not be relatively accurate."""
+
+UNACCOUNTED = 0.01
+"""Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
+
+
+def is_led(scene: Scene) -> bool:
+    """Whether displacements are prescribed to a scene, not loads."""
+    return scene.settlement is not None or any(key.startswith("beam.drive.displacement") for key in scene.extras)
+
+
+@dataclass
+class Way:
+    """What was seen on a way that was gone through once."""
+
+    rows: list[tuple[float, float]] = field(default_factory=lambda: [(0.0, 0.0)])  # displacement [m] and force
+    best: State | None = None  # where the answer is
+    motion: Array | None = None  # (nd,) how the wall moved where it had come farthest
+    last: State | None = None
+    verdict: Verdict = "stable"
+
+    @property
+    def curve(self) -> Array:
+        """Displacement [m] and force, each force the middle one of three, ``(n, 2)``."""
+        curve = np.array(self.rows)
+        if len(curve) > 2:
+            force = curve[:, 1]
+            curve[1:-1, 1] = np.median([force[:-2], force[1:-1], force[2:]], axis=0)
+        return curve
+
+
+@dataclass(frozen=True, eq=False)
+class Lead:
+    """How a wall is led, from its rest under the dead load."""
+
+    scene: Scene
+    run: Run
+    start: State
+    criteria: Criteria
+    observe: Observer
+
+    @property
+    def settles(self) -> bool:
+        """Whether supports are led, not the beam."""
+        return self.scene.settlement is not None
+
+    @property
+    def goals(self) -> Array:
+        """Displacements along the first move [m], or parts of the settlement, one after the other."""
+        drive = self.scene.beam.drive if self.scene.beam else None
+        return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path)
+
+    @property
+    def longest(self) -> float:
+        """Longest leg."""
+        return float(np.abs(np.diff(self.goals, prepend=0.0)).max())
+
+    def share(self, state: State, speed: float, steps: int, given: float) -> float:
+        """Move supports, in place; the share of the dead load that they bear meanwhile."""
+        return self.run.carry(state, speed, steps, given=given) / reaction_unit(self.scene)
+
+    def go(self, way: Way, speed: float) -> None:
+        """Go through the way, at a largest speed [m/s, or settlements/s]."""
+        state = self.start.copy()
+        self.observe(self.run, state, 0.0)
+        if self.settles:
+            self._settle(way, state, speed)
+        else:
+            self._drive(way, state, speed)
+        way.last = state
+
+    def _drive(self, way: Way, state: State, speed: float) -> None:
+        run, at, farthest = self.run, 0.0, 0.0
+        given, recent = run.given(state), deque([state.motion.copy()], maxlen=SEEN)
+        for goal in self.goals.tolist():
+            if goal == at:
+                continue
+            n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
+            pace = _pace(n)
+            steps = max(1, round(abs(goal - at) / (speed * run.dt * pace.sum())))
+            top = (goal - at) / (run.dt * steps * pace.sum())
+            for k, part in enumerate(pace.tolist()):
+                force = run.drive(state, top * part, steps, given=given)
+                moved = float(run.system.live @ (state.motion - self.start.motion))
+                if force > max(row[1] for row in way.rows) or way.best is None:
+                    way.best = state.copy()
+                way.rows.append((moved, force))
+                if moved > farthest:
+                    farthest, way.motion = moved, state.motion - recent[0]
+                recent.append(state.motion.copy())
+                if (k + 1) % SEEN == 0:
+                    self.observe(run, state, force)
+            at = goal
+
+    def _settle(self, way: Way, state: State, speed: float) -> None:
+        run, carried = self.run, self.run.system.carried != 0
+        given, metre = run.given(state), settlement(self.scene, run.system.control @ run.system.carried)
+        way.rows = [(0.0, self.share(state, 0.0, self.criteria.interval, given))]
+        pace = _pace(2 * SOFT)
+        steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
+        top = 1 / (STAGES * run.dt * steps * pace.sum())
+        for stage in range(1, STAGES + 1):
+            for part in pace.tolist():
+                bears = self.share(state, top * part, steps, given)
+            state.velocity[carried] = 0.0
+            way.verdict, _ = hold_load(run, state, 0.0, self.criteria)
+            way.motion = state.motion - self.start.motion
+            if way.verdict != "stable":
+                return
+            bears = self.share(state, 0.0, self.criteria.interval, given)
+            way.rows.append((metre * stage / STAGES, bears))
+            way.best = state.copy()
+            self.observe(run, state, bears)
+
+
+def settlement(scene: Scene, controlled: float) -> float:
+    """Displacement [m] of moving supports at λ = 1: of their control point, or the largest where that stays."""
+    return float(controlled) or largest_displacement(scene)
+
+
+def _pace(rows: int) -> Array:
+    """Part of the top speed in each row of a leg, which starts and ends softly."""
+    k = np.arange(rows)
+    return np.asarray(np.minimum(1.0, (np.minimum(k, rows - 1 - k) + 0.5) / SOFT))
+
+
+def collapse_of_led(
+    scene: Scene,
+    model: str,
+    run: Run,
+    tolerance: float,
+    *,
+    point_order: Indices,
+    criteria: Criteria,
+    observe: Observer,
+) -> Outcome:
+    """Lead a wall through the displacements of its scene; as `collapse_by_steps`.
+
+    Returns
+    -------
+    Outcome
+        `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
+        and `upper` are the answers at the last two speeds.
+    """
+    outcome = Outcome(scene.title, model, "undecided", dofs=run.system.freedoms)
+    state, way, ways, answers = State.at_rest(run.system), Way(), [], []
+    steps = 0
+    try:
+        verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
+        if verdict != "stable":
+            fell = verdict == "collapse"
+            message = "collapses under its dead load" if fell else "the budget ran out under the dead load"
+            return replace(outcome, status="infeasible" if fell else "undecided", steps=state.steps, message=message)
+        run = run.held_late(state)
+        run.led = True
+        lead, steps = Lead(scene, run, state, criteria, observe), state.steps
+        for speed in _speeds(lead):
+            way = Way()
+            lead.go(way, speed)
+            assert way.last is not None
+            steps += way.last.steps - state.steps
+            if way.verdict == "undecided" or (way.verdict == "collapse" and len(way.rows) == 1):
+                break
+            ways.append(way)
+            answers.append(float(way.curve[-1, 1] if lead.settles else way.curve[:, 1].max()))
+            if len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance and not _rate(scene):
+                break
+    except KeyboardInterrupt:
+        message = "interrupted: the way so far"
+        return replace(outcome, steps=steps, curve=way.curve, message=message)
+    except Unstable as error:
+        return replace(outcome, status="failed", steps=error.steps, message=str(error))
+    outcome = _arrays(replace(outcome, steps=steps), lead, way, point_order)
+    lost = run.unaccounted(way.last)
+    if lost > UNACCOUNTED:
+        return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
+    return _judge(outcome, lead, way, answers, tolerance)
+
+
+def _rate(scene: Scene) -> float | None:
+    return scene.beam.drive.rate if scene.beam and scene.beam.drive else None
+
+
+def _speeds(lead: Lead) -> list[float]:
+    """Speeds to go at one after the other: twice the rate and the rate, or ever slower ones that the budget allows."""
+    if rate := _rate(lead.scene):
+        return [2 * rate, rate]
+    legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
+    runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * STEPS)))) + 1)
+    return [lead.longest / (STEPS * lead.run.dt * 2**k) for k in range(runs)]
+
+
+def _spread(lead: Lead, answers: list[float]) -> float:
+    """Width of a bracket, relative to its larger end."""
+    width = max(answers) - min(answers)
+    return width / max(*np.abs(answers), LITTLE if lead.settles else 0.0) if width else 0.0
+
+
+def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
+    """Curve, forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
+    run = lead.run
+    outcome = replace(outcome, curve=way.curve)
+    if way.motion is not None and way.motion.any():
+        motion = run.system.motion_of_blocks(way.motion)
+        outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion))
+    if way.best is not None:
+        outcome = replace(outcome, force=np.column_stack(run.forces(way.best))[point_order])
+    return outcome
+
+
+def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], tolerance: float) -> Outcome:
+    """Verdict on some ways, of which the last one is drawn."""
+    what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
+    what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
+    other = -float(outcome.curve[:, 1].min())
+    if len(lead.goals) > 1 and other > 0:
+        what += f"; the other way it takes {number(other)}"
+    what += "; small displacements"
+    at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"
+    if len(answers) < 2:
+        return replace(outcome, message=f"no answer: beyond {at} it neither rested nor bears its dead load; {what}")
+    lower, upper = min(answers[-2:]), max(answers[-2:])
+    outcome = replace(outcome, lower=lower, upper=upper)
+    fell = way.verdict == "collapse"
+    if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
+        still = "the support still sheds load" if lead.settles else "the wall still hardens"
+        message = f"no answer: {still} at the displacement asked for, {at}: {number(answers[-1])}; {what}"
+        side = {"lower": None} if lead.settles else {"upper": None}
+        return replace(outcome, **side, message=message)
+    if _spread(lead, answers[-2:]) > tolerance and not _rate(lead.scene):
+        return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
+    fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""
+    return replace(outcome, status="collapse", multiplier=answers[-1], message=what + fall)
+
+
+def formed(curve: Array, tolerance: float, least: float | None = None) -> bool:
+    """Whether a mechanism has formed: a force no longer grows over the last part of a way.
+
+    Parameters
+    ----------
+    curve : (n, 2) float
+        Displacement and force.
+    least
+        Smallest force that matters, of one that is not to change at all.
+    """
+    value, force = curve.T
+    late = value >= (1 - LAST) * value.max()
+    if least is not None:
+        return bool(np.ptp(force[late]) <= tolerance * max(float(np.abs(force[late]).max()), least))
+    most = float(force[late].max())
+    return most - float(force[~late].max(initial=0.0)) <= tolerance * most
