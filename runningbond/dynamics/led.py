@@ -181,7 +181,7 @@ def collapse_of_led(
     -------
     Outcome
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
-        and `upper` are the answers at the last two speeds.
+        and `upper` lie about the answer as far as the last halving of the speed has changed it.
     """
     outcome = Outcome(scene.title, model, "undecided", dofs=run.system.freedoms)
     state, way, ways, answers = State.at_rest(run.system), Way(), [], []
@@ -204,7 +204,7 @@ def collapse_of_led(
                 break
             ways.append(way)
             answers.append(float(way.curve[-1, 1] if lead.settles else way.curve[:, 1].max()))
-            if len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance and not _rate(scene):
+            if _spread(lead, answers) <= tolerance and not _rate(scene):
                 break
     except KeyboardInterrupt:
         message = "interrupted: the way so far"
@@ -212,7 +212,8 @@ def collapse_of_led(
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     outcome = _arrays(replace(outcome, steps=steps), lead, way, point_order)
-    lost = run.unaccounted(way.last)
+    # What a support hardly moves does hardly any work.
+    lost = run.unaccounted(way.last, LITTLE * reaction_unit(scene) if lead.settles else 0.0)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     return _judge(outcome, lead, way, answers, tolerance)
@@ -231,10 +232,21 @@ def _speeds(lead: Lead) -> list[float]:
     return [lead.longest / (STEPS * lead.run.dt * 2**k) for k in range(runs)]
 
 
+def _bracket(answers: list[float]) -> tuple[float, float]:
+    """The answer as far on either side of the last one as that lies from the one at twice its speed.
+
+    What speed adds falls at least as fast as speed.
+    """
+    fast, slow = answers[-2:]
+    return slow - abs(fast - slow), slow + abs(fast - slow)
+
+
 def _spread(lead: Lead, answers: list[float]) -> float:
-    """Width of a bracket, relative to its larger end."""
-    width = max(answers) - min(answers)
-    return width / max(*np.abs(answers), LITTLE if lead.settles else 0.0) if width else 0.0
+    """Width of the bracket, relative to its larger end."""
+    if len(answers) < 2:
+        return np.inf
+    lower, upper = _bracket(answers)
+    return (upper - lower) / max(-lower, upper, LITTLE if lead.settles else 0.0) if upper > lower else 0.0
 
 
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
@@ -260,15 +272,15 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"
     if len(answers) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor bears its dead load; {what}")
-    lower, upper = min(answers[-2:]), max(answers[-2:])
-    outcome = replace(outcome, lower=lower, upper=upper)
+    least, most = _bracket(answers)
+    outcome = replace(outcome, lower=least, upper=most)
     fell = way.verdict == "collapse"
     if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
         still = "the support still sheds load" if lead.settles else "the wall still hardens"
         message = f"no answer: {still} at the displacement asked for, {at}: {number(answers[-1])}; {what}"
         side = {"lower": None} if lead.settles else {"upper": None}
         return replace(outcome, **side, message=message)
-    if _spread(lead, answers[-2:]) > tolerance and not _rate(lead.scene):
+    if _spread(lead, answers) > tolerance and not _rate(lead.scene):
         return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
     fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""
     return replace(outcome, status="collapse", multiplier=answers[-1], message=what + fall)

@@ -183,14 +183,14 @@ class Run:
         state.velocity[self.system.late] = 0.0
         return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
 
-    def unaccounted(self, state: State) -> float:
-        """Share of the work of the loads that the energy ledger misses.
+    def unaccounted(self, state: State, least: float = 0.0) -> float:
+        """Share of the work of the loads, or of a least one [J], that the energy ledger misses.
 
         Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
         """
         ledger = self.ledger(state)
         dead = float(self.system.dead @ state.motion)
-        work = abs(dead) + abs(ledger.external - dead)
+        work = max(abs(dead) + abs(ledger.external - dead), least)
         return abs(ledger.residual) / work if work else 0.0
 
     def given(self, state: State) -> float:
