@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshing import WallMesh
-from runningbond.scene import Array, Indices, Scene, SceneError, table_of
+from runningbond.scene import Array, Indices, Mask, Scene, SceneError, table_of
 
 from .modes import ModeCount, Modes, block_modes, degree_of
 from .operators import mass_matrix, nodes_of_degree, stiffness_matrix, strain_matrix
@@ -45,10 +45,8 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
     """
     alike: dict[tuple[int, int, bytes, int], list[int]] = {}
     order = scene.column_by_column
-    carried = scene.support_motion.any(axis=1)
-    stiff = carried.copy()
-    if scene.beam is not None:
-        stiff[scene.beam.block] = True
+    carried: Mask = np.asarray(scene.support_motion.any(axis=1))
+    stiff = carried | (np.arange(len(scene.blocks)) == (scene.beam.block if scene.beam else -1))
     for block in order[~scene.fixed[order] | carried[order]].tolist():
         # Congruent blocks of one material that are held alike; each stiff one by itself.
         held = held_displacements(mesh, scene, block).tobytes()

@@ -89,8 +89,9 @@ def collapse_by_steps(
         # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):
             if is_led(scene):
-                given = {"point_order": point_order, "criteria": criteria, "observe": observe}
-                outcome = collapse_of_led(scene, model, run, tolerance, **given)
+                outcome = collapse_of_led(
+                    outcome, scene, run, tolerance, point_order, is_self_locking, criteria, observe
+                )
                 return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
             most, farthest = LARGEST_LOAD * first, LARGEST_DISPLACEMENT * sizes
             result = load_steps(run, first, tolerance, criteria, most=most, farthest=farthest, observe=observe)

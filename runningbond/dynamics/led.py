@@ -7,6 +7,7 @@ wall falls. Else the wall still hardens, or the support still sheds load, where 
 """
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -52,19 +53,19 @@ def is_led(scene: Scene) -> bool:
 
 @dataclass
 class Way:
-    """What was seen on a way that was gone through once."""
+    """What was seen on a way that was gone through once, from a state at rest."""
 
+    best: State  # where the answer is
+    motion: Array  # (nd,) how the wall moved where it had come farthest
+    moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[tuple[float, float]] = field(default_factory=lambda: [(0.0, 0.0)])  # displacement [m] and force
-    best: State | None = None  # where the answer is
-    motion: Array | None = None  # (nd,) how the wall moved where it had come farthest
-    last: State | None = None
     verdict: Verdict = "stable"
 
     @property
     def curve(self) -> Array:
-        """Displacement [m] and force, each force the middle one of three, ``(n, 2)``."""
+        """Displacement [m] and force, ``(n, 2)``; of a motion each force is the middle one of three."""
         curve = np.array(self.rows)
-        if len(curve) > 2:
+        if self.moves and len(curve) > 2:
             force = curve[:, 1]
             curve[1:-1, 1] = np.median([force[:-2], force[1:-1], force[2:]], axis=0)
         return curve
@@ -100,18 +101,15 @@ class Lead:
         """Move supports, in place; the share of the dead load that they bear meanwhile."""
         return self.run.carry(state, speed, steps, given=given) / reaction_unit(self.scene)
 
-    def go(self, way: Way, speed: float) -> None:
-        """Go through the way, at a largest speed [m/s, or settlements/s]."""
+    def go(self, way: Way, speed: float) -> State:
+        """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
         state = self.start.copy()
         self.observe(self.run, state, 0.0)
-        if self.settles:
-            self._settle(way, state, speed)
-        else:
-            self._drive(way, state, speed)
-        way.last = state
+        (self._settle if self.settles else self._drive)(way, state, speed)
+        return state
 
     def _drive(self, way: Way, state: State, speed: float) -> None:
-        run, at, farthest = self.run, 0.0, 0.0
+        run, at, farthest, most = self.run, 0.0, 0.0, 0.0
         given, recent = run.given(state), deque([state.motion.copy()], maxlen=SEEN)
         for goal in self.goals.tolist():
             if goal == at:
@@ -123,8 +121,8 @@ class Lead:
             for k, part in enumerate(pace.tolist()):
                 force = run.drive(state, top * part, steps, given=given)
                 moved = float(run.system.live @ (state.motion - self.start.motion))
-                if force > max(row[1] for row in way.rows) or way.best is None:
-                    way.best = state.copy()
+                if force > most:
+                    most, way.best = force, state.copy()
                 way.rows.append((moved, force))
                 if moved > farthest:
                     farthest, way.motion = moved, state.motion - recent[0]
@@ -135,14 +133,14 @@ class Lead:
 
     def _settle(self, way: Way, state: State, speed: float) -> None:
         run, carried = self.run, self.run.system.carried != 0
-        given, metre = run.given(state), settlement(self.scene, run.system.control @ run.system.carried)
+        given, metre = run.given(state), settlement(self.scene, float(run.system.control @ run.system.carried))
         way.rows = [(0.0, self.share(state, 0.0, self.criteria.interval, given))]
         pace = _pace(2 * SOFT)
         steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
         top = 1 / (STAGES * run.dt * steps * pace.sum())
         for stage in range(1, STAGES + 1):
             for part in pace.tolist():
-                bears = self.share(state, top * part, steps, given)
+                self.share(state, top * part, steps, given)
             state.velocity[carried] = 0.0
             way.verdict, _ = hold_load(run, state, 0.0, self.criteria)
             way.motion = state.motion - self.start.motion
@@ -156,7 +154,7 @@ class Lead:
 
 def settlement(scene: Scene, controlled: float) -> float:
     """Displacement [m] of moving supports at λ = 1: of their control point, or the largest where that stays."""
-    return float(controlled) or largest_displacement(scene)
+    return controlled or largest_displacement(scene)
 
 
 def _pace(rows: int) -> Array:
@@ -166,16 +164,16 @@ def _pace(rows: int) -> Array:
 
 
 def collapse_of_led(
+    outcome: Outcome,
     scene: Scene,
-    model: str,
     run: Run,
     tolerance: float,
-    *,
     point_order: Indices,
+    is_self_locking: Callable[[], bool],
     criteria: Criteria,
     observe: Observer,
 ) -> Outcome:
-    """Lead a wall through the displacements of its scene; as `collapse_by_steps`.
+    """Lead a wall through the displacements of its scene; an outcome so far, and the rest as of `collapse_by_steps`.
 
     Returns
     -------
@@ -183,40 +181,41 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
         and `upper` lie about the answer as far as the last halving of the speed has changed it.
     """
-    outcome = Outcome(scene.title, model, "undecided", dofs=run.system.freedoms)
-    state, way, ways, answers = State.at_rest(run.system), Way(), [], []
-    steps = 0
+    state, ways, answers = State.at_rest(run.system), list[Way](), list[float]()
     try:
         verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
-        if verdict != "stable":
-            fell = verdict == "collapse"
-            message = "collapses under its dead load" if fell else "the budget ran out under the dead load"
-            return replace(outcome, status="infeasible" if fell else "undecided", steps=state.steps, message=message)
+        outcome = replace(outcome, steps=state.steps)
+        if verdict == "collapse":
+            return replace(outcome, status="infeasible", message="collapses under its dead load")
+        if verdict == "undecided":
+            return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
         run = run.held_late(state)
         run.led = True
-        lead, steps = Lead(scene, run, state, criteria, observe), state.steps
+        lead = Lead(scene, run, state, criteria, observe)
         for speed in _speeds(lead):
-            way = Way()
-            lead.go(way, speed)
-            assert way.last is not None
-            steps += way.last.steps - state.steps
-            if way.verdict == "undecided" or (way.verdict == "collapse" and len(way.rows) == 1):
+            ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
+            last = lead.go(way, speed)
+            outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
+            if way.verdict == "undecided":
                 break
-            ways.append(way)
             answers.append(float(way.curve[-1, 1] if lead.settles else way.curve[:, 1].max()))
             if _spread(lead, answers) <= tolerance and not _rate(scene):
                 break
     except KeyboardInterrupt:
-        message = "interrupted: the way so far"
-        return replace(outcome, steps=steps, curve=way.curve, message=message)
+        curve = ways[-1].curve if ways else outcome.curve
+        return replace(outcome, curve=curve, message="interrupted: the way so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    outcome = _arrays(replace(outcome, steps=steps), lead, way, point_order)
     # What a support hardly moves does hardly any work.
-    lost = run.unaccounted(way.last, LITTLE * reaction_unit(scene) if lead.settles else 0.0)
+    lost = run.unaccounted(last, LITTLE * reaction_unit(scene) if lead.settles else 0.0)
+    outcome = _arrays(outcome, lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
-    return _judge(outcome, lead, way, answers, tolerance)
+    outcome = _judge(outcome, lead, way, answers, tolerance)
+    if outcome.status == "undecided" and outcome.upper is None and is_self_locking():
+        message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
+        return replace(outcome, status="unbounded", message=message)
+    return outcome
 
 
 def _rate(scene: Scene) -> float | None:
@@ -252,13 +251,10 @@ def _spread(lead: Lead, answers: list[float]) -> float:
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
     """Curve, forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
     run = lead.run
-    outcome = replace(outcome, curve=way.curve)
-    if way.motion is not None and way.motion.any():
-        motion = run.system.motion_of_blocks(way.motion)
+    force, motion = np.column_stack(run.forces(way.best))[point_order], run.system.motion_of_blocks(way.motion)
+    if motion.any():
         outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion))
-    if way.best is not None:
-        outcome = replace(outcome, force=np.column_stack(run.forces(way.best))[point_order])
-    return outcome
+    return replace(outcome, curve=way.curve, force=force)
 
 
 def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], tolerance: float) -> Outcome:
@@ -278,8 +274,8 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
         still = "the support still sheds load" if lead.settles else "the wall still hardens"
         message = f"no answer: {still} at the displacement asked for, {at}: {number(answers[-1])}; {what}"
-        side = {"lower": None} if lead.settles else {"upper": None}
-        return replace(outcome, **side, message=message)
+        bounds = (None, most) if lead.settles else (least, None)
+        return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if _spread(lead, answers) > tolerance and not _rate(lead.scene):
         return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
     fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""

@@ -153,9 +153,7 @@ class Run:
         """
         return self._advance("carried", state, self.system.dead, speed, steps, given) / steps
 
-    def _advance(
-        self, control: Control, state: State, load: Array, speed: float, steps: int, given: float
-    ) -> float:
+    def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
         """Take steps under a constant load and a control; what `stepper` sums up."""
         total, system = 0.0, self.system
         live = system.carried if control == "carried" else system.live

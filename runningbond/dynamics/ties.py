@@ -38,7 +38,7 @@ class TieRows(NamedTuple):
     def force(self, motion: Array, stretch: Array) -> Array:
         """Force in each tie after a motion ``(nd,)`` and a plastic elongation ``(nt,)``, ``(nt,)`` [N]."""
         k, most, preload = self.constants.T
-        return np.clip(k * (self.elongation(motion) - stretch) + preload, 0.0, most)
+        return np.asarray(np.clip(k * (self.elongation(motion) - stretch) + preload, 0.0, most))
 
     def stored(self, force: Array) -> float:
         """Energy that forces ``(nt,)`` [N] store, beyond what the preloads did [J]."""
@@ -71,13 +71,10 @@ def tie_rows(ties: Ties, moves: Mask, row: Callable[[int, Array, Array], Array])
     """
     freedom, share = [], []
     for blocks, ends, along in zip(ties.block.tolist(), ties.ends, ties.direction, strict=True):
-        total = 0.0
-        for block, end, sense in zip(blocks, ends, (-1.0, 1.0), strict=True):
-            if block != ANCHOR and moves[block]:
-                total = total + sense * row(block, end, along)
-        stretching = np.flatnonzero(total)
-        freedom.append(stretching)
-        share.append(np.asarray(total)[stretching])
+        sides = zip(blocks, ends, (-along, along), strict=True)
+        total = np.sum([row(block, end, out) for block, end, out in sides if block != ANCHOR and moves[block]], axis=0)
+        freedom.append(np.flatnonzero(total))
+        share.append(total[freedom[-1]])
     start = np.cumsum([0, *map(len, share)]).astype(np.uint64)
     constants = np.column_stack([ties.stiffness, ties.yield_force, ties.preload])
     empty = np.zeros(0)

@@ -129,7 +129,7 @@ class Scene:
         """
         density = self.density.copy()
         if self.beam is not None:
-            density[self.beam.block] = max(density[self.beam.block], self.block.density)
+            density[self.beam.block] = np.maximum(density[self.beam.block], self.block.density)
         return density
 
     @cached_property
