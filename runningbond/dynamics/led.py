@@ -110,6 +110,7 @@ class Lead:
 
     def _drive(self, way: Way, state: State, speed: float) -> None:
         run, at, farthest, most = self.run, 0.0, 0.0, 0.0
+        mobility = float((run.system.live**2 / run.system.mass).sum())
         given, recent = run.given(state), deque([state.motion.copy()], maxlen=SEEN)
         for goal in self.goals.tolist():
             if goal == at:
@@ -119,7 +120,9 @@ class Lead:
             steps = max(1, round(abs(goal - at) / (speed * run.dt * pace.sum())))
             top = (goal - at) / (run.dt * steps * pace.sum())
             for k, part in enumerate(pace.tolist()):
+                before = float(run.system.live @ state.velocity)
                 force = run.drive(state, top * part, steps, given=given)
+                force -= (top * part - before) / (mobility * steps * run.dt)  # what the driven body's own inertia takes
                 moved = float(run.system.live @ (state.motion - self.start.motion))
                 if force > most:
                     most, way.best = force, state.copy()
