@@ -229,7 +229,7 @@ def lintel(live: Settlement, materials: tuple[BlockMaterial, ...] = ()) -> Scene
         thickness=0.12,
         block=BlockMaterial(1800.0, 1e10, 0.2),
         joint=JointMaterial(0.6, elasticity=Mortar(**MORTAR)),
-        load=Load(live=live),
+        load=Load(live=(live,)),
         materials=materials,
         material_of={2: "oak"} if materials else None,
     )

@@ -1,7 +1,6 @@
 """Operators of deformable blocks: against rigid kinematics and scikit-fem's own evaluation."""
 
 import math
-from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -92,7 +91,7 @@ def test_on_whole_joints_the_points_are_those_of_rigid_blocks(make: Any, cells: 
     scene = make()
     assert same_points(modal_wall(scene, cells, 3, points="joints").elements.points, contact_points(scene))
     inset = 0.45 * scene.joints.length.min()
-    scene = replace(scene, joint=replace(scene.joint, inset=inset))
+    scene = scene.with_joint(inset=inset)
     for rule in (lobatto(3), gauss(2)):
         found = modal_wall(scene, cells, 3, rule, "joints").elements
         assert same_points(found.points, wall_points(scene, rule))
@@ -116,7 +115,7 @@ def test_jumps_are_those_of_scikit_fems_own_interpolation(
 ) -> None:
     """Displacements of both sides, probed in the two blocks' own meshes, for each rule."""
     scene = make()
-    scene = replace(scene, joint=replace(scene.joint, inset=inset))
+    scene = scene.with_joint(inset=inset)
     found = modal_wall(scene, 2, 3, rule, on)
     mesh, points = found.mesh, found.elements.points
     assert points.area.sum() == pytest.approx(scene.thickness * scene.joints.length.sum(), rel=1e-12)
