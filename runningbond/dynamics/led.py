@@ -18,6 +18,7 @@ from runningbond.results.outcome import number
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, Verdict, hold_load, settle
+from .load_stepping import NEARLY_AT_REST
 from .run import Observer, Run, Unstable
 from .state import State
 
@@ -33,8 +34,9 @@ SEEN = 10
 STAGES = 20
 """Rests on the way of a settlement."""
 
-STEPS = 20_000
-"""Time steps of the longest leg the first time, where no rate is given."""
+STEPS, UNHURRIED = 20_000, 20
+"""Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest.
+"""
 
 LAST = 0.1
 """Part of a way over which a force that has formed a mechanism no longer changes."""
@@ -140,17 +142,18 @@ class Lead:
         way.rows = [(0.0, self.share(state, 0.0, self.criteria.interval, given))]
         pace = _pace(2 * SOFT)
         steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
-        top = 1 / (STAGES * run.dt * steps * pace.sum())
-        for stage in range(1, STAGES + 1):
+        shares = np.linspace(0.0, 1.0, STAGES + 1) ** 2  # small at first, where reactions change most
+        for before, settled in zip(shares, shares[1:], strict=False):
             for part in pace.tolist():
-                self.share(state, top * part, steps, given)
+                self.share(state, float(settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
             state.velocity[carried] = 0.0
-            way.verdict, _ = hold_load(run, state, 0.0, self.criteria)
+            rest = self.criteria.rest if settled == 1 else NEARLY_AT_REST
+            way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
             way.motion = state.motion - self.start.motion
             if way.verdict != "stable":
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
-            way.rows.append((metre * stage / STAGES, bears))
+            way.rows.append((metre * float(settled), bears))
             way.best = state.copy()
             self.observe(run, state, bears)
 
@@ -230,8 +233,9 @@ def _speeds(lead: Lead) -> list[float]:
     if rate := _rate(lead.scene):
         return [2 * rate, rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
-    runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * STEPS)))) + 1)
-    return [lead.longest / (STEPS * lead.run.dt * 2**k) for k in range(runs)]
+    steps = STEPS if lead.settles else max(STEPS, UNHURRIED * lead.start.steps)
+    runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
+    return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
 
 
 def _bracket(answers: list[float]) -> tuple[float, float]:
