@@ -9,6 +9,7 @@ wall falls. Else the wall still hardens, or the support still sheds load, where 
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -143,9 +144,9 @@ class Lead:
         pace = _pace(2 * SOFT)
         steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
         shares = np.linspace(0.0, 1.0, STAGES + 1) ** 2  # small at first, where reactions change most
-        for before, settled in zip(shares, shares[1:], strict=False):
+        for before, settled in pairwise(shares.tolist()):
             for part in pace.tolist():
-                self.share(state, float(settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
+                self.share(state, (settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
             state.velocity[carried] = 0.0
             rest = self.criteria.rest if settled == 1 else NEARLY_AT_REST
             way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
@@ -153,7 +154,7 @@ class Lead:
             if way.verdict != "stable":
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
-            way.rows.append((metre * float(settled), bears))
+            way.rows.append((metre * settled, bears))
             way.best = state.copy()
             self.observe(run, state, bears)
 
@@ -233,7 +234,7 @@ def _speeds(lead: Lead) -> list[float]:
     if rate := _rate(lead.scene):
         return [2 * rate, rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
-    steps = STEPS if lead.settles else max(STEPS, UNHURRIED * lead.start.steps)
+    steps = max(STEPS, UNHURRIED * lead.start.steps)
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
 
@@ -273,8 +274,8 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
         what += f"; the other way it takes {number(other)}"
     what += "; small displacements"
     at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"
-    if len(answers) < 2:
-        return replace(outcome, message=f"no answer: beyond {at} it neither rested nor bears its dead load; {what}")
+    if way.verdict == "undecided" or len(answers) < 2:
+        return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
     least, most = _bracket(answers)
     outcome = replace(outcome, lower=least, upper=most)
     fell = way.verdict == "collapse"

@@ -152,6 +152,22 @@ def test_a_pier_rocks_in_double_bending_under_a_level_beam_and_as_a_cantilever_u
     brackets(model(scene, 0.01), exact, 0.01)
 
 
+def test_a_pier_that_is_pushed_to_the_left_answers_as_one_pushed_to_the_right() -> None:
+    right, left = (
+        dem_dynamic(under_beam("level", {"displacement": [u, 0], "at": 0.72}, width=0.24, height=0.72), 0.01)
+        for u in (0.001, -0.001)
+    )
+    assert left.multiplier == pytest.approx(right.multiplier, rel=1e-6)
+    assert left.curve == pytest.approx(right.curve, rel=1e-5, abs=1e-8)
+    assert left.motion[0] == pytest.approx(right.motion[0] * [-1, 1, -1], abs=1e-6)
+
+
+def test_a_thin_beam_does_not_say_how_far_a_collapse_is() -> None:
+    thin, none = block(beam={"height": 0.01}), block()
+    assert thin.lowest_block == none.lowest_block
+    assert thin.block_sizes.min() == none.block_sizes.min()
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_a_sliding_block_goes_round_a_loop_of_its_friction(model: Any) -> None:
     """± μ N, and 4 μ N u for each round of amplitude u, the ledger closing in the run."""
@@ -213,6 +229,17 @@ def test_a_beam_stays_stiff_whatever_the_modes_of_blocks() -> None:
     assert np.isfinite(template.modes.mass).tolist() == [True, True, False]
     assert template.modes.free == pytest.approx(np.diag([1.0, 1.0, 0.0]))
     assert not template.modes.inert.any()
+
+
+def test_a_moment_on_a_pinned_block_turns_it_in_modes_as_in_freedoms() -> None:
+    """The same acceleration along the load, f · M⁻¹ f, about a pinned corner."""
+    changes = {"support__kind": "corners", "load__live": {"kind": "moment", "at": [0.1, 0.03], "moment": 2.0}}
+    scene = panel(wall__length=0.48, wall__height=0.12, joint__mortar=MORTAR, block__young=1e10, **changes)
+    rigid, modal = rigid_system(scene), system_of(modal_wall(scene, modes=3))
+    (x, y), (mass, inertia) = scene.blocks.centroid[0], (scene.mass[0], scene.density[0] * 0.12)
+    exact = 4.0 / (inertia * scene.blocks.polar_moment[0] + mass * (x**2 + y**2))
+    for system in (rigid, modal):
+        assert float((system.live**2 / system.mass).sum()) == pytest.approx(exact, rel=1e-9)
 
 
 # --- supports that move --------------------------------------------------------------------------------------
