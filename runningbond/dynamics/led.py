@@ -6,34 +6,20 @@ collapse if a mechanism has formed: if over the last tenth of the way it has cha
 wall falls. Else the wall still hardens, or the support still sheds load, where the way ends.
 """
 
-from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from dataclasses import replace
 
 import numpy as np
 
-from runningbond.limit.settlement import largest_displacement, reaction_unit
+from runningbond.limit.settlement import reaction_unit
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.scene import Array, Indices, Scene
 
-from .collapse import Criteria, Verdict, hold_load, settle
-from .load_stepping import NEARLY_AT_REST
+from .collapse import Criteria, settle
+from .lead import Lead, Way
 from .run import Observer, Run, Unstable
 from .state import State
-
-ROWS, LEAST_ROWS = 200, 40
-"""Rows of the curve in the longest leg of a drive, and at least in each."""
-
-SOFT = 10
-"""Rows in which a leg gathers its speed, and in which it slows down to turn."""
-
-SEEN = 10
-"""Rows between two looks of an observer, and over which a mechanism is drawn."""
-
-STAGES = 20
-"""Rests on the way of a settlement."""
 
 STEPS, UNHURRIED = 20_000, 20
 """Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest.
@@ -52,122 +38,6 @@ UNACCOUNTED = 0.01
 def is_led(scene: Scene) -> bool:
     """Whether displacements are prescribed to a scene, not loads."""
     return scene.settlement is not None or any(key.startswith("beam.drive.displacement") for key in scene.extras)
-
-
-@dataclass
-class Way:
-    """What was seen on a way that was gone through once, from a state at rest."""
-
-    best: State  # where the answer is
-    motion: Array  # (nd,) how the wall moved where it had come farthest
-    moves: bool  # whether forces are means of a motion, and not of rests
-    rows: list[tuple[float, float]] = field(default_factory=lambda: [(0.0, 0.0)])  # displacement [m] and force
-    verdict: Verdict = "stable"
-
-    @property
-    def curve(self) -> Array:
-        """Displacement [m] and force, ``(n, 2)``; of a motion each force is the middle one of three."""
-        curve = np.array(self.rows)
-        if self.moves and len(curve) > 2:
-            force = curve[:, 1]
-            curve[1:-1, 1] = np.median([force[:-2], force[1:-1], force[2:]], axis=0)
-        return curve
-
-
-@dataclass(frozen=True, eq=False)
-class Lead:
-    """How a wall is led, from its rest under the dead load."""
-
-    scene: Scene
-    run: Run
-    start: State
-    criteria: Criteria
-    observe: Observer
-
-    @property
-    def settles(self) -> bool:
-        """Whether supports are led, not the beam."""
-        return self.scene.settlement is not None
-
-    @property
-    def goals(self) -> Array:
-        """Displacements along the first move [m], or parts of the settlement, one after the other."""
-        drive = self.scene.beam.drive if self.scene.beam else None
-        return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path)
-
-    @property
-    def longest(self) -> float:
-        """Longest leg."""
-        return float(np.abs(np.diff(self.goals, prepend=0.0)).max())
-
-    def share(self, state: State, speed: float, steps: int, given: float) -> float:
-        """Move supports, in place; the share of the dead load that they bear meanwhile."""
-        return self.run.carry(state, speed, steps, given=given) / reaction_unit(self.scene)
-
-    def go(self, way: Way, speed: float) -> State:
-        """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
-        state = self.start.copy()
-        self.observe(self.run, state, 0.0)
-        (self._settle if self.settles else self._drive)(way, state, speed)
-        return state
-
-    def _drive(self, way: Way, state: State, speed: float) -> None:
-        run, at, farthest, most = self.run, 0.0, 0.0, 0.0
-        mobility = float((run.system.live**2 / run.system.mass).sum())
-        given, recent = run.given(state), deque([state.motion.copy()], maxlen=SEEN)
-        for goal in self.goals.tolist():
-            if goal == at:
-                continue
-            n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
-            pace = _pace(n)
-            steps = max(1, round(abs(goal - at) / (speed * run.dt * pace.sum())))
-            top = (goal - at) / (run.dt * steps * pace.sum())
-            for k, part in enumerate(pace.tolist()):
-                before = float(run.system.live @ state.velocity)
-                force = run.drive(state, top * part, steps, given=given)
-                force -= (top * part - before) / (mobility * steps * run.dt)  # what the driven body's own inertia takes
-                moved = float(run.system.live @ (state.motion - self.start.motion))
-                if force > most:
-                    most, way.best = force, state.copy()
-                way.rows.append((moved, force))
-                if moved > farthest:
-                    farthest, way.motion = moved, state.motion - recent[0]
-                recent.append(state.motion.copy())
-                if (k + 1) % SEEN == 0:
-                    self.observe(run, state, force)
-            at = goal
-
-    def _settle(self, way: Way, state: State, speed: float) -> None:
-        run, carried = self.run, self.run.system.carried != 0
-        given, metre = run.given(state), settlement(self.scene, float(run.system.control @ run.system.carried))
-        way.rows = [(0.0, self.share(state, 0.0, self.criteria.interval, given))]
-        pace = _pace(2 * SOFT)
-        steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
-        shares = np.linspace(0.0, 1.0, STAGES + 1) ** 2  # small at first, where reactions change most
-        for before, settled in pairwise(shares.tolist()):
-            for part in pace.tolist():
-                self.share(state, (settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
-            state.velocity[carried] = 0.0
-            rest = self.criteria.rest if settled == 1 else NEARLY_AT_REST
-            way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
-            way.motion = state.motion - self.start.motion
-            if way.verdict != "stable":
-                return
-            bears = self.share(state, 0.0, self.criteria.interval, given)
-            way.rows.append((metre * settled, bears))
-            way.best = state.copy()
-            self.observe(run, state, bears)
-
-
-def settlement(scene: Scene, controlled: float) -> float:
-    """Displacement [m] of moving supports at λ = 1: of their control point, or the largest where that stays."""
-    return controlled or largest_displacement(scene)
-
-
-def _pace(rows: int) -> Array:
-    """Part of the top speed in each row of a leg, which starts and ends softly."""
-    k = np.arange(rows)
-    return np.asarray(np.minimum(1.0, (np.minimum(k, rows - 1 - k) + 0.5) / SOFT))
 
 
 def collapse_of_led(
