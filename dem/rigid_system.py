@@ -3,7 +3,9 @@
 import numpy as np
 
 from runningbond.dynamics import (
+    NOTHING_CARRIED,
     BlockSystem,
+    Carried,
     ContactSearch,
     Interface,
     Restraint,
@@ -24,6 +26,7 @@ from runningbond.limit.kinematics import (
     pin_operator,
     point_operator,
 )
+from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.scene import Array, Indices, Scene, free_motions
 
 from .joint_order import joint_order
@@ -64,6 +67,10 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
         row = point_operator(np.array([block]), at[None], direction[None], scene.blocks.centroid).toarray()[0]
         return _restrain(row, restraint)[order]
 
+    moved, carried = scene.support_motion.ravel()[order], NOTHING_CARRIED
+    if scene.settlement:
+        far = float(control[order] @ moved) or largest_displacement(scene)
+        carried = Carried(moved, far, reaction_unit(scene))
     moving = ~scene.fixed | scene.support_motion.any(axis=1)
     strength = wall_strength(scene, wall_points(scene))
     return BlockSystem(
@@ -80,7 +87,7 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
         interface=interface,
         ties=tie_rows(scene.ties, moving, displacement),
         late=rigid[scene.late_pins.block, 1],
-        carried=scene.support_motion.ravel()[order],
+        carried=carried,
         contacts=contacts,
     )
 

@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.scene import Array, Scene
 
 from .collapse import Criteria, Verdict, hold_load
@@ -75,7 +74,7 @@ class Lead:
 
     def share(self, state: State, speed: float, steps: int, given: float) -> float:
         """Move supports, in place; the share of the dead load that they bear meanwhile."""
-        return self.run.carry(state, speed, steps, given=given) / reaction_unit(self.scene)
+        return self.run.carry(state, speed, steps, given=given) / self.run.system.carried.work
 
     def go(self, way: Way, speed: float) -> State:
         """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
@@ -111,8 +110,8 @@ class Lead:
             at = goal
 
     def _settle(self, way: Way, state: State, speed: float) -> None:
-        run, carried = self.run, self.run.system.carried != 0
-        given, metre = run.given(state), settlement(self.scene, float(run.system.control @ run.system.carried))
+        run, given = self.run, self.run.given(state)
+        motion, far, _ = run.system.carried
         way.rows = [(0.0, self.share(state, 0.0, self.criteria.interval, given))]
         pace = _pace(2 * SOFT)
         steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
@@ -120,21 +119,16 @@ class Lead:
         for before, settled in pairwise(shares.tolist()):
             for part in pace.tolist():
                 self.share(state, (settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
-            state.velocity[carried] = 0.0
+            state.velocity[motion != 0] = 0.0
             rest = self.criteria.rest if settled == 1 else NEARLY_AT_REST
             way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
             way.motion = state.motion - self.start.motion
             if way.verdict != "stable":
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
-            way.rows.append((metre * settled, bears))
+            way.rows.append((far * settled, bears))
             way.best = state.copy()
             self.observe(run, state, bears)
-
-
-def settlement(scene: Scene, controlled: float) -> float:
-    """Displacement [m] of moving supports at λ = 1: of their control point, or the largest where that stays."""
-    return controlled or largest_displacement(scene)
 
 
 def _pace(rows: int) -> Array:

@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.limit.settlement import reaction_unit
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.scene import Array, Indices, Scene
@@ -84,7 +83,7 @@ def collapse_of_led(
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     # What a support hardly moves does hardly any work.
-    lost = run.unaccounted(last, LITTLE * reaction_unit(scene) if lead.settles else 0.0)
+    lost = run.unaccounted(last, LITTLE * run.system.carried.work)
     outcome = _arrays(outcome, lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")

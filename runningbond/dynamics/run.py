@@ -156,7 +156,7 @@ class Run:
     def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
         """Take steps under a constant load and a control; what `stepper` sums up."""
         total, system = 0.0, self.system
-        live = system.carried if control == "carried" else system.live
+        live = system.carried.motion if control == "carried" else system.live
         ties = (*system.ties, state.stretch) if len(system.ties) else ()
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece

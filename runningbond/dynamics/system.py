@@ -36,6 +36,17 @@ class Restraint(NamedTuple):
         return cls(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3)))
 
 
+class Carried(NamedTuple):
+    """Supports that move."""
+
+    motion: Array  # (nd,) motion of their modes, which are held, at λ = 1
+    displacement: float = 0.0  # how far that takes them [m]
+    work: float = 0.0  # work of their reaction against it [J] where they bear all of the dead load
+
+
+NOTHING_CARRIED = Carried(np.zeros(0))
+
+
 @dataclass(frozen=True, eq=False)
 class Interface:
     """Joint points between bodies."""
@@ -97,7 +108,7 @@ class BlockSystem:
     interface: Interface  # what holds them together: at finite displacements that of the undeformed contacts
     ties: TieRows = NO_TIE_ROWS  # bars between them
     late: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))  # modes held once the dead load is on
-    carried: Array = field(default_factory=lambda: np.zeros(0))  # (nd,) motion of supports at λ = 1, if any moves
+    carried: Carried = NOTHING_CARRIED  # supports that move
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
     # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
     block_motion: csr_array | None = None

@@ -12,6 +12,7 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem, fem_pushover
 from fem_interface.system import system_of
 from meshing import wall_mesh
+from runningbond.compare.recording import MotionRecorder
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.led import formed
@@ -290,7 +291,7 @@ def test_the_work_of_a_moving_support_is_in_the_ledger() -> None:
     for speed in (1.0, -1.0):
         for _ in range(50):
             run.carry(state, speed / (5000 * run.dt), 100, given=run.given(state))
-        state.velocity[run.system.carried != 0] = 0.0
+        state.velocity[run.system.carried.motion != 0] = 0.0
         settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
         assert abs(run.ledger(state).residual) < 1e-3 * 9.81 * scene.mass[1] * 1e-3
     assert run.system.motion_of_blocks(state.motion)[4] == pytest.approx(0.0, abs=1e-12)
@@ -349,6 +350,19 @@ def test_ctrl_c_leaves_the_way_so_far(after: int) -> None:
     assert (outcome.status, outcome.multiplier) == ("undecided", None)
     assert "interrupted" in outcome.message
     assert len(outcome.curve) == 1 + 10 * (after - 1)
+
+
+def test_a_recorder_keeps_the_way_that_counts() -> None:
+    """Frames of the last way alone, from rest to the displacement asked for."""
+    scene = under_beam("level", {"displacement": [0.001, 0]})
+    recorder = MotionRecorder(scene, None)
+    outcome = dem_dynamic(scene, observe=recorder)
+    recorder.finish(outcome)
+    assert scene.beam is not None
+    moved = np.array([frame.motion[scene.beam.block or 0, 0] for frame in recorder.frames])
+    assert (np.diff(moved) >= 0).all()
+    assert len(moved) == 21
+    assert moved[-1] == pytest.approx(0.001, rel=1e-6)
 
 
 @pytest.mark.parametrize(

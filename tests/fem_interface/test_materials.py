@@ -11,7 +11,7 @@ from fem_interface.model import fem
 from fem_interface.system import system_of
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.joints import joint_stiffness
-from runningbond.scene import Scene
+from runningbond.scene import Scene, SceneError
 from tests.walls import courses
 
 from .walls import MORTAR
@@ -93,6 +93,12 @@ def test_fracture_energies_follow_from_each_joints_own_mortar() -> None:
         exact = corrected_energies(length, own.cohesion, own.tensile_strength, young)
         found = materials[of_joint[joint]]
         assert (found.fracture_energy_1, found.fracture_energy_2) == pytest.approx(exact)
+
+
+def test_a_joint_whose_mortar_is_missing_is_refused_by_its_name() -> None:
+    lime = {"friction": 0.5, "normal_stiffness": 1e10, "shear_stiffness": 1e10}
+    with pytest.raises(SceneError, match=r"joints\.lime\.mortar: is missing"):
+        fractured(column(joints={"lime": lime}), "corrected")
 
 
 def test_a_block_slides_on_the_weaker_of_its_joints() -> None:
