@@ -46,12 +46,14 @@ def dem_dynamic(
         As of `collapse_by_steps`.
     """
     start = time.perf_counter()
+    points = contact_points(scene)
     outcome = collapse_by_steps(
         scene,
         "dem-dynamic",
         Run(rigid_system(scene)),
         tolerance,
-        point_order=np.argsort(contact_points(scene).joint, kind="stable"),
+        points=points,
+        point_order=np.argsort(points.joint, kind="stable"),
         is_self_locking=lambda: is_self_locking(scene),
         collapse=collapse,
         first_step=first_step,

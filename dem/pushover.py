@@ -15,6 +15,9 @@ from runningbond.scene import Array
 from .relaxation import LONGEST, Rest, relax
 from .static_system import Control, StaticSystem
 
+NOISE = 1e-6
+"""Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
+
 EASY = 30
 """Linear systems of a step after which the next is as long."""
 
@@ -36,9 +39,10 @@ class StaticState:
     """A state of rest."""
 
     x: Array  # (n,) unknowns (q, r, λ) of the `StaticSystem`
-    plastic_slip: Array  # (np,) history of the joint points after it
+    plastic_slip: Array  # (np + nt,) history of the joint points and ties after it
     force: Array  # (np, 2) normal and tangential forces of the joint points
     displacement: float  # displacement f_live · q of the live load
+    pull: Array  # (nt,) forces of the ties
 
     @property
     def multiplier(self) -> float:
@@ -46,11 +50,11 @@ class StaticState:
         return float(self.x[-1])
 
 
-StaticObserver: TypeAlias = Callable[[StaticSystem, StaticState], None]
-"""Looks at a state of rest as it is found, and changes nothing."""
+StaticObserver: TypeAlias = Callable[["LoadPath", StaticState], None]
+"""Looks at a state of rest as it is found, and at the path so far, and changes nothing."""
 
 
-def no_observer(system: StaticSystem, state: StaticState) -> None:
+def no_observer(path: "LoadPath", state: StaticState) -> None:
     """Observe nothing."""
 
 
@@ -76,10 +80,10 @@ class LoadPath:
         """Hold a load larger than the last until the wall rests or falls, and note which."""
         last = self.rests[-1]
         start = np.append(last.x[:-1], multiplier)
-        result = self._relax(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
+        result = self.hold(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
         if result.verdict == "rest":
             self.rests.append(state_of(self.system, result))
-            self.observe(self.system, self.rests[-1])
+            self.observe(self, self.rests[-1])
         elif result.verdict == "fall":
             self.upper, self.fall = multiplier, result.last
         return result
@@ -100,7 +104,7 @@ class LoadPath:
             for share, creeps in ATTEMPTS:
                 ahead = share * stride
                 control = Control(now.displacement + ahead)
-                result = self._relax(now.x + ahead * onward, now.plastic_slip, control, budget, creeps)
+                result = self.hold(now.x + ahead * onward, now.plastic_slip, control, budget, creeps)
                 budget -= result.solves
                 if result.verdict == "rest":
                     break
@@ -111,7 +115,10 @@ class LoadPath:
             stride = min(stride * lengthened(result.solves), STRIDE * (states[-1].displacement - origin))
         self.past = states[2:]
 
-    def _relax(self, start: Array, plastic_slip: Array, control: Control, budget: int, creeps: bool = True) -> Rest:
+    def hold(
+        self, start: Array, plastic_slip: Array, control: Control, budget: int = LONGEST, creeps: bool = True
+    ) -> Rest:
+        """Let the wall come to rest or fall, and count the linear systems."""
         result = relax(self.system, start, plastic_slip, control, self.far, min(budget, self.budget), creeps=creeps)
         self.budget -= result.solves
         return result
@@ -124,6 +131,6 @@ def lengthened(solves: int) -> float:
 
 def state_of(system: StaticSystem, rest: Rest) -> StaticState:
     """A state of rest as it is kept."""
-    force = np.column_stack([rest.response.normal, rest.response.tangential])
+    force, joints = np.column_stack([rest.response.normal, rest.response.tangential]), len(system.equilibrium.points)
     displacement = float(system.equilibrium.live @ rest.x[: system.freedoms])
-    return StaticState(rest.x, rest.response.plastic_slip, force, displacement)
+    return StaticState(rest.x, rest.response.plastic_slip, force[:joints], displacement, force[joints:, 0])

@@ -11,6 +11,8 @@ rises again many times over motions of a few elastic lengths. Under a displaceme
 depends on the steps; under a load it falls to its next rest, or for good. Hence the bracket is one of loads. Friction
 remembers: loads in longer steps may bring a wall down earlier or later. `benchmarks/static_pushover.py` prints what
 steps half as long make of each published wall, and what it costs.
+
+A beam or supports that are moved by displacements take the wall along, step by step (`led`).
 """
 
 import time
@@ -21,22 +23,22 @@ from threadpoolctl import threadpool_limits
 
 from runningbond.joints import stiffness_note
 from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
-from runningbond.limit.kinematics import control_row, movable_freedoms
-from runningbond.results import Outcome
+from runningbond.limit.equilibrium import equilibrium
+from runningbond.limit.kinematics import control_row, dead_load, live_load
+from runningbond.results import Outcome, Supports
 from runningbond.scene import Scene
 
-from .pushover import LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
+from .lead import is_led
+from .led import lead_along
+from .pushover import NOISE, LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
 from .relaxation import relax
-from .static_system import Control, StaticSystem, static_system
+from .static_system import Control, StaticSystem, static_system, with_late_pins
 
 FIRST_STEP = 0.03
 """First load, in units of `Equilibrium`."""
 
 U_CRIT = 0.05
 """Motion of a block that is a fall unless it slows down, in heights of the lowest block."""
-
-NOISE = 1e-6
-"""Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
 
 LARGEST_LOAD = 1e6
 """Multiplier, in first steps, beyond which no collapse is looked for."""
@@ -82,7 +84,9 @@ def dem_static(
     -------
     Outcome
         `lower` is the largest load in equilibrium, `upper` the smallest under which the wall fell. `curve` has the
-        states at rest, past the largest load under prescribed displacements; `force` is of `lower`.
+        states at rest, past the largest load under prescribed displacements; `force` is of `lower`. Of a wall that is
+        led `curve` has its whole way and `force` is of the answer, and `lower` and `upper` are the answers in the last
+        steps and in those twice as long.
     """
     start = time.perf_counter()
     system = static_system(scene)
@@ -95,12 +99,18 @@ def dem_static(
         if rest.verdict != "rest":
             outcome = _fallen(replace(outcome, steps=rest.solves), system)
         else:
+            if len(scene.late_pins):
+                system, late = with_late_pins(system, rest.x)
+                rest = replace(rest, x=late)
             path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-            observe(system, path.rests[0])
-            undecided = _climb(path, first_step, tolerance, past)
-            for state in path.past:
-                observe(system, state)
-            outcome = _judge(outcome, path, undecided)
+            observe(path, path.rests[0])
+            if is_led(scene):
+                outcome = lead_along(outcome, path, tolerance, first_step)
+            else:
+                undecided = _climb(path, first_step, tolerance, past)
+                for state in path.past:
+                    observe(path, state)
+                outcome = _judge(outcome, path, undecided)
             message = "; ".join(part for part in (outcome.message, _window(path)) if part)
             outcome = replace(outcome, message=message, steps=budget - path.budget)
     return replace(outcome, seconds=time.perf_counter() - start)
@@ -109,7 +119,8 @@ def dem_static(
 def _window(path: LoadPath) -> str:
     """What there is to say of the stiffness of joints: at rest under the dead load."""
     equations, law, unit = path.system.equilibrium, path.system.law, path.system.length_unit
-    overlap = unit * float((-path.rests[0].force[:, 0] / law.normal_stiffness).max(initial=0.0))
+    normal = path.rests[0].force[:, 0]
+    overlap = unit * float((-normal / law.normal_stiffness[: len(normal)]).max(initial=0.0))
     stiffest = float(max(law.normal_stiffness.max(initial=0.0), law.shear_stiffness.max(initial=0.0)))
     spring, size = equations.force_unit / unit, equations.scene.lowest_block
     return stiffness_note(overlap, path.far * unit, size, spring * stiffest, equations.force_unit)
@@ -144,17 +155,23 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
     """Verdict on a climb, and its arrays."""
     system, states = path.system, [*path.rests, *path.past]
     equations, peak = system.equilibrium, _peak(path)
-    unit, nd = equations.live_unit, system.freedoms
-    row = control_row(equations.scene)[movable_freedoms(equations.scene)] * equations.scale * system.length_unit
-    q = np.array([state.x[:nd] for state in states])
+    unit = equations.live_unit
+    q = np.array([state.x[: system.freedoms] for state in states])
+    loads = np.array([unit * state.multiplier for state in states])
+    moved, dead, live = (system.per_freedom(row(equations.scene)) for row in (control_row, dead_load, live_load))
+    dead, live = q @ dead, q @ live
+    mean = (loads[1:] + loads[:-1]) / 2
+    works = np.column_stack([dead, loads[0] * live[0] + np.append(0.0, np.cumsum(mean * np.diff(live)))])
+    forces = [equations.force_unit * state.force for state in states]
     moving = path.fall if path.fall is not None else q[-1] - q[-2] if len(q) > 1 else None
     result = replace(
         result,
         lower=unit * peak.multiplier,
         upper=None if path.upper is None else unit * path.upper,
-        curve=np.column_stack([(q - q[0]) @ row, [unit * state.multiplier for state in states]]),
+        curve=np.column_stack([(q - q[0]) @ moved, loads]),
         motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
         force=equations.force_unit * peak.force,
+        **Supports(equations.scene, equations.points).path(forces, loads, works),
     )
     if not undecided:
         heights = path.far * system.length_unit / equations.scene.lowest_block
@@ -171,6 +188,6 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:
     """Outcome of a wall that was not brought to rest under its dead load."""
-    if not stands_under_dead_load(system.equilibrium):
+    if not stands_under_dead_load(equilibrium(system.equilibrium.scene)):
         return replace(result, status="infeasible", message=NO_EQUILIBRIUM)
     return replace(result, message="no equilibrium was found under the dead load, though forces exist that balance it")

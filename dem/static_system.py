@@ -1,11 +1,12 @@
 """Rigid blocks on elastic joint points: residual and tangent of the static equations, and their solution.
 
-    B_nᵀ N + B_tᵀ S + Cᵀ r − f_dead − λ f_live = 0,    C q = 0,    f_live · q = d  (or λ given)
+    B_nᵀ N + B_tᵀ S + Cᵀ r − f_dead − λ f_live = 0,    C q = c,    f_live · q = d  (or λ given)
 
 in the scaled freedoms and forces of `Equilibrium`; displacements are measured in the elastic length that the unit
 of force makes of the stiffest joint point, so that stiffnesses, too, are of order one. Unknowns are ordered
 x = (q, r, λ). The tangent has the same pattern in every step: its entries are found once as sums of joint points'
-entries.
+entries. Ties are points after those of the joints (`tied_law`). Supports that move add λ times their own jumps to those
+of the blocks; then λ is given, and nothing is a live load.
 """
 
 from dataclasses import dataclass, replace
@@ -13,13 +14,16 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import qr
-from scipy.sparse import csc_array, csr_array
+from scipy.sparse import csc_array, csr_array, hstack
 
 from runningbond.joints import PointLaw, PointResponse, static_law, wall_stiffness
 from runningbond.limit.equilibrium import Equilibrium, equilibrium
+from runningbond.limit.kinematics import jump_operator, movable_freedoms, pin_operator
+from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Indices, Scene
 
 from .band import Band, band
+from .tied_law import TiedLaw, elongation, tie_ends
 
 
 @dataclass(frozen=True)
@@ -34,9 +38,11 @@ class Control:
 class StaticSystem:
     """The static equations of a scene."""
 
-    equilibrium: Equilibrium  # scaled equilibrium of its blocks
-    law: PointLaw  # law of its joint points, scaled
+    equilibrium: Equilibrium  # scaled equilibrium of its blocks; its ties are points after those of the joints
+    law: PointLaw | TiedLaw  # law of its joint points and ties, scaled
     length_unit: float  # displacement [m] that counts as 1
+    support_jump: Array | None = None  # (2, np) openings and slips that supports make at λ = 1
+    held: Array | float = 0.0  # (n_pins,) what the pinned motions are
 
     @property
     def freedoms(self) -> int:
@@ -61,7 +67,22 @@ class StaticSystem:
     def respond(self, x: Array, plastic_slip: Array) -> PointResponse:
         """Answer of the joint points ``(np,)`` to unknowns ``(n,)`` after a plastic slip ``(np,)``."""
         q = x[: self.freedoms]
-        return self.law(self.opening @ q, self.slip @ q, plastic_slip)
+        opening, slip = self.opening @ q, self.slip @ q
+        if self.support_jump is not None:
+            opening, slip = np.array([opening, slip]) + x[-1] * self.support_jump
+        return self.law(opening, slip, plastic_slip)
+
+    def motion(self, x: Array) -> Array:
+        """Motion of all blocks, ``(nb, 3)`` [m, m, rad], that unknowns ``(n,)`` stand for."""
+        scene = self.equilibrium.scene
+        motion = np.zeros(3 * len(scene.blocks)) if self.support_jump is None else x[-1] * scene.support_motion.ravel()
+        motion[movable_freedoms(scene)] = x[: self.freedoms] * self.equilibrium.scale * self.length_unit
+        return motion.reshape(-1, 3)
+
+    def per_freedom(self, row: Array) -> Array:
+        """A row ``(3 nb,)`` per motion of the blocks [m, rad] as one per scaled freedom, ``(nd,)``."""
+        system = self.equilibrium
+        return np.asarray(row[movable_freedoms(system.scene)] * system.scale * self.length_unit)
 
     def unbalanced(self, x: Array, response: PointResponse, control: Control) -> Array:
         """Residual of all equations, ``(n,)``."""
@@ -70,7 +91,7 @@ class StaticSystem:
         force = system.opening @ response.normal + system.slip @ response.tangential
         force += system.reaction @ reaction - system.dead - multiplier * system.live
         last = multiplier if control.multiplier else system.live @ q
-        return np.concatenate([force, self._held @ q, [last - control.value]])
+        return np.concatenate([force, self._held @ q - self.held, [last - control.value]])
 
     def viscous(self, motion: Array) -> Array:
         """Forces ``(nd,)`` of dashpots in proportion to the elastic stiffness of every joint point."""
@@ -84,7 +105,7 @@ class StaticSystem:
         Parameters
         ----------
         tangent : (np, 2, 2) float
-            Of the joint points.
+            Of the joint points and ties.
         control
             Which equation is the last.
         right : (n,) float
@@ -96,12 +117,27 @@ class StaticSystem:
             For a tangent that is singular to the last bit.
         """
         jump, live = self._jump, self.equilibrium.live
-        own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent), jump).ravel()
+        own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[: len(jump)]), jump).ravel()
         border = np.concatenate([live, np.zeros(self.unknowns - 1 - len(live))])
+        loads = [right[:-1], border] if len(tangent) == len(jump) else [right[:-1], border, self._tie_ends]
         # The border of λ is eliminated by hand: q = a + λ b.
-        a, b = self._band.solve(np.concatenate([own, self._pins, self._pins]), np.column_stack([right[:-1], border])).T
+        a, b, *ends = self._band.solve(np.concatenate([own, self._constant]), np.column_stack(loads)).T
+        if ends:
+            a, b = self._tied(tangent[len(jump) :, 0, 0], np.array([a, b]), np.array(ends))
         multiplier = right[-1] if control.multiplier else (right[-1] - border @ a) / (border @ b)
         return np.append(a + multiplier * b, multiplier)
+
+    def _tied(self, tangent: Array, solved: Array, ends: Array) -> Array:
+        """Solutions ``(2, n - 1)`` with ties of a tangent ``(nt,)`` from those with springs in their place.
+
+        Ties couple what lies far apart, and a band would be as wide. Each of a tie's ends is a spring to the ground in
+        the band, as stiff as the tie: where the tied wall has a regular tangent, so has that one. In the springs' stead
+        come the ties (Woodbury), by the solutions ``(2 nt, n - 1)`` for unit forces at the ends.
+        """
+        far, spring = np.diag(tangent), np.diag(tangent - self.law.normal_stiffness[-len(tangent) :])
+        change = np.block([[spring, far], [far, spring]])
+        capacity = np.eye(len(ends)) + change @ (self._tie_ends.T @ ends.T)
+        return np.asarray(solved - np.linalg.solve(capacity, change @ (self._tie_ends.T @ solved.T)).T @ ends)
 
     @cached_property
     def elastic(self) -> Array:
@@ -116,18 +152,41 @@ class StaticSystem:
         return csr_array(self.equilibrium.reaction.T)
 
     @cached_property
-    def _pins(self) -> Array:
-        """Entries of C in the order of its columns."""
-        return np.asarray(self.equilibrium.reaction.tocoo().data)
+    def _tie_ends(self) -> Array:
+        """Forces on all but λ of a unit pull at each first, then each second end of a tie, ``(n − 1, 2 nt)``."""
+        scene = self.equilibrium.scene
+        ends = np.zeros((self.unknowns - 1, 2 * len(scene.ties)))
+        ends[: self.freedoms] = _rows(self.equilibrium, tie_ends(scene)).toarray()
+        return ends
+
+    @cached_property
+    def _constant(self) -> Array:
+        """Entries of the springs at the ties' ends, then of C in the order of its columns, twice."""
+        pins = self.equilibrium.reaction.tocoo().data
+        if len(self.equilibrium.scene.ties) == 0:
+            return np.concatenate([pins, pins])
+        own = np.take_along_axis(self._tie_ends, self._freedoms_of_ends.T, axis=0).T
+        stiffness = np.tile(self.law.normal_stiffness[len(self._jump) :], 2)
+        return np.concatenate([np.einsum("k,ki,kj->kij", stiffness, own, own).ravel(), pins, pins])
+
+    @cached_property
+    def _freedoms_of_ends(self) -> Indices:
+        """Freedoms of the block at each end of a tie, ``(2 nt, 3)``; −1 where none moves."""
+        block = self.equilibrium.scene.ties.block.T.ravel()
+        return np.where(block[:, None] >= 0, self._freedoms_of_blocks[block], -1)
 
     @cached_property
     def _freedoms_of_points(self) -> Indices:
         """Freedoms of the two blocks at each joint point, ``(np, 6)``; −1 where a block is held."""
+        return self._freedoms_of_blocks[self.equilibrium.points.block].reshape(-1, 6)
+
+    @cached_property
+    def _freedoms_of_blocks(self) -> Indices:
+        """Freedoms of each block, ``(nb, 3)``; −1 where it is held."""
         scene = self.equilibrium.scene
         first = np.full(len(scene.blocks), -1)
         first[~scene.fixed] = 3 * np.arange(np.count_nonzero(~scene.fixed))
-        of_block = np.where(first[:, None] >= 0, first[:, None] + np.arange(3), -1)
-        return of_block[self.equilibrium.points.block].reshape(-1, 6)
+        return np.where(first[:, None] >= 0, first[:, None] + np.arange(3), -1)
 
     @cached_property
     def _jump(self) -> Array:
@@ -135,18 +194,19 @@ class StaticSystem:
         own = self._freedoms_of_points
         jump = np.zeros((len(own), 2, 6))
         for k, operator in enumerate((self.opening, self.slip)):
-            entries = operator.tocoo()
+            entries = operator[: len(own)].tocoo()
             column = np.argmax(own[entries.row] == entries.col[:, None], axis=1)
             jump[entries.row, k, column] = entries.data
         return jump
 
     @cached_property
     def _band(self) -> Band:
-        """Where the entries of the tangent go: the joint points' own 6 × 6 tangents, then C twice."""
+        """Where the entries of the tangent go: the joint points' 6 × 6 tangents, the springs at ties' ends, C twice."""
         nd, own, scene = self.freedoms, self._freedoms_of_points, self.equilibrium.scene
-        pins = self.equilibrium.reaction.tocoo()
-        row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), pins.row, nd + pins.col])
-        column = np.concatenate([np.tile(own, 6).ravel(), nd + pins.col, pins.row])
+        pins, ends = self.equilibrium.reaction.tocoo(), self._freedoms_of_ends
+        row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), np.repeat(ends, 3, axis=1).ravel()])
+        column = np.concatenate([np.tile(own, 6).ravel(), np.tile(ends, 3).ravel()])
+        row, column = np.concatenate([row, pins.row, nd + pins.col]), np.concatenate([column, nd + pins.col, pins.row])
         home = np.repeat(scene.blocks.centroid[~scene.fixed], 3, axis=0)
         held = np.empty((pins.shape[1], 2))
         held[pins.col] = home[pins.row]
@@ -162,19 +222,49 @@ def _independent(pins: csc_array) -> csc_array:
     return csc_array(pins[:, np.sort(order[: len(size)][size > 1e-9 * size[0]])])
 
 
+def _rows(system: Equilibrium, operator: csr_array) -> csc_array:
+    """An operator on the motion of all blocks ``(k, 3 nb)`` as forces on the scaled freedoms, ``(nd, k)``."""
+    return csc_array(operator[:, movable_freedoms(system.scene)].T * system.scale[:, None])
+
+
 def static_system(scene: Scene) -> StaticSystem:
-    """Set up the static equations of a scene.
+    """Set up the static equations of a scene, without what is held only once its dead load is on.
 
     Raises
     ------
     SceneError
-        If the scene gives its joints no stiffness, or a law that has no tangent.
+        If the scene gives its joints no stiffness, or a law that has no tangent; for a support under a weightless wall.
     """
-    system = equilibrium(scene)
+    system, ties = equilibrium(scene), scene.ties
     system = replace(system, reaction=_independent(system.reaction))
     normal, shear = (k * system.points.area for k in wall_stiffness(scene, system.points.joint))
     # A single block held at both corners has no joint, and does not move.
-    stiffest = float(max(normal.max(initial=0.0), shear.max(initial=0.0))) or 1.0
+    stiffest = float(max(k.max(initial=0.0) for k in (normal, shear, ties.stiffness))) or 1.0
     length = system.force_unit / stiffest
     scale = length / system.force_unit
-    return StaticSystem(system, static_law(scene, system.strength, normal * scale, shear * scale), length)
+    joints = static_law(scene, system.strength, normal * scale, shear * scale)
+    law: PointLaw | TiedLaw = joints
+    if len(ties):
+        forces = ties.yield_force / system.force_unit, ties.preload / system.force_unit
+        law = TiedLaw(joints, ties.stiffness * scale, *forces)
+        pull = _rows(system, elongation(scene))
+        opening, slip = csc_array(hstack([system.opening, pull])), csc_array(hstack([system.slip, 0.0 * pull]))
+        system = replace(system, opening=opening, slip=slip)
+    support_jump = None
+    if scene.settlement is not None:
+        reaction_unit(scene)  # refuses a wall that nothing moves
+        system = replace(system, live=np.zeros(system.freedoms), live_unit=1.0)
+        moved, jump = scene.support_motion.ravel() / length, jump_operator(system.points, scene.blocks.centroid)
+        opened, slid = np.append(jump.opening @ moved, elongation(scene) @ moved), jump.slip @ moved
+        support_jump = np.array([opened, np.append(slid, np.zeros(len(ties)))])
+    return StaticSystem(system, law, length, support_jump)
+
+
+def with_late_pins(system: StaticSystem, x: Array) -> tuple[StaticSystem, Array]:
+    """Hold what is held once the dead load is on as it is in unknowns ``(n,)``; they with the further reactions."""
+    equations = system.equilibrium
+    late = _rows(equations, pin_operator(equations.scene, equations.scene.late_pins))
+    reaction = csc_array(hstack([equations.reaction, late]))
+    held = np.append(np.zeros(equations.reaction.shape[1]), late.T @ x[: system.freedoms])
+    more = replace(system, equilibrium=replace(equations, reaction=reaction), held=held)
+    return more, np.insert(x, -1, np.zeros(late.shape[1]))

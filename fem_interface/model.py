@@ -86,6 +86,7 @@ def fem(
         "fem",
         Run(system),
         tolerance,
+        points=wall.elements.points,
         point_order=wall.elements.listing,
         is_self_locking=lambda: is_self_locking(scene),
         note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",

@@ -68,9 +68,12 @@ class Result:
 
     @cached_property
     def curve(self) -> Table:
-        """Pushover curve: ``displacement`` of the control point along the live load [m] and ``multiplier``."""
-        displacement, multiplier = self.outcome.curve.T
-        return table({"displacement": displacement, "multiplier": multiplier})
+        """Pushover curve: ``displacement`` of the control point along the live load [m], ``multiplier``, and the path.
+
+        The path has every support's reactions and the loads' works, by the names in ``outcome.path_columns``. Of a
+        model that follows no path but knows the forces at collapse it is one row.
+        """
+        return table(self.outcome.curve_columns())
 
     @cached_property
     def blocks(self) -> Table:

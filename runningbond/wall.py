@@ -23,7 +23,7 @@ TABLES = {
         *("friction", "friction_angle", "cohesion", "tensile_strength", "mortar", "normal_stiffness"),
         *("shear_stiffness", "inset", "fracture_energy_1", "fracture_energy_2", "law"),
     ),
-    "load": ("gravity", "live"),
+    "load": ("gravity", "live", "dead"),
 }
 """Keys of a scene file's tables that `Wall.running_bond` and `Wall.courses` take as keywords of their own."""
 
@@ -119,6 +119,8 @@ class Wall:
                 raise SceneError(key, f"is not a key of a wall{hint}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             description = _merged(description, {table_of[key]: {key: named}} if key in table_of else {key: named})
+        if "drive" in keys.get("beam", {}) and "live" not in keys:
+            description = _merged(description, {"load": {"live": None}})
         return cls(description)
 
     def with_(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> "Wall":

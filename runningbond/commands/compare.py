@@ -15,7 +15,7 @@ from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
 
-from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, Flag, Tolerance, print_table, progress_bar
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, Flag, Tolerance, print_table, progress_bar, remarks
 
 
 def compare(
@@ -57,6 +57,10 @@ def compare(
         raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
     walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
     make_folder(out)
+    for name, wall in walls.items():
+        for line in remarks(wall):
+            kind, _, what = line.partition(": ")
+            print(f"{kind}: {name}: {what}", file=sys.stderr)
     total = len(walls) * len(chosen)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
     try:

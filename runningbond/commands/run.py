@@ -1,18 +1,37 @@
 """``runningbond run``."""
 
 import json as to_json
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
+import numpy as np
 from cyclopts import Parameter
 
 from runningbond.compare.fingerprint import fingerprint
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model, run_model
 from runningbond.compare.published import find_scene
-from runningbond.results import Outcome, make_folder, save_outcome
-from runningbond.scene import read_scene
+from runningbond.compare.table import csv_lines
+from runningbond.pictures.time_series import KINDS
+from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
+from runningbond.results.store import RECORD
+from runningbond.scene import Scene, read_scene
 
-from .terminal import DONE, NO_ANSWER, STOPPED, UNDECIDED, Json, SceneName, Tolerance, can_draw, interruptions
+from .terminal import (
+    DONE,
+    NO_ANSWER,
+    STOPPED,
+    UNDECIDED,
+    Json,
+    SceneName,
+    Tolerance,
+    can_draw,
+    interruptions,
+    progress_line,
+    remarks,
+)
+
+CURVE_FILES = ("curve.csv", "curve.png")
 
 
 def run(
@@ -31,7 +50,8 @@ def run(
     model
         Name of the model.
     out
-        Folder in which to keep the result, its time series for ParaView and a picture of its mechanism.
+        Folder in which to keep the result, its time series for ParaView, its curve with all reactions as a table and
+        as a picture, and a picture of its mechanism.
     """
     chosen = find_model(model, "--model")
     check_tolerance(tolerance, "--tolerance")
@@ -40,7 +60,17 @@ def run(
         make_folder(out)
     stopped = interruptions(chosen)
     recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
-    outcome = run_model(chosen, wall, tolerance, recorder)
+    progress = chosen.progress() if chosen.progress else None
+    observers = [each for each in (recorder, progress) if each is not None]
+
+    def observe(*seen: Any) -> None:
+        for observer in observers:
+            observer(*seen)
+
+    with progress_line(chosen.name, progress.line if progress else None):
+        outcome = run_model(chosen, wall, tolerance, observe if observers else None)
+    for line in remarks(wall):  # not before: a scene that the model refuses is one line
+        print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
     if out is not None:
         # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
@@ -51,19 +81,37 @@ def run(
             record_mechanism(wall, outcome, out)
         else:
             recorder.finish(outcome)
-        _draw(out)
+        _draw(wall, outcome, out)
+        if not json:
+            print("\n".join(map(str, _written(out))))
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
-def _draw(out: Path) -> None:
-    """Draw the mechanism, or say in a line why there is no picture: the numbers are kept all the same."""
+def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
+    """Write and draw the curve and the mechanism; a line says why there is no picture of the latter."""
+    from runningbond.pictures.captions import to_png
+    from runningbond.pictures.curve import curve_figure
     from runningbond.pictures.render import remove_pictures, render_folder
 
     remove_pictures(out)
+    for name in CURVE_FILES:
+        (out / name).unlink(missing_ok=True)
+    columns = outcome.curve_columns("λ", "control displacement [m]")
+    rows = [["" if np.isnan(x) else float(x) for x in row] for row in zip(*columns.values(), strict=True)]
+    if rows:
+        write_atomically(out / CURVE_FILES[0], csv_lines([list(columns), *rows]).encode())
+    if len(outcome.curve):
+        write_atomically(out / CURVE_FILES[1], to_png(curve_figure(wall, outcome)))
     if can_draw():
         render_folder(out, moments=False)
+
+
+def _written(out: Path) -> list[Path]:
+    """What a run has left in its folder."""
+    names = (RECORD, "arrays-*.npz", *CURVE_FILES, *(f"{kind}.pvd" for kind in KINDS), "mechanism.png")
+    return [path for name in names for path in sorted(out.glob(name))]
 
 
 def _as_text(outcome: Outcome) -> str:

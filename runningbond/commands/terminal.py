@@ -2,8 +2,11 @@
 
 import signal
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from shutil import get_terminal_size
 from typing import Annotated, TypeAlias
 
 from cyclopts import Parameter, Token
@@ -15,9 +18,14 @@ from rich.text import Text
 from runningbond.compare.model import Model
 from runningbond.compare.table import Sheet
 from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.scene import Scene
+from runningbond.scene.plausibility import warnings
 
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 """Exit codes of every command."""
+
+PATIENCE, REFRESH = 2.0, 0.25
+"""Seconds after which a computation says how far it has come, and between two lines."""
 
 UNDECIDED = ("undecided", "failed")
 """Statuses of outcomes that are no answer."""
@@ -56,6 +64,11 @@ def can_draw() -> bool:
     return not why_not
 
 
+def remarks(scene: Scene) -> tuple[str, ...]:
+    """What is to be said of a scene before anything is computed: what its drawing left out, what looks like a slip."""
+    return (*(f"note: {line}" for line in scene.notes), *(f"warning: {line}" for line in warnings(scene)))
+
+
 @contextmanager
 def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]]:
     """A bar with what was done last, how much is done, and for how long; to be called with what is done."""
@@ -63,6 +76,36 @@ def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]
     with Progress(*columns, console=Console(stderr=True)) as bar:
         task = bar.add_task(description, total=total)
         yield lambda done: bar.update(task, advance=1, description=done)
+
+
+@contextmanager
+def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
+    """How long a computation has taken, and what is told of it, in a line on the terminal until it is done.
+
+    It is rewritten, from a thread of its own; nothing is written where standard error is no terminal.
+    """
+    if not sys.stderr.isatty():
+        yield
+        return
+    start, done = time.perf_counter(), threading.Event()
+
+    def rewrite() -> None:
+        pause = PATIENCE
+        while not done.wait(pause):
+            line = f"{name} {time.perf_counter() - start:.0f} s{f': {told()}' if told else ''}"
+            print(f"\r\x1b[K{line[: get_terminal_size().columns - 1]}", end="", file=sys.stderr, flush=True)
+            pause = REFRESH
+        if pause == REFRESH:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+    # A daemon: Ctrl-C ends a linear program at once, whatever its line.
+    thread = threading.Thread(target=rewrite, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        done.set()
+        thread.join()
 
 
 def interruptions(model: Model | None = None) -> list[int]:

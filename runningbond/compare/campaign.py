@@ -53,14 +53,10 @@ def run_campaign(
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> Campaign:
-    """Run models on scenes.
+    """Run models, all of `MODELS` where none is named, on scenes by name.
 
     Parameters
     ----------
-    scenes
-        Scenes by name.
-    models
-        Models, or their names; all of `MODELS` where none is given.
     folder
         Where outcomes are kept, as ``folder/scene/model/``. A whole outcome computed from the same scene,
         tolerance and code is reused.
@@ -88,21 +84,20 @@ def run_campaign(
     tasks = [Task(name, scenes[name], model, tolerance) for model in reversed(chosen) for name in largest_first]
     campaign = Campaign()
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
             # `Interrupted` says what is left undone.
             warnings.filterwarnings("ignore", ".*tasks (have been|which were)", UserWarning, "joblib")
-            with closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
-                for answer in answers:
-                    cell, outcome = answer.cell, answer.outcome
-                    if outcome is None:
-                        campaign.inapplicable[cell] = answer.reason
-                    elif answer.reused:
-                        campaign.reused.add(cell)
-                    elif outcome.status != "failed":  # which is tried again the next time, perhaps by better code
-                        save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell[0]])
-                    if outcome is not None:
-                        campaign.outcomes[cell] = outcome
-                    progress(cell)
+            for answer in answers:
+                cell, outcome = answer.cell, answer.outcome
+                if outcome is None:
+                    campaign.inapplicable[cell] = answer.reason
+                elif answer.reused:
+                    campaign.reused.add(cell)
+                elif outcome.status != "failed":  # which is tried again the next time, perhaps by better code
+                    save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell[0]])
+                if outcome is not None:
+                    campaign.outcomes[cell] = outcome
+                progress(cell)
     except KeyboardInterrupt:
         raise Interrupted(campaign) from None
     except ClusterError as error:

@@ -15,8 +15,7 @@ from runningbond.scene import SceneError
 
 from .tasks import Answer, ClusterError, Task, side_by_side
 
-PATIENCE = 30
-"""Seconds in which a scheduler must answer and have a worker."""
+PATIENCE = 30  # seconds in which a scheduler must answer and have a worker
 
 
 class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -19,26 +18,15 @@ from .published import BARALDI, CONCENTRATED, FERRIS, PublishedCase, cases_of
 from .table import Comparison, csv_lines
 
 FRICTION = 0.6
-TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))
-"""Block width to height b/a of the paper's four textures, and what to call it."""
+TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # what to call b/a, block width to height, and b/a
 SLENDERNESS = (("0.5", 0.5), ("1", 1.0), ("2", 2.0))
 COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
 PRINTED = {"FEM/DEM": "P", "DEM": "X", "HOMO": "d"}
-
-MULTIPLIERS = (0, 0.66)
-"""Range of the axis of λ of the twelve panels."""
+MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
 
 
 def figure_6_data(points: int = 120) -> tuple[Array, Array]:
-    """Multiplier of the homogenised panel against its slenderness.
-
-    Returns
-    -------
-    slenderness : (points,) float
-        H / L from 0 to 3, without 0.
-    multiplier : (points, 4) float
-        λ of each of `TEXTURES`.
-    """
+    """Slenderness H / L from 0, without it, to 3, ``(n,)``, and λ of the homogenised panel by texture, ``(n, 4)``."""
     slenderness = np.linspace(0, 3, points + 1)[1:]
     slopes = [crack_slope(ratio, 1.0, FRICTION) for _, ratio in TEXTURES]
     return slenderness, np.array([[lateral_multiplier(float(r), x, FRICTION) for x in slopes] for r in slenderness])
@@ -50,10 +38,10 @@ def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
     present = [any(comparison.outcome(case.name, x) for x in comparison.models) for case in cases_of(BARALDI)]
     if any(present):
         slenderness, multiplier = figure_6_data()
-        rows = [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True)]
+        rows = [["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]]
+        rows += [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True)]
         written.append(folder / "figure-6.csv")
-        heads = ["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]
-        write_atomically(written[0], csv_lines([heads, *rows]).encode())
+        write_atomically(written[0], csv_lines(rows).encode())
         charts["figure-6"] = _figure_6(comparison, slenderness, multiplier)
     if all(present):
         charts["table-2"] = table_2(comparison)
@@ -77,8 +65,7 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
         for i, case in enumerate(cases_of(BARALDI)):
             outcome = comparison.outcome(case.name, model)
             if outcome is not None and outcome.multiplier is not None:
-                place = SLENDERNESS[i // 4][1], outcome.multiplier
-                axes.plot(*place, model.marker, mfc="none", color=COLOURS[i % 4])
+                axes.plot(SLENDERNESS[i // 4][1], outcome.multiplier, model.marker, mfc="none", color=COLOURS[i % 4])
         axes.plot([], [], model.marker, mfc="none", color="0.3", label=model.title)
     axes.axhline(FRICTION, color="0.6", lw=0.8, ls="--")
     axes.annotate("sliding, tan φ", (2.98, FRICTION), ha="right", va="bottom", color="0.4", fontsize=9)
@@ -100,8 +87,7 @@ def table_2(comparison: Comparison) -> Figure:
             for (label, marker), shift in zip(PRINTED.items(), (-0.3, -0.2, -0.1), strict=True):
                 axes.plot(k + shift, case.printed[label], marker, color="0.62", ms=5, ls="none")
             for model, shift in zip(comparison.models, shifts, strict=True):
-                outcome = comparison.outcome(case.name, model)
-                if outcome is not None:
+                if (outcome := comparison.outcome(case.name, model)) is not None:
                     _mark(axes, k + float(shift), model, outcome)
                     hollow |= outcome.multiplier is None
         axes.set_xticks(range(4), [label for label, _ in TEXTURES])
@@ -111,17 +97,17 @@ def table_2(comparison: Comparison) -> Figure:
     if hollow:
         label = "hollow: a bound only, or none (at 0)"
         handles.append(Line2D([], [], color="0.3", marker="o", mfc="white", ms=5, mew=1, ls="none", label=label))
-    legend_below(figure, handles, columns=5)
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     return figure
 
 
 def _mark(axes: Axes, x: float, model: Model, outcome: Outcome) -> None:
     """A bar for the bracket and a mark on it; a hollow one, on a thin bar, where no collapse load was found."""
     loads = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
-    hollow = outcome.multiplier is None
-    axes.plot([x, x], [loads[0], loads[-1]], color=model.colour, lw=0.8 if hollow else 2.5, solid_capstyle="butt")
-    place = loads[-1] if outcome.multiplier is None else outcome.multiplier
-    face, edge = ("white", 1.0) if hollow else (model.colour, 1.5)
+    place, width, face, edge = outcome.multiplier, 2.5, model.colour, 1.5
+    if place is None:
+        place, width, face, edge = loads[-1], 0.8, "white", 1.0
+    axes.plot([x, x], [loads[0], loads[-1]], color=model.colour, lw=width, solid_capstyle="butt")
     axes.plot(x, place, model.marker, color=model.colour, mfc=face, ms=5, mew=edge, ls="none", clip_on=False)
 
 
@@ -152,8 +138,13 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
         if not panels:
             axes.set_ylim(0, None)
             bare(axes)
-    names = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
-    _legend(figure, names if source == FERRIS else [f"b/a = {label}" for label, _ in TEXTURES], [*estimates, *models])
+    walls = [f"b/a = {label}" for label, _ in TEXTURES]
+    if source == FERRIS:
+        walls = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
+    handles = [Line2D([], [], color=colour, label=wall) for wall, colour in zip(walls, COLOURS, strict=False)]
+    widths = [(model, 0.8 if model.kind == "estimate" else 1.4) for model in (*estimates, *models)]
+    handles += [Line2D([], [], color="0.3", ls=model.line, lw=width, label=model.name) for model, width in widths]
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return figure
 
 
@@ -161,16 +152,6 @@ def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:
     """Pushover curve of a wall by a model, ``(n, 2)``; empty where there is none."""
     outcome = comparison.outcome(case.name, model)
     return np.zeros((0, 2)) if outcome is None else outcome.curve
-
-
-def _legend(figure: Figure, walls: Sequence[str], models: Sequence[Model]) -> None:
-    """What colours stand for, walls, and what lines stand for, models."""
-    colours = [Line2D([], [], color=colour, label=wall) for wall, colour in zip(walls, COLOURS, strict=False)]
-    lines = [
-        Line2D([], [], color="0.3", ls=model.line, lw=0.8 if model.kind == "estimate" else 1.4, label=model.name)
-        for model in models
-    ]
-    legend_below(figure, [*colours, *lines])
 
 
 def panel_figure(
@@ -181,16 +162,10 @@ def panel_figure(
     columns = []
     for column, (label, _) in enumerate(SLENDERNESS):
         axes = figure.add_subplot(1, 3, column + 1)
-        axes.set(title=f"H/L = {label}", xlabel=xlabel, xlim=xlim, ylim=MULTIPLIERS)
-        axes.set_ylabel(ylabel if column == 0 else "")
+        axes.set(title=f"H/L = {label}", xlabel=xlabel, ylabel="" if column else ylabel, xlim=xlim, ylim=MULTIPLIERS)
         bare(axes)
         columns.append((axes, panels[4 * column : 4 * column + 4]))
     return figure, columns
-
-
-def legend_below(figure: Figure, handles: Sequence[Artist], columns: int = 4) -> None:
-    """A legend under all axes."""
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=9)
 
 
 def bare(axes: Axes) -> None:

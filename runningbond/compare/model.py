@@ -45,6 +45,16 @@ class Recorder(Protocol):
         """End, once the outcome is there."""
 
 
+class Progress(Protocol):
+    """Observes a run of its model, as a `Recorder` does, and says how far it has come."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> None:
+        """Look at a state, as the model shows it."""
+
+    def line(self) -> str:
+        """How far it has come, in a line; asked for at any time, from another thread."""
+
+
 @dataclass(frozen=True, eq=False)
 class Model:
     """A model: how a scene becomes an outcome, and what others need to know of that.
@@ -62,6 +72,7 @@ class Model:
     kind: Kind = "estimate"  # what its multiplier is worth
     parameters: tuple[str, ...] = ()  # names of its own settings
     observer: Callable[[Scene, Path | None], Recorder] | None = None  # records a run in a folder, or in memory
+    progress: Callable[[], Progress] | None = None  # says how far a run has come
     interruptible: bool = False  # whether it ends with what it has found so far on KeyboardInterrupt
     cost: Cost | None = None  # `advise` runs no model without
     takes: frozenset[str] = frozenset()  # what it can do of `Scene.extras`; scenes with others it refuses by name

@@ -17,33 +17,26 @@ from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.pictures.pyvista_figure import draw_painted
 from runningbond.pictures.pyvista_painter import Painter
 from runningbond.results import Outcome, write_atomically
-from runningbond.scene import Scene
 
 from .figures import SLENDERNESS, TEXTURES
 from .model import Model
 from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
 from .table import Comparison
 
-WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250
-"""Width of a plate, that of a page, and the least; its largest height [in]; and dots per inch."""
-
-TITLES, LINE, LETTER, GAP = 0.85, 0.11, 0.06, 0.1
-"""Height of its titles and its key, and of a line under a wall; width of a letter and of a gap between walls [in]."""
-
-PIXELS = 640
-"""Longer side of the image of one wall."""
-
-OWN_WALLS = 12
-"""Largest number of walls on the plate of one's own."""
+WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
+TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
+LETTER, GAP = 0.06, 0.1  # width of a letter, and of a gap between walls [in]
+PIXELS = 640  # longer side of the image of one wall
+OWN_WALLS = 12  # largest number of walls on the plate of one's own
 
 
 @dataclass(frozen=True)
 class Plate:
-    """Walls whose mechanisms stand side by side: the name of the file, a title, and what each wall is called."""
+    """Walls whose mechanisms stand side by side."""
 
-    name: str
+    name: str  # of the file
     title: str
-    walls: dict[str, str]
+    walls: dict[str, str]  # and what each is called
 
 
 def plates(comparison: Comparison) -> list[Plate]:
@@ -52,22 +45,14 @@ def plates(comparison: Comparison) -> list[Plate]:
     panels, loaded, ferris = ([case.name for case in cases_of(x)] for x in (BARALDI, CONCENTRATED, FERRIS))
     lateral, concentrated = "Mechanisms under self-weight and lateral load", "Mechanisms under a concentrated load"
     own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
-    paper = [
-        *(
-            Plate(
-                f"figure-{8 + k}",
-                f"{lateral}, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})",
-                dict(zip(panels[4 * k : 4 * k + 4], textures, strict=True)),
-            )
-            for k, (label, _) in enumerate(SLENDERNESS)
-        ),
-        Plate("figure-12", f"{concentrated} (cf. Baraldi et al., Fig. 12)", dict(zip(loaded, textures, strict=True))),
-        Plate(
-            "mechanisms-ferris",
-            "Mechanisms of Ferris & Tin-Loi's walls",
-            {name: name.removeprefix("wall-").upper() for name in ferris},
-        ),
-    ]
+    paper = []
+    for k, (label, _) in enumerate(SLENDERNESS):
+        title = f"{lateral}, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})"
+        paper.append(Plate(f"figure-{8 + k}", title, dict(zip(panels[4 * k : 4 * k + 4], textures, strict=True))))
+    title = f"{concentrated} (cf. Baraldi et al., Fig. 12)"
+    paper.append(Plate("figure-12", title, dict(zip(loaded, textures, strict=True))))
+    names = {name: name.removeprefix("wall-").upper() for name in ferris}
+    paper.append(Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", names))
     present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in paper]
     present.append(Plate("mechanisms", "Mechanisms", {name: name for name in own}))
     return [plate for plate in present if _models(comparison, plate)]
@@ -107,7 +92,7 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     for line, (shapes, captions, extent), label in zip(grid, rows, labels, strict=True):
         _write(line[0], -0.04, 0.5, "\n".join(label), ha="right", va="center", fontsize=7.5)
         for axes, shape, caption in zip(line, shapes, captions, strict=True):
-            draw_painted(axes, shape, painter, extent, annotated=False)
+            draw_painted(axes, shape, painter, extent)
             _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
     handles = colour_key((JointState.SLIDE, JointState.OPEN))
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
@@ -122,15 +107,14 @@ def _write(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
 def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> tuple[list[DeformedShape], list[str], Extent]:
     """One wall by all models: what is drawn, its captions, and an extent that shows all of it."""
     scene = comparison.scenes[name]
+
+    def caption(outcome: Outcome) -> str:  # the load, its bracket, and what is wrong with the mechanism, if anything
+        lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 26)]
+        return "\n".join(filter(None, lines))
+
     outcomes = [comparison.outcome(name, model) for model in models]
     mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
     shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
     lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
-    captions = [comparison.cell(name, model, lambda outcome: _caption(scene, outcome)) for model in models]
+    captions = [comparison.cell(name, model, caption) for model in models]
     return shapes, captions, (min(lefts), max(rights), min(bottoms), max(tops))
-
-
-def _caption(scene: Scene, outcome: Outcome) -> str:
-    """The load, its bracket, and what is wrong with the mechanism where something is."""
-    lines = [*multiplier_text(scene, outcome), *textwrap.wrap(mechanism_warning(scene, outcome), 26)]
-    return "\n".join(filter(None, lines))

@@ -26,13 +26,11 @@ class PublishedCase:
         return FOLDER / f"{self.name}.toml"
 
 
-TABLE_2 = {
+TABLE_2 = {  # multipliers of the twelve panels, as the paper prints them
     "FEM/DEM": (0.500, 0.410, 0.310, 0.310, 0.380, 0.320, 0.225, 0.140, 0.240, 0.220, 0.175, 0.130),
     "DEM": (0.570, 0.390, 0.260, 0.160, 0.390, 0.310, 0.230, 0.110, 0.330, 0.310, 0.200, 0.094),
     "HOMO": (0.537, 0.380, 0.269, 0.134, 0.537, 0.380, 0.269, 0.134, 0.372, 0.328, 0.267, 0.134),
 }
-"""Multipliers of the twelve panels, as the paper prints them."""
-
 PUBLISHED: tuple[PublishedCase, ...] = (
     *(PublishedCase(f"panel-{k + 1:02d}", BARALDI, {x: TABLE_2[x][k] for x in TABLE_2}) for k in range(12)),
     *(PublishedCase(f"point-load-{texture}", CONCENTRATED) for texture in ("4", "2", "1", "quarter")),
@@ -63,10 +61,8 @@ def find_scene(scene: str) -> Path:
     path = Path(scene)
     if path.is_file():
         return path
-    for case in PUBLISHED:
-        if scene == case.name:
-            return case.path
-    names = f"{PUBLISHED[0].name} … {PUBLISHED[-1].name}"
+    if scene in (names := [case.name for case in PUBLISHED]):
+        return PUBLISHED[names.index(scene)].path
     if path.exists():
         raise SceneError(scene, f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
-    raise SceneError(scene, f"there is no such file, nor a published scene of that name ({names})")
+    raise SceneError(scene, f"there is no such file, nor a published scene of that name ({names[0]} … {names[-1]})")

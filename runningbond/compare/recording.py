@@ -5,13 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from dem.pushover import StaticState
+from dem.pushover import LoadPath, StaticState
 from dem.rigid_system import contact_points
-from dem.static_system import StaticSystem
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
-from runningbond.limit.kinematics import movable_freedoms
 from runningbond.pictures.deformed_shape import wall_size
 from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.joint_state import states_under_load
@@ -78,16 +76,15 @@ class StaticRecorder(SeriesRecorder):
     def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(Discretisation.of_rigid_blocks(scene), folder)
 
-    def __call__(self, system: StaticSystem, state: StaticState) -> None:
+    def __call__(self, path: LoadPath, state: StaticState) -> None:
         """Write a state."""
-        scene, points, equations = self.discretisation.scene, self.discretisation.points, system.equilibrium
-        motion = np.zeros(3 * len(scene.blocks))
-        motion[movable_freedoms(scene)] = state.x[: system.freedoms] * equations.scale * system.length_unit
-        opening, slip = rigid_jumps(scene.blocks, points, motion.reshape(-1, 3))
+        scene, points, system = self.discretisation.scene, self.discretisation.points, path.system
+        equations, motion = system.equilibrium, system.motion(state.x)
+        opening, slip = rigid_jumps(scene.blocks, points, motion)
         normal, tangential = (equations.force_unit * state.force / points.area[:, None]).T
         kinds = states_under_load(scene, points, opening, normal, tangential, np.zeros(len(points)))
         load = equations.live_unit * state.multiplier
-        self.keep(Frame(load, motion.reshape(-1, 3), opening, slip, normal, tangential, kinds))
+        self.keep(Frame(load, motion, opening, slip, normal, tangential, kinds))
 
 
 class MotionRecorder(SeriesRecorder):

@@ -23,10 +23,29 @@ th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid #dd
 th { border-bottom: 2px solid #888; }
 figure { margin: 1.5rem 0; } img { max-width: 100%; height: auto; } figcaption { color: #555; font-size: 0.85rem; }
 """
+HEAD = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<link rel="icon" href="data:,">
+<title>runningbond: {subject}</title>
+<style>{style}</style>
+</head>
+<body>
+"""
 
 
 def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: float, why_no_plates: str = "") -> str:
     """Write the page, with the PNG files of charts and plates in their order, or why there are no plates."""
+    versions = [
+        ("models", ", ".join(comparison.names)),
+        ("tolerance", f"{tolerance:g}"),
+        ("written", datetime.now(UTC).isoformat(timespec="seconds")),
+        ("runningbond", f"{version('runningbond')}, sources {code_digest()[:16]}"),
+        ("Python", f"{platform.python_version()} on {platform.system()} {platform.machine()}"),
+        *((name, version(name)) for name in (*LIBRARIES, *DRAWN_WITH)),
+    ]
     parts = [
         "<h1>Masonry walls from their description to their collapse</h1>",
         f"<p>{len(comparison.campaign)} cases: {len(comparison.scenes)} walls by {len(comparison.models)} models.</p>",
@@ -38,35 +57,14 @@ def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: flo
         "<h2>Cost</h2>",
         *map(table_html, cost_sheets(comparison)),
         "<h2>What was run</h2>",
-        table_html(_provenance(comparison, tolerance)),
+        table_html(Sheet("Versions", ("what", "which"), versions)),
     ]
     return page_html("comparison", parts)
 
 
 def page_html(subject: str, parts: Sequence[str]) -> str:
     """One page of parts, which needs nothing from anywhere."""
-    return "\n".join(
-        [
-            '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">',
-            '<meta name="viewport" content="width=device-width, initial-scale=1">',
-            '<link rel="icon" href="data:,">',
-            f"<title>runningbond: {subject}</title>\n<style>{STYLE}</style>\n</head>\n<body>",
-            *parts,
-            "</body>\n</html>\n",
-        ]
-    )
-
-
-def _provenance(comparison: Comparison, tolerance: float) -> Sheet:
-    rows = [
-        ("models", ", ".join(comparison.names)),
-        ("tolerance", f"{tolerance:g}"),
-        ("written", datetime.now(UTC).isoformat(timespec="seconds")),
-        ("runningbond", f"{version('runningbond')}, sources {code_digest()[:16]}"),
-        ("Python", f"{platform.python_version()} on {platform.system()} {platform.machine()}"),
-        *((name, version(name)) for name in (*LIBRARIES, *DRAWN_WITH)),
-    ]
-    return Sheet("Versions", ("what", "which"), rows)
+    return HEAD.format(subject=subject, style=STYLE) + "\n".join([*parts, "</body>\n</html>\n"])
 
 
 def table_html(sheet: Sheet, wrapped: bool = False) -> str:

@@ -16,12 +16,10 @@ from runningbond.scene import Scene
 from .campaign import Campaign
 from .model import Model
 from .published import BARALDI, PublishedCase
-from .tasks import Cell
 
 OWN = "Your scenes"
 CORRECTED = "HOMO corrected, tan 30°"
-ALIKE = 1e-3
-"""Relative width below which a bracket is printed as one number."""
+ALIKE = 1e-3  # relative width below which a bracket is printed as one number
 
 
 @dataclass(frozen=True)
@@ -34,12 +32,9 @@ class Sheet:
 
     def markdown(self) -> str:
         """The table in Markdown, under its title."""
-        lines = [f"### {self.title}", "", _line(self.heads), _line(["---"] * len(self.heads))]
-        return "\n".join([*lines, *map(_line, self.rows), ""])
-
-
-def _line(cells: Sequence[str]) -> str:
-    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+        rows = (self.heads, ["---"] * len(self.heads), *self.rows)
+        lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+        return "\n".join([f"### {self.title}", "", *lines, ""])
 
 
 @dataclass(frozen=True)
@@ -70,18 +65,15 @@ class Comparison:
 
     def cell(self, name: str, model: Model, text: Callable[[Outcome], str]) -> str:
         """A cell of a table: the text of an outcome, or why there is none."""
-        outcome = self.outcome(name, model)
-        if outcome is not None:
+        if (outcome := self.outcome(name, model)) is not None:
             return text(outcome)
         return "n/a" if (name, model.name) in self.campaign.inapplicable else "not run"
 
     def printed(self, name: str) -> dict[str, float]:
         """Values printed for a scene, and the homogenised one as its formula should read."""
-        case = self.published.get(name)
-        if case is None:
+        if (case := self.published.get(name)) is None:
             return {}
-        corrected = {CORRECTED: corrected_homo(self.scenes[name])} if case.source == BARALDI else {}
-        return {**case.printed, **corrected}
+        return case.printed | ({CORRECTED: corrected_homo(self.scenes[name])} if case.source == BARALDI else {})
 
     def labels(self, names: Iterable[str]) -> list[str]:
         """What the values printed for some scenes are called."""
@@ -96,26 +88,22 @@ class Comparison:
 
 def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
     """Printed values and brackets, one table a group of scenes."""
-    return [
-        _sheet(
-            comparison,
-            title,
-            ["title", *(x if x == CORRECTED else f"printed {x}" for x in comparison.labels(names))],
-            {name: [comparison.scenes[name].title, *_printed(comparison, name, names)] for name in names},
-            answer,
-        )
-        for title, names in comparison.groups().items()
-    ]
+    sheets = []
+    for title, names in comparison.groups().items():
+        heads = ["title", *(x if x == CORRECTED else f"printed {x}" for x in comparison.labels(names))]
+        cells = {name: [comparison.scenes[name].title, *_printed(comparison, name, names)] for name in names}
+        sheets.append(_sheet(comparison, title, heads, cells, answer))
+    return sheets
 
 
 def cost_sheets(comparison: Comparison) -> list[Sheet]:
     """Degrees of freedom, steps and seconds, one table a group of scenes."""
-    blocks = {name: [str(int(scene.wall.sum()))] for name, scene in comparison.scenes.items()}
-    what = "degrees of freedom / steps / seconds"
-    return [
-        _sheet(comparison, f"{title}: {what}", ["blocks"], {name: blocks[name] for name in names}, _cost)
-        for title, names in comparison.groups().items()
-    ]
+    sheets = []
+    for title, names in comparison.groups().items():
+        cells = {name: [str(int(comparison.scenes[name].wall.sum()))] for name in names}
+        title += ": degrees of freedom / steps / seconds"
+        sheets.append(_sheet(comparison, title, ["blocks"], cells, _cost))
+    return sheets
 
 
 def _sheet(
@@ -136,7 +124,11 @@ def csv_text(comparison: Comparison) -> str:
     for source, names in comparison.groups().items():
         for name, model in product(names, comparison.models):
             scene, printed, outcome = comparison.scenes[name], comparison.printed(name), comparison.outcome(name, model)
-            values = outcome.summary() if outcome else _no_outcome(comparison.campaign, (name, model.name))
+            values: Mapping[str, object] = {"status": "not run"}
+            if outcome is not None:
+                values = outcome.summary()
+            elif (reason := comparison.campaign.inapplicable.get((name, model.name))) is not None:
+                values = {"status": "not applicable", "message": reason}
             own = [name, scene.title, source, int(scene.wall.sum()), model.name, "N" if is_force(scene) else "1"]
             rows.append([*own, *map(values.get, scalars), *map(printed.get, labels)])
     return csv_lines(rows)
@@ -147,11 +139,6 @@ def csv_lines(rows: Iterable[Sequence[object]]) -> str:
     buffer = io.StringIO()
     csv.writer(buffer, lineterminator="\n").writerows(rows)
     return buffer.getvalue()
-
-
-def _no_outcome(campaign: Campaign, cell: Cell) -> dict[str, str]:
-    reason = campaign.inapplicable.get(cell)
-    return {"status": "not run"} if reason is None else {"status": "not applicable", "message": reason}
 
 
 def corrected_homo(scene: Scene) -> float:
@@ -186,6 +173,5 @@ def bracket(outcome: Outcome) -> str:
 
 
 def _cost(outcome: Outcome) -> str:
-    dofs = "–" if outcome.dofs is None else str(outcome.dofs)
-    steps = "–" if outcome.steps is None else str(outcome.steps)
+    dofs, steps = ("–" if count is None else str(count) for count in (outcome.dofs, outcome.steps))
     return f"{dofs} / {steps} / {float(f'{outcome.seconds:.2g}'):g}"

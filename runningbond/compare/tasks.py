@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeAlias
 
 from joblib import Parallel, cpu_count, delayed, parallel_config
@@ -20,9 +21,7 @@ from .fingerprint import fingerprint
 from .model import Model
 from .models import run_model
 
-Cell: TypeAlias = tuple[str, str]
-"""Name of a scene and of a model."""
-
+Cell: TypeAlias = tuple[str, str]  # name of a scene and of a model
 _ONE_AT_A_TIME = threading.Lock()
 
 
@@ -60,14 +59,10 @@ class Task:
         return fingerprint(self.scene, self.model, self.tolerance)
 
     def run(self) -> Answer:
-        """Run the model.
-
-        A worker with several threads runs one task after the other: gmsh and the threads of linear algebra are there
-        once a process.
-        """
+        """Run the model."""
         key = self.key()
         try:
-            with _ONE_AT_A_TIME:
+            with _ONE_AT_A_TIME:  # also in a worker with threads: gmsh and those of linear algebra are there once
                 return Answer(self.cell, run_model(self.model, self.scene, self.tolerance), key=key)
         except SceneError as reason:
             return Answer(self.cell, None, str(reason), key)
@@ -112,30 +107,23 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
 @contextmanager
 def _processes(jobs: int) -> Iterator[None]:
     """Have joblib run tasks in processes of their own, or in this one where there is to be only one."""
-    if jobs == 1 or not _can_have_processes():
+    if jobs != 1:
+        try:
+            multiprocessing.Lock()
+        except OSError as error:  # some containers have no usable /dev/shm
+            warnings.warn(f"cases run one after another, for processes cannot share a lock: {error}", stacklevel=2)
+            jobs = 1
+    if jobs == 1:
         with parallel_config(backend="sequential"):
             yield
         return
     multiprocessing.resource_tracker.ensure_running()  # its start unblocks what `side_by_side` blocks
     # More processes than cores gain nothing but memory.
     n_jobs = cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count()))
-    with parallel_config(backend="loky", n_jobs=n_jobs, initializer=_leave_interrupts_to_the_parent), _quiet_kill():
+    # Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say.
+    ignore = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
+    with parallel_config(backend="loky", n_jobs=n_jobs, initializer=ignore), _quiet_kill():
         yield
-
-
-def _can_have_processes() -> bool:
-    """Whether this machine lets processes share a lock; some containers have no usable /dev/shm."""
-    try:
-        multiprocessing.Lock()
-    except OSError as error:
-        warnings.warn(f"cases run one after another, for processes cannot share a lock: {error}", stacklevel=2)
-        return False
-    return True
-
-
-def _leave_interrupts_to_the_parent() -> None:
-    """Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 @contextmanager

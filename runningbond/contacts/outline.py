@@ -40,9 +40,12 @@ class Outline:
         Raises
         ------
         SceneError
-            If the inset takes up a whole side.
+            If a block, or the ground, is not convex, or the inset takes up a whole side.
         """
         blocks = scene.blocks
+        if not blocks.convex.all():
+            name = blocks.name(int(np.argmin(blocks.convex)))
+            raise SceneError(name, "is not convex; finite displacements need convex blocks and a convex ground")
         start, after = blocks.vertices, blocks.successor
         side = start[after] - start
         length = np.hypot(*side.T)

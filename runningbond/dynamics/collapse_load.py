@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from runningbond.joints import stiffness_note
-from runningbond.results import Outcome, fastest_corner_by_one
+from runningbond.joints import JointPoints, stiffness_note
+from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
@@ -38,6 +39,7 @@ def collapse_by_steps(
     run: Run,
     tolerance: float,
     *,
+    points: JointPoints,
     point_order: Indices,
     is_self_locking: Callable[[], bool],
     note: str = "",
@@ -58,8 +60,10 @@ def collapse_by_steps(
         Its blocks in motion.
     tolerance
         Relative width of the bracket.
+    points
+        Joint points of the run.
     point_order : (np,) int
-        Joint points in the order in which the outcome lists their forces.
+        Those points in the order in which the outcome lists their forces.
     is_self_locking
         Whether joint forces balance any multiple of the live load; asked where no load brought the wall down.
     note
@@ -97,6 +101,8 @@ def collapse_by_steps(
             result = load_steps(run, first, tolerance, criteria, most=most, farthest=farthest, observe=observe)
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
+    if result.rests:
+        outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
     outcome = _judge(replace(outcome, steps=result.steps), scene, run, result, tolerance, point_order, is_self_locking)
     stiffness = _note_on_stiffness(scene, run, result, criteria)
     if outcome.status == "infeasible" and stiffness:
@@ -146,14 +152,14 @@ def _judge(
             return replace(outcome, status="infeasible", message="collapses under its dead load")
         why = "interrupted" if result.interrupted else "the budget ran out"
         return replace(outcome, message=f"{why} before the wall came to rest under its dead load")
-    curve, force = _curve(run, result), np.column_stack(run.forces(result.borne))[point_order]
+    outcome = replace(outcome, force=np.column_stack(run.forces(result.borne))[point_order])
     if result.interrupted:
         message = "interrupted: the bracket so far"
-        return replace(outcome, lower=result.lower, upper=result.upper, curve=curve, force=force, message=message)
+        return replace(outcome, lower=result.lower, upper=result.upper, message=message)
     if result.upper is None or result.lower is None or result.fallen is None:
         return _never_fallen(outcome, result, is_self_locking)
     motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(_fall(run, result, result.fallen)))
-    outcome = replace(outcome, lower=result.lower, upper=result.upper, curve=curve, motion=motion, force=force)
+    outcome = replace(outcome, lower=result.lower, upper=result.upper, motion=motion)
     lost = run.unaccounted(result.fallen)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -198,7 +204,21 @@ def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
 
 def _curve(run: Run, result: LoadSteps) -> Array:
     """Control displacement and multiplier of the states at rest, then of the fall."""
-    rows = [(run.system.control @ state.motion, multiplier) for multiplier, state in result.rests]
-    if result.fallen is not None and result.upper is not None:
-        rows.append((run.system.control @ result.fallen.motion, result.upper))
-    return np.array(rows)
+    return np.array([(run.system.control @ state.motion, multiplier) for multiplier, state in _states(result)])
+
+
+def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dict[str, Any]:
+    """Reactions and works of the same states."""
+    states = _states(result)
+    dead = np.array([run.system.dead @ state.motion for _, state in states])
+    works = np.column_stack([dead, [state.external for _, state in states] - dead])
+    forces = [np.column_stack(run.forces(state)) for _, state in states]
+    supports = Supports(scene, points, run.system.owner)
+    return supports.path(forces, [load for load, _ in states], works, falls=len(states) > len(result.rests))
+
+
+def _states(result: LoadSteps) -> list[tuple[float, State]]:
+    """Every state at rest, then the fall, each with its multiplier."""
+    if result.fallen is None or result.upper is None:
+        return result.rests
+    return [*result.rests, (result.upper, result.fallen)]

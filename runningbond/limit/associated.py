@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runningbond.joints import PointStrength
-from runningbond.results import Outcome, Status
+from runningbond.results import Outcome, Status, collapse_state
 from runningbond.scene import Array, Scene
 
 from .equilibrium import Equilibrium, equilibrium
@@ -225,6 +225,7 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
     lower, upper = min(static, kinematic), max(static, kinematic)
     if upper - lower > tolerance * max(upper, system.live_unit * ZERO):
         return replace(outcome, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
+    force = system.point_forces(forces.pressure, forces.tangential)
     return replace(
         outcome,
         status="collapse",
@@ -232,5 +233,6 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
         lower=lower,
         upper=upper,
         motion=system.motion(forces.motion),
-        force=system.point_forces(forces.pressure, forces.tangential),
+        force=force,
+        **collapse_state(system.scene, system.points, force, static),
     )

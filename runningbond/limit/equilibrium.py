@@ -93,7 +93,7 @@ def equilibrium(scene: Scene) -> Equilibrium:
     scale = np.column_stack([1 / share, 1 / share, 1 / (share * np.sqrt(area))]).ravel()
 
     dead, live = dead_load(scene)[free] * scale, live_load(scene)[free] * scale
-    live_size = float(np.abs(live).max())
+    live_size = float(np.abs(live).max()) or 1.0
     force_unit = float(np.abs(dead).max()) or strength.strongest or live_size
 
     def rows(operator: csr_array) -> csc_array:

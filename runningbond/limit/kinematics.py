@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Forces, Indices, Scene
+from runningbond.scene import Array, Forces, Indices, Pins, Scene
 
 
 def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
@@ -44,9 +44,9 @@ def jump_operator(points: JointPoints, centroid: Array) -> Jump:
     return Jump(along(points.normal), along(points.tangent))
 
 
-def pin_operator(scene: Scene) -> csr_array:
-    """Displacement of each pinned point along its direction, ``(n_pins, 3 nb)``."""
-    pins = scene.pins
+def pin_operator(scene: Scene, pins: Pins | None = None) -> csr_array:
+    """Held motion of each of a scene's pins, or of others, ``(n_pins, 3 nb)``."""
+    pins = scene.pins if pins is None else pins
     at_points = point_operator(pins.block, pins.point, pins.direction, scene.blocks.centroid)
     turn = coo_array((pins.turn, (np.arange(len(pins)), 3 * pins.block + 2)), shape=at_points.shape)
     return csr_array(at_points + turn)

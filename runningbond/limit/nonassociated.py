@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.results import Outcome
+from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene
 
 from .associated import LimitState, judge, limit_state, spends_cut_strength
@@ -197,6 +197,7 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         message = f"collapse is certified at {listed}, and nothing is proved in between or below"
     elif upper - lower > tolerance * upper:
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
+    force = cut.point_forces(lowest.least.pressure, lowest.least.tangential)
     return replace(
         outcome,
         status="collapse",
@@ -205,7 +206,8 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         upper=max(lower, upper),
         message=message,
         motion=cut.motion(lowest.motion),
-        force=cut.point_forces(lowest.least.pressure, lowest.least.tangential),
+        force=force,
+        **collapse_state(cut.scene, cut.points, force, lower),
     )
 
 

@@ -54,7 +54,10 @@ class Caption:
 
     @property
     def _key_height(self) -> float:
-        return KEY_LINE * math.ceil(len(self.key) / self.columns) + 0.04
+        labels = [handle.get_label() for handle in self.key]
+        n = math.ceil(len(labels) / self.columns)
+        lines = sum(1 + max(label.count("\n") for label in labels[k::n]) for k in range(n))
+        return float(KEY_LINE * lines + 0.04)
 
     def write(self, axes: "Axes") -> None:
         """Write the words above and below some axes."""
@@ -76,15 +79,15 @@ def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -
     axes.annotate(text, (0.5, level), (0.0, 72 * inches), ha="center", **place, **style)
 
 
-def figure_with_room(extent: Extent, caption: Caption) -> "tuple[Figure, Axes]":
-    """A figure of one drawing, with room for its caption."""
+def figure_with_room(extent: Extent, caption: Caption, enlarged: float = 1.0) -> "tuple[Figure, Axes]":
+    """A figure of one drawing, so many times as large as a journal's, with room for its caption."""
     from matplotlib.figure import Figure
 
     left, right, bottom, top = extent
     above, below = caption.room
-    height = min(WIDTH * (top - bottom) / (right - left), TALLEST)
+    height = enlarged * min(WIDTH * (top - bottom) / (right - left), TALLEST)
     total = height + above + below
-    figure = Figure(figsize=(WIDTH, total), dpi=DPI)
+    figure = Figure(figsize=(enlarged * WIDTH, total), dpi=DPI)
     return figure, figure.add_axes((0, below / total, 1, height / total))
 
 

@@ -1,6 +1,6 @@
 """The deformed shape of a wall, as polygons of its blocks and of its joints' gaps: what every picture is drawn from."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 import numpy as np
@@ -40,6 +40,8 @@ class DeformedShape:
         λ, and the factor of displacements in the drawing.
     colouring
         How blocks are coloured.
+    motion : (nb, 3) float
+        Motion of each block, of which that of supports is drawn; empty where these rest.
     """
 
     scene: Scene
@@ -54,6 +56,7 @@ class DeformedShape:
     multiplier: float
     scale: float
     colouring: Colouring = "displacement"
+    motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
 
     @classmethod
     def of_rigid_blocks(cls, scene: Scene, motion: Array, state: Indices, multiplier: float) -> "DeformedShape":
@@ -77,6 +80,7 @@ class DeformedShape:
             state,
             multiplier,
             visible_scale(scene, displacement),
+            motion=motion,
         )
 
     @property
@@ -104,6 +108,11 @@ class DeformedShape:
 
     def drawn_displacement(self, block: Indices, at: Array) -> Array:
         """How far a point ``(2,)`` [m] of some blocks ``(n,)`` is drawn to have moved, ``(2,)`` [m]."""
+        if not self.scene.wall[block].any() or (block < 0).any():  # a support, or an anchor in space
+            rests = len(self.motion) == 0 or len(block) == 0 or (block < 0).any()
+            return (
+                np.zeros(2) if rests else self.scale * carried(self.scene.blocks, block[:1], at[None], self.motion)[0]
+            )
         own = np.repeat(np.isin(self.block, block), np.diff(self.first))
         # The linear displacement that fits the corners best is exact where the block is rigid.
         place = np.column_stack([np.ones(own.sum()), self.points[own] - at])

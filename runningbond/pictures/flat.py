@@ -9,21 +9,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from runningbond.results import Outcome
-from runningbond.scene import Array, JointMaterial, Scene
+from runningbond.scene import Array, Scene
 
-from .annotations import annotate, annotated_extent
-from .captions import Caption, colour_key, figure_with_room, mechanism_caption, show_extent, wall_title
+from .annotations import Room, annotate, axes_size, metres_of_point, room_for
+from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mechanism_caption, show_extent
 from .deformed_shape import DeformedShape, outline, undeformed_shape
 from .joint_state import VISIBLE, JointState
+from .legend import block_colours, joint_colour, used_joint_materials, wall_caption
 from .mechanism import mechanism_shape
+from .numbers import block_numbers
 from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, tint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-MATERIAL_COLOURS = ("0.35", "#0072b2", "#cc79a7", "#e69f00", "#56b4e9")
-"""Joints by material; from the palette of Okabe and Ito (2008)."""
+SMALLEST_NUMBER, LARGEST_SHEET = 4.0, 5.0
+"""Least size of type of a block's number [pt], for which a figure is enlarged, but not by more than this."""
 
 THINNEST = 0.2
 """Least width of a line [pt]; what ought to be thinner is fainter instead."""
@@ -37,9 +39,12 @@ DASHES: dict[JointState, Any] = {
 HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DARK, "zorder": 5}
 
 
-def draw_wall(axes: "Axes", scene: Scene) -> None:
-    """Draw a wall before any analysis: blocks, joints by material, supports, and arrows of the live load."""
-    _draw(axes, *_wall(scene))
+def draw_wall(axes: "Axes", scene: Scene, *, numbers: bool = False) -> None:
+    """Draw a wall before any analysis: blocks and joints by material, supports, ties, and loads with their sizes.
+
+    With `numbers` each block has the number that ``assign`` knows it by.
+    """
+    _draw(axes, undeformed_shape(scene), wall_caption(scene), numbers=numbers)
 
 
 def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
@@ -50,43 +55,48 @@ def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     _draw(axes, *_mechanism(scene, outcome), is_mechanism=True)
 
 
-def figure_of(scene: Scene, outcome: Outcome | None = None) -> "Figure":
-    """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column."""
-    shape, caption = _wall(scene) if outcome is None else _mechanism(scene, outcome)
-    figure, axes = figure_with_room(annotated_extent(scene, shape.extent), caption)
-    _draw(axes, shape, caption, is_mechanism=outcome is not None)
+def figure_of(scene: Scene, outcome: Outcome | None = None, *, numbers: bool = False) -> "Figure":
+    """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column.
+
+    With numbers of blocks it is as much larger as these need to be read.
+    """
+    shape, caption = (undeformed_shape(scene), wall_caption(scene)) if outcome is None else _mechanism(scene, outcome)
+    room, enlarged = room_for([shape], shape.extent, (WIDTH, TALLEST), numbers=numbers), 1.0
+    if numbers:
+        smallest = min(one.label.size for one in block_numbers(scene, metres_of_point(room.extent, (WIDTH, TALLEST))))
+        enlarged = float(np.clip(SMALLEST_NUMBER / smallest, 1.0, LARGEST_SHEET))
+        room = room_for([shape], shape.extent, (enlarged * WIDTH, enlarged * TALLEST), numbers=numbers)
+    figure, axes = figure_with_room(room.extent, caption, enlarged)
+    _draw(axes, shape, caption, room, is_mechanism=outcome is not None, numbers=numbers)
     return figure
 
 
-def _draw(axes: "Axes", shape: DeformedShape, caption: Caption, *, is_mechanism: bool = False) -> None:
+def _draw(
+    axes: "Axes",
+    shape: DeformedShape,
+    caption: Caption,
+    room: Room | None = None,
+    *,
+    is_mechanism: bool = False,
+    numbers: bool = False,
+) -> None:
     scene = shape.scene
-    show_extent(axes, annotated_extent(scene, shape.extent))
+    room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers)
+    show_extent(axes, room.extent)
     width = _line_width(axes, scene)
     if is_mechanism:
         _draw_ghost(axes, scene, width)
-    _draw_blocks(axes, shape, 0.5 * width)
+    _draw_blocks(axes, shape, shape.block_colours() if is_mechanism else block_colours(scene), 0.5 * width)
     if is_mechanism:
         for state in shape.states:
             _draw_joints(axes, shape, state, width)
         axes.plot(*_hinges(shape).T, ms=2.2 * width, mew=0.4 * width, **HINGE)
     else:
-        for number, colour in _material_colours(scene):
-            _draw_lines(axes, scene.joints.ends[scene.material_of_joint == number], colour, 0.6 * width, "solid")
-    annotate(axes, shape)
+        for number in used_joint_materials(scene):
+            lines, colour = scene.joints.ends[scene.material_of_joint == number], joint_colour(number)
+            _draw_lines(axes, lines, colour, (1.0 if number else 0.6) * width, "solid")
+    annotate(axes, shape, room, numbers=numbers)
     caption.write(axes)
-
-
-def _wall(scene: Scene) -> tuple[DeformedShape, Caption]:
-    """What is drawn of a wall, and its caption."""
-    from matplotlib.lines import Line2D
-
-    materials = scene.joint_materials
-    key = [
-        Line2D([], [], color=colour, lw=1.2, label=_strength(materials[k])) for k, colour in _material_colours(scene)
-    ]
-    length, height = np.subtract(*scene.blocks.extent(scene.wall)[::-1])
-    size = f"{length:.4g} × {height:.4g} m, {scene.wall.sum()} blocks, {len(scene.joints)} joints"
-    return undeformed_shape(scene), Caption(wall_title(scene.title), "", [size], key, columns=1)
 
 
 def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption]:
@@ -100,15 +110,9 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption]:
     return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None)
 
 
-def _material_colours(scene: Scene) -> list[tuple[int, str]]:
-    """Number and colour of each joint material."""
-    return [(k, MATERIAL_COLOURS[k % len(MATERIAL_COLOURS)]) for k in range(len(scene.joint_materials))]
-
-
 def _line_width(axes: "Axes", scene: Scene) -> float:
     """Width of the lines of joints [pt]: a share of the smaller side of a block as it is drawn."""
-    (left, right), (bottom, top), box = axes.get_xlim(), axes.get_ylim(), axes.get_window_extent()
-    points = 72 / axes.figure.dpi * min(box.width / (right - left), box.height / (top - bottom))
+    points = 1 / metres_of_point((*axes.get_xlim(), *axes.get_ylim()), axes_size(axes))
     return float(min(0.14 * scene.block_size * points, 1.2))
 
 
@@ -122,11 +126,11 @@ def _draw_ghost(axes: "Axes", scene: Scene, width: float) -> None:
     axes.add_collection(rings, autolim=False)
 
 
-def _draw_blocks(axes: "Axes", shape: DeformedShape, width: float) -> None:
+def _draw_blocks(axes: "Axes", shape: DeformedShape, colours: Array, width: float) -> None:
     from matplotlib.collections import PolyCollection
 
     polygons = np.split(shape.placed, shape.first[1:-1])
-    blocks = PolyCollection(polygons, facecolors=shape.block_colours(), edgecolors=[EDGE], lw=width, zorder=2)
+    blocks = PolyCollection(polygons, facecolors=colours, edgecolors=[EDGE], lw=width, zorder=2)
     axes.add_collection(blocks, autolim=False)
 
 
@@ -159,10 +163,3 @@ def _hinges(shape: DeformedShape) -> Array:
     least = VISIBLE * shape.scale * float(np.hypot(*shape.displacement.T).max(initial=0.0))
     turns = (gaps.min(axis=1) < least) & (gaps.max(axis=1) > least)
     return np.asarray(faces[turns, gaps[turns].argmin(axis=1)])
-
-
-def _strength(material: JointMaterial) -> str:
-    """What a joint's material is called in a legend."""
-    cohesion = f", c = {material.cohesion / 1e6:.3g} MPa" if material.cohesion else ""
-    tension = f", fₜ = {material.tensile_strength / 1e6:.3g} MPa" if material.tensile_strength else ""
-    return f"joints: tan φ = {material.friction:.3g}{cohesion}{tension}"

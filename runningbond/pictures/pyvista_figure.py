@@ -1,15 +1,25 @@
 """Figures with a wall painted by PyVista: a mechanism, or one moment of a run."""
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
-from .annotations import annotate, annotated_extent
-from .captions import Caption, colour_key, figure_with_room, load_symbol, mechanism_caption, show_extent, wall_title
+from .annotations import Room, annotate, room_for
+from .captions import (
+    TALLEST,
+    WIDTH,
+    Caption,
+    colour_key,
+    figure_with_room,
+    load_symbol,
+    mechanism_caption,
+    show_extent,
+    wall_title,
+)
 from .deformed_shape import DeformedShape, Extent, undeformed_shape
-from .joint_state import JointState
 from .mechanism import mechanism_shape
 from .pyvista_painter import Painter, square_around
 from .style import Colouring
@@ -26,35 +36,40 @@ def mechanism_figure(
     mechanism = mechanism_shape(scene, outcome)
     shape = replace(mechanism or undeformed_shape(scene), colouring=colouring)
     caption = mechanism_caption(scene, outcome, colour_key(shape.states, colouring), drawn=mechanism is not None)
-    return _figure(shape, painter, caption, shape.extent)
+    return _figure(shape, painter, caption, shape)
 
 
 def frame_figure(
     shape: DeformedShape,
     outcome: Outcome,
     painter: Painter,
-    extent: Extent | None = None,
-    states: list[JointState] | None = None,
+    last: DeformedShape | None = None,
 ) -> "Figure":
-    """Figure of one moment of a run; with an extent and a key that are not its own, so that several make a film."""
+    """Figure of one moment of a run; with the extent and the key of the last, so that several make a film."""
+    last = last or shape
     load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
-    key = colour_key(shape.states if states is None else states, shape.colouring)
-    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), extent or shape.extent)
+    key = colour_key(last.states, shape.colouring)
+    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), last)
 
 
-def _figure(shape: DeformedShape, painter: Painter, caption: Caption, extent: Extent) -> "Figure":
-    figure, axes = figure_with_room(annotated_extent(shape.scene, extent), caption)
-    draw_painted(axes, shape, painter, extent)
+def _figure(shape: DeformedShape, painter: Painter, caption: Caption, last: DeformedShape) -> "Figure":
+    room = _room(last)
+    figure, axes = figure_with_room(room.extent, caption)
+    draw_painted(axes, shape, painter, last.extent)
+    show_extent(axes, room.extent)
+    annotate(axes, shape, room)
     caption.write(axes)
     return figure
 
 
-def draw_painted(
-    axes: "Axes", shape: DeformedShape, painter: Painter, extent: Extent, *, annotated: bool = True
-) -> None:
-    """Draw a painted wall into axes of its own, with or without its supports and loads around it."""
+@lru_cache(maxsize=1)
+def _room(last: DeformedShape) -> Room:
+    """Room for all frames of a film, from the wall at rest to the last one."""
+    return room_for([last, undeformed_shape(last.scene)], last.extent, (WIDTH, TALLEST))
+
+
+def draw_painted(axes: "Axes", shape: DeformedShape, painter: Painter, extent: Extent) -> None:
+    """Draw a painted wall into axes of its own, without its supports and loads."""
     axes.imshow(painter.paint(shape, extent), extent=square_around(extent), interpolation="antialiased", zorder=1)
-    show_extent(axes, annotated_extent(shape.scene, extent) if annotated else extent)
-    if annotated:
-        annotate(axes, shape)
+    show_extent(axes, extent)

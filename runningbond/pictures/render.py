@@ -63,7 +63,7 @@ def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list
         written.append(folder / "last-moment.png")
     if len(shapes) > 1:
         shapes = [replace(shape, scale=last.scale) for shape in shapes]
-        figures = (frame_figure(shape, outcome, painter, last.extent, last.states) for shape in shapes)
+        figures = (frame_figure(shape, outcome, painter, last) for shape in shapes)
         write_atomically(folder / "film.gif", _film(to_png(figure, FILM_DPI) for figure in figures))
         written.append(folder / "film.gif")
     return written

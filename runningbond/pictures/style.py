@@ -30,7 +30,28 @@ STATE_COLOURS: dict[JointState, str] = {
 STATE_NAMES = {JointState.SLIDE: "slides", JointState.OPEN: "opens", JointState.DEBONDED: "debonded"}
 
 DARK = "0.25"
-"""Colour of annotations and notes."""
+"""Colour of annotations, live loads and notes."""
+
+DEAD, MOTION = "#0064a8", "#7b3294"
+"""Colours of dead loads, and of what is moved by a given displacement."""
+
+BEAM: Colour = (0.55, 0.56, 0.58)
+BLOCK_COLOURS: tuple[Colour, ...] = (
+    AT_REST,
+    (0.90, 0.79, 0.62),
+    (0.76, 0.85, 0.90),
+    (0.93, 0.75, 0.72),
+    (0.79, 0.87, 0.72),
+    (0.84, 0.77, 0.89),
+    (0.97, 0.91, 0.62),
+)
+"""Colours of the beam, and of blocks by material."""
+
+JOINT_COLOURS = ("0.35", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
+"""Joints by material; from the palette of Okabe and Ito (2008)."""
+
+UNIT = 8.0
+"""Length in which arrows and supports are measured [pt]."""
 
 TYPE, SMALL_TYPE = 7.5, 6.5
 """Sizes of type [pt]: titles and annotations, notes and keys."""

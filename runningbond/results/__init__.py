@@ -5,6 +5,7 @@ Files for ParaView and pictures are made by modules of their own, imported by na
 
 from .mechanism import MechanismCheck, check_mechanism, fastest_corner_by_one
 from .outcome import Outcome, Status
+from .reactions import Supports, collapse_state
 from .store import StoreError, load_outcome, load_scene, make_folder, save_outcome, write_atomically
 
 __all__ = [
@@ -12,7 +13,9 @@ __all__ = [
     "Outcome",
     "Status",
     "StoreError",
+    "Supports",
     "check_mechanism",
+    "collapse_state",
     "fastest_corner_by_one",
     "load_outcome",
     "load_scene",

@@ -42,6 +42,12 @@ class Outcome:
         Pushover curve: displacement of the control point along the live load [m], and λ. Empty for models
         that follow no path. The control point is where a point load acts, or the wall's highest corner that
         lies farthest along a lateral load.
+    path : (n, k) float
+        What else is known of the states of `curve`, in columns that `path_columns` name with their units: reactions
+        of all supports (`Supports`), the works of the dead and of the live load since the wall was built, and whether
+        it rests (1) or falls (0). Without a curve one row at most, the collapse; not a number is what is not known.
+    path_columns
+        Names of the columns of `path`.
     """
 
     scene: str
@@ -57,10 +63,16 @@ class Outcome:
     motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
     force: Array = field(default_factory=lambda: np.zeros((0, 2)))
     curve: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    path: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    path_columns: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name, columns in ARRAYS.items():
             object.__setattr__(self, name, frozen(getattr(self, name)).reshape(-1, columns))
+        object.__setattr__(self, "path_columns", tuple(map(str, self.path_columns)))
+        object.__setattr__(self, "path", frozen(self.path).reshape(len(self.path), len(self.path_columns)))
+        if len(self.path) not in (0, len(self.curve) or 1):
+            raise ValueError(f"path has {len(self.path)} rows: must have as many as the curve, or none")
         if self.status not in STATUSES:
             raise ValueError(f"status = {self.status!r}: must be one of {', '.join(STATUSES)}")
         numbers = [x for x in (self.lower, self.multiplier, self.upper) if x is not None]
@@ -74,6 +86,12 @@ class Outcome:
     def summary(self) -> dict[str, Any]:
         """The scalars, in the order of the command line's contract."""
         return {key: getattr(self, key) for key in SCALARS}
+
+    def curve_columns(self, multiplier: str = "multiplier", displacement: str = "displacement") -> dict[str, Array]:
+        """Curve and path, column by column; without a curve the collapse, where something is known of it."""
+        collapse = [(np.nan, self.multiplier)] * len(self.path)
+        moved, load = (self.curve if len(self.curve) else np.array(collapse, dtype=float).reshape(-1, 2)).T
+        return {multiplier: load, displacement: moved, **dict(zip(self.path_columns, self.path.T, strict=True))}
 
 
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")

@@ -83,6 +83,8 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
     """
     buffer = io.BytesIO()
     columns: dict[str, NDArray[Any]] = {name: getattr(outcome, name) for name in ARRAYS}
+    if outcome.path_columns:
+        columns |= {"path": outcome.path, "path_columns": np.array(outcome.path_columns)}
     np.savez_compressed(buffer, allow_pickle=False, **columns, **(scene_to_arrays(scene) if scene else {}))
     content = buffer.getvalue()
     arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
@@ -105,7 +107,8 @@ def _seal(scalars: dict[str, object], content: bytes) -> str:
 def load_outcome(folder: Path) -> tuple[Outcome, str]:
     """Read an outcome and its key; a StoreError if there is none, or anything of it is missing, damaged or changed."""
     with _trusted(folder) as (record, stored):
-        arrays: dict[str, Any] = {name: stored[name] for name in ARRAYS}
+        path = ("path", "path_columns") if "path" in stored else ()
+        arrays: dict[str, Any] = {name: stored[name] for name in (*ARRAYS, *path)}
         scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}
         return Outcome(**scalars, **arrays), str(record["key"])
 

@@ -83,8 +83,8 @@ def _pair(key: str, value: Any, options: Sequence[str]) -> tuple[str, str]:
 
 def assign_blocks(
     blocks: Blocks, names: Sequence[str], layers: Sequence[str], given: Mapping[int, str], entries: Sequence[Assignment]
-) -> Indices:
-    """Material of each block of a wall, ``(nb,)``: its place among names.
+) -> tuple[Indices, dict[int, str]]:
+    """Material of each block of a wall, ``(nb,)``: its place among names; and what became of each entry.
 
     Parameters
     ----------
@@ -98,10 +98,10 @@ def assign_blocks(
     material = np.zeros(len(blocks), dtype=np.int64)
     for block, name in given.items():
         material[block] = names.index(name)
-    for entry in entries:
-        if not entry.of_joints:
-            material[_chosen_blocks(entry, blocks, layers)] = names.index(entry.material)
-    return material
+    chosen = {k: _chosen_blocks(one, blocks, layers) for k, one in enumerate(entries) if not one.of_joints}
+    for k, own in chosen.items():
+        material[own] = names.index(entries[k].material)
+    return material, _became(entries, chosen, "block")
 
 
 def _chosen_blocks(entry: Assignment, blocks: Blocks, layers: Sequence[str]) -> Mask:
@@ -126,8 +126,10 @@ def assign_joints(
     layers: Sequence[str],
     entries: Sequence[Assignment],
     beam: tuple[int, str] | None = None,
-) -> Indices:
-    """Material of each joint, ``(nj,)``: its place among names; that of potential cracks is not touched.
+) -> tuple[Indices, dict[int, str]]:
+    """Material of each joint, ``(nj,)``: its place among names; and what became of each entry.
+
+    That of potential cracks is not touched.
 
     Parameters
     ----------
@@ -139,10 +141,26 @@ def assign_joints(
     material = np.zeros(len(joints), dtype=np.int64)
     if beam:
         material[(joints.block == beam[0]).any(axis=1)] = names.index(beam[1])
-    for entry in entries:
-        if entry.of_joints:
-            material[_chosen_joints(entry, joints, material_names, layers)] = names.index(entry.material)
-    return np.where(joints.inner, names.index("inner_joint") if joints.inner.any() else 0, material)
+    chosen = {k: _chosen_joints(one, joints, material_names, layers) for k, one in enumerate(entries) if one.of_joints}
+    for k, own in chosen.items():
+        material[own] = names.index(entries[k].material)
+    cracks = names.index("inner_joint") if joints.inner.any() else 0
+    return np.where(joints.inner, cracks, material), _became(entries, chosen, "joint")
+
+
+def _became(entries: Sequence[Assignment], chosen: Mapping[int, Mask], what: str) -> dict[int, str]:
+    """What became of entries, by their numbers: later ones take over what they choose too."""
+    said, later = {}, np.zeros(len(next(iter(chosen.values()), [])), np.bool_)
+    for k in sorted(chosen, reverse=True):
+        n, kept = int(chosen[k].sum()), int((chosen[k] & ~later).sum())
+        later |= chosen[k]
+        text = f"{kept} {what}{'s' * (kept != 1)} of {entries[k].material}"
+        if kept == 0:
+            text = f"nothing is of {entries[k].material} by it: later entries choose all of its {n} {what}s"
+        elif kept < n:
+            text += f"; later entries choose {n - kept} more that it chose"
+        said[k] = f"{entries[k].key}: {text}"
+    return said
 
 
 def _chosen_joints(entry: Assignment, joints: Joints, material_names: Sequence[str], layers: Sequence[str]) -> Mask:

@@ -1,4 +1,4 @@
-"""Blocks: convex polygons in one ragged array, with their exact areas, centroids and inertias."""
+"""Blocks: simple polygons in one ragged array, with their exact areas, centroids and inertias."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from .arrays import Array, Indices, Mask, frozen
 from .errors import SceneError
@@ -19,7 +20,7 @@ On a brick of 240 × 60 mm it is 12 µm: wider than the rounding of a drawing, f
 
 @dataclass(frozen=True, eq=False)
 class Blocks:
-    """Convex polygons, counter-clockwise, stored one after another.
+    """Simple polygons, convex or not, counter-clockwise, stored one after another.
 
     Parameters
     ----------
@@ -109,31 +110,66 @@ class Blocks:
         low, high = (np.atleast_2d(corner[block]) for corner in self.boxes)
         return low.min(axis=0), high.max(axis=0)
 
+    @cached_property
+    def convex(self) -> Mask:
+        """Blocks whose corners all turn left, to within the contact tolerance, and once round, ``(nb,)``."""
+        turn, along, scale = self._turns
+        reflex = np.logical_or.reduceat(turn < -CONTACT_TOLERANCE * scale, self.first[:-1])
+        # A polygon that winds twice has only left turns, and yet crosses itself.
+        twice = np.add.reduceat(np.arctan2(turn, along), self.first[:-1]) > 3 * np.pi
+        return ~(reflex | twice)
+
+    @property
+    def _turns(self) -> tuple[Array, Array, Array]:
+        """Of each edge and the next, the cross product, the dot product and that of their lengths, ``(nv,)`` [m²]."""
+        here, there, _ = self._local
+        edge = there - here
+        after, length = edge[self.successor], np.hypot(*edge.T)
+        turn = edge[:, 0] * after[:, 1] - edge[:, 1] * after[:, 0]
+        return turn, (edge * after).sum(axis=1), length * length[self.successor]
+
+    def shapes(self, block: Indices) -> NDArray[np.object_]:
+        """Some blocks as polygons of shapely's, ``(n,)``."""
+        count = np.diff(self.first)[block]
+        start = np.cumsum(count) - count
+        vertex = np.repeat(self.first[block] - start, count) + np.arange(count.sum())
+        rings = shapely.linearrings(self.vertices[vertex], indices=np.repeat(np.arange(len(block)), count))
+        return np.asarray(shapely.polygons(rings))
+
+    @cached_property
+    def _bent(self) -> tuple[Indices, NDArray[np.object_]]:
+        """Blocks that are not convex, as numbers and as shapes."""
+        bent = np.flatnonzero(~self.convex)
+        shapes = self.shapes(bent)
+        shapely.prepare(shapes)
+        return bent, shapes
+
     def containing(self, point: Array) -> Indices:
         """Blocks that hold or touch a point ``(2,)`` [m], to within the contact tolerance."""
         start, edge = self.vertices, self.vertices[self.successor] - self.vertices
         reach = point - start
         depth = (edge[:, 0] * reach[:, 1] - edge[:, 1] * reach[:, 0]) / np.hypot(*edge.T)
-        return np.flatnonzero(np.minimum.reduceat(depth, self.first[:-1]) >= -self.tolerance)
+        holds = np.minimum.reduceat(depth, self.first[:-1]) >= -self.tolerance
+        bent, shapes = self._bent
+        holds[bent] = shapely.dwithin(shapes, shapely.Point(point), self.tolerance)
+        return np.flatnonzero(holds)
 
     def check(self) -> None:
-        """Refuse polygons that enclose nothing or are not convex, in a `SceneError` that names and places the first."""
-        here, there, _ = self._local
-        edge = there - here
-        turn = edge[:, 0] * edge[self.successor, 1] - edge[:, 1] * edge[self.successor, 0]
+        """Refuse polygons that enclose nothing or cross themselves, in a `SceneError` that names the first."""
+        edge = self._local[1] - self._local[0]
         length = np.hypot(*edge.T)
         with np.errstate(invalid="ignore"):
             thin = ~(self.area > 1e-9 * np.maximum.reduceat(length, self.first[:-1]) ** 2)
-        if thin.any():
-            fault = "encloses no area; its corners must run round it counter-clockwise"
-            raise SceneError(self.name(int(np.argmax(thin))), fault)
-        scale = length * length[self.successor]
-        reflex = np.logical_or.reduceat(turn < -CONTACT_TOLERANCE * scale, self.first[:-1])
-        # A polygon that winds twice has only left turns, and yet crosses itself.
-        angle = np.arctan2(turn, (edge * edge[self.successor]).sum(axis=1))
-        reflex |= np.add.reduceat(angle, self.first[:-1]) > 3 * np.pi
-        if reflex.any():
-            raise SceneError(self.name(int(np.argmax(reflex))), "is not convex; split it into convex blocks")
+        self._refuse(thin, "encloses no area; its corners must run round it counter-clockwise")
+        self._refuse(np.logical_or.reduceat(length == 0, self.first[:-1]), "has the same corner twice in a row")
+        bent, shapes = self._bent
+        crossing = np.zeros(len(self), dtype=np.bool_)
+        crossing[bent] = ~shapely.is_valid(shapes)
+        self._refuse(crossing, "crosses or touches itself; its sides may meet at its corners only")
+
+    def _refuse(self, faulty: Mask, fault: str) -> None:
+        if faulty.any():
+            raise SceneError(self.name(int(np.argmax(faulty))), fault)
 
     def name(self, block: int) -> str:
         """What a message calls a block: its number and its centre in metres."""

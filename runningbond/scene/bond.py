@@ -13,6 +13,9 @@ from .ranges import ABOVE_ZERO, one_of
 FirstCourse: TypeAlias = Literal["full", "half"]
 Ends: TypeAlias = Literal["flush", "toothed"]
 
+Rows: TypeAlias = list[tuple[Array, Array]]
+"""Left and right sides of the blocks of each course, bottom to top, in half blocks."""
+
 BLOCK_LIMIT = 1_000_000
 LATTICE_TOLERANCE = 1e-6
 """How far a length may be from a whole number of half blocks, in half blocks."""
@@ -28,6 +31,14 @@ class Bond:
     def __post_init__(self) -> None:
         for name in ("width", "height"):
             object.__setattr__(self, name, ABOVE_ZERO.take(f"wall.block_{name}", getattr(self, name)))
+
+    def courses_in(self, height: float) -> int:
+        """Number of courses in a height [m], which is refused unless it is a whole one."""
+        return _whole_number(height / self.height, "wall.height", height, f"courses of {self.height:g}")
+
+    def levels(self, n_courses: int) -> Array:
+        """Levels of the bed joints of some courses, the bottom and the top ``(n_courses + 1,)`` [m]."""
+        return np.asarray(self.height * np.arange(n_courses + 1))
 
 
 def running_bond(
@@ -50,10 +61,17 @@ def running_bond(
     list of (4, 2) float
         Rectangles [m], counter-clockwise, with the panel's lower left corner at the origin.
     """
+    rows = bonded_rows(bond.width, length, bond.courses_in(height), first_course, ends)
+    return rectangles(rows, bond.width, bond.levels(len(rows)))
+
+
+def bonded_rows(
+    width: float, length: float, n_courses: int, first_course: FirstCourse = "full", ends: Ends = "flush"
+) -> Rows:
+    """Blocks of a running-bond panel's courses, from their nominal width [m]; see `running_bond`."""
     one_of("wall.first_course", first_course, get_args(FirstCourse))
     one_of("wall.ends", ends, get_args(Ends))
-    n_half = _whole_number(length / (bond.width / 2), "wall.length", length, f"half blocks of {bond.width / 2:g}")
-    n_courses = _whole_number(height / bond.height, "wall.height", height, f"courses of {bond.height:g}")
+    n_half = _whole_number(length / (width / 2), "wall.length", length, f"half blocks of {width / 2:g}")
     if n_half * n_courses / 2 > BLOCK_LIMIT:
         raise SceneError("wall.length", f"gives more than {BLOCK_LIMIT} blocks; make the wall smaller", length)
     if ends == "toothed" and (n_half % 2 or n_half < 4):
@@ -64,8 +82,8 @@ def running_bond(
         cuts = np.arange(1 if starts_half else 0, n_half + 1, 2, dtype=np.float64)
         if ends == "flush":
             cuts = np.unique(np.concatenate([[0.0], cuts, [n_half]]))
-        courses.append((course, cuts[:-1], cuts[1:]))
-    return _rectangles(courses, bond)
+        courses.append((cuts[:-1], cuts[1:]))
+    return courses
 
 
 def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array]:
@@ -82,6 +100,11 @@ def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array
     list of (4, 2) float
         Rectangles [m], counter-clockwise, course by course, left to right.
     """
+    return rectangles(pattern_rows(courses), bond.width, bond.levels(len(courses)))
+
+
+def pattern_rows(courses: Sequence[Sequence[float]]) -> Rows:
+    """Blocks of a wall's courses, from their widths in blocks; see `course_pattern`."""
     if sum(len(course) for course in courses) > BLOCK_LIMIT:
         raise SceneError("wall.courses", f"has more than {BLOCK_LIMIT} blocks; make the wall smaller")
     if not courses:
@@ -108,17 +131,15 @@ def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array
                 float(width[i]),
             )
         solid = width > 0
-        rows.append((course, cuts[:-1][solid], cuts[1:][solid]))
-    return _rectangles(rows, bond)
+        rows.append((cuts[:-1][solid], cuts[1:][solid]))
+    return rows
 
 
-def _rectangles(courses: Sequence[tuple[int, Array, Array]], bond: Bond) -> list[Array]:
-    """Rectangles from course numbers and left and right sides in half blocks."""
-    half = bond.width / 2
+def rectangles(rows: Rows, width: float, levels: Array) -> list[Array]:
+    """Blocks ``(4, 2)`` [m] of courses between levels ``(n + 1,)`` [m], on the lattice of half a width [m]."""
     blocks: list[Array] = []
-    for course, left, right in courses:
-        low, high = course * bond.height, (course + 1) * bond.height
-        x0, x1 = left * half, right * half
+    for (left, right), low, high in zip(rows, levels[:-1], levels[1:], strict=True):
+        x0, x1 = left * (width / 2), right * (width / 2)
         y0, y1 = np.full_like(x0, low), np.full_like(x0, high)
         blocks.extend(np.stack([np.stack([x0, x1, x1, x0], 1), np.stack([y0, y0, y1, y1], 1)], 2))
     return blocks

@@ -10,29 +10,27 @@ import numpy as np
 import shapely
 
 from .arrays import Array, Indices
+from .polygons import outer_corners, polygonal_parts
+
+NEAR = 0.01
+"""Distance of the axis from a corner, in widths of its block, within which that cracks there."""
 
 
 def cut_in_half(polygons: Sequence[Array], widest: float) -> tuple[list[Array], Indices]:
-    """Cut convex polygons ``(n, 2)`` [m] at the vertical line through their centroids, but for those up to a width [m].
+    """Cut polygons ``(n, 2)`` [m] at the vertical line through their centroids, but for those up to a width [m].
 
-    The pieces come left before right in the order of their blocks, and with them the block of each, ``(n_pieces,)``.
+    What is not convex may fall into more than two pieces. Those left of the line come before those right of it, from
+    the bottom up, in the order of their blocks, and with them the block of each, ``(n_pieces,)``.
     """
-    pieces: list[list[Array]] = []
-    for polygon in polygons:
-        middle = shapely.Polygon(polygon).centroid.x
-        is_cut = np.ptp(polygon[:, 0]) > widest
-        pieces.append([_side(polygon, middle, sense) for sense in (-1.0, 1.0)] if is_cut else [polygon])
+    pieces = [_halves(polygon) if np.ptp(polygon[:, 0]) > widest else [polygon] for polygon in polygons]
     return list(chain(*pieces)), np.repeat(np.arange(len(pieces)), [len(cut) for cut in pieces])
 
 
-def _side(polygon: Array, x: float, sense: float) -> Array:
-    """Part of a convex polygon on one side of a vertical line, its corners in the same order."""
-    corners: list[Array] = []
-    for start, stop in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        before, after = sense * (start[0] - x), sense * (stop[0] - x)
-        if before >= 0:
-            corners.append(start)
-        if before * after < 0:
-            share = before / (before - after)
-            corners.append(np.array([x, start[1] + share * (stop[1] - start[1])]))
-    return np.array(corners)
+def _halves(polygon: Array) -> list[Array]:
+    """Parts of a polygon on either side of its axis, which moves to a corner that is near it."""
+    whole, x = shapely.Polygon(polygon), polygon[:, 0]
+    middle, corner = whole.centroid.x, float(x[np.argmin(np.abs(x - whole.centroid.x))])
+    middle = corner if abs(corner - middle) < NEAR * np.ptp(x) else middle
+    (left, low), (right, high) = polygon.min(axis=0) - 1.0, polygon.max(axis=0) + 1.0
+    halves = shapely.intersection(whole, shapely.box([left, middle], low, [middle, right], high))
+    return [outer_corners(part) for half in halves for part in polygonal_parts(half)]

@@ -4,16 +4,14 @@ import math
 import os
 import tomllib
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, cast
 
-from .arrays import Array
 from .assignment import ANY, BEAM, GROUND, read_assignments
 from .beam import read_beam
-from .bond import Bond, Ends, FirstCourse, course_pattern, running_bond
-from .drawing import METRES, read_drawing
 from .errors import SceneError, keys_of
 from .loads import read_load
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness, check_friction
+from .outlines import read_outlines
 from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, Range
 from .supports import SUPPORT_KINDS, SupportKind
 from .table import Table
@@ -89,56 +87,28 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     support.finish()
     loads = read_load(load, driven=beam is not None and beam.drive is not None)
     thickness = wall.number("thickness", ABOVE_ZERO)
-    polygons, ground, bond = _blocks(wall, folder)
+    outlines = read_outlines(wall, folder, block_names)
     wall.finish()
     return build_scene(
         title,
-        polygons,
+        outlines.polygons,
         thickness=thickness,
         block=block_material,
         joint=joint_material,
         load=loads,
         support=kind,
-        grounds=() if ground is None else (ground,),
-        bond=bond,
+        grounds=outlines.grounds,
+        bond=outlines.bond,
         inner_joint=inner_material,
         materials=materials,
         joints=joints,
         assignments=assignments,
+        layers=outlines.layers,
+        material_of=outlines.materials,
         beam=beam,
         ties=[read_tie(table) for table in tie_tables],
+        notes=outlines.notes,
     )
-
-
-def _blocks(wall: Table, folder: Path) -> tuple[list[Array], Array | None, Bond | None]:
-    _refuse_mixed_descriptions(wall)
-    if "drawing" in wall:
-        path = folder / wall.text("drawing")
-        blocks, ground = read_drawing(path, wall.choice("units", METRES))
-        return blocks, ground, None
-    bond = Bond(wall.number("block_width", ABOVE_ZERO), wall.number("block_height", ABOVE_ZERO))
-    if "courses" in wall:
-        return course_pattern(bond, wall.rows("courses")), None, bond
-    length, height = wall.number("length", ABOVE_ZERO), wall.number("height", ABOVE_ZERO)
-    first = cast(FirstCourse, wall.choice("first_course", get_args(FirstCourse), "full"))
-    ends = cast(Ends, wall.choice("ends", get_args(Ends), "flush"))
-    return running_bond(bond, length, height, first, ends), None, bond
-
-
-def _refuse_mixed_descriptions(wall: Table) -> None:
-    """A wall is a drawing, a list of courses, or a length and height; the keys of two of them do not mix."""
-    by_size = ("length", "height", "first_course", "ends")
-    for description, strangers in (
-        ("drawing", ("courses", *by_size, "block_width", "block_height")),
-        ("courses", ("units", *by_size)),
-        ("length", ("units",)),
-    ):
-        if description in wall:
-            for key in strangers:
-                if key in wall:
-                    what = f"does not go with wall.{description}; describe the wall in one way"
-                    raise SceneError(f"wall.{key}", what)
-            return
 
 
 def _block_material(block: Table) -> BlockMaterial:

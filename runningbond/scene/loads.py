@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .actions import Action
+from .beam import BeamLoad
 from .errors import SceneError, keys_of
 from .mass_loads import Body, Lateral, Tilt
 from .point_loads import LineLoad, Moment, PointLoad
@@ -47,9 +48,12 @@ class Load:
     def named(self) -> list[tuple[str, Action]]:
         """Each load with the key that a file has it under."""
         groups = (("load.live", self.live), ("load.dead", self.dead))
-        return [
-            (f"{name}[{k}]" if len(loads) > 1 else name, load) for name, loads in groups for k, load in enumerate(loads)
-        ]
+        named: list[tuple[str, Action]] = []
+        for name, loads in groups:
+            listed = [load for load in loads if not isinstance(load, BeamLoad)]
+            named += [(f"{name}[{k}]" if len(listed) > 1 else name, load) for k, load in enumerate(listed)]
+            named += [(load.key, load) for load in loads if isinstance(load, BeamLoad)]
+        return named
 
 
 KINDS: dict[str, type[Action]] = {

@@ -64,7 +64,7 @@ class LineLoad(Action):
             object.__setattr__(self, name, vector(f"load.live.{key}", getattr(self, name)))
         object.__setattr__(self, "force", nonzero_vector("load.live.force", self.force))
         if self.start == self.end:
-            raise SceneError("load.live.to", "must lie apart from load.live.from", list(self.end))
+            raise SceneError("load.live.to", "must lie apart from the line's other end", list(self.end))
 
     @classmethod
     def read(cls, table: Table) -> "LineLoad":

@@ -90,10 +90,11 @@ def _refuse_overlaps(blocks: Blocks, joined: Indices) -> None:
     need an intersection.
     """
     a, b = blocks.neighbours()
-    apart = ~np.isin(a * len(blocks) + b, joined[:, 0] * len(blocks) + joined[:, 1])
+    shared = np.isin(a * len(blocks) + b, joined[:, 0] * len(blocks) + joined[:, 1])
+    apart = ~(shared & blocks.convex[a] & blocks.convex[b])
     a, b = a[apart], b[apart]
     involved, local = np.unique(np.concatenate([a, b]), return_inverse=True)
-    polygons = np.array([shapely.Polygon(blocks.polygon(i)) for i in involved])
+    polygons = blocks.shapes(involved)
     common = shapely.intersection(polygons[local[: len(a)]], polygons[local[len(a) :]])
     # A strip as wide as the tolerance is contact; what is left after eating it away is overlap.
     deep = ~shapely.is_empty(shapely.buffer(common, -blocks.tolerance / 2))

@@ -43,7 +43,7 @@ class Tie:
         for name, key in (("start", "from"), ("end", "to")):
             object.__setattr__(self, name, vector(f"tie.{key}", getattr(self, name)))
         if self.preload > self.yield_force:
-            raise SceneError("tie.preload", f"must be at most tie.yield = {self.yield_force:g}", self.preload)
+            raise SceneError("tie.preload", f"must be at most the yield force, {self.yield_force:g} N", self.preload)
 
 
 @dataclass(frozen=True, eq=False)

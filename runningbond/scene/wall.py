@@ -1,7 +1,7 @@
 """The scene: a wall with its joints, materials, supports and loads, complete and checked."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -64,6 +64,10 @@ class Scene:
         Bars, and the stiff body across the top; None where there is none.
     notes
         What was healed or left out when the wall was read.
+    part_of : (nb,) int
+        Number that ``assign`` has for the block that each is, or is a part of; −1 for the beam and the ground.
+    assigned
+        What became of each entry of ``assign``, in a line.
     """
 
     title: str
@@ -82,9 +86,15 @@ class Scene:
     ties: Ties = NO_TIES
     beam: Beam | None = None
     notes: tuple[str, ...] = ()
+    part_of: Indices = field(default_factory=lambda: np.zeros(0, np.int64))
+    assigned: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("material_of_block", "material_of_joint"):
+        if not len(self.part_of):
+            beam = -1 if self.beam is None or self.beam.block is None else self.beam.block
+            number = np.arange(len(self.blocks))
+            object.__setattr__(self, "part_of", np.where(self.wall & (number != beam), number, -1))
+        for name in ("material_of_block", "material_of_joint", "part_of"):
             object.__setattr__(self, name, frozen(getattr(self, name), np.int64))
         object.__setattr__(self, "fixed", frozen(self.fixed, np.bool_))
         object.__setattr__(self, "wall", frozen(self.wall, np.bool_))
@@ -282,7 +292,7 @@ def build_scene(
     wall_blocks.check()
     block_materials = (block, *materials)
     names = [each.name for each in block_materials]
-    material = assign_blocks(wall_blocks, names, layers, material_of or {}, assignments)
+    material, assigned = assign_blocks(wall_blocks, names, layers, material_of or {}, assignments)
     owner = np.arange(len(polygons))
     if inner_joint is not None:
         polygons, owner = cut_in_half(polygons, 0.75 * bond.width if bond else 0.0)
@@ -312,9 +322,10 @@ def build_scene(
         live, dead = beam.loads()
         load = Load(load.gravity, (*live, *load.live), (*load.dead, *dead))
 
-    found = _joints(blocks, fixed, np.append(owner, np.full(others, -1)))
+    part_of = np.append(owner, np.full(others, -1))
+    found = _joints(blocks, fixed, part_of)
     joint_materials = (joint, *joints, *(() if inner_joint is None else (replace(inner_joint, name="inner_joint"),)))
-    material_of_joint = assign_joints(
+    material_of_joint, of_joints = assign_joints(
         found,
         [each.name for each in joint_materials],
         called,
@@ -339,6 +350,8 @@ def build_scene(
         place_ties(ties, blocks, fixed),
         beam,
         tuple(notes),
+        part_of,
+        tuple(text for _, text in sorted((assigned | of_joints).items())),
     )
     _check(scene)
     return scene

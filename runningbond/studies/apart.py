@@ -29,10 +29,7 @@ class Ended(Exception):
 def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = None) -> Row:
     """Measure a case, which JSON has words for, by a function of a module in a fresh process, until `stop` is set.
 
-    Raises
-    ------
-    Ended
-        If the process ends without an answer.
+    `Ended` is raised where the process ends without an answer.
     """
     command = [sys.executable, "-m", __name__, measure.__module__, measure.__name__, json.dumps(case)]
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")

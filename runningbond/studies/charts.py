@@ -11,10 +11,8 @@ from runningbond.compare.models import MODELS
 from .study import Row
 
 MODEL_LOOKS = {model.name: (model.colour, model.marker) for model in MODELS.values()}  # colour and marker of each model
+LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))  # and of other things
 Looks: TypeAlias = Mapping[Any, tuple[str, str]]  # colour and marker by the entries of a column
-
-LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))
-"""Colours and markers of other things."""
 
 
 def looks_of(names: Sequence[Any]) -> Looks:
@@ -27,8 +25,8 @@ def series(
 ) -> None:
     """Plot one column of rows over another, a series for each entry of a third; rows without a number are left out."""
     for name, (colour, marker) in looks.items():
-        value = y if callable(y) else lambda row: row.get(y)
-        points = [(row[x], value(row)) for row in rows if row[by] == name and value(row) is not None]
+        points = [(row[x], y(row) if callable(y) else row.get(y)) for row in rows if row[by] == name]
+        points = [point for point in points if point[1] is not None]
         if points:
             axes.plot(*zip(*points, strict=True), **{"marker": marker, "color": colour, "label": str(name)} | style)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
+from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from runningbond.compare.figures import bare
@@ -16,7 +17,7 @@ from runningbond.pictures.captions import to_png
 from runningbond.results import write_atomically
 
 from .store import failures
-from .study import Chart, Edge, Rows, Study
+from .study import Edge, Rows, Study
 
 
 @dataclass(frozen=True)
@@ -42,20 +43,19 @@ def write_page(subject: str, blocks: Sequence[Block], folder: Path, name: str) -
 def summary(measured: Measured) -> Sheet:
     """Experiment by experiment: where the method may be trusted, and what a user gets beyond."""
     heads = ("experiment", "what is driven", "edges", "may be trusted where", "beyond it you get")
-    sound = [(study, rows) for study, rows in measured if not failures(rows)]
-    body = [(one.name, one.title, agreement(one.edges(rows)), one.trusted, one.beyond) for one, rows in sound]
+    body = [(x.name, x.title, agreement(x.edges(rows)), x.trusted, x.beyond) for x, rows in _whole(measured)]
     return Sheet("Where each method may be trusted", heads, body)
 
 
 def page(measured: Measured, folder: Path) -> list[Block]:
     """The page; charts are drawn into a folder."""
-    sections = [block for study, rows in measured if not failures(rows) for block in section(study, rows, folder)]
+    sections = [block for study, rows in _whole(measured) for block in section(study, rows, folder)]
     return ["# Where the methods fail", summary(measured), *sections, *failed(measured)]
 
 
 def off(measured: Measured) -> list[str]:
     """Edges that do not lie where theory has them."""
-    edges = [(study.name, edge) for study, rows in measured if not failures(rows) for edge in study.edges(rows)]
+    edges = [(study.name, edge) for study, rows in _whole(measured) for edge in study.edges(rows)]
     wrong = [(name, edge) for name, edge in edges if edge.agrees is False]
     return [f"{name}: {edge.what}: measured {edge.measured:.6g}, by theory {edge.theory:.6g}" for name, edge in wrong]
 
@@ -65,6 +65,10 @@ def failed(measured: Measured) -> list[str]:
     return [f"{study.name} ended in an error: {words}" for study, rows in measured for words in failures(rows)]
 
 
+def _whole(measured: Measured) -> Measured:
+    return [(study, rows) for study, rows in measured if not failures(rows)]
+
+
 def section(study: Study, rows: Rows, folder: Path) -> list[Block]:
     """An experiment on the page of all: where it may be trusted, its charts, its edges and its rows."""
     blocks: list[Block] = [f"## {study.title}", f"May be trusted: {study.trusted}", f"Beyond: {study.beyond}"]
@@ -72,35 +76,31 @@ def section(study: Study, rows: Rows, folder: Path) -> list[Block]:
     return [*blocks, f"`runningbond stability {study.name}` measures it."]
 
 
-def draw_charts(study: Study, rows: Rows, folder: Path) -> list[Block]:
-    """Draw the charts of a study into a folder."""
-    return [Picture(draw(chart, rows, folder), chart.caption) for chart in study.charts if any(rows.values())]
-
-
-def draw(chart: Chart, rows: Rows, folder: Path) -> Path:
-    """Draw a chart into a folder."""
-    figure = Figure(figsize=(8, 4.6), layout="constrained")
-    figure.suptitle(chart.caption, fontsize=11)
-    chart.draw(figure, rows)
-    for axes in figure.axes:
-        bare(axes)
-    path = folder / f"{chart.name}.png"
-    write_atomically(path, to_png(figure, 160))
-    return path
+def draw_charts(study: Study, rows: Rows, folder: Path) -> list[Picture]:
+    """Draw the charts of a study into a folder, if there is a row."""
+    pictures = []
+    for chart in study.charts if any(rows.values()) else ():
+        figure = Figure(figsize=(8, 4.6), layout="constrained")
+        figure.suptitle(chart.caption, fontsize=11)
+        with rc_context({"legend.frameon": False, "legend.fontsize": 8}):
+            chart.draw(figure, rows)
+        for axes in figure.axes:
+            bare(axes)
+        pictures.append(Picture(folder / f"{chart.name or study.name}.png", chart.caption))
+        write_atomically(pictures[-1].path, to_png(figure, 160))
+    return pictures
 
 
 def edges_sheet(edges: Sequence[Edge]) -> Sheet:
     """Edges, theory beside what was measured."""
-    return Sheet("Edges", ("edge", "measured", "theory", "off by", "allowed"), [_edge_row(edge) for edge in edges])
-
-
-def _edge_row(edge: Edge) -> list[str]:
-    measured = f"{edge.measured:.6g}"
-    if edge.theory is None or edge.error is None:
-        return [edge.what, measured, "–", "–", "–"]
-    allowed = "–" if edge.tolerance is None else f"{100 * edge.tolerance:.2g} %"
-    off = f"{100 * edge.error:.2g} %" + ("" if edge.agrees is not False else ", does not agree")
-    return [edge.what, measured, f"{edge.theory:.6g}", off, allowed]
+    rows = []
+    for edge in edges:
+        cells = ["–"] * 3
+        if edge.theory is not None and edge.error is not None:
+            off_by = f"{100 * edge.error:.2g} %" + (", does not agree" if edge.agrees is False else "")
+            cells = [f"{edge.theory:.6g}", off_by, "–" if edge.tolerance is None else f"{100 * edge.tolerance:.2g} %"]
+        rows.append([edge.what, f"{edge.measured:.6g}", *cells])
+    return Sheet("Edges", ("edge", "measured", "theory", "off by", "allowed"), rows)
 
 
 def agreement(edges: Sequence[Edge]) -> str:
@@ -120,13 +120,8 @@ def _html(block: Block) -> str:
         return table_html(block, wrapped=any(len(cell) > 60 for row in block.rows for cell in row))
     if isinstance(block, Picture):
         return f"{figure_html(block.path)}<p>{html.escape(block.caption)}</p>"
+    text = html.escape(block.lstrip("#").strip(), quote=False)
+    for mark, tag in ((r"\*\*", "b"), (r"\*", "i"), ("`", "code")):  # Markdown's within a line
+        text = re.sub(f"{mark}(.+?){mark}", rf"<{tag}>\1</{tag}>", text)
     level = len(block) - len(block.lstrip("#"))
-    text = _inline(block[level:].strip())
     return f"<h{level}>{text}</h{level}>" if level else f"<p>{text}</p>"
-
-
-def _inline(text: str) -> str:
-    """Markdown's bold, emphasis and code within a line, in HTML."""
-    text = re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", html.escape(text, quote=False))
-    text = re.sub(r"\*(.+?)\*", r"<i>\1</i>", text)
-    return re.sub(r"`(.+?)`", r"<code>\1</code>", text)

@@ -18,6 +18,7 @@ from typing import TypeAlias
 import numpy as np
 
 from runningbond.compare.fingerprint import code_digest
+from runningbond.compare.table import csv_lines
 from runningbond.results import write_atomically
 
 from .apart import measure_apart
@@ -68,38 +69,32 @@ def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
         rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
-    kept = {}
-    for where in study.cases:
-        row, case = rows.get(_key(study, where)), study.entries(where)
-        if row is not None and FAILURE not in row:
-            kept[where] = case | row | case
-    return kept
+    cases = ((where, study.entries(where), rows.get(_key(study, where))) for where in study.cases)
+    return {where: case | row | case for where, case, row in cases if row is not None and FAILURE not in row}
 
 
 def csv_text(study: Study, rows: dict[Where, Row]) -> str:
     """The table as CSV, in the order of the study; `kept_rows` has the same rows again, to the last bit."""
     columns = list(dict.fromkeys(column for row in rows.values() for column in row))
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(["part", *columns, "key", "seal"])
+    lines = [["part", *columns, "key", "seal"]]
     for where in study.cases:
         if where in rows:
-            case = study.parts[where[0]].columns
-            entries = [_text(rows[where].get(column), plain=column in case) for column in columns]
+            case, row = study.parts[where[0]].columns, rows[where]
+            entries = [_text(row.get(column), plain=column in case) for column in columns]
             cells = [where[0], *entries, _key(study, where)]
-            writer.writerow([*cells, _seal(cells)])
-    return buffer.getvalue()
+            lines.append([*cells, _digest("\0".join(cells))[:16]])
+    return csv_lines(lines)
 
 
 def read_csv(text: str) -> dict[str, Row]:
     """Rows of a table by their keys; damaged ones are left out."""
-    reader, rows = csv.reader(io.StringIO(text)), {}
+    reader = csv.reader(io.StringIO(text))
     heads = next(reader, [])
-    for cells in reader:
-        if len(cells) == len(heads) and cells[-1] == _seal(cells[:-1]):
-            entries = zip(heads[1:-2], cells[1:-2], strict=True)
-            rows[cells[-2]] = {head: _value(cell) for head, cell in entries if cell}
-    return rows
+    return {
+        cells[-2]: {head: _value(cell) for head, cell in zip(heads[1:-2], cells[1:-2], strict=True) if cell}
+        for cells in reader
+        if len(cells) == len(heads) and cells[-1] == _digest("\0".join(cells[:-1]))[:16]
+    }
 
 
 def _text(value: object, *, plain: bool) -> str:
@@ -118,14 +113,13 @@ def _value(cell: str) -> object:
         return cell
 
 
-def _seal(cells: Sequence[str]) -> str:
-    return hashlib.sha256("\0".join(cells).encode()).hexdigest()[:16]
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _key(study: Study, where: Where) -> str:
     """Digest of all that the row of a case depends on."""
-    depends = f"{code_digest()} {sources_digest(tuple(study.sources))} {where!r} {study.depends(where[1])}"
-    return hashlib.sha256(depends.encode()).hexdigest()
+    return _digest(f"{code_digest()} {sources_digest(tuple(study.sources))} {where!r} {study.depends(where[1])}")
 
 
 @cache
@@ -143,14 +137,12 @@ def _measured(study: Study, cases: Sequence[Where], jobs: int) -> Iterator[tuple
     """Rows as they come: one after another in this thread, or from threads that each wait for a process."""
     stop = Event()
     if jobs == 1:
-        for where in cases:
-            yield where, _row(study, where, stop)
+        yield from ((where, _row(study, where, stop)) for where in cases)
         return
     with ThreadPoolExecutor(jobs) as threads:
         tasks = {threads.submit(_row, study, where, stop): where for where in cases}
         try:
-            for task in as_completed(tasks):
-                yield tasks[task], task.result()
+            yield from ((tasks[task], task.result()) for task in as_completed(tasks))
         finally:
             stop.set()
             threads.shutdown(cancel_futures=True)

@@ -14,10 +14,7 @@ from matplotlib.figure import Figure
 from runningbond.compare.table import Sheet
 
 Case: TypeAlias = tuple[Any, ...]  # words and numbers that tell what is measured
-
-Row: TypeAlias = dict[str, Any]
-"""A case and what was measured of it, by columns: words, numbers, None, and lists, which only charts read."""
-
+Row: TypeAlias = dict[str, Any]  # a case and what was measured of it, by columns; lists are for charts alone
 Rows: TypeAlias = Mapping[str, Sequence[Row]]  # rows of a study, by the names of its parts
 FAILURE = "failure"  # column that holds the words of the error in which a case ended, if it did
 PACKAGE = Path(__file__).parents[1]
@@ -40,41 +37,33 @@ class Edge:
     @property
     def agrees(self) -> bool | None:
         """Whether measurement and theory agree; None without a theory or a tolerance."""
-        if self.error is None or self.tolerance is None:
-            return None
-        return self.error <= self.tolerance
+        return None if self.error is None or self.tolerance is None else self.error <= self.tolerance
 
 
 @dataclass(frozen=True)
 class Part:
-    """Cases of one kind, in the order in which they are measured, and what their entries are called.
-
-    `measure` takes the entries of a case as its arguments, and returns what comes of it by columns.
-    """
+    """Cases of one kind, in the order in which they are measured, and what their entries are called."""
 
     columns: tuple[str, ...]
     cases: Sequence[Case]
-    measure: Callable[..., Row]
+    measure: Callable[..., Row]  # takes the entries of a case as its arguments, and returns what comes of it
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart: name of its file without suffix, what it shows, and what draws it on an empty figure."""
+    """A chart: what it shows, and what draws it on an empty figure."""
 
-    name: str
     caption: str
     draw: Callable[[Figure, Rows], None]
+    name: str = ""  # of its file, without suffix; where none is given, that of the study
 
 
 def all_rows(rows: Rows) -> list[Sheet]:
     """Every part as a table: columns with a word or a number in any row, lists left to charts."""
     sheets = []
     for part, own in rows.items():
-        heads = [
-            head
-            for head in dict.fromkeys(head for row in own for head in row)
-            if any(row.get(head) is not None for row in own) and not isinstance(own[0].get(head), list)
-        ]
+        every = dict.fromkeys(head for row in own for head in row)
+        heads = [x for x in every if any(row.get(x) is not None for row in own) and not isinstance(own[0].get(x), list)]
         sheets.append(Sheet(part, heads, [[cell(row.get(head)) for head in heads] for row in own]))
     return sheets
 

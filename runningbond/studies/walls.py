@@ -11,7 +11,7 @@ block, whose pressure does not change.
 """
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from typing import TypeAlias
 
 import numpy as np
@@ -28,14 +28,12 @@ from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, 
 
 from .study import Row
 
-INSET = 0.02
-"""Distance of contacts from the ends of the joints [m] with which the load multiplier of W1 to W3 is unique."""
-
+INSET = 0.02  # distance of contacts from the ends of the joints [m] with which λ of W1 to W3 is unique
 RAMP = 4  # length of a ramp to a load, in times that the wall took to rest under its weight
 SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the block that slides, and b/h of the one that topples
 BRICK = BlockMaterial(1800.0)
-Box: TypeAlias = tuple[float, float, float, float]  # left, bottom, width, height [m]
 HOLDS = 1e15  # cohesion and tensile strength [Pa] that no motion of a study comes near
+Box: TypeAlias = tuple[float, float, float, float]  # left, bottom, width, height [m]
 
 
 def boxes(*places: Box, joint: JointMaterial, block: BlockMaterial = BRICK) -> Scene:
@@ -45,18 +43,14 @@ def boxes(*places: Box, joint: JointMaterial, block: BlockMaterial = BRICK) -> S
 
 
 def one_block(width: float, height: float, friction: float, stiffness: float) -> Scene:
-    """A dry block of 1800 kg/m³ on rigid ground, 0.12 m thick, pushed at its centroid by λ times its weight.
-
-    Its width and height [m], tan φ of the joint under it, and that joint's stiffness, normal and shear [Pa/m].
-    """
+    """A dry box [m] of 1800 kg/m³ on a joint of tan φ and one stiffness, normal and shear [Pa/m]."""
     joint = JointMaterial(friction, elasticity=Stiffness(stiffness, stiffness))
     return boxes((0, 0, width, height), joint=joint, block=BlockMaterial(1800.0, 1e12, 0.0))
 
 
 def inset_wall(name: str) -> Scene:
     """A published wall with its contacts `INSET` from the ends of the joints."""
-    scene = published_scene(name)
-    return scene.with_joint(inset=INSET)
+    return published_scene(name).with_joint(inset=INSET)
 
 
 def bonded(scene: Scene) -> Scene:
@@ -69,13 +63,11 @@ def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
 
     Assembled from the jumps that each mode makes, one after another.
     """
-    moving, one = np.flatnonzero(np.isfinite(system.mass)), np.eye(len(system.mass))
-    jump = np.zeros((len(moving), 2, system.interface.law.points))
+    law, moving, one = system.interface.law, np.flatnonzero(np.isfinite(system.mass)), np.eye(len(system.mass))
+    jump = np.zeros((len(moving), 2, law.points))
     for row, mode in zip(jump, moving, strict=True):
         system.interface.gather(one[mode], system.interface.geometry, *row)
-    springs = system.interface.area * np.stack(
-        [system.interface.law.normal_stiffness, system.interface.law.shear_stiffness]
-    )
+    springs = system.interface.area * np.stack([law.normal_stiffness, law.shear_stiffness])
     joints = np.einsum("idp,dp,jdp->ij", jump, springs, jump, optimize=True)
     return joints + np.diag(system.stiffness[moving]), system.mass[moving]
 
@@ -98,47 +90,19 @@ def outcome_row(outcome: Outcome) -> Row:
 
 @dataclass(frozen=True, eq=False)
 class KnownWall:
-    """A wall under its weight and a lateral load, with the load that brings it down."""
+    """A wall under its weight and a lateral load, with the load that brings it down and its motion then."""
 
     scene: Scene
     multiplier: float  # λ at which it falls
-    motion: Array  # in which it falls, to any scale, (nb, 3) [m, m, rad]
-
-    @cached_property
-    def system(self) -> BlockSystem:
-        """Its rigid blocks."""
-        return rigid_system(self.scene)
+    system: BlockSystem  # its rigid blocks
+    far: float  # displacement [m] by which the suite judges whether it falls
+    inertia: float  # M / F of (1) [s²/m]: what the wall weighs in its motion, for each newton that drives it
+    unbalanced: float  # largest unbalanced force, in the system's units, for each unit of λ − λ_c
 
     @property
     def is_block(self) -> bool:
         """Whether it is a single block, for which (1) is exact."""
         return len(self.scene.blocks) == 2
-
-    @property
-    def far(self) -> float:
-        """Displacement [m] by which the suite judges whether it falls."""
-        return U_CRIT * self.scene.block_size
-
-    @cached_property
-    def mechanism(self) -> Array:
-        """φ, the motion with a largest translation of one, ``(nd,)``."""
-        phi = np.zeros(len(self.system.mass))
-        phi[self.system.rigid] = self.motion / np.abs(self.motion[:, :2]).max()
-        return phi
-
-    @cached_property
-    def inertia(self) -> float:
-        """M / F of (1) [s²/m]: what the wall weighs in its motion, for each newton that drives it."""
-        system, phi = self.system, self.mechanism
-        moving = np.isfinite(system.mass)
-        return float((system.mass[moving] * phi[moving] ** 2).sum() / (system.live @ phi))
-
-    @cached_property
-    def unbalanced(self) -> float:
-        """Largest unbalanced force, in the system's units, for each unit of λ − λ_c."""
-        system, phi = self.system, self.mechanism
-        moving = np.isfinite(system.mass)
-        return system.measure(np.where(moving, np.where(moving, system.mass, 0.0) * phi / self.inertia, 0.0))
 
     @cache  # noqa: B019 - there are as many walls as names
     def rest(self, local: float = LOCAL, viscous: float = VISCOUS) -> tuple[Run, State]:
@@ -158,12 +122,17 @@ SLIDING, TOPPLING, W1, W2 = KNOWN = ("block that slides", "block that topples", 
 def known_wall(name: str) -> KnownWall:
     """A wall of `KNOWN`."""
     exact = {SLIDING: SLIDES, TOPPLING: TOPPLES}.get(name)
-    if name == SLIDING:
-        scene = one_block(0.24, 0.12, SLIDES, 1e10)
-    elif name == TOPPLING:
-        scene = one_block(0.12, 0.12 / TOPPLES, 0.9, 1e10)
-    else:
+    if exact is None:
         scene = inset_wall(f"wall-{name.split()[-1].lower()}")
-    certified = limit_nonassociated(scene)
+    elif name == SLIDING:
+        scene = one_block(0.24, 0.12, SLIDES, 1e10)
+    else:
+        scene = one_block(0.12, 0.12 / TOPPLES, 0.9, 1e10)
+    certified, system = limit_nonassociated(scene), rigid_system(scene)
     assert certified.multiplier is not None
-    return KnownWall(scene, exact or certified.multiplier, certified.motion)
+    phi = np.zeros(len(system.mass))
+    phi[system.rigid] = certified.motion / np.abs(certified.motion[:, :2]).max()
+    moving = np.isfinite(system.mass)
+    inertia = float((system.mass[moving] * phi[moving] ** 2).sum() / (system.live @ phi))
+    unbalanced = system.measure(np.where(moving, system.mass, 0.0) * phi / inertia)
+    return KnownWall(scene, exact or certified.multiplier, system, U_CRIT * scene.block_size, inertia, unbalanced)

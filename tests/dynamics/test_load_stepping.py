@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem.rigid_system import rigid_system
+from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.load_stepping import RESOLVED, _raise
@@ -145,5 +145,8 @@ def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farthe
     scene, module = panel(**SIZE), "runningbond.dynamics.load_stepping"
     settle = patch(f"{module}.settle", return_value="stable")
     with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
-        outcome = collapse_by_steps(scene, "", BLOCK, 0.005, point_order=np.arange(2), is_self_locking=lambda: False)
+        points, order = contact_points(scene), np.arange(2)
+        outcome = collapse_by_steps(
+            scene, "", BLOCK, 0.005, points=points, point_order=order, is_self_locking=lambda: False
+        )
     assert outcome.motion[0] == pytest.approx([1.0, 0.0, 0.0])

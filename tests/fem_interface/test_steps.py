@@ -1,7 +1,6 @@
 """Time steps of deformable blocks: a nodal form of every step, rigid blocks, and bounds of the frequency."""
 
 import math
-from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -14,7 +13,7 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.system import system_of
 from runningbond.dynamics import Run, State
 from runningbond.joints.law import FRICTION_WORK
-from runningbond.scene import JointMaterial, Mortar
+from runningbond.scene import Mortar
 from tests.walls import panel
 
 from .nodal_steps import NodalSteps
@@ -84,8 +83,8 @@ def test_blocks_alone_bound_the_highest_frequency(changes: dict[str, Any], mass_
 def test_a_wall_at_the_stable_step_stays_bounded(make: Any, young: float) -> None:
     """With local, joint and modal damping at work, and joints that never break."""
     scene = make()
-    block, joint = replace(scene.block, young=young), JointMaterial(0.6, 1e9, 1e9, Mortar(1e9, 0.2, 0.01))
-    scene = replace(scene, block_materials=(block,), joint_materials=(joint,))
+    glue = {"friction": 0.6, "cohesion": 1e9, "tensile_strength": 1e9, "elasticity": Mortar(1e9, 0.2, 0.01)}
+    scene = scene.with_block(young=young).with_joint(**glue)
     run = Run(system_of(modal_wall(scene)))
     state = State.at_rest(run.system)
     moving = np.isfinite(run.system.mass)

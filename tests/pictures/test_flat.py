@@ -47,7 +47,7 @@ def test_a_wall_is_drawn_block_by_block() -> None:
     assert len(drawn) == scene.wall.sum()
     for block, polygon in zip(np.flatnonzero(scene.wall), drawn, strict=True):
         assert polygon == pytest.approx(scene.blocks.polygon(int(block)), abs=1e-12)
-    assert "1.44 × 0.72 m, 78 blocks, 204 joints" in texts(figure)
+    assert "1.44 × 0.72 m, 0.12 m thick, 1800 kg/m³\n78 blocks, 204 joints" in texts(figure)
     assert "tan φ = 0.6" in texts(figure)
 
 

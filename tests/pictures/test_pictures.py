@@ -105,6 +105,22 @@ def test_an_undeformed_wall_fills_its_outline_and_nothing_else(painter: Painter)
 
 
 @drawing
+def test_what_a_block_encloses_stays_white(painter: Painter) -> None:
+    """A block over a door, L-shaped at its corners, and one that is a portal."""
+    scene = panel(
+        wall__block_width=0.5,
+        wall__block_height=0.2,
+        wall__length=3.0,
+        wall__height=1.2,
+        wall__opening=[{"from": [0.8, 0.0], "to": [1.8, 0.9]}, {"from": [2.4, 0.6], "to": [2.6, 0.7]}],
+    )
+    image, extent = paint(painter, undeformed_shape(scene))
+    white, wall = [(1.3, 0.85), (0.85, 0.85), (2.5, 0.65)], [(0.77, 0.85), (0.8, 0.95), (2.32, 0.65), (2.5, 0.75)]
+    assert (image[pixel(extent, image, white)] > 250).all()
+    assert of_colour(image[pixel(extent, image, wall)], AT_REST).all()
+
+
+@drawing
 def test_open_and_sliding_joints_are_seen_where_the_arrays_say(painter: Painter) -> None:
     """At both faces of every open joint the colour of opening is near, and nowhere far from one; as for sliding."""
     scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], width=0.4, height=0.2)

@@ -172,7 +172,7 @@ def test_the_installed_command_leaves_with_the_same_code(tmp_path: Path) -> None
     ("outlines", "said"),
     [
         ([[(0, 0), (200, 0), (200, 100), (0, 100)], [(100, 50), (300, 50), (300, 150), (100, 150)]], "overlaps"),
-        ([[(0, 0), (200, 0), (200, 100), (100, 20), (0, 100)]], "is not convex"),
+        ([[(0, 0), (200, 0), (200, 100), (100, 0), (0, 100)]], "crosses"),
         ([[(0, 40), (200, 40), (200, 100), (0, 100)]], "is a floating block"),
         ([], "needs the ground and at least one block"),
     ],

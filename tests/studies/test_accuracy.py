@@ -252,9 +252,9 @@ def test_the_cheapest_within_a_tolerance_is_found() -> None:
     result = records(table(), VARIED)
     everything = tuple(MODELS)
     for tolerance, expected in ((0.1, "limit"), (0.05, "limit-nonassociated"), (0.01, "dem-static")):
-        assert cheapest(result, tolerance, VARIED, everything) == (expected, "", "")
-    assert cheapest(result, 0.01, VARIED, ("fem",)) == ("fem", "", "")
-    assert cheapest(result, 1e-9, VARIED, everything) is None
+        assert cheapest(result, tolerance, everything) == (expected, "", "")
+    assert cheapest(result, 0.01, ("fem",)) == ("fem", "", "")
+    assert cheapest(result, 1e-9, everything) is None
     assert result["limit-nonassociated", "", ""].own == ["panel-02"]
     assert "panel-02" not in result["limit-nonassociated", "", ""].all("wall")
     assert ["1 %", "follows a path", "dem-static", "16", "0.74 %"] in cheapest_table(table()).rows
@@ -264,7 +264,7 @@ def test_the_cheapest_within_a_tolerance_is_found() -> None:
 def test_a_wall_without_a_number_is_named_and_keeps_a_model_from_being_cheapest(status: str) -> None:
     rows = changed(table(), "accuracy", ("wall-w3-inset", "limit", ""), status=status, value=None, error=None)
     assert records(rows)["limit", "", ""].unanswered == ["wall-w3-inset"]
-    assert cheapest(records(rows, VARIED), 0.1, VARIED, ("limit",)) is None
+    assert cheapest(records(rows, VARIED), 0.1, ("limit",)) is None
 
 
 def test_growth_has_its_power() -> None:

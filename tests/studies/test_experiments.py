@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from runningbond.studies.page import draw
+from runningbond.studies.page import draw_charts
 from runningbond.studies.stability import EXPERIMENTS, experiment
 from runningbond.studies.store import failures, run_study
 
@@ -27,7 +27,7 @@ def test_every_edge_lies_where_theory_has_it(name: str, tmp_path: Path) -> None:
     rows = run_study(study, tmp_path)
     assert not failures(rows)
     assert not [edge for edge in study.edges(rows) if edge.agrees is False]
-    for chart in study.charts:
-        image = imread(draw(chart, rows, tmp_path))[:, :, :3]
+    for picture in draw_charts(study, rows, tmp_path):
+        image = imread(picture.path)[:, :, :3]
         assert 0.01 < (image.min(axis=2) < 0.95).mean() < 0.9
         assert len(np.unique(image.reshape(-1, 3), axis=0)) > 100

@@ -25,8 +25,9 @@ def draw(figure: Figure, rows: Rows) -> None:
 def beam(measure: Callable[[str], Row], name: str) -> Study:
     """An experiment that takes no time."""
     part = Part(("beam",), [("long",), ("short",)], measure)
-    chart = Chart(name, "Sag", draw)
-    return Study(name, f"Experiment {name}", {"sag": part}, [chart], trusted="loads | small", beyond="falls")
+    return Study(
+        name, f"Experiment {name}", {"sag": part}, [Chart("Sag", draw)], trusted="loads | small", beyond="falls"
+    )
 
 
 def straight(beam: str) -> Row:

@@ -48,7 +48,7 @@ BEAMS = Study(
     "beams",
     "Beams | and loads",
     {"Beams": Part(("load [N]", "beam"), CASES, measure)},
-    [Chart("beams", "Sag of beams", draw)],
+    [Chart("Sag of beams", draw)],
     trusted="loads are small",
     beyond="they fall",
     fits=fits,

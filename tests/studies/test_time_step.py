@@ -121,11 +121,14 @@ def test_a_run_with_too_long_a_step_that_comes_to_rest_says_so() -> None:
     """Between the edge with damping and that without it a wall may be brought down as at the safe step."""
     scene = courses([[1]], joint__mortar=MORTAR)
     system = rigid_system(scene)
-    order = np.argsort(contact_points(scene).joint, kind="stable")
+    points = contact_points(scene)
+    order = np.argsort(points.joint, kind="stable")
 
     def result(times: float) -> tuple[float | None, str]:
         run = Run(system, dt=times * Run(system).dt)
-        outcome = collapse_by_steps(scene, "", run, 0.01, point_order=order, is_self_locking=lambda: False)
+        outcome = collapse_by_steps(
+            scene, "", run, 0.01, points=points, point_order=order, is_self_locking=lambda: False
+        )
         return outcome.multiplier, outcome.message
 
     safe, long = result(1.0), result(1.05)

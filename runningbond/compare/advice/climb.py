@@ -21,20 +21,10 @@ from .costs import Estimate
 from .knowledge import Knowledge
 from .steps import Step, after_refusal, first_step, next_step
 
-TOLERANCE = 0.05
-"""Relative width of the bracket that is asked for where nothing else is."""
-
-SPEED = 0.02
-"""Speed of the first push, in block sizes a second."""
-
-FARTHER = 3.0
-"""Displacement up to which to push, relative to that of the collapse at small displacements."""
-
-HALVINGS = 3
-"""How often the speed is halved until the peak settles."""
-
-SMOOTH = 9
-"""Rows of the curve over which λ is averaged."""
+TOLERANCE = 0.05  # relative width of the bracket that is asked for where nothing else is
+SPEED, HALVINGS = 0.02, 3  # of the first push, in block sizes a second; how often it is halved until the peak settles
+FARTHER = 3.0  # displacement up to which to push, relative to that of the collapse at small displacements
+SMOOTH = 9  # rows of the curve over which λ is averaged
 
 
 @dataclass(frozen=True)
@@ -95,16 +85,9 @@ class Advice:
 
 
 def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
-    """Climb the ladder as far as a scene needs.
+    """Climb the ladder as far as a scene needs for a bracket of some relative width.
 
-    Parameters
-    ----------
-    scene
-        The scene.
-    tolerance
-        Relative width of the bracket asked for.
-    finite
-        Whether to end at finite displacements, however small they may be.
+    With `finite` it ends at finite displacements, however small they may be.
     """
     check_tolerance(tolerance)
     advice = Advice(Knowledge(scene, tolerance, finite))

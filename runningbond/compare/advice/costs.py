@@ -16,8 +16,7 @@ from runningbond.compare.models import MODELS
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
-COARSE = 0.01
-"""Tolerance of the comparison that the laws were fitted to."""
+COARSE = 0.01  # tolerance of the comparison that the laws were fitted to
 
 
 @dataclass(frozen=True)
@@ -47,10 +46,9 @@ def estimate(model: Model, scene: Scene, tolerance: float, pace: float = 1.0) ->
 
 def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> float:
     """How much slower than the laws the outcomes so far were; 1 where none of them took time enough to tell."""
-    timed = [(MODELS[outcome.model], outcome.seconds) for outcome in outcomes if outcome.model in MODELS]
-    ratios = [
-        math.log(seconds / estimate(model, scene, tolerance).seconds)
-        for model, seconds in timed
-        if model.cost is not None and model.kind != "estimate" and seconds > 0
-    ]
+    ratios = []
+    for outcome in outcomes:
+        model = MODELS.get(outcome.model)
+        if model is not None and model.cost is not None and model.kind != "estimate" and outcome.seconds > 0:
+            ratios.append(math.log(outcome.seconds / estimate(model, scene, tolerance).seconds))
     return math.exp(sum(ratios) / len(ratios)) if ratios else 1.0

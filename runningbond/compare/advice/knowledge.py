@@ -16,11 +16,8 @@ from runningbond.scene import Array, Scene
 
 from .costs import Estimate, estimate, pace
 
-NO_SLIP = 1e-6
-"""Slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m."""
-
-Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]
-"""What a bracket rests on; nothing, to begin with."""
+NO_SLIP = 1e-6  # slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m
+Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]  # what a bracket rests on; first nothing
 
 
 def ladder(kind: Kind) -> list[Model]:
@@ -71,18 +68,15 @@ class Knowledge:
         elif finite:
             self._answer("finite", outcome, outcome.lower)
         else:
-            self._answer("history", self._below_the_bound(outcome), outcome.upper)
+            history = outcome
+            if self.bound is not None and outcome.multiplier is not None:  # it cannot have stood above that
+                upper = max(outcome.lower, min(outcome.upper, self.bound))
+                history = replace(outcome, upper=upper, multiplier=min(outcome.multiplier, upper))
+            self._answer("history", history, outcome.upper)
 
     def _answer(self, evidence: Evidence, outcome: Outcome, collapse: float) -> None:
         self.evidence, self.answer = evidence, outcome
         self.lowest = collapse if self.lowest is None else min(self.lowest, collapse)
-
-    def _below_the_bound(self, outcome: Outcome) -> Outcome:
-        """The outcome of a history, which cannot have stood above the associated bound."""
-        if self.bound is None or outcome.lower is None or outcome.upper is None or outcome.multiplier is None:
-            return outcome
-        upper = max(outcome.lower, min(outcome.upper, self.bound))
-        return replace(outcome, upper=upper, multiplier=min(outcome.multiplier, upper))
 
     @property
     def seconds(self) -> float:
@@ -164,5 +158,4 @@ def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
     moved = wall.move(np.ones(wall.law.stiffness.shape, dtype=np.bool_), multiplier * wall.live)
     if moved is None:
         return None
-    share = block_compliance(scene)
-    return float(np.abs(moved.reshape(-1, 3)[:, :2]).max() / (1 - share) / scene.block_size)
+    return float(np.abs(moved.reshape(-1, 3)[:, :2]).max() / (1 - block_compliance(scene)) / scene.block_size)

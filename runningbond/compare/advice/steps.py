@@ -7,8 +7,7 @@ from runningbond.results import Outcome
 
 from .knowledge import Knowledge, deforms, ladder
 
-WORTH = 1.25
-"""How many times the cost of following one history a certificate, which holds for all of them, is worth: a choice."""
+WORTH = 1.25  # times the cost of one history that a certificate, which holds for all of them, is worth: a choice
 
 
 @dataclass(frozen=True)
@@ -34,8 +33,7 @@ def next_step(known: Knowledge, step: Step, outcome: Outcome) -> Step:
     """What follows from an outcome that is already part of what is known."""
     assert step.model is not None
     if step.model.kind == "estimate":
-        reason = "an estimate for the wall as a continuum, on either side; a bound is wanted"
-        return Step(ladder("bound")[0], reason)
+        return Step(ladder("bound")[0], "an estimate for the wall as a continuum, on either side; a bound is wanted")
     if outcome.status == "infeasible":
         return Step(None, "it collapses under its dead load, whatever the model")
     if step.model.kind == "bound":
@@ -100,29 +98,25 @@ def _after_history(known: Knowledge, model: Model, outcome: Outcome) -> Step:
         return Step(onward[0], f"{outcome.status}: {outcome.message}")
     if outcome.status != "collapse":
         return Step(None, f"{outcome.status}: {outcome.message}")
-    if deforms(model):
-        return _enough(known, "the collapse of one history is bracketed")
-    if known.soft:
-        return Step(_deformable(), f"the collapse of rigid blocks is bracketed; {_compliance(known)}")
-    return _enough(known, f"the collapse of one history is bracketed; {_compliance(known)}")
+    if known.soft and not deforms(model):
+        model, why = _history(known)
+        return Step(model, f"the collapse of rigid blocks is bracketed; {why}")
+    rigid = "" if deforms(model) else f"; {_compliance(known)}"
+    return _enough(known, f"the collapse of one history is bracketed{rigid}")
 
 
 def _history(known: Knowledge) -> tuple[Model, str]:
     """The model that is to follow the wall, and why that one."""
     if known.soft:
-        return _deformable(), _compliance(known)
+        return next(model for model in ladder("history") if deforms(model)), _compliance(known)
     rigid = [model for model in ladder("history") if not deforms(model)]
     model = min(rigid, key=lambda model: known.estimate(model).seconds)
     return model, f"one history is followed, by the cheapest of {len(rigid)} models of rigid blocks"
 
 
-def _deformable() -> Model:
-    return next(model for model in ladder("history") if deforms(model))
-
-
 def _compliance(known: Knowledge) -> str:
-    share = f"blocks have {100 * known.compliance:.2g} % of the compliance"
-    return f"{share}, and must deform" if known.soft else f"{share}, and are taken as rigid"
+    what = "must deform" if known.soft else "are taken as rigid"
+    return f"blocks have {100 * known.compliance:.2g} % of the compliance, and {what}"
 
 
 def _enough(known: Knowledge, why: str) -> Step:

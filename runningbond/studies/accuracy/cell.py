@@ -5,6 +5,7 @@ cell stores of that strain, once its own coordinates have found their equilibriu
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,37 +13,37 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
 from fem_interface.operators import nodal_jump
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
-from runningbond.limit.kinematics import jump_operator
+from runningbond.limit.kinematics import Jump, jump_operator
 from runningbond.scene import Array, Indices, Scene
 
 RULE = lobatto(3)  # exact for the squared jumps of rigid blocks
 
 
+class _Modes(NamedTuple):
+    """Freedoms of a block per mode ``(f, m)`` and per translation ``(f, 2)``, and stiffness of its modes ``(m,)``."""
+
+    shape: Array
+    translation: Array
+    stiffness: Array
+
+
 def rigid_cell(scene: Scene) -> tuple[Array, int]:
     """Moduli per strain E11, E22 and E12, ``(3, 3)`` [Pa], of rigid blocks, and the number of coordinates."""
     points = wall_points(scene, RULE)
-    jump = jump_operator(points, scene.blocks.centroid)
-    shapes = [np.eye(3)] * len(scene.blocks)
-    translations = [np.eye(3)[:, :2]] * len(scene.blocks)
-    inside, images = _images(scene)
-    spread = _spread(scene, inside, images, shapes, translations)
-    return _condensed(scene, points, inside, jump.opening @ spread, jump.slip @ spread, np.zeros(6)), 6
+    block = _Modes(np.eye(3), np.eye(3)[:, :2], np.zeros(3))
+    return _moduli(scene, points, jump_operator(points, scene.blocks.centroid), [block] * len(scene.blocks))
 
 
 def deformable_cell(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> tuple[Array, int]:
     """The same of blocks in triangles, in as many modes as `fem` takes."""
     wall = modal_wall(scene, cells, modes, RULE)
-    jump = nodal_jump(wall.elements, len(wall.mesh.points))
-    shapes, translations = [], []
+    blocks = []
     for template, nodes in zip(wall.place[:, 0], np.diff(wall.mesh.first_node), strict=True):
-        # The ground has no template; no block of the cell touches it.
-        shapes.append(np.zeros((2 * nodes, 0)) if template < 0 else wall.templates[template].modes.shape)
-        translations.append(np.tile(np.eye(2), (nodes, 1)))
-    inside, images = _images(scene)
-    spread = _spread(scene, inside, images, shapes, translations)
-    own = np.concatenate([wall.templates[wall.place[block, 0]].modes.stiffness for block in inside])
-    opening, slip = jump.opening @ spread, jump.slip @ spread
-    return _condensed(scene, wall.elements.points, inside, opening, slip, own), len(own)
+        shape, stiffness = np.zeros((2 * nodes, 0)), np.zeros(0)  # of the ground, which no block of the cell touches
+        if template >= 0:
+            shape, stiffness = wall.templates[template].modes.shape, wall.templates[template].modes.stiffness
+        blocks.append(_Modes(shape, np.tile(np.eye(2), (nodes, 1)), stiffness))
+    return _moduli(scene, wall.elements.points, nodal_jump(wall.elements, len(wall.mesh.points)), blocks)
 
 
 def _images(scene: Scene) -> tuple[Indices, Indices]:
@@ -61,38 +62,25 @@ def _images(scene: Scene) -> tuple[Indices, Indices]:
     return inside, np.where(alike.any(axis=1), alike.argmax(axis=1), -1)
 
 
-def _spread(
-    scene: Scene, inside: Indices, images: Indices, shapes: Sequence[Array], translations: Sequence[Array]
-) -> Array:
-    """Freedoms of all blocks per coordinate of the cell and macroscopic strain."""
-    row = np.cumsum([0, *(len(shape) for shape in shapes)])
-    column = np.cumsum([0, *(shapes[block].shape[1] for block in inside)])
-    spread = np.zeros((row[-1], column[-1] + 3))
+def _moduli(scene: Scene, points: JointPoints, jump: Jump, blocks: Sequence[_Modes]) -> tuple[Array, int]:
+    """Stiffness against macroscopic strain once the cell's coordinates are at rest, and their number n."""
+    inside, images = _images(scene)
+    row = np.cumsum([0, *(len(block.shape) for block in blocks)])
+    column = np.cumsum([0, *(blocks[block].shape.shape[1] for block in inside)])
+    spread = np.zeros((row[-1], column[-1] + 3))  # freedoms of all blocks per coordinate and strain
     for block, image in enumerate(images):
-        if image < 0:
-            continue
-        own = slice(row[block], row[block + 1])
-        spread[own, column[image] : column[image + 1]] = shapes[block]
-        x, y = scene.blocks.centroid[block] - scene.blocks.centroid[inside[image]]
-        spread[own, -3:] = translations[block] @ [[x, 0, y], [0, y, x]]
-    return spread
-
-
-def _condensed(scene: Scene, points: JointPoints, inside: Indices, opening: Array, slip: Array, own: Array) -> Array:
-    """Stiffness against macroscopic strain once the cell's coordinates are at rest, ``(3, 3)`` [Pa].
-
-    Of jumps per coordinate and strain, ``(np, n + 3)``, and the stiffness of the coordinates themselves, ``(n,)``.
-    """
+        if image >= 0:
+            own = slice(row[block], row[block + 1])
+            spread[own, column[image] : column[image + 1]] = blocks[block].shape
+            x, y = scene.blocks.centroid[block] - scene.blocks.centroid[inside[image]]
+            spread[own, -3:] = blocks[block].translation @ [[x, 0, y], [0, y, x]]
     belongs = np.isin(points.block[:, 0], inside)
     normal, shear = ((k * points.area)[belongs, None] for k in wall_stiffness(scene, points.joint))
-    opening, slip = opening[belongs], slip[belongs]
-    energy = opening.T @ (normal * opening) + slip.T @ (shear * slip)
-    n = len(own)
-    energy[:n, :n] += np.diag(own)
+    opening, slip = (jump.opening @ spread)[belongs], (jump.slip @ spread)[belongs]
+    energy, n = opening.T @ (normal * opening) + slip.T @ (shear * slip), int(column[-1])
+    energy[:n, :n] += np.diag(np.concatenate([blocks[block].stiffness for block in inside]))
     # Scaled, for the stiffnesses of modes lie far apart; the cell's translation alone is stopped by nothing.
     scale = 1 / np.sqrt(np.diag(energy)[:n])
-    inner = energy[:n, :n] * scale[:, None] * scale
-    coupling = energy[:n, n:] * scale[:, None]
+    inner, coupling = energy[:n, :n] * scale[:, None] * scale, energy[:n, n:] * scale[:, None]
     condensed = energy[n:, n:] - coupling.T @ np.linalg.pinv(inner, 1e-12, hermitian=True) @ coupling
-    volume = scene.blocks.area[inside].sum() * scene.thickness
-    return np.asarray(condensed / volume)
+    return np.asarray(condensed / (scene.blocks.area[inside].sum() * scene.thickness)), n

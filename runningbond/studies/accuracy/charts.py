@@ -18,9 +18,7 @@ from .measure import REFERENCE
 from .parameters import VARIED
 from .tables import CHANGED, exponent, growth, stiffness
 
-FLOOR, TOP = 1e-4, 3.0
-"""Error below which all are drawn alike, zero or below the digits that are published, and the end of the axis."""
-
+FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and the end of the axis
 RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1
 """Models with three freedoms a block, and the ratio by which they stand apart."""
 
@@ -28,9 +26,7 @@ LEGEND_ROWS = 3
 FREE = "homog"  # model that is not drawn: a closed form costs nothing
 DRIVEN = "driven, steps"
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
-MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))
-"""Marks of the parameters; a model as it is has the first one, filled."""
-
+MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))  # of the parameters; a model as it is has the first one, filled
 TITLES = {
     "stack-of-5": "stack of five blocks, exact",
     "wall-w1-inset": "wall W1, published to four digits",
@@ -42,8 +38,8 @@ TITLES = {
 def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
     """Error against a cost, wall by wall."""
     figure.set_size_inches(11, 9.4)
-    timed = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != FREE]
-    judged = [row for row in timed if row.get("error") is not None]
+    drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != FREE]
+    judged = [row for row in drawn if row.get("error") is not None]
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
         if own:
@@ -67,9 +63,9 @@ def _against_seconds(axes: Axes, rows: Sequence[Row]) -> None:
 def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> None:
     """Models with the same number of them stand side by side."""
     freedoms = [float(row["dofs"]) for row in rows]
-    place = {model: i - (len(RIGID) - 1) / 2 for i, model in enumerate(RIGID)}
-    aside = [x * ASIDE ** place.get(row["model"], 0.0) for x, row in zip(freedoms, rows, strict=True)]
-    _draw_errors(axes, rows, freedoms, aside)
+    aside = {model: ASIDE ** (i - (len(RIGID) - 1) / 2) for i, model in enumerate(RIGID)}
+    beside = [x * aside.get(row["model"], 1.0) for x, row in zip(freedoms, rows, strict=True)]
+    _draw_errors(axes, rows, freedoms, beside)
     ticks: list[float] = []
     for number in sorted(set(freedoms)):
         if not ticks or number > 1.35 * ticks[-1]:
@@ -80,46 +76,42 @@ def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> None:
 
 def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequence[float]) -> None:
     """Draw errors at `x`, next to their `cost`, and the front of those that nothing beats."""
-    y = [max(row["error"], FLOOR) for row in rows]
-    right = 3 * max(x)
+    y, right = [max(row["error"], FLOOR) for row in rows], 3 * max(x)
     axes.set(xscale="log", yscale="log", xlim=(min(x) / 2, right), ylim=(FLOOR / 1.8, TOP))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
-    beside: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8, "color": "0.35"}
-    axes.annotate("0.01 % or less", (0.99, FLOOR / 1.35), xycoords=("axes fraction", "data"), **beside)
+    level: dict[str, Any] = {
+        "xycoords": ("axes fraction", "data"),
+        "ha": "right",
+        "va": "center",
+        "fontsize": 8,
+        "color": "0.35",
+    }
+    axes.annotate("0.01 % or less", (0.99, FLOOR / 1.35), **level)
     front = pareto_front(cost, y)
     ends = [x[front[0]], *(x[i] for i in front), right], [TOP, *(y[i] for i in front), y[front[-1]]]
     axes.step(*ends, where="post", color="0.55", lw=1.4, zorder=1)
+    plain = {row["model"]: error for row, error in zip(rows, y, strict=True) if not row["parameter"]}
     for at, error, row in zip(x, y, rows, strict=True):
-        colour = MODEL_LOOKS[row["model"]][0]
-        driven = row["parameter"] == DRIVEN
+        (colour, _), driven = MODEL_LOOKS[row["model"]], row["parameter"] == DRIVEN
         hollow: dict[str, Any] = {"color": "none", "mec": colour, "mew": 1.5, "ms": 9 if driven else 7, "zorder": 2}
         filled: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.8, "ms": 11, "zorder": 3}
         axes.plot(at, error, MARKS[row["parameter"]], **(hollow if row["parameter"] else filled))
+        # A setting that changes the error is named, above its mark where those of others stand beside it.
+        if row["parameter"] and not 1 / CHANGED < error / plain.get(row["model"], error) < CHANGED:
+            above = driven and row["model"] != "fem"
+            aside: dict[str, Any] = {"xytext": (-3, 7), "va": "bottom"} if above else {"xytext": (7, 0), "va": "center"}
+            aside |= {"textcoords": "offset points", "ha": "left", "fontsize": 8}
+            axes.annotate(row["setting"], (at, error), color=colour, **aside)
     axes.grid(which="major", color="0.9", lw=0.7)
-    _name_settings(axes, rows, x, y)
 
 
 def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:
     """Points that no other point beats in both cost and error, the cheapest first; of equal ones the first."""
     front: list[int] = []
-    best = np.inf
     for i in sorted(range(len(cost)), key=lambda i: (cost[i], error[i], i)):
-        if error[i] < best:
+        if not front or error[i] < error[front[-1]]:
             front.append(i)
-            best = error[i]
     return front
-
-
-def _name_settings(axes: Axes, rows: Sequence[Row], x: Sequence[float], y: Sequence[float]) -> None:
-    """Write beside its mark which setting a parameter has, where that changes the error of the model."""
-    plain = {row["model"]: error for row, error in zip(rows, y, strict=True) if not row["parameter"]}
-    for row, cost, error in zip(rows, x, y, strict=True):
-        if row["parameter"] and not 1 / CHANGED < error / plain.get(row["model"], error) < CHANGED:
-            # Above the mark where those of others stand beside it.
-            above = row["parameter"] == DRIVEN and row["model"] != "fem"
-            aside: dict[str, Any] = {"xytext": (-3, 7), "va": "bottom"} if above else {"xytext": (7, 0), "va": "center"}
-            aside |= {"textcoords": "offset points", "ha": "left", "fontsize": 8}
-            axes.annotate(row["setting"], (cost, error), color=MODEL_LOOKS[row["model"]][0], **aside)
 
 
 def _in_units(unit: float) -> tuple[Callable[[ArrayLike], Array], Callable[[ArrayLike], Array]]:
@@ -137,8 +129,7 @@ def _legend(figure: Figure, rows: Sequence[Row]) -> None:
     hollow = {"ms": 8, "mfc": "none", "mec": "0.3", "mew": 1.4}
     handles += [mark(marker, f"{name} changed", **hollow) for name, marker in MARKS.items() if name and name in met]
     handles.append(Line2D([], [], color="0.55", lw=1.4, label="nothing is cheaper and better"))
-    columns = -(-len(handles) // LEGEND_ROWS)
-    figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False, fontsize=10)
+    figure.legend(handles=handles, loc="outside lower center", ncols=-(-len(handles) // LEGEND_ROWS), fontsize=10)
 
 
 def draw_growth(figure: Figure, rows: Rows) -> None:
@@ -148,9 +139,8 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
     result = growth(rows)
     for model, own in result.items():
         (colour, marker), power = MODEL_LOOKS[model], exponent(own)
-        blocks, least, middle, most = (
-            [row[name] for row in own] for name in ("blocks", "cpu_s_min", "cpu_s", "cpu_s_max")
-        )
+        columns = ("blocks", "cpu_s_min", "cpu_s", "cpu_s_max")
+        blocks, least, middle, most = ([row[column] for row in own] for column in columns)
         name = model if power is None else f"{model}: blocks to the power {power:.2f}"
         axes.plot(blocks, middle, marker=marker, color=colour, ms=8, lw=2, label=name)
         axes.vlines(blocks, least, most, color=colour)
@@ -159,7 +149,7 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
     axes.minorticks_off()
     axes.set(xlabel="blocks of a square panel, b/a = 2", ylabel="processor seconds to the collapse load")
     axes.grid(color="0.9", lw=0.7)
-    figure.legend(frameon=False, fontsize=10, loc="outside lower center", ncols=2)
+    figure.legend(fontsize=10, loc="outside lower center", ncols=2)
     if REFERENCE in result:
         ratio = axes.secondary_yaxis("right", functions=_in_units(result[REFERENCE][0]["cpu_s"]))
         ratio.set_ylabel(f"times the {REFERENCE} program on {sizes[0]} blocks", color="0.35")
@@ -169,32 +159,26 @@ def draw_stiffness(figure: Figure, rows: Rows) -> None:
     """Processor seconds a physical second against Young's modulus of the blocks."""
     figure.set_size_inches(8, 5.2)
     axes = figure.add_subplot(xscale="log", yscale="log")
-    scaled, plain, rigid = stiffness(rows)
-    colour = MODEL_LOOKS["fem"][0]
-    for own, style, fill, name in (
-        (plain, "s--", "white", "as they are"),
-        (scaled, "D-", colour, "of stiff modes scaled"),
-    ):
-        young = [E / 1e9 for E in own]
-        axes.plot(young, [*own.values()], style, color=colour, mfc=fill, ms=8, lw=2, label=f"fem, masses {name}")
+    (scaled, plain, rigid), (colour, _) = stiffness(rows), MODEL_LOOKS["fem"]
+    looks: dict[str, Any] = {"color": colour, "ms": 8, "lw": 2}
+    axes.plot([E / 1e9 for E in plain], [*plain.values()], "s--", mfc="white", label="fem, masses as they are", **looks)
+    axes.plot([E / 1e9 for E in scaled], [*scaled.values()], "D-", label="fem, masses of stiff modes scaled", **looks)
     if rigid:
         axes.axhline(rigid, color=MODEL_LOOKS["dem-dynamic"][0], lw=2, ls=":", label="dem-dynamic, rigid blocks")
         axes.secondary_yaxis("right", functions=_in_units(rigid)).set_ylabel("times rigid blocks", color="0.35")
-    blocks = rows["stiffness"][0].get("blocks")
-    axes.set(
-        xlabel="Young's modulus of the blocks [GPa]", ylabel=f"processor seconds a physical second, {blocks} blocks"
-    )
+    axes.set_xlabel("Young's modulus of the blocks [GPa]")
+    axes.set_ylabel(f"processor seconds a physical second, {rows['stiffness'][0].get('blocks')} blocks")
     axes.set_xticks([E / 1e9 for E in scaled], [f"{E / 1e9:g}" for E in scaled])
     axes.minorticks_off()
     axes.grid(color="0.9", lw=0.7)
-    figure.legend(frameon=False, fontsize=10, loc="outside lower center", ncols=3)
+    figure.legend(fontsize=10, loc="outside lower center", ncols=3)
 
 
 SECONDS = "Error against processor seconds; homog, which costs nothing, is left out"
 FREEDOMS = "Error against degrees of freedom; models with as many stand side by side"
 CHARTS = (
-    Chart("accuracy-seconds", SECONDS, partial(draw_errors, _against_seconds, "cpu_s", "processor seconds")),
-    Chart("accuracy-freedoms", FREEDOMS, partial(draw_errors, _against_freedoms, "dofs", "degrees of freedom")),
-    Chart("accuracy-growth", "Growth of cost with the number of blocks", draw_growth),
-    Chart("accuracy-stiffness", "What a physical second costs where blocks are ever stiffer", draw_stiffness),
+    Chart(SECONDS, partial(draw_errors, _against_seconds, "cpu_s", "processor seconds"), "accuracy-seconds"),
+    Chart(FREEDOMS, partial(draw_errors, _against_freedoms, "dofs", "degrees of freedom"), "accuracy-freedoms"),
+    Chart("Growth of cost with the number of blocks", draw_growth, "accuracy-growth"),
+    Chart("What a physical second costs where blocks are ever stiffer", draw_stiffness, "accuracy-stiffness"),
 )

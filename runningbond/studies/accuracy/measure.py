@@ -6,24 +6,20 @@ import resource
 import statistics
 import sys
 import time
-from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from runningbond.studies import Row
 from runningbond.studies.apart import limit_time
 
 from .parameters import settings_of
 from .questions import Answer, ask
-from .walls import accuracy_walls, all_walls, error
+from .walls import Wall, accuracy_walls, all_walls, error
 
-RUNS, CHEAP = 3, 2.0
-"""Timed runs of a case, where one takes no more than so many processor seconds; one of a more expensive case."""
-
-REFERENCE = "limit"
-"""Model whose processor seconds on the same wall are the unit of ratios, which hold from machine to machine."""
-
+RUNS, CHEAP = 3, 2.0  # timed runs of a case of which one takes no more processor seconds than that; else one
+REFERENCE = "limit"  # its processor seconds on the same wall are the unit of ratios, which hold on every machine
 MEGABYTE = 1e6
 
 
@@ -39,46 +35,36 @@ def measure(name: str, model: str, parameter: str, setting: str) -> Row:
     row: Row = {"blocks": wall.blocks, "question": wall.question, "known": wall.known, "machine": machine()}
     if interval is not None:
         row |= {"answer_low": interval[0], "answer_high": interval[1]}
-    small = accuracy_walls()["block-slides"].scene if wall.question == "collapse" else wall.scene
-
-    def reference() -> Answer:
-        return ask(wall.question, REFERENCE, wall.scene, {})
-
-    ask(wall.question, model, small, settings)
-    if wall.question == "collapse":
-        reference()
-    clock: list[float] = []
-    processor: list[float] = []
-    ratio: list[float] = []
-    memory: list[float] = []
-    while not clock or (len(clock) < RUNS and processor[0] <= CHEAP):
-        unit = _timed(reference)[2] if wall.question == "collapse" else None
+    brought_down = wall.question == "collapse"
+    ask(wall.question, model, accuracy_walls()["block-slides"].scene if brought_down else wall.scene, settings)
+    if brought_down:
+        ask(wall.question, REFERENCE, wall.scene, {})
+    spent: dict[str, list[float]] = {"wall_s": [], "cpu_s": [], "ratio": []}
+    memory = 0.0
+    while not spent["cpu_s"] or (len(spent["cpu_s"]) < RUNS and spent["cpu_s"][0] <= CHEAP):
+        unit = _timed(wall, REFERENCE, {})[2] if brought_down else None
         limit_time()
         held = start_of_memory()
-        answer, *seconds = _timed(lambda: ask(wall.question, model, wall.scene, settings))
-        memory.append(max(0.0, most_memory() - held) / MEGABYTE)
-        clock.append(seconds[0])
-        processor.append(seconds[1])
-        ratio += [] if unit is None else [seconds[1] / unit]
+        answer, clock, processor = _timed(wall, model, settings)
+        memory = max(memory, (most_memory() - held) / MEGABYTE)
+        spent["wall_s"].append(clock)
+        spent["cpu_s"].append(processor)
+        spent["ratio"] += [] if unit is None else [processor / unit]
     row |= answer._asdict()
     if interval is not None and answer.value is not None:
         row["error"] = error(answer.value, interval)
-    row |= {"runs": len(clock), "memory_mb": max(memory)}
-    return row | _spread("wall_s", clock) | _spread("cpu_s", processor) | _spread("ratio", ratio)
+    row |= {"runs": len(spent["cpu_s"]), "memory_mb": memory}
+    for name, values in spent.items():
+        if values:
+            row |= {name: statistics.median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
+    return row
 
 
-def _timed(run: Callable[[], Answer]) -> tuple[Answer, float, float]:
+def _timed(wall: Wall, model: str, settings: dict[str, Any]) -> tuple[Answer, float, float]:
     """An answer, and its seconds by the clock and of the processor."""
     clock, processor = time.perf_counter(), time.process_time()
-    result = run()
+    result = ask(wall.question, model, wall.scene, settings)
     return result, time.perf_counter() - clock, time.process_time() - processor
-
-
-def _spread(name: str, values: Sequence[float]) -> Row:
-    """Median, least and most of what was measured, if anything was."""
-    if not values:
-        return {}
-    return {name: statistics.median(values), f"{name}_min": min(values), f"{name}_max": max(values)}
 
 
 @cache

@@ -14,16 +14,13 @@ MODES: dict[str, dict[str, Any]] = {str(count): {"modes": count} for count in (3
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of some models, arguments of the model by the name of each setting, and walls on which it is varied.
-
-    Settings that are too expensive for most walls are tried on the first two alone.
-    """
+    """A parameter of some models that is varied."""
 
     name: str
     models: tuple[str, ...]
-    settings: dict[str, dict[str, Any]]
+    settings: dict[str, dict[str, Any]]  # arguments of the model by the name of each setting
     walls: tuple[str, ...] = VARIED
-    expensive: tuple[str, ...] = ()
+    expensive: tuple[str, ...] = ()  # settings that are tried on the first two walls alone
 
 
 IN_MOTION = ("dem-dynamic", "fem")
@@ -57,9 +54,9 @@ Three Lobatto points are Simpson's rule.
 
 def settings_of(model: str, parameter: str, setting: str) -> dict[str, Any]:
     """Arguments of a model by which a parameter has a setting; none where no parameter is named."""
-    if not parameter:
-        return {}
-    for result in PARAMETERS:
-        if result.name == parameter and model in result.models and setting in result.settings:
-            return result.settings[setting]
-    raise KeyError(f"{model} has no parameter {parameter!r} with {setting!r}")
+    for each in PARAMETERS if parameter else ():
+        if each.name == parameter and model in each.models and setting in each.settings:
+            return each.settings[setting]
+    if parameter:
+        raise KeyError(f"{model} has no parameter {parameter!r} with {setting!r}")
+    return {}

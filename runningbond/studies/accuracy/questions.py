@@ -15,7 +15,7 @@ from fem_interface.system import system_of
 from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.scene import Array, Scene, SceneError, Stiffness
+from runningbond.scene import Scene, SceneError, Stiffness
 
 from .cell import deformable_cell, rigid_cell
 from .walls import TURNED, Question, rigid_moduli
@@ -27,13 +27,10 @@ SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; softer ones allow l
 
 
 class Answer(NamedTuple):
-    """What a model said, as columns of the study's table; the value that was asked for may have a bracket.
+    """What a model said, as columns of the study's table."""
 
-    `status` is that of `runningbond.results.Outcome`, or ``not applicable`` where the model has nothing to say.
-    """
-
-    status: str
-    value: float | None = None
+    status: str  # of `runningbond.results.Outcome`, or ``not applicable`` where the model has nothing to say
+    value: float | None = None  # what was asked for, and its bracket
     lower: float | None = None
     upper: float | None = None
     dofs: int | None = None
@@ -60,8 +57,7 @@ def _collapse(model: str, scene: Scene, tolerance: float = TOLERANCE, **settings
 
 
 def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:
-    run = Run(system)
-    state = State.at_rest(system)
+    run, state = Run(system), State.at_rest(system)
     settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
     return drive(run, state, distance, steps)
 
@@ -75,26 +71,21 @@ def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: 
 def _turned(model: str, scene: Scene, speed: float = SPEED, **settings: Any) -> Answer:
     """λ of one block that has turned by `TURNED`: read off a parabola through its curve on either side."""
     scene = scene.with_joint(elasticity=Stiffness(SOFT, SOFT))
-    height = scene.lowest_block
-    distance = height * np.sin(1.5 * TURNED)
+    system, height = _system(model, scene), scene.lowest_block
+    distance, steps, push = height * np.sin(1.5 * TURNED), None, MODELS[model].pushover
     if "drive" in settings:
-        system = _system(model, scene)
         pushed = _drive(system, scene, distance, settings["drive"])
-        return _read_off(pushed.curve[:, 0] / height, pushed.curve[:, 1], system.freedoms, pushed.state.steps)
-    push = MODELS[model].pushover
-    assert push is not None
-    curve = push(scene, distance, speed=speed)
-    # The control point stands above the corner about which the block turns.
-    return _read_off(np.arcsin(curve[:, 0] / height), curve[:, 2], _system(model, scene).freedoms, None)
-
-
-def _read_off(turned: Array, multiplier: Array, dofs: int, steps: int | None) -> Answer:
+        turned, multiplier, steps = pushed.curve[:, 0] / height, pushed.curve[:, 1], pushed.state.steps
+    else:
+        assert push is not None
+        curve = push(scene, distance, speed=speed)
+        # The control point stands above the corner about which the block turns.
+        turned, multiplier = np.arcsin(curve[:, 0] / height), curve[:, 2]
     turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # a row's λ is the mean since the last row
     near = np.abs(turned - TURNED) < TURNED / 2
     parabola = np.polynomial.Polynomial.fit(turned[near], multiplier[near], 2)
-    scatter = float(np.std(multiplier[near] - parabola(turned[near])))
-    value = float(parabola(TURNED))
-    return Answer("collapse", value, None, None, dofs, steps, f"curve scatters by {scatter:.1e}")
+    scatter = f"curve scatters by {float(np.std(multiplier[near] - parabola(turned[near]))):.1e}"
+    return Answer("collapse", float(parabola(TURNED)), None, None, system.freedoms, steps, scatter)
 
 
 def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
@@ -109,17 +100,15 @@ def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCo
 def _physical_second(model: str, scene: Scene, **settings: Any) -> Answer:
     """Processor seconds that a second of the wall's time takes, with the spread of the measurements."""
     system = _system(model, scene, **settings)
-    run = Run(system)
-    state = State.at_rest(system)
+    run, state = Run(system), State.at_rest(system)
     run.hold(state, 0.2, STEPS)
     costs = []
     for _ in range(RUNS):
         start = time.process_time()
         run.hold(state, 0.2, STEPS)
         costs.append((time.process_time() - start) / (STEPS * run.dt))
-    middle = statistics.median(costs)
     step = f"time step {1e6 * run.dt:.4g} µs"
-    return Answer("measured", middle, min(costs), max(costs), system.freedoms, STEPS, step)
+    return Answer("measured", statistics.median(costs), min(costs), max(costs), system.freedoms, STEPS, step)
 
 
 QUESTIONS: dict[Question, Callable[..., Answer]] = {

@@ -1,6 +1,6 @@
 """The study of accuracy against cost: its cases, and how its page tells of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from fem_interface.modes import BENDING
@@ -14,18 +14,13 @@ from runningbond.studies.walls import INSET
 
 from .charts import CHARTS
 from .measure import CHEAP, REFERENCE, RUNS, machine, measure
-from .parameters import COLLAPSE, IN_MOTION, PARAMETERS, settings_of
+from .parameters import COLLAPSE, IN_MOTION, PARAMETERS, STIFF, settings_of
 from .tables import fits, tables
-from .walls import accuracy_walls, all_walls, growth_walls, stiffness_walls
+from .walls import Wall, accuracy_walls, all_walls, growth_walls, stiffness_walls
 
-ASKED = {
-    "collapse": ("homog", *COLLAPSE),
-    "turned block": IN_MOTION,
-    "compression": ("homog", "dem-static", "fem"),
-    "shear": ("homog", "dem-static", "fem"),
-}
-"""Models that are asked each question."""
-
+ELASTIC = ("homog", "dem-static", "fem")
+ASKED = {"collapse": ("homog", *COLLAPSE), "turned block": IN_MOTION, "compression": ELASTIC, "shear": ELASTIC}
+ASKED |= {"physical second": ("fem",)}
 HOW = (
     "Walls with an exact answer are a block that topples, one that slides and a stack, λ = min(tan φ, b / (n h)); a "
     "block that has turned by θ, λ = tan(α − θ); and periodic cells. W1 – W3 of Ferris & Tin-Loi have their contacts "
@@ -47,51 +42,39 @@ HOW = (
 """How the study is made, for its reader."""
 
 
-def _accuracy() -> Iterator[Case]:
-    """Every model on every wall whose answer is known, as it is and with each parameter that is varied there."""
-    for name, wall in accuracy_walls().items():
+def _cases(walls: Mapping[str, Wall]) -> Iterator[Case]:
+    """Every model on every wall that it is asked about, as it is and with each parameter that is varied there."""
+    for name, wall in walls.items():
         for model in ASKED[wall.question]:
             if model == "homog" and wall.question == "collapse" and wall.known != "certified":
                 continue  # a continuum of one block, or one that is no running bond, says nothing
             if name != "cell-shear" or model != "fem":  # deformable blocks have no closed form
                 yield name, model, "", ""
-            yield from _varied(name, model)
-
-
-def _stiffness() -> Iterator[Case]:
-    for name in stiffness_walls():
-        yield name, "fem", "", ""
-        yield from _varied(name, "fem")
-    yield name, "dem-dynamic", "", ""
-
-
-def _varied(wall: str, model: str) -> Iterator[Case]:
-    for parameter in PARAMETERS:
-        if model in parameter.models and wall in parameter.walls:
-            for setting in parameter.settings:
-                if setting not in parameter.expensive or wall in parameter.walls[:2]:
-                    yield wall, model, parameter.name, setting
+            for parameter in PARAMETERS:
+                if model in parameter.models and name in parameter.walls:
+                    for setting in parameter.settings:
+                        if setting not in parameter.expensive or name in parameter.walls[:2]:
+                            yield name, model, parameter.name, setting
 
 
 def depends(case: Case) -> str:
     """Scene, settings and machine."""
-    wall, model, parameter, setting = case
-    return fingerprint(all_walls()[wall].scene, f"{settings_of(model, parameter, setting)!r} {machine()}", 0.0)
+    return fingerprint(all_walls()[case[0]].scene, f"{settings_of(*case[1:])!r} {machine()}", 0.0)
 
 
 COLUMNS = ("wall", "model", "parameter", "setting")
 OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "cell", "questions", "measure")]
 SOURCES = (*OWN, PACKAGE / "studies" / "walls.py", PACKAGE / "compare" / "models.py")
-GROWTH = [(name, model, "", "") for name in growth_walls() for model in COLLAPSE]
+CASES = {
+    "accuracy": [*_cases(accuracy_walls())],
+    "stiffness": [*_cases(stiffness_walls()), (STIFF[-1], "dem-dynamic", "", "")],
+    "growth": [(name, model, "", "") for name in growth_walls() for model in COLLAPSE],
+}
 
 STUDY = Study(
     "study",
     "Speed against accuracy",
-    parts={
-        "accuracy": Part(COLUMNS, [*_accuracy()], measure),
-        "stiffness": Part(COLUMNS, [*_stiffness()], measure),
-        "growth": Part(COLUMNS, GROWTH, measure),
-    },
+    parts={name: Part(COLUMNS, cases, measure) for name, cases in CASES.items()},
     charts=CHARTS,
     fits=fits,
     tables=tables,

@@ -17,15 +17,13 @@ from .measure import REFERENCE
 from .parameters import IN_MOTION, VARIED
 from .walls import all_walls
 
-KINDS = {
+KINDS = {  # models of which the cheapest is looked for
     "any": tuple(MODELS),
     "without a path": (REFERENCE, "limit-nonassociated"),
     "follows a path": ("dem-static", *IN_MOTION),
     "in motion": IN_MOTION,
 }
-"""Models of which the cheapest is looked for."""
-
-QUESTIONS = {
+QUESTIONS = {  # what each model is taken for
     "homog": "the trend in texture and slenderness",
     "limit": "a bound at once",
     "limit-nonassociated": "true friction, without a path",
@@ -33,16 +31,10 @@ QUESTIONS = {
     "dem-dynamic": "loads brought up in time",
     "fem": "blocks that deform or crack",
 }
-"""What each model is taken for."""
-
-CHANGED, DEARER, EXACT = 1.5, 1.25, 1e-4
-"""Ratios of errors and of costs from which on a parameter is said to change them, and error that counts as none: below
-the digits of the answers that are published."""
-
+CHANGED, DEARER = 1.5, 1.25  # ratios of errors and of costs from which on a parameter is said to change them
+EXACT = 1e-4  # error that counts as none: below the digits of the answers that are published
 TOLERANCES = (0.10, 0.05, 0.02, 0.01, 0.005)
-
-Setting: TypeAlias = tuple[str, str, str]
-"""Model, parameter and setting; the last two empty where the model runs as it is."""
+Setting: TypeAlias = tuple[str, str, str]  # model, parameter and setting; the last two empty for a model as it is
 
 
 def setting_of(row: Row) -> Setting:
@@ -68,28 +60,17 @@ def times(ratio: float) -> str:
 
 @dataclass(frozen=True)
 class Record:
-    """How one setting did on walls brought to collapse.
+    """How one setting did on walls brought to collapse."""
 
-    Rows with a number that can be judged, walls without a number, and walls whose answer it certified itself.
-    """
-
-    judged: Sequence[Row]
-    unanswered: Sequence[str]
-    own: Sequence[str]
+    judged: Sequence[Row]  # with a number that can be judged
+    unanswered: Sequence[str]  # walls without a number,
+    own: Sequence[str]  # and those whose answer it certified itself
+    error: float  # the largest
+    ratio: float  # median cost, in runs of `REFERENCE`
 
     def all(self, column: str) -> list[Any]:
         """A column of the rows that are judged."""
         return [row[column] for row in self.judged]
-
-    @property
-    def error(self) -> float:
-        """Largest error."""
-        return float(max(self.all("error")))
-
-    @property
-    def ratio(self) -> float:
-        """Median cost, in runs of `REFERENCE`."""
-        return float(statistics.median(self.all("ratio")))
 
 
 def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Record]:
@@ -106,21 +87,20 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Rec
         judged = [row for row in own if row not in certified and row.get("error") is not None and row.get("ratio")]
         if judged:
             silent = [row["wall"] for row in own if row.get("value") is None]
-            result[setting] = Record(judged, silent, [row["wall"] for row in certified])
+            error, ratio = max(row["error"] for row in judged), statistics.median(row["ratio"] for row in judged)
+            result[setting] = Record(judged, silent, [row["wall"] for row in certified], error, ratio)
     return result
 
 
-def cheapest(
-    result: dict[Setting, Record], tolerance: float, walls: Sequence[str], models: Sequence[str]
-) -> Setting | None:
-    """The cheapest setting of some models whose error on every one of some walls is within a tolerance.
+def cheapest(result: dict[Setting, Record], tolerance: float, models: Sequence[str]) -> Setting | None:
+    """The cheapest setting of some models whose error on every wall of `VARIED` is within a tolerance.
 
     Where a model certified the answer itself, it counts as within.
     """
     good = [
         (record.ratio, setting)
         for setting, record in result.items()
-        if setting[0] in models and set(walls) <= {*record.all("wall"), *record.own} and record.error <= tolerance
+        if setting[0] in models and {*VARIED} <= {*record.all("wall"), *record.own} and record.error <= tolerance
     ]
     return min(good)[1] if good else None
 
@@ -128,9 +108,7 @@ def cheapest(
 def models_table(rows: Rows) -> Sheet:
     """Every model as it is, on the walls whose answer is known."""
     body, result = [], records(rows)
-    for model in MODELS:
-        if (record := result.get((model, "", ""))) is None:
-            continue
+    for model, record in [(model, result[model, "", ""]) for model in MODELS if (model, "", "") in result]:
         errors, ratios = record.all("error"), record.all("ratio")
         worst = record.all("wall")[errors.index(max(errors))]
         missed = [row for row in record.judged if row["error"] > EXACT]
@@ -168,9 +146,8 @@ def cheapest_table(rows: Rows) -> Sheet:
     body, result = [], records(rows, VARIED)
     for tolerance in TOLERANCES if result else ():
         for kind, models in KINDS.items():
-            setting = cheapest(result, tolerance, VARIED, models)
             cells = ["none", "", ""]
-            if setting is not None:
+            if (setting := cheapest(result, tolerance, models)) is not None:
                 cells = [label(setting), times(result[setting].ratio), percent(result[setting].error)]
             body.append([f"{100 * tolerance:g} %", kind, *cells])
     heads = ["within", "kind", "cheapest", f"times {REFERENCE}", "largest error"]
@@ -204,15 +181,14 @@ def exponent(rows: Sequence[Row]) -> float | None:
 
 def growth_table(rows: Rows) -> Sheet:
     """Processor seconds against the number of blocks."""
-    walls = list(dict.fromkeys(row["wall"] for row in rows["growth"]))
-    body = []
+    body, walls = [], list(dict.fromkeys(row["wall"] for row in rows["growth"]))
     for model, timed in growth(rows).items():
         own = {row["wall"]: row for row in rows["growth"] if row["model"] == model}
         power, memory = exponent(timed), timed[-1]["memory_mb"]
         cells = [_seconds(own.get(wall, {})) for wall in walls]
         body.append([model, *cells, "" if power is None else f"{power:.2f}", f"{memory:.1f}"])
-    sizes = [f"{all_walls()[wall].blocks} blocks" for wall in walls]
-    heads = ["model", *sizes, "exponent", "memory of the largest [MB]"]
+    heads = ["model", *(f"{all_walls()[wall].blocks} blocks" for wall in walls)]
+    heads += ["exponent", "memory of the largest [MB]"]
     return Sheet("Processor seconds against the number of blocks: median (least – most)", heads, body)
 
 
@@ -220,26 +196,23 @@ def _seconds(row: Row) -> str:
     if row.get("cpu_s") is None:
         return "left out: too long" if row.get("status") == TOO_LONG else row.get("status", "")
     spread = f" ({row['cpu_s_min']:.2g} – {row['cpu_s_max']:.2g})" if row["runs"] > 1 else ""
-    undecided = "" if row["status"] == "collapse" else f", {row['status']}"
-    return f"{row['cpu_s']:.2g}{spread}{undecided}"
+    return f"{row['cpu_s']:.2g}{spread}" + ("" if row["status"] == "collapse" else f", {row['status']}")
 
 
 def stiffness(rows: Rows) -> tuple[dict[float, float], dict[float, float], float | None]:
     """Processor seconds a physical second by Young's modulus [Pa], masses scaled and not, and of rigid blocks."""
-    result: tuple[dict[float, float], dict[float, float]] = {}, {}
-    rigid = None
+    scaled, plain, rigid = dict[float, float](), dict[float, float](), None
     for row in rows["stiffness"]:
         if row["model"] == "dem-dynamic":
             rigid = row.get("value")
         elif row.get("value") is not None:
-            result[row["parameter"] != ""][float(row["wall"].removeprefix("stiff-"))] = row["value"]
-    return *result, rigid
+            (plain if row["parameter"] else scaled)[float(row["wall"].removeprefix("stiff-"))] = row["value"]
+    return scaled, plain, rigid
 
 
 def stiffness_table(rows: Rows) -> Sheet:
     """What a physical second costs where blocks are ever stiffer."""
-    scaled, plain, rigid = stiffness(rows)
-    body = []
+    body, (scaled, plain, rigid) = [], stiffness(rows)
     for young, cost in scaled.items():
         unscaled = [f"{plain[young]:.2g}", times(plain[young] / cost)] if young in plain else ["", ""]
         body.append([f"{young / 1e9:g}", f"{cost:.2g}", *unscaled, times(cost / rigid) if rigid else ""])

@@ -12,14 +12,11 @@ from runningbond.limit import limit_nonassociated
 from runningbond.scene import Scene, scene_from_dict
 from runningbond.studies.walls import inset_wall
 
-Known: TypeAlias = Literal["exact", "published", "certified", ""]
-"""What an answer is worth; nothing where none is known."""
-
+Known: TypeAlias = Literal["exact", "published", "certified", ""]  # what an answer is worth, where one is known
 Question: TypeAlias = Literal["collapse", "turned block", "compression", "shear", "physical second"]
 """λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second."""
 
 Interval: TypeAlias = tuple[float, float]
-
 PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
 """Their λ with contacts moved in (Ferris & Tin-Loi 2001), to four digits."""
 
@@ -31,15 +28,12 @@ STIFF = 1e12  # Young's modulus of blocks where nothing else is said, the paper'
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A wall, what is asked of it, and what the answer is worth.
-
-    `answer` is the interval in which it lies; None where it is to be certified (`interval`), or not known.
-    """
+    """A wall, what is asked of it, and what the answer is worth."""
 
     scene: Scene
     question: Question = "collapse"
     known: Known = ""
-    answer: Interval | None = None
+    answer: Interval | None = None  # in which it lies; None where it is to be certified (`interval`), or not known
 
     @property
     def blocks(self) -> int:
@@ -67,11 +61,10 @@ def _exactly(scene: Scene, answer: float, question: Question = "collapse") -> Wa
     return Wall(scene, question, "exact", (answer, answer))
 
 
-def _scene(block: tuple[float, float], friction: float, young: float = STIFF, **wall: Any) -> Scene:
-    size = {"block_width": block[0], "block_height": block[1], "thickness": 0.12}
+def _scene(width: float, height: float, friction: float, young: float = STIFF, /, **wall: Any) -> Scene:
     return scene_from_dict(
         {
-            "wall": {**size, **wall},
+            "wall": {"block_width": width, "block_height": height, "thickness": 0.12, **wall},
             "block": {"density": 1800.0, "young": young, "poisson": 0.0},
             "joint": {"friction": friction, "mortar": dict(MORTAR)},
             "support": {"kind": "base"},
@@ -82,13 +75,13 @@ def _scene(block: tuple[float, float], friction: float, young: float = STIFF, **
 
 def pile(width: float, height: float, count: int, friction: float) -> Wall:
     """A stack of n blocks b × h, which falls at λ = min(tan φ, b / (n h))."""
-    scene = _scene((width, height), friction, courses=[[1]] * count)
+    scene = _scene(width, height, friction, courses=[[1]] * count)
     return _exactly(scene, min(friction, width / (count * height)))
 
 
 def turned_block(width: float, height: float) -> Wall:
     """A block that has turned by θ about its corner bears λ = tan(α − θ), tan α = b / h."""
-    scene = _scene((width, height), 0.9, courses=[[1]])
+    scene = _scene(width, height, 0.9, courses=[[1]])
     return _exactly(scene, math.tan(math.atan2(width, height) - TURNED), "turned block")
 
 
@@ -98,10 +91,9 @@ def elastic_cell(young: float, question: Question, width: float = 0.24, height: 
     Compressed across its bed joints, blocks without lateral strain are springs in series with them,
     1 / A2222 = 1 / (a k_n) + 1 / E; sheared, rigid blocks have the closed form of `homog`.
     """
-    scene = _scene((width, height), 0.6, young, length=6 * width, height=6 * height)
-    if question == "compression":
-        return _exactly(scene, 1 / (1 / (height * joint_stiffness(scene.joint).normal) + 1 / young), question)
-    return _exactly(scene, rigid_moduli(scene).a1212, question)
+    scene = _scene(width, height, 0.6, young, length=6 * width, height=6 * height)
+    in_series = 1 / (1 / (height * joint_stiffness(scene.joint).normal) + 1 / young)
+    return _exactly(scene, in_series if question == "compression" else rigid_moduli(scene).a1212, question)
 
 
 def rigid_moduli(scene: Scene) -> Moduli:
@@ -113,25 +105,20 @@ def rigid_moduli(scene: Scene) -> Moduli:
     return elastic_moduli(scene.bond.width, scene.bond.height, **springs)
 
 
-def published_wall(name: str) -> Wall:
-    """A wall of Ferris & Tin-Loi with contacts moved in."""
-    middle = PUBLISHED_INSET[name]
-    return Wall(inset_wall(name), "collapse", "published", (middle - DIGITS, middle + DIGITS))
-
-
 def square_panel(courses: int, young: float = STIFF) -> Scene:
     """A square panel of blocks twice as wide as high, the texture of panel-06; its number of courses is even."""
-    return _scene((0.12, 0.06), 0.6, young, length=0.06 * courses, height=0.06 * courses)
+    return _scene(0.12, 0.06, 0.6, young, length=0.06 * courses, height=0.06 * courses)
 
 
 @cache
 def accuracy_walls() -> dict[str, Wall]:
     """Walls of which the answer is known, by name."""
+    inset = {name: (middle - DIGITS, middle + DIGITS) for name, middle in PUBLISHED_INSET.items()}
     return {
         "block-topples": pile(0.23, 0.36, 1, 0.9),
         "block-slides": pile(0.23, 0.36, 1, 0.497),
         "stack-of-5": pile(0.23, 0.1, 5, 0.9),
-        **{f"{name}-inset": published_wall(name) for name in PUBLISHED_INSET},
+        **{f"{name}-inset": Wall(inset_wall(name), "collapse", "published", known) for name, known in inset.items()},
         **{name: Wall(published_scene(name), known="certified") for name in ("panel-02", "panel-03", "panel-04")},
         "turned-block": turned_block(0.1, 0.4),
         **{f"cell-{young:.0e}".replace("+", ""): elastic_cell(young, "compression") for young in (1e10, 1e11, 1e12)},
@@ -148,11 +135,8 @@ def growth_walls() -> dict[str, Wall]:
 @cache
 def stiffness_walls() -> dict[str, Wall]:
     """One wall whose blocks are ever stiffer."""
-    scene = square_panel(12)
-    return {
-        f"stiff-1e{power}": Wall(scene.with_block(density=1800.0, young=10.0**power, poisson=0.0), "physical second")
-        for power in range(9, 14)
-    }
+    stiff = {n: square_panel(12).with_block(density=1800.0, young=10.0**n, poisson=0.0) for n in range(9, 14)}
+    return {f"stiff-1e{n}": Wall(scene, "physical second") for n, scene in stiff.items()}
 
 
 @cache

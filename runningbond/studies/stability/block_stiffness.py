@@ -6,6 +6,7 @@ the band in which the wall moves that have no place there.
 """
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,9 +22,7 @@ from runningbond.studies.charts import bracket, level, looks_of, series
 from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row, vibrations
 
 YOUNG = (1e9, 1e10, 1e11, 1e12, 1e13)
-EXPENSIVE = 1e11
-"""Young's modulus [Pa] beyond which the wall is not brought down without mass scaling: it would take minutes."""
-
+EXPENSIVE = 1e11  # E [Pa] beyond which the wall is not brought down without mass scaling: it would take minutes
 NONE, EACH, UNIFORM = SCALINGS = ("none", "each mode by its own", "all modes by one factor")
 KIND, YOUNGS = "masses scaled", "E [Pa]"
 PART, STEP, SHIFT = "W1, its blocks ever stiffer", "time step [µs]", f"largest shift of the {LOWEST} lowest ω [%]"
@@ -31,26 +30,25 @@ PART, STEP, SHIFT = "W1, its blocks ever stiffer", "time step [µs]", f"largest 
 
 def wall(young: float) -> Scene:
     """W1 of blocks of a Young's modulus [Pa], its joints inset, so that its λ is one number."""
-    scene = inset_wall("wall-w1")
-    return scene.with_block(young=young)
+    return inset_wall("wall-w1").with_block(young=young)
 
 
 def uniformly_scaled(result: ModalWall, system: BlockSystem, target: float) -> BlockSystem:
     """The system with all deformable modes heavier by the factor that brings its largest ω² to a target [1/s²]."""
-    factor = max(1.0, system.interface.frequency_squared / target)
-    mass = np.where(result.stiffness > 0, factor * result.mass, result.mass)
-    bound = min(target, system.interface.frequency_squared)
-    return replace(system, mass=mass, interface=replace(system.interface, frequency_squared=bound))
+    squared = system.interface.frequency_squared
+    mass = np.where(result.stiffness > 0, max(1.0, squared / target) * result.mass, result.mass)
+    return replace(system, mass=mass, interface=replace(system.interface, frequency_squared=min(target, squared)))
 
 
 def measure(young: float, scaling: str) -> Row:
     """Step, frequencies and λ of the wall with one way of scaling."""
     result, rigid = modal_wall(wall(young)), system_of(modal_wall(wall(young), 1, 3))
     plain = system = system_of(result, mass_scaling=False)
-    if scaling != NONE:
-        uniform = uniformly_scaled(result, plain, rigid.interface.frequency_squared)
-        system = uniform if scaling == UNIFORM else system_of(result)
-    (frequencies, _), (exact, _), (of_rigid, _) = map(vibrations, (system, plain, rigid))
+    if scaling == EACH:
+        system = system_of(result)
+    elif scaling == UNIFORM:
+        system = uniformly_scaled(result, plain, rigid.interface.frequency_squared)
+    frequencies, exact, of_rigid = (vibrations(each)[0] for each in (system, plain, rigid))
     row: Row = {
         "largest factor": largest_scaling(result, system.mass),
         STEP: 1e6 * Run(system).dt,
@@ -81,7 +79,7 @@ def fits(rows: Rows) -> list[Edge]:
 def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(11, 4.8)
     steps, loads, shifts = figure.subplots(1, 3)
-    looks, own = looks_of(SCALINGS), rows[PART]
+    looks, own, exact = looks_of(SCALINGS), rows[PART], known_wall(W1).multiplier
     hollow = {"mfc": "none", "lw": 1.2}
     series(steps, [row for row in own if row[KIND] != UNIFORM], YOUNGS, STEP, KIND, looks, **hollow)
     series(shifts, [row for row in own if row[KIND] != NONE], YOUNGS, SHIFT, KIND, looks, **hollow)
@@ -89,7 +87,6 @@ def _draw(figure: Figure, rows: Rows) -> None:
         if row.get("λ upper") is not None:
             bracket(loads, (0.9 if row[KIND] == NONE else 1.12) * row[YOUNGS], row, looks[row[KIND]][0])
     level(steps, own[0]["of rigid blocks [µs]"], "rigid blocks", 0.05, ha="left")
-    exact = known_wall(W1).multiplier
     level(loads, exact, "certified", 0.83, ha="center")
     steps.set(yscale="log", ylabel=STEP)
     loads.set(ylabel="λ of wall W1, inset 20 mm", ylim=(0.97 * exact, 1.03 * exact))
@@ -98,7 +95,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
         axes.set(xscale="log", xlabel="Young's modulus of blocks [Pa]")
     handles = {line.get_label(): line for axes in (steps, shifts) for line in axes.get_legend_handles_labels()[0]}
     title = "masses of deformable modes scaled:"
-    figure.legend(handles=[*handles.values()], title=title, loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(handles=[*handles.values()], title=title, loc="outside lower center", ncols=3, fontsize="medium")
 
 
 STUDY = Study(
@@ -107,7 +104,7 @@ STUDY = Study(
     trusted="λ does not depend on the blocks' stiffness, and `fem`'s own scaling leaves the lowest frequencies alone",
     beyond="many times as many steps without scaling; with one factor for all deformable modes blocks would vibrate in "
     "the band in which they move as wholes, and `fem` does not offer it",
-    parts={PART: Part((YOUNGS, KIND), [(E, kind) for E in YOUNG for kind in SCALINGS], measure)},
-    charts=[Chart("block-stiffness", "Time step, λ and lowest frequencies of blocks from soft to stiff", _draw)],
+    parts={PART: Part((YOUNGS, KIND), [*product(YOUNG, SCALINGS)], measure)},
+    charts=[Chart("Time step, λ and lowest frequencies of blocks from soft to stiff", _draw)],
     fits=fits,
 )

@@ -14,8 +14,9 @@ has come far.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,19 +32,16 @@ from runningbond.studies.charts import LOOKS, looks_of
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, known_wall
 
 LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)  # local damping α
-
-VISCOSITIES = (0.0, 0.01, 0.03, VISCOUS, 0.3, 1.0, 3.0)
-"""Damping ratio ξ of the joints' viscosity at the highest frequency."""
-
+VISCOSITIES = (0.0, 0.01, 0.03, VISCOUS, 0.3, 1.0, 3.0)  # damping ratio ξ of the joints at the highest frequency
 MASS_RATES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0)  # rates c of mass-proportional damping [1/s]
-
-WALLS, BESIDE, BUDGET, SHORT, CLOSE = (SLIDING, W1), 0.02, 300_000, 20_000, 0.002
-"""Walls of the maps; share of λ_c by which loads lie below and above it; steps after which a verdict is given up, and
-in which a block is to come to rest under its weight or to be seen to fall at the edges of α; width of the edges."""
-
+WALLS, BESIDE = (SLIDING, W1), 0.02  # of the maps, and share of λ_c by which loads lie below and above it
+BUDGET, SHORT = 300_000, 20_000  # steps after which a verdict is given up, in the maps and at the edges of α
+CLOSE = 0.002  # relative width of the edges
 MAPS, MASSIVE, EDGES = "Verdicts by damping", "Verdicts with mass-proportional damping", "Edges"
 LOAD, RATE = "λ / collapse", "c [1/s]"
-CASES = [(name, load, a, x) for name in WALLS for load in (1 - BESIDE, 1 + BESIDE) for a in LOCALS for x in VISCOSITIES]
+LEAST = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
+MOST = f"least 1 − α with which a fall at {1 + BESIDE:g} λ is seen in {SHORT} steps"
+FEIGNED = f"largest mass-proportional damping that does not feign rest at {1 + BESIDE:g} λ [1/s]"
 
 
 def judged(
@@ -55,17 +53,14 @@ def judged(
     """
     wall = known_wall(name)
     drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)
-    system = replace(wall.system, viscosity=wall.system.viscosity + drag)
-    run = Run(system, local=local, viscous=viscous)
+    run = Run(replace(wall.system, viscosity=wall.system.viscosity + drag), local=local, viscous=viscous)
     state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget)
-    verdict = settle(run, state, 0.0, criteria, sudden=True)
-    if verdict == "collapse":
-        return {"verdict": "wrong", "steps": state.steps}
+    verdict, right = settle(run, state, 0.0, criteria, sudden=True), False
     if verdict == "stable":
         ramp(run, state, 0.0, load * wall.multiplier, RAMP * state.steps)
         left = max(0, budget - state.steps)
         verdict = settle(run, state, load * wall.multiplier, replace(criteria, budget=left))
-    right = verdict == ("collapse" if load > 1 else "stable")
+        right = verdict == ("collapse" if load > 1 else "stable")
     return {"verdict": "right" if right else "undecided" if verdict == "undecided" else "wrong", "steps": state.steps}
 
 
@@ -76,10 +71,8 @@ def least_local(name: str = SLIDING) -> Row:
     """
     wall = known_wall(name)
     system, criteria = wall.system, Criteria(collapse=wall.far, budget=SHORT, interval=20)
-    dt = 0.1 * Run(system).dt
-    omega = math.sqrt(
-        (system.interface.law.normal_stiffness * system.interface.area).sum() / system.mass[system.rigid[0, 1]]
-    )
+    dt, stiffness = 0.1 * Run(system).dt, (system.interface.law.normal_stiffness * system.interface.area).sum()
+    omega = math.sqrt(stiffness / system.mass[system.rigid[0, 1]])
 
     def rings(local: float) -> bool:
         run = Run(system, local=local, viscous=0.0, dt=dt)
@@ -120,10 +113,8 @@ def most_mass_rate(name: str) -> Row:
     def surplus(rate: float) -> float:
         decay = (1 - LOCAL) * rate
         calm = math.log(beyond * wall.unbalanced / criteria.rest) / decay + looks
-        return (
-            beyond / (rate * wall.inertia) * (calm - (1 - math.exp(-decay * calm)) / decay)
-            - CollapseDetector.EARLY * wall.far
-        )
+        moved = beyond / (rate * wall.inertia) * (calm - (1 - math.exp(-decay * calm)) / decay)
+        return moved - CollapseDetector.EARLY * wall.far
 
     def seen(rate: float) -> bool:
         return bool(judged(name, load, mass_rate=rate)["verdict"] == "right")
@@ -131,11 +122,6 @@ def most_mass_rate(name: str) -> Row:
     theory = float(brentq(surplus, 0.1, 1e4))
     measured = _bisected(seen, theory / 3, theory * 3)
     return {"measured": measured, "theory": theory, "allowed": 0.02 if wall.is_block else None}
-
-
-LEAST = f"least α that brings it to rest in {SHORT} tenths of a step, ξ = 0"
-MOST = f"least 1 − α with which a fall at {1 + BESIDE:g} λ is seen in {SHORT} steps"
-FEIGNED = f"largest mass-proportional damping that does not feign rest at {1 + BESIDE:g} λ [1/s]"
 
 
 def _bisected(before: Callable[[float], bool], low: float, high: float) -> float:
@@ -153,9 +139,9 @@ def fits(rows: Rows) -> list[Edge]:
     bad = {(row["α"], row["ξ"]) for row in rows[MAPS] if row["verdict"] != "right"}
     alphas = [a for a in LOCALS if (a, VISCOUS) not in bad]
     xis = [x for x in VISCOSITIES if (LOCAL, x) not in bad]
-    of = (("smallest α", alphas[0]), ("largest α", alphas[-1]), ("smallest ξ", xis[0]), ("largest ξ", xis[-1]))
+    ends = {"smallest α": alphas[0], "largest α": alphas[-1], "smallest ξ": xis[0], "largest ξ": xis[-1]}
+    right = [Edge(f"{end} with which every verdict is right, the other as in the suite", ends[end]) for end in ends]
     wrong = sum(row["verdict"] == "wrong" for row in rows[MAPS])
-    right = [Edge(f"{what} with which every verdict is right, the other as in the suite", value) for what, value in of]
     return [*right, Edge("wrong verdicts with local damping and the joints' viscosity", wrong)]
 
 
@@ -165,23 +151,21 @@ def _draw(figure: Figure, rows: Rows) -> None:
     norm = LogNorm(min(row["steps"] for row in rows[MAPS] if row["verdict"] == "right"), BUDGET)
     for place, (name, load) in enumerate(dict.fromkeys((row["wall"], row[LOAD]) for row in rows[MAPS])):
         axes = figure.add_subplot(grid[place // 2, place % 2])
-        own = {(row["α"], row["ξ"]): row for row in rows[MAPS] if (row["wall"], row[LOAD]) == (name, load)}
-        _draw_map(axes, own, norm)
+        _draw_map(axes, [row for row in rows[MAPS] if (row["wall"], row[LOAD]) == (name, load)], norm)
         axes.set_title(f"{name}, {load:g} λ: {'stands' if load < 1 else 'falls'}", fontsize=9)
-        axes.set_xlabel("joints' viscosity ξ" if place // 2 else "")
-        axes.set_ylabel("" if place % 2 else "local damping α")
+        axes.set(xlabel="joints' viscosity ξ" if place // 2 else "", ylabel="" if place % 2 else "local damping α")
     colours = figure.colorbar(figure.axes[0].images[0], ax=figure.axes, location="bottom", shrink=0.8, aspect=50)
     colours.set_label("steps until the verdict      ? undecided    × wrong    □ the suite's", fontsize=9)
     _draw_mass_rates(figure.add_subplot(grid[:, 2]), rows)
 
 
-def _draw_map(axes: Axes, own: dict[tuple[float, float], Row], norm: LogNorm) -> None:
-    right = {key: row["verdict"] == "right" for key, row in own.items()}
-    steps = np.array([[own[a, x]["steps"] if right[a, x] else BUDGET for x in VISCOSITIES] for a in LOCALS])
-    axes.imshow(steps, cmap="cividis_r", norm=norm, origin="lower", aspect="auto")
-    for (a, x), row in own.items():
-        if not right[a, x]:
-            at, mark = (VISCOSITIES.index(x), LOCALS.index(a)), "?" if row["verdict"] == "undecided" else "×"
+def _draw_map(axes: Axes, rows: Sequence[Row], norm: LogNorm) -> None:
+    steps = np.array([row["steps"] if row["verdict"] == "right" else BUDGET for row in rows])
+    axes.imshow(steps.reshape(len(LOCALS), -1), cmap="cividis_r", norm=norm, origin="lower", aspect="auto")
+    for row in rows:
+        if row["verdict"] != "right":
+            at = VISCOSITIES.index(row["ξ"]), LOCALS.index(row["α"])
+            mark = "?" if row["verdict"] == "undecided" else "×"
             axes.annotate(mark, at, color="white", ha="center", va="center", fontsize=9, fontweight="bold")
     axes.plot(VISCOSITIES.index(VISCOUS), LOCALS.index(LOCAL), "s", ms=13, mfc="none", mec=LOOKS[3][0], mew=2)
     axes.set_xticks(range(len(VISCOSITIES)), [f"{x:g}" for x in VISCOSITIES])
@@ -204,7 +188,7 @@ def _draw_mass_rates(axes: Axes, rows: Rows) -> None:
     axes.axvspan(feigned, ends[1], color="0.93", zorder=0)
     axes.set(xlim=ends, xlabel="mass-proportional damping c [1/s]", ylabel="steps until the verdict", ylim=(2e3, 3e5))
     axes.set_title(f"{1 + BESIDE:g} λ, with mass-proportional damping", fontsize=9)
-    axes.legend(fontsize=8, loc="upper right", frameon=False)
+    axes.legend(loc="upper right")
 
 
 STUDY = Study(
@@ -215,20 +199,16 @@ STUDY = Study(
     beyond="`undecided`, the budget ran out, with too little damping or too much; mass-proportional damping above the "
     "edges makes a fall look like rest, and no model of the suite has any",
     parts={
-        MAPS: Part(("wall", LOAD, "α", "ξ"), CASES, judged),
+        MAPS: Part(("wall", LOAD, "α", "ξ"), [*product(WALLS, (1 - BESIDE, 1 + BESIDE), LOCALS, VISCOSITIES)], judged),
         MASSIVE: Part(
-            ("wall", RATE),
-            [(name, rate) for name in WALLS for rate in MASS_RATES],
-            lambda name, rate: judged(name, 1 + BESIDE, mass_rate=rate),
+            ("wall", RATE), [*product(WALLS, MASS_RATES)], lambda wall, c: judged(wall, 1 + BESIDE, mass_rate=c)
         ),
         EDGES: Part(
             ("what", "wall"),
-            [(LEAST, SLIDING), (MOST, SLIDING), *((FEIGNED, name) for name in (SLIDING, W1, TOPPLING))],
+            [(LEAST, SLIDING), (MOST, SLIDING), *product([FEIGNED], (SLIDING, W1, TOPPLING))],
             lambda what, name: {LEAST: least_local, MOST: most_local, FEIGNED: most_mass_rate}[what](name),
         ),
     },
-    charts=[
-        Chart("damping", "Steps until the verdict over local and viscous damping, and over mass-proportional", _draw)
-    ],
+    charts=[Chart("Steps until the verdict over local and viscous damping, and over mass-proportional", _draw)],
     fits=fits,
 )

@@ -10,6 +10,7 @@ and walls that turn over about a corner of their base as a whole lose about as m
 
 import math
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -23,19 +24,11 @@ from runningbond.studies.walls import inset_wall, one_block
 
 LOSSES = (0.01, 0.02, 0.05, 0.1)  # shares of the small-displacement λ whose loss is looked for
 WIDTH, HEIGHT = 0.5, 1.0  # of the block [m]
-
-SOFTER = 0.1
-"""Mortar's modulus of the walls, in the published one: past the peak λ does not depend on it, the time step does."""
-
-SPEEDS = (5e-4, 1.25e-4)
-"""Mean speeds of the blocks along the live load [m/s], the first to show that the second is slow enough."""
-
+SOFTER = 0.1  # modulus of mortar in walls, in the published one: λ past the peak does not mind, the time step does
+SPEEDS = (5e-4, 1.25e-4)  # mean, of blocks along the live load [m/s]; the first shows that the second is slow enough
 LOCAL = 0.1  # local damping: what there is of it drags on blocks that move, and adds to λ
-
-FARTHEST, SMOOTHED, DRAWN = 0.25, 15, 150
-"""Displacement to which they are pushed, in block widths; rows of a curve that are averaged, for blocks that slip are
-heard in λ; and points of it that are kept for the chart."""
-
+FARTHEST = 0.25  # displacement to which they are pushed, in block widths
+SMOOTHED, DRAWN = 15, 150  # rows of a curve that are averaged, for blocks that slip are heard, and points of the chart
 WALLS = ("block", "W1", "W2")
 PART, PEAK, TALL = "λ lost past the peak", "λ, small", "height / block width"
 MOVED, THEORY = ([f"u/b at {100 * d:.0f} % lost{whose}" for d in LOSSES] for whose in ("", ", one block"))
@@ -46,10 +39,11 @@ def scene_of(name: str) -> tuple[Scene, float]:
     if name == "block":
         return one_block(WIDTH, HEIGHT, 2.0, 1e10), WIDTH
     scene = inset_wall(f"wall-{name.lower()}")
-    assert isinstance(scene.joint.elasticity, Mortar)
+    mortar = scene.joint.elasticity
+    assert isinstance(mortar, Mortar)
     assert scene.bond is not None
-    mortar = replace(scene.joint.elasticity, young=SOFTER * scene.joint.elasticity.young)
-    return scene.with_joint(elasticity=mortar), scene.bond.width
+    softer = replace(mortar, young=SOFTER * mortar.young)
+    return scene.with_joint(elasticity=softer), scene.bond.width
 
 
 def curves(scene: Scene, width: float, speed: float) -> tuple[float, Array, Array, Array]:
@@ -92,46 +86,44 @@ def measure(name: str, speed: float) -> Row:
     for loss, head, theory in zip(LOSSES, MOVED, THEORY, strict=True):
         row |= {head: displacement_at(moved, 1 - finite / small, loss), theory: as_one_block(peak, tall, loss)}
     drawn = np.unique(np.linspace(0, len(moved) - 1, DRAWN).astype(int))
-    return row | {
-        what: curve[drawn].tolist() for what, curve in (("moved", moved), ("small", small), ("finite", finite))
-    }
+    return row | {"moved": moved[drawn].tolist(), "small": small[drawn].tolist(), "finite": finite[drawn].tolist()}
 
 
 def fits(rows: Rows) -> list[Edge]:
     """Displacements at which λ is lost: of the block beside (1), of walls as measured, and how far (1) is off there."""
-    slow = [row for row in rows[PART] if row["speed [m/s]"] == min(SPEEDS)]
-    edges = []
-    for row in slow:
+    edges, apart = [], 0.0
+    for row in _slow(rows):
         for loss, head, theory in zip(LOSSES, MOVED, THEORY, strict=True):
             known = (row[theory], 2e-3) if row["what"] == "block" else ()
             edges.append(Edge(f"u/b at which {row['what']} has lost {100 * loss:.0f} % of λ", row[head], *known))
-    pairs = zip(MOVED, THEORY, strict=True)
-    apart = max(abs(row[head] / row[theory] - 1) for head, theory in pairs for row in slow if row["what"] != "block")
+            apart = apart if known else max(apart, abs(row[head] / row[theory] - 1))
     return [*edges, Edge("walls beside one block of their λ and height, off by at most [%]", 100 * apart)]
+
+
+def _slow(rows: Rows) -> list[Row]:
+    return [row for row in rows[PART] if row["speed [m/s]"] == min(SPEEDS)]
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(9, 4.8)
     curves, losses = figure.subplots(1, 2)
     looks, shares = looks_of(WALLS), np.linspace(0.001, 0.2, 50)
-    for row in rows[PART]:
-        if row["speed [m/s]"] == min(SPEEDS):
-            colour, finite, small = looks[row["what"]][0], np.array(row["finite"]), np.array(row["small"])
-            curves.plot(row["moved"], finite, color=colour, lw=1.4)
-            curves.plot(row["moved"], small, color=colour, lw=1.0, ls="--")
-            losses.plot(row["moved"], 100 * (1 - finite / small), color=colour, lw=1.4, label=row["what"])
-            theory = [as_one_block(row[PEAK], row[TALL], d) for d in shares]
-            losses.plot(theory, 100 * shares, color=colour, lw=1.2, ls=":")
+    for row in _slow(rows):
+        colour, finite, small = looks[row["what"]][0], np.array(row["finite"]), np.array(row["small"])
+        curves.plot(row["moved"], finite, color=colour, lw=1.4)
+        curves.plot(row["moved"], small, color=colour, lw=1.0, ls="--")
+        losses.plot(row["moved"], 100 * (1 - finite / small), color=colour, lw=1.4, label=row["what"])
+        theory = [as_one_block(row[PEAK], row[TALL], d) for d in shares]
+        losses.plot(theory, 100 * shares, color=colour, lw=1.2, ls=":")
     curves.plot([], [], color="0.3", ls="--", lw=1.0, label="small displacements")
     curves.plot([], [], color="0.3", lw=1.4, label="finite displacements")
     curves.set(ylabel="load multiplier λ", ylim=(0, None), xlim=(0, FARTHEST))
     losses.plot([], [], color="0.3", ls=":", lw=1.2, label="one block of that λ and height")
     losses.set(ylabel="λ lost [%]", xlim=(0, 0.2), ylim=(0, 15), yticks=[*(100 * d for d in LOSSES), 15])
     losses.grid(axis="y", color="0.9", lw=0.8)
-    curves.legend(frameon=False, fontsize=8, loc="lower left")
-    losses.legend(frameon=False, fontsize=8, loc="lower right")
-    for axes in (curves, losses):
+    for axes, corner in ((curves, "lower left"), (losses, "lower right")):
         axes.set_xlabel("displacement of the top, in block widths u / b")
+        axes.legend(loc=corner)
 
 
 STUDY = Study(
@@ -140,9 +132,7 @@ STUDY = Study(
     trusted="until a share d of λ is lost, at about u = d H / (λ + 1/λ), as by one block of the wall's height H and λ",
     beyond="a model at small displacements says so in its message and goes on at the same λ; "
     "`dem.dynamic.finite_pushover` gives the curve that falls",
-    parts={PART: Part(("what", "speed [m/s]"), [(name, speed) for name in WALLS for speed in SPEEDS], measure)},
-    charts=[
-        Chart("displacements", "λ past its peak at small and at finite displacements, and what is lost between", _draw)
-    ],
+    parts={PART: Part(("what", "speed [m/s]"), [*product(WALLS, SPEEDS)], measure)},
+    charts=[Chart("λ past its peak at small and at finite displacements, and what is lost between", _draw)],
     fits=fits,
 )

@@ -22,15 +22,14 @@ NORMAL = tuple(10.0**power for power in range(5, 16))  # normal stiffnesses of t
 RATIO = 0.4  # k_t / k_n, that of mortar with ν = 0.2
 FEM = (1e8, 1e12)  # stiffnesses between which fem is run; beyond them it takes minutes
 RUN = ("dem-static", "dem-dynamic", "fem")  # models that read the stiffness
-REST, COLLAPSES = "W1 at rest under its weight", "W1 brought to collapse"
-K_N, OVERLAP, THEORY, STEPS = "k_n [Pa/m]", "overlap [block sizes]", "ρ g H / k_n", "steps to rest"
+REST, COLLAPSES, K_N = "W1 at rest under its weight", "W1 brought to collapse", "k_n [Pa/m]"
+OVERLAP, THEORY, STEPS = "overlap [block sizes]", "ρ g H / k_n", "steps to rest"
 CONDITION = "condition number"
 
 
 def wall(normal: float) -> Scene:
     """W1 with inset joints of a normal stiffness [Pa/m]."""
-    scene = inset_wall("wall-w1")
-    return scene.with_joint(elasticity=Stiffness(normal, RATIO * normal))
+    return inset_wall("wall-w1").with_joint(elasticity=Stiffness(normal, RATIO * normal))
 
 
 def overlap(scene: Scene, normal: float) -> float:
@@ -83,11 +82,10 @@ def fits(rows: Rows) -> list[Edge]:
         loads = [row["λ"] for row in rows[COLLAPSES] if row["model"] == model and row.get("λ")]
         farthest = max(loads, key=lambda load: abs(load - exact))
         edges.append(Edge(f"λ, {model}, of all collapses farthest from the certified", farthest, exact, TOLERANCE))
-    # Every model found the collapse there, and had nothing to say of the stiffness.
     bad = {row[K_N] for row in rows[COLLAPSES] if row["status"] != "collapse" or row.get("of the stiffness")}
     silent = [normal for normal in NORMAL if normal not in bad]
-    ends = (("smallest", silent[0]), ("largest", silent[-1]))
-    return edges + [Edge(f"{which} k_n at which all models collapse and say nothing [Pa/m]", k) for which, k in ends]
+    ends = {"smallest": silent[0], "largest": silent[-1]}
+    return edges + [Edge(f"{end} k_n at which all models collapse and say nothing [Pa/m]", ends[end]) for end in ends]
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
@@ -102,8 +100,8 @@ def _draw(figure: Figure, rows: Rows) -> None:
     loads.axhline(exact, color="0.5", lw=0.9, ls="--", label="certified")
     loads.set(ylabel="λ of wall W1, inset 20 mm", ylim=(0.97 * exact, 1.03 * exact))
     colour, marker = MODEL_LOOKS["dem-dynamic"]
-    hollow, filled = ({"marker": marker, "color": colour, "mfc": fill, "ls": "none"} for fill in ("none", colour))
     overlaps, theory, rests = ([row[head] for row in rows[REST]] for head in (OVERLAP, THEORY, STEPS))
+    hollow, filled = ({"marker": marker, "color": colour, "mfc": fill, "ls": "none"} for fill in ("none", colour))
     depths.plot(NORMAL, theory, color="0.4", lw=1.2, label="ρ g H / $k_n$")
     depths.plot(NORMAL, overlaps, **hollow, label="dem-dynamic at rest")
     depths.axhline(SOFT * U_CRIT, color=LOOKS[3][0], lw=0.9, ls="--", label="a note is made above")
@@ -115,7 +113,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     steps.set(yscale="log", ylabel="time steps of dem-dynamic")
     for axes in (loads, depths, steps):
         axes.set(xscale="log", xlabel="normal stiffness of joints [Pa/m]")
-        axes.legend(frameon=False, fontsize=8)
+        axes.legend()
 
 
 CASES = [(k, model) for k in NORMAL for model in RUN if model != "fem" or FEM[0] <= k <= FEM[1]]
@@ -126,9 +124,7 @@ STUDY = Study(
     "lasts; neither λ nor the conditioning of the static equations depends on the stiffness there",
     beyond="softer: a message that joints are too soft, in the end `undecided`; stiffer: `undecided`, for the budget "
     "runs out, with the time for which each load was followed",
-    parts={REST: Part((K_N,), [(k,) for k in NORMAL], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
-    charts=[
-        Chart("joint-stiffness", "λ, overlap under the dead load, and time steps of joints from soft to stiff", _draw)
-    ],
+    parts={REST: Part((K_N,), [*zip(NORMAL)], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
+    charts=[Chart("λ, overlap under the dead load, and time steps of joints from soft to stiff", _draw)],
     fits=fits,
 )

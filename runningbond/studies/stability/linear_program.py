@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -22,19 +23,15 @@ WORTH = 1e-9  # difference that counts as rounding: what a linear program's answ
 STIFFNESS = Stiffness(1e11, 4e10)
 QUANTITIES = ("density", "size", "load")
 WALLS = ("wall-w1", "wall-w2", "wall-w3", "panel-04", "panel-03")
-DEGENERATES, SCALES, SOLVERS = (
-    "λ of degenerate walls",
-    "λ at every scale, of what it must be",
-    "λ by simplex, of that by interior point",
-)
+DEGENERATES, SCALES = "λ of degenerate walls", "λ at every scale, of what it must be"
+SOLVERS = "λ by simplex, of that by interior point"
 PROGRAMS = ("limit", "limit-nonassociated")  # the models that solve linear programs; neither reads a stiffness
 
 
 def row_of_piers(number: int, friction: float = 0.6) -> Scene:
     """Equal piers of four blocks, 240 mm wide and 480 mm high, apart: as many mechanisms, and their combinations."""
-    places = [(pier, course) for pier in range(number) for course in range(4)]
-    joint = JointMaterial(friction, elasticity=STIFFNESS)
-    return boxes(*((0.5 * pier, 0.12 * course, 0.24, 0.12) for pier, course in places), joint=joint)
+    places = [(0.5 * pier, 0.12 * course, 0.24, 0.12) for pier in range(number) for course in range(4)]
+    return boxes(*places, joint=JointMaterial(friction, elasticity=STIFFNESS))
 
 
 def dusty() -> Scene:
@@ -65,10 +62,8 @@ def glued(quantity: str = "", factor: float = 1.0) -> tuple[Scene, float]:
     outlines = [size * pier.blocks.polygon(int(block)) for block in np.flatnonzero(pier.wall)]
     joint = replace(pier.joint, cohesion=1e4 * strength, tensile_strength=1e4 * strength)
     block = replace(pier.block, density=1800.0 * (factor if quantity == "density" else 1.0))
-    live = PointLoad((0.06 * size, 0.48 * size), (1.0 * load, -0.5 * load))
-    scene = build_scene(
-        "pier", outlines, thickness=0.12 * size, block=block, joint=joint, load=Load((0.0, -9.81), (live,))
-    )
+    loads = Load((0.0, -9.81), (PointLoad((0.06 * size, 0.48 * size), (1.0 * load, -0.5 * load)),))
+    scene = build_scene("pier", outlines, thickness=0.12 * size, block=block, joint=joint, load=loads)
     return scene, {"density": factor, "load": 1 / factor, "size": factor**3}.get(quantity, 1.0)
 
 
@@ -124,8 +119,8 @@ def _draw(figure: Figure, rows: Rows) -> None:
     right.set_xticks([30, 50, 100, 200, 300], ["30", "50", "100", "200", "300"])
     right.minorticks_off()
     right.set_title("published walls, two solvers", fontsize=10)
-    left.legend(frameon=False, fontsize=8, ncols=2, loc="upper center")
-    right.legend(frameon=False, fontsize=8, loc="upper left")
+    left.legend(ncols=2, loc="upper center")
+    right.legend(loc="upper left")
 
 
 STUDY = Study(
@@ -136,11 +131,9 @@ STUDY = Study(
     beyond="an optimum whose forces and mechanism do not prove each other is `failed`, never a number, with what they "
     "miss by",
     parts={
-        DEGENERATES: Part(
-            ("wall", "model"), [(wall, model) for wall in DEGENERATE for model in PROGRAMS], degenerate_row
-        ),
-        SCALES: Part(("model", "quantity"), [(model, what) for model in PROGRAMS for what in QUANTITIES], scale_row),
-        SOLVERS: Part(("wall",), [(wall,) for wall in WALLS], solver_row),
+        DEGENERATES: Part(("wall", "model"), [*product(DEGENERATE, PROGRAMS)], degenerate_row),
+        SCALES: Part(("model", "quantity"), [*product(PROGRAMS, QUANTITIES)], scale_row),
+        SOLVERS: Part(("wall",), [*zip(WALLS)], solver_row),
     },
-    charts=[Chart("linear-program", "Errors of limit analysis at every scale, and of its two solvers", _draw)],
+    charts=[Chart("Errors of limit analysis at every scale, and of its two solvers", _draw)],
 )

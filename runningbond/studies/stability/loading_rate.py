@@ -9,8 +9,8 @@ too high by the rate to the power 2/3. Under displacement control inertia resist
 its speed; what is left, a soft start later, are the waves of that start.
 """
 
-from collections.abc import Sequence
 from functools import cache
+from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -29,18 +29,10 @@ from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 
 WALLS = (SLIDING, TOPPLING, W1)
 RATES = tuple(10.0 ** -(k / 3) for k in range(7))  # rates of λ [1/s], the fastest first
-
-PUSHES = tuple(1_000 * 2**k for k in range(12))
-"""Steps in which a wall is pushed as far as a load step may move it: the more, the slower."""
-
-LOADINGS = (0, 1, 4, LOADING, 4 * LOADING, 16 * LOADING)
-"""Times in which the load grows by its first step, in times to rest."""
-
+PUSHES = tuple(1_000 * 2**k for k in range(12))  # steps in which a wall is pushed as far as a load step may move it
+LOADINGS = (0, 1, 4, LOADING, 4 * LOADING, 16 * LOADING)  # times of the first load step, in times to rest
 DRY = ("panel-12", "point-load-4")  # published walls whose λ depends on their history; the second has no weight
-
-ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005
-"""Power of a ramp's error in its rate, by (2); steps between two looks at it; relative width of brackets."""
-
+ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005  # power of the rate in (2), steps between two looks, width of brackets
 RAMPS, DRIVEN, STEPPED, OWN = "Ramps", "Displacement control", "Load steps", "The suite's own speeds"
 RATE, SPEED, OFF, LOADED = "rate [1/s]", "speed [mm/s]", "off by [%]", "first step in [times to rest]"
 
@@ -91,25 +83,21 @@ def push_row(name: str, steps: int) -> Row:
     return {SPEED: 1e3 * wall.far / (steps * run.dt), "λ": peak, OFF: off(name, peak)}
 
 
-def fastest_within(rows: Sequence[Row], percent: float) -> float:
-    """Fastest speed [mm/s] from which on λ stays within some per cent of what is known; the fastest row first."""
-    worse = [place for place, row in enumerate(rows) if abs(row[OFF]) > percent]
-    return float(rows[worse[-1] + 1][SPEED])
-
-
 @cache
-def system_of(name: str) -> tuple[BlockSystem, float | Array]:
-    """A wall, and the displacements [m] of its blocks in which collapses are measured."""
+def system_of(name: str) -> tuple[BlockSystem, float | Array, float]:
+    """A wall, the displacements [m] of its blocks in which collapses are measured, and its first load step."""
+    far: float | Array
     if name in DRY:
         scene = published_scene(name)
-        return rigid_system(scene), U_CRIT * scene.block_sizes
-    return known_wall(name).system, known_wall(name).far
+        system, far = rigid_system(scene), U_CRIT * scene.block_sizes
+    else:
+        system, far = known_wall(name).system, known_wall(name).far
+    return system, far, FIRST_STEP / system.measure(system.live)
 
 
 def step_row(name: str, loading: float) -> Row:
     """Bracket of λ by load steps, the load growing by its first one in so many times to rest."""
-    system, far = system_of(name)
-    first = FIRST_STEP / system.measure(system.live)
+    system, far, first = system_of(name)
     result = load_steps(Run(system), first, BRACKET, Criteria(collapse=far), loading=loading)
     assert result.lower is not None
     assert result.upper is not None
@@ -118,22 +106,16 @@ def step_row(name: str, loading: float) -> Row:
 
 def own_row(name: str) -> Row:
     """The suite's ramps between its first load steps, and its displacement control, halved until it settles to 1 %."""
-    wall = known_wall(name)
-    (run, rest), first = wall.rest(), FIRST_STEP / wall.system.measure(wall.system.live)
+    (run, rest), (_, far, first) = known_wall(name).rest(), system_of(name)
     state = rest.copy()
-    settle(run, state, first, Criteria(collapse=wall.far))
-    settled = settled_drive(run, rest, wall.far, 0.01)
-    row = {"rate between load steps [1/s]": first / (LOADING * (state.steps - rest.steps) * run.dt)}
-    own = {"own estimate [%]": 100 * settled.rate_error / settled.peak}
-    return row | {"λ, displacement halved until it settles": settled.peak, OFF: off(name, settled.peak), **own}
-
-
-def stepped_off(rows: Rows, name: str) -> tuple[Array, Array]:
-    """Ends of the brackets of a wall by `LOADINGS`, off the λ that is known, or that of the slowest loading [%]."""
-    own = [row for row in rows[STEPPED] if row["wall"] == name]
-    unit = own[-1]["λ"] if name in DRY else known_wall(name).multiplier
-    lower, upper = (np.array([row[end] for row in own]) for end in ("λ lower", "λ upper"))
-    return 100 * (lower / unit - 1), 100 * (upper / unit - 1)
+    settle(run, state, first, Criteria(collapse=far))
+    settled = settled_drive(run, rest, known_wall(name).far, 0.01)
+    return {
+        "rate between load steps [1/s]": first / (LOADING * (state.steps - rest.steps) * run.dt),
+        "λ, displacement halved until it settles": settled.peak,
+        OFF: off(name, settled.peak),
+        "own estimate [%]": 100 * settled.rate_error / settled.peak,
+    }
 
 
 def default_loading(name: str) -> float:
@@ -149,25 +131,26 @@ def fits(rows: Rows) -> list[Edge]:
         own = [row for row in rows[RAMPS] if row["wall"] == name]
         rate, multiplier = (np.array([row[head] for row in own]) for head in (RATE, "λ"))
         limit, error = at_no_speed(rate, multiplier)
-        slow, pushed = own[-1], [row for row in rows[DRIVEN] if row["wall"] == name]
-        tolerances = (0.05, 0.01, None, 0.01) if loose else (0.005, 0.001, 0.01, 1e-6)
-        ramped = (float(multiplier[-1]) - known, slow["λ, theory"] - known)
+        slow, pushed = own[-1], [row for row in rows[DRIVEN] if row["wall"] == name]  # the fastest row first
+        too_fast = [place for place, row in enumerate(pushed) if abs(row[OFF]) > 1.0]
+        ramped = (float(multiplier[-1]) - known, slow["λ, theory"] - known, None if loose else 0.01)
+        to_order, to_limit, to_peak = (0.05, 0.01, 0.01) if loose else (0.005, 0.001, 1e-6)
         edges += [
-            Edge(f"order of a ramp's error in its rate, {name}", order(name, rate, multiplier), ORDER, tolerances[0]),
-            Edge(f"λ of a ramp without speed, {name}", limit, known, tolerances[1]),
+            Edge(f"order of a ramp's error in its rate, {name}", order(name, rate, multiplier), ORDER, to_order),
+            Edge(f"λ of a ramp without speed, {name}", limit, known, to_limit),
             Edge(f"its standard error, {name}", error),
-            Edge(f"excess of λ in a ramp at {slow[RATE]:.2g} 1/s, {name}", *ramped, tolerances[2]),
-            Edge(f"peak λ at {pushed[-1][SPEED]:.2g} mm/s, {name}", pushed[-1]["λ"], known, tolerances[3]),
-            Edge(f"fastest speed within 1 % [mm/s], {name}", fastest_within(pushed, 1.0)),
+            Edge(f"excess of λ in a ramp at {slow[RATE]:.2g} 1/s, {name}", *ramped),
+            Edge(f"peak λ at {pushed[-1][SPEED]:.2g} mm/s, {name}", pushed[-1]["λ"], known, to_peak),
+            Edge(f"fastest speed within 1 % [mm/s], {name}", pushed[too_fast[-1] + 1][SPEED]),
         ]
     steps = {(row["wall"], row[LOADED]): row["λ"] for row in rows[STEPPED]}
     edges.append(Edge(f"λ by the suite's load steps, {W1}", steps[W1, LOADING], known_wall(W1).multiplier, BRACKET))
     for name in DRY:
         own_speed, slowest = default_loading(name), LOADINGS[-1]
+        ratio: dict[float, float] = {at: steps[name, at] / steps[name, slowest] for at in LOADINGS if at <= own_speed}
         what = f"λ by the suite's load steps, of that {slowest / own_speed:g} times as slow, {name}"
-        edges.append(Edge(what, steps[name, own_speed] / steps[name, slowest]))
-        ratios = [steps[name, at] / steps[name, slowest] for at in LOADINGS if at < own_speed]
-        hasty = max(ratios, key=lambda ratio: abs(ratio - 1))
+        edges.append(Edge(what, ratio.pop(own_speed)))
+        hasty = max(ratio.values(), key=lambda ratio: abs(ratio - 1))
         edges.append(Edge(f"λ in haste, of that of the slowest loading, {name}", hasty))
     return edges
 
@@ -190,7 +173,9 @@ def _draw(figure: Figure, rows: Rows) -> None:
     middle.set(xscale="log", yscale="log", xlabel="speed of the blocks [mm/s]", ylabel="peak of λ off by [%]")
     middle.annotate("0.0001 and less", (0.03, 0.1), xycoords="axes fraction", color="0.4", fontsize=8)
     for name, (colour, _), aside in zip((W1, *DRY), LOOKS[2:], (-0.2, 0, 0.2), strict=True):
-        places, (lower, upper) = np.arange(len(LOADINGS)) + aside, stepped_off(rows, name)
+        own, places = [row for row in rows[STEPPED] if row["wall"] == name], np.arange(len(LOADINGS)) + aside
+        unit = own[-1]["λ"] if name in DRY else known_wall(name).multiplier  # of the slowest loading, or known
+        lower, upper = (100 * (np.array([row[end] for row in own]) / unit - 1) for end in ("λ lower", "λ upper"))
         right.vlines(places, lower, upper, color=colour, lw=5, label=name)
         default = LOADINGS.index(default_loading(name))
         right.annotate("▾", (places[default], upper[default] + 0.3), ha="center", color=colour, fontsize=11)
@@ -198,11 +183,10 @@ def _draw(figure: Figure, rows: Rows) -> None:
     right.set_xticks(np.arange(len(LOADINGS)), [f"{loading:g}" for loading in LOADINGS])
     right.set(xlabel="first load step in\n[times to rest]; ▾ the suite's", ylabel="bracket of λ off by [%]")
     right.margins(y=0.15)
-    right.legend(frameon=False, fontsize=8, loc="center right")
-    titles = ("ramp; lines: theory", "displacement control", "load steps")
-    for axes, title in zip(figure.axes, titles, strict=True):
+    right.legend(loc="center right")
+    for axes, title in ((left, "ramp; lines: theory"), (middle, "displacement control"), (right, "load steps")):
         axes.set_title(title, fontsize=10)
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=9)
 
 
 STUDY = Study(
@@ -214,13 +198,11 @@ STUDY = Study(
     beyond="a λ that is too high in a ramp or under displacement control, from which no model of the suite takes its "
     "λ; by load steps in haste the λ of an equilibrium that the wall bears, but would not have come to by itself",
     parts={
-        RAMPS: Part(("wall", RATE), [(name, rate) for name in WALLS for rate in RATES], ramp_row),
-        DRIVEN: Part(("wall", "time steps"), [(name, steps) for name in WALLS for steps in PUSHES], push_row),
+        RAMPS: Part(("wall", RATE), [*product(WALLS, RATES)], ramp_row),
+        DRIVEN: Part(("wall", "time steps"), [*product(WALLS, PUSHES)], push_row),
         OWN: Part(("wall",), [(W1,)], own_row),
-        STEPPED: Part(("wall", LOADED), [(name, at) for name in (W1, *DRY) for at in LOADINGS], step_row),
+        STEPPED: Part(("wall", LOADED), [*product((W1, *DRY), LOADINGS)], step_row),
     },
-    charts=[
-        Chart("loading-rate", "λ by the speed of loading: a ramp, a prescribed displacement, and load steps", _draw)
-    ],
+    charts=[Chart("λ by the speed of loading: a ramp, a prescribed displacement, and load steps", _draw)],
     fits=fits,
 )

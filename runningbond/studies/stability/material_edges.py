@@ -6,6 +6,7 @@ it, say that it cannot, or refuse; a number beside it is a wrong answer.
 
 from collections import Counter
 from collections.abc import Callable
+from itertools import product
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -22,7 +23,8 @@ from runningbond.studies.walls import Box, boxes
 
 UNSEEN = 1e-4  # multiplier below which models in motion see no difference from zero
 SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of one and the same wall
-
+PART = "Answers"
+Exact: TypeAlias = float | tuple[float, float] | str  # λ, two loads between which it lies, a status, or ``refused``
 WORTH = {
     "right": ("#a6cee3", "right"),
     "estimate": ("#dcdcdc", "estimate, on either side"),
@@ -31,10 +33,6 @@ WORTH = {
     "wrong": ("#d7301f", "wrong"),
 }
 """What an answer may be worth: its colour, and words for it."""
-
-PART = "Answers"
-Exact: TypeAlias = float | tuple[float, float] | str
-"""What is true: a multiplier, two loads between which it lies, a status, or ``refused``."""
 
 
 def dry(**changes: Any) -> dict[str, Any]:
@@ -138,8 +136,16 @@ def answer(what: str, model: str) -> Row:
         # `homog` refuses what it has no closed form for, and the reader what is no wall.
         value = "right" if exact == "refused" else "refused" if model == "homog" else "wrong"
         return row | {"answer": "refused", "worth": value, "message": str(error)}
-    row |= {"answer": _in_short(outcome), "worth": worth(outcome, exact), "λ": outcome.multiplier}
+    said: Exact = outcome.status if outcome.multiplier is None else outcome.multiplier
+    lower, upper = outcome.lower, outcome.upper
+    if said != outcome.status and lower is not None and upper is not None and upper - lower > 1e-6 * upper:
+        said = lower, upper
+    row |= {"answer": _in_words(said), "worth": worth(outcome, exact), "λ": outcome.multiplier}
     return row | {"message": outcome.message}
+
+
+def _in_words(exact: Exact) -> str:
+    return exact if isinstance(exact, str) else "–".join(map(number, exact if isinstance(exact, tuple) else (exact,)))
 
 
 def worth(outcome: Outcome, exact: Exact) -> str:
@@ -157,21 +163,6 @@ def worth(outcome: Outcome, exact: Exact) -> str:
     upper = outcome.multiplier if outcome.upper is None else outcome.upper
     slack = max(TOLERANCE * high / 2, UNSEEN / 10)
     return "right" if lower <= high + slack and upper >= low - slack and upper - lower < high + 2 * UNSEEN else "wrong"
-
-
-def _in_short(outcome: Outcome) -> str:
-    if outcome.multiplier is None:
-        return outcome.status
-    lower, upper = outcome.lower, outcome.upper
-    if lower is None or upper is None or upper - lower <= 1e-6 * upper:
-        return number(outcome.multiplier)
-    return f"{number(lower)}–{number(upper)}"
-
-
-def _in_words(exact: Exact) -> str:
-    if isinstance(exact, str):
-        return exact
-    return "–".join(map(number, exact)) if isinstance(exact, tuple) else number(exact)
 
 
 def widest_gap(what: str) -> Row:
@@ -204,9 +195,8 @@ def fits(rows: Rows) -> list[Edge]:
 def _draw(figure: Figure, rows: Rows) -> None:
     figure.set_size_inches(10.5, 0.31 * len(EXTREMES) + 1.6)
     axes = figure.add_subplot()
-    places = {wall: place for place, wall in enumerate(EXTREMES)}
     for row in rows[PART]:
-        at, column = places[row["wall"]], list(MODELS).index(row["model"])
+        at, column = list(EXTREMES).index(row["wall"]), list(MODELS).index(row["model"])
         axes.add_patch(Rectangle((column, at), 1, 1, facecolor=WORTH[row["worth"]][0], edgecolor="white", lw=1.5))
         colour = "white" if row["worth"] == "wrong" else "0.15"
         axes.text(column + 0.5, at + 0.5, row["answer"], ha="center", va="center", fontsize=7.5, color=colour)
@@ -220,7 +210,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     axes.tick_params(length=0)
     axes.spines[:].set_visible(False)
     keys = [Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="0.6", label=label) for colour, label in WORTH.values()]
-    figure.legend(handles=keys, loc="outside lower center", ncols=5, frameon=False, fontsize=8)
+    figure.legend(handles=keys, loc="outside lower center", ncols=5)
 
 
 STUDY = Study(
@@ -229,9 +219,9 @@ STUDY = Study(
     trusted="no answer is wrong; models in motion see no multiplier below 0.0001, and brackets there are as wide",
     beyond="`undecided` and why, or a refusal that names what is wrong",
     parts={
-        PART: Part(("wall", "model"), [(wall, model) for wall in EXTREMES for model in MODELS], answer),
+        PART: Part(("wall", "model"), [*product(EXTREMES, MODELS)], answer),
         "widest gap that is contact [block sizes]": Part(("between",), [("two blocks",)], widest_gap),
     },
-    charts=[Chart("material-edges", "What every model answers at the edge, beside the exact answer", _draw)],
+    charts=[Chart("What every model answers at the edge, beside the exact answer", _draw)],
     fits=fits,
 )

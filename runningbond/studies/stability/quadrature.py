@@ -12,6 +12,7 @@ joints; `benchmarks/studies/fem_study.py` lets them deform, which at 1000 GPa le
 """
 
 from functools import cache
+from itertools import product
 
 from matplotlib.figure import Figure
 
@@ -44,22 +45,21 @@ def scene_of(name: str) -> Scene:
 @cache
 def with_points_at_the_ends(name: str) -> float:
     """λ of a scene with points at the ends of its joints: exact for the block, `dem_dynamic`'s for walls."""
-    return WIDTH / HEIGHT if name == "block" else sum(_bracket(dem_dynamic(scene_of(name), USUAL))) / 2
+    return WIDTH / HEIGHT if name == "block" else _middle(dem_dynamic(scene_of(name), USUAL))
 
 
 def measure(name: str, rule: str, cells: int) -> Row:
     """λ of a scene with one rule on one mesh, beside theory: (1) for the block, another inset for W1."""
     scene, reference = scene_of(name), with_points_at_the_ends(name)
-    tolerance = TIGHT if name == "block" else USUAL
-    lower, upper = _bracket(fem(scene, tolerance, cells=cells, modes=3, rule=RULES[rule]))
-    result = (lower + upper) / 2
-    row: Row = {"λ lower": lower, "λ upper": upper, ENDS: reference, EARLY: result / reference}
+    outcome = fem(scene, TIGHT if name == "block" else USUAL, cells=cells, modes=3, rule=RULES[rule])
+    result = _middle(outcome)
+    row: Row = {"λ lower": outcome.lower, "λ upper": outcome.upper, ENDS: reference, EARLY: result / reference}
     if name == "block":
         theory = reference * (1 - float(1 + RULES[rule].nodes[0]) / cells)
         row |= {"measured": result, "theory": theory, "allowed": 1e-3}
     elif name == "W1":
         inset = inset_of(scene, RULES[rule], cells)
-        theory = sum(_bracket(dem_static(scene.with_joint(inset=inset)))) / 2
+        theory = _middle(dem_static(scene.with_joint(inset=inset)))
         row |= {"measured": result, "theory": theory, "allowed": USUAL}
     return row
 
@@ -67,15 +67,14 @@ def measure(name: str, rule: str, cells: int) -> Row:
 def inset_of(scene: Scene, rule: Rule, cells: int) -> float:
     """Distance of the outermost point from the end of a bed joint of half a block [m]; rules begin at the inset."""
     assert scene.bond is not None
-    ends = 2 if cells == 1 else 1
-    element = scene.bond.width / 2 / cells - ends * scene.joint.inset
+    element = scene.bond.width / 2 / cells - (2 if cells == 1 else 1) * scene.joint.inset
     return float(scene.joint.inset + (1 + rule.nodes[0]) / 2 * element)
 
 
-def _bracket(outcome: Outcome) -> tuple[float, float]:
+def _middle(outcome: Outcome) -> float:
     assert outcome.lower is not None, outcome.message
     assert outcome.upper is not None, outcome.message
-    return outcome.lower, outcome.upper
+    return (outcome.lower + outcome.upper) / 2
 
 
 def fits(rows: Rows) -> list[Edge]:
@@ -95,11 +94,10 @@ def _draw(figure: Figure, rows: Rows) -> None:
         for place, rule in enumerate(RULES):
             own = [row for row in rows[PART] if (row["scene"], row["rule"]) == (name, rule)]
             at = [CELLS.index(row["cells"]) + 0.12 * (place - 1.5) for row in own]
-            colour, marker = looks[rule]
-            label = rule if name == "block" else None
+            (colour, marker), label = looks[rule], rule if name == "block" else None
             axes.plot(at, [row[EARLY] for row in own], marker, color=colour, ms=6, mfc="none", mew=1.6, label=label)
-            known = [(x, row["theory"] / row[ENDS]) for x, row in zip(at, own, strict=True) if row.get("theory")]
-            axes.plot([x for x, _ in known], [y for _, y in known], ":", color=colour, lw=1.2, zorder=0)
+            if all(row.get("theory") for row in own):
+                axes.plot(at, [row["theory"] / row[ENDS] for row in own], ":", color=colour, lw=1.2, zorder=0)
         axes.axhline(1.0, color="0.7", lw=0.8, zorder=0)
         axes.set_title(title, fontsize=9)
         axes.set_xticks(range(len(CELLS)), [str(n) for n in CELLS])
@@ -107,14 +105,14 @@ def _draw(figure: Figure, rows: Rows) -> None:
         axes.set_xlabel("cells in half a block n", fontsize=9)
     figure.axes[0].set_ylabel("λ / λ with points at the ends")
     figure.axes[0].plot([], [], ":", color="0.3", label="theory")
-    figure.legend(loc="outside lower center", ncols=5, frameon=False)
+    figure.legend(loc="outside lower center", ncols=5, fontsize="medium")
 
 
 USED = ("Gauss 2", "Lobatto 2", "Simpson")
 CASES = [
-    *(("block", rule, cells) for rule in RULES for cells in CELLS),
-    *(("W1", rule, cells) for rule in USED for cells in CELLS),
-    *(("panel-04", rule, cells) for rule in USED for cells in CELLS[:2]),
+    *product(["block"], RULES, CELLS),
+    *product(["W1"], USED, CELLS),
+    *product(["panel-04"], USED, CELLS[:2]),
 ]
 STUDY = Study(
     "quadrature",
@@ -124,6 +122,6 @@ STUDY = Study(
     beyond="nothing: every rule ends in `collapse`, its bracket as narrow; Lobatto is the default of every model, and "
     "no scene or command can ask for another",
     parts={PART: Part(("scene", "rule", "cells"), CASES, measure)},
-    charts=[Chart("quadrature", "λ by rule and mesh, over λ with points at the ends of the joints", _draw)],
+    charts=[Chart("λ by rule and mesh, over λ with points at the ends of the joints", _draw)],
     fits=fits,
 )

@@ -8,6 +8,7 @@ paper's reading of l_c, the whole length of the joint, to twice that.
 
 from collections import Counter
 from functools import cache
+from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,17 +22,12 @@ from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.charts import LOOKS as LINES
 from runningbond.studies.walls import one_block
 
-WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS))
-"""Dry walls: the paper's twelve panels, W1 to W3."""
-
-TENTHS, FINE = 10, 2000
-"""Shares of the collapse load that are told, and increments to the collapse load of a single block."""
-
+WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS))  # dry: twelve panels, W1 to W3
+TENTHS, FINE = 10, 2000  # shares of the collapse load that are told, and increments to that of a single block
 INCREMENTS = (1, 10, 100)  # load steps to the collapse load; 1 stands for each tenth of it put on at once
 ARMS = (0.5, 1.0)  # l_c as a share of the joint's length: exact, and as the paper reads
-
-OUTSIDE, TOLERANCE = 1e-3, 0.02
-"""Excess of forces over Eq. 3, in the largest of them, that counts as one; width of the bracket of collapse loads."""
+OUTSIDE = 1e-3  # excess of forces over Eq. 3, in the largest of them, that counts as one
+TOLERANCE = 0.02  # width of the bracket of collapse loads
 
 LOOKS = {
     "converged": ("#bfe3df", "", "converged"),
@@ -80,12 +76,12 @@ def loaded(scene: Scene, collapse: float, arm: float, increments: int) -> Row:
     if increments == 1:
         loads = collapse * np.arange(1, TENTHS + 1) / TENTHS
         runs = [stiffness_update(scene, load, load, arm) for load in loads]
-        fates = [_fate(run, 0) for run in runs]
+        fates = [_fate(run, 0, len(run.status)) for run in runs]
     else:
         runs = [stiffness_update(scene, collapse / increments, collapse, arm)]
         each = increments // TENTHS
         # The dead load alone belongs to the first tenth.
-        fates = [_fate(runs[0], k * each + (k > 0), (k + 1) * each) for k in range(TENTHS)]
+        fates = [_fate(runs[0], k * each + (k > 0), (k + 1) * each + 1) for k in range(TENTHS)]
     lost = next((k for k, fate in enumerate(fates) if fate not in ("converged", "outside")), TENTHS)
     borne = lost / TENTHS if increments == 1 else (len(runs[0].curve) - 1) / increments
     return {
@@ -97,13 +93,11 @@ def loaded(scene: Scene, collapse: float, arm: float, increments: int) -> Row:
     }
 
 
-def _fate(run: StiffnessUpdate, first: int, last: int | None = None) -> str:
-    """What became of load steps `first` to `last`, by default all; ``outside`` if they converged and break Eq. 3."""
-    ends = run.status[first:] if last is None else run.status[first : last + 1]
-    if not ends:
-        return "unreached"
-    if ends[-1] != "converged":
-        return ends[-1]
+def _fate(run: StiffnessUpdate, first: int, end: int) -> str:
+    """What became of load steps from `first` on, before `end`; ``outside`` if they converged and break Eq. 3."""
+    ends = run.status[first:end]
+    if not ends or ends[-1] != "converged":
+        return ends[-1] if ends else "unreached"
     return "outside" if run.excess[first : first + len(ends)].max() > OUTSIDE else "converged"
 
 
@@ -141,12 +135,10 @@ def _draw(figure: Figure, rows: Rows) -> None:
         axes.tick_params(length=0)
         axes.spines[:].set_visible(False)
     met = {fate for row in rows[PART] for fate in row["fates"]}
-    handles = [
-        Patch(facecolor=colour, edgecolor="0.7", label=f"{label} ({letter})" if letter else label)
-        for fate, (colour, letter, label) in LOOKS.items()
-        if fate in met
-    ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False, fontsize=8)
+    looks = [look for fate, look in LOOKS.items() if fate in met]
+    names = [f"{label} ({letter})" if letter else label for _, letter, label in looks]
+    handles = [Patch(facecolor=x[0], edgecolor="0.7", label=name) for x, name in zip(looks, names, strict=True)]
+    figure.legend(handles=handles, loc="outside lower center", ncols=3)
 
 
 STUDY = Study(
@@ -156,15 +148,9 @@ STUDY = Study(
     beyond="each load step has its status, and a run ends with the first that is `cycle`, `singular` or `wandering`; "
     "its curve stops at the last load that converged",
     parts={
-        BLOCK: Part(("block that",), [(what,) for what in BLOCKS], block_row),
-        PART: Part(
-            ("wall", "l_c / joint", "steps"),
-            [(wall, arm, steps) for wall in WALLS for arm in ARMS for steps in INCREMENTS],
-            measure,
-        ),
+        BLOCK: Part(("block that",), [*zip(BLOCKS)], block_row),
+        PART: Part(("wall", "l_c / joint", "steps"), [*product(WALLS, ARMS, INCREMENTS)], measure),
     },
-    charts=[
-        Chart("stiffness-update", "What became of each tenth of the collapse load under the published algorithm", _draw)
-    ],
+    charts=[Chart("What became of each tenth of the collapse load under the published algorithm", _draw)],
     fits=fits,
 )

@@ -25,15 +25,11 @@ from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.charts import looks_of
 from runningbond.studies.walls import bonded, boxes, outcome_row, vibrations
 
-STEPS, STEPS_DAMPED, PIECE = 4000, 100_000, 20
-"""Steps after which a vibration that has not grown is not going to, a damped one too, and between two looks at it."""
-
-SMALL, GROWN, CLOSE = 1e-20, 1e6, 1e-4
-"""Size of a vibration at its start, growth by which it is told from one that beats, relative accuracy of an edge."""
-
+STEPS, STEPS_DAMPED = 4000, 100_000  # after which a vibration that has not grown is not going to, and a damped one
+PIECE, CLOSE = 20, 1e-4  # steps between two looks at a vibration, relative accuracy of an edge
+SMALL, GROWN = 1e-20, 1e6  # size of a vibration at its start, growth by which it is told from one that beats
 TIMES = (0.8, 0.9, 0.99, 1.001, 1.01, 1.03, 1.06, 1.1)  # time steps at which growth is measured, in critical ones
 MUCH = 1.05  # critical steps that a user's run is given
-
 KINDS: dict[str, tuple[ModeCount, bool]] = {
     "rigid blocks, 3 modes": (3, True),
     "uniform strains, 6 modes, scaled": (6, True),
@@ -44,6 +40,7 @@ KINDS: dict[str, tuple[ModeCount, bool]] = {
 """Modes of a block, and whether masses are scaled."""
 
 WALL, CRITICAL, MASS = "wall-w1", "W1 with joints that hold: critical step [µs]", "One mass on its joint"
+BEYOND = f"W1 at {MUCH} critical steps"
 GROWTH, LOCAL, VISCOUS = "growth a step at ω Δt", "largest ω Δt, local damping", "largest ω Δt, viscous damping"
 
 
@@ -55,8 +52,8 @@ def growth_at(times: float) -> float:
 def critical_row(kind: str) -> Row:
     """The critical step of W1 whose joints hold, without damping."""
     modes, scaled = KINDS[kind]
-    blocks = modal_wall(bonded(published_scene(WALL)), modes=modes)
-    return critical_step(system_of(blocks, damping=0.0, mass_scaling=scaled))
+    wall = modal_wall(bonded(published_scene(WALL)), modes=modes)
+    return critical_step(system_of(wall, damping=0.0, mass_scaling=scaled))
 
 
 def critical_step(system: BlockSystem) -> Row:
@@ -70,9 +67,9 @@ def critical_step(system: BlockSystem) -> Row:
         return _growth(Run(system, local=0.0, viscous=0.0, dt=step), start, STEPS)
 
     growths = [growth(times * exact) for times in TIMES]
-    row = {"bound from each block": 1e6 * bound, "bound / critical": bound / exact, "growth": growths}
-    row["growth at 1.1 critical"] = growths[-1]
-    return {"measured": 1e6 * _edge_of(growth, bound), "theory": 1e6 * exact, "allowed": 1e-3, **row}
+    row: Row = {"measured": 1e6 * _edge_of(growth, bound), "theory": 1e6 * exact, "allowed": 1e-3}
+    row |= {"bound from each block": 1e6 * bound, "bound / critical": bound / exact, "growth": growths}
+    return row | {"growth at 1.1 critical": growths[-1]}
 
 
 @cache
@@ -102,12 +99,12 @@ def _mass_growth(omega_dt: float, local: float = 0.0, viscous: float = 0.0) -> f
 
 def _growth(run: Run, shape: Array, steps: int) -> float:
     """Growth of a free vibration a step, once the fastest-growing part of it outgrows all others."""
-    state, moving = State.at_rest(run.system), np.isfinite(run.system.mass)
+    system, state, moving = run.system, State.at_rest(run.system), np.isfinite(run.system.mass)
     state.motion += SMALL * shape
 
     def size() -> float:  # it need only grow as the vibration does
-        square = run.system.interface.frequency_squared * state.motion[moving] ** 2 + state.velocity[moving] ** 2
-        return float(np.sqrt(run.system.mass[moving] @ square))
+        square = system.interface.frequency_squared * state.motion[moving] ** 2 + state.velocity[moving] ** 2
+        return float(np.sqrt(system.mass[moving] @ square))
 
     start = size()
     for _ in range(steps // PIECE):
@@ -135,11 +132,13 @@ def run_beyond(model: str, times: float = MUCH) -> Outcome:
     scene = published_scene(WALL)
     if model == "fem":
         wall = modal_wall(scene)
-        system, order = system_of(wall), wall.elements.listing
+        system, points, order = system_of(wall), wall.elements.points, wall.elements.listing
     else:
-        system, order = rigid_system(scene), np.argsort(contact_points(scene).joint, kind="stable")
+        system, points = rigid_system(scene), contact_points(scene)
+        order = np.argsort(points.joint, kind="stable")
     step = times * 2 / float(vibrations(system)[0][-1])
-    return collapse_by_steps(scene, model, Run(system, dt=step), 0.01, point_order=order, is_self_locking=lambda: False)
+    run = Run(system, dt=step)
+    return collapse_by_steps(scene, model, run, 0.01, points=points, point_order=order, is_self_locking=lambda: False)
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
@@ -162,7 +161,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     right.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
     right.minorticks_off()
     for axes in (left, right):
-        axes.legend(frameon=False, fontsize=8, loc="upper left")
+        axes.legend(loc="upper left")
 
 
 DAMPED = {GROWTH: (2.01, 2.1), LOCAL: (0.2, 0.5, 0.8), VISCOUS: (0.05, 0.3, 1.0)}
@@ -172,11 +171,9 @@ STUDY = Study(
     trusted="the step is at most the bound from each block alone, which lies inside the critical one",
     beyond="`failed`, with the step taken and one that is safe",
     parts={
-        CRITICAL: Part(("blocks",), [(kind,) for kind in KINDS], critical_row),
+        CRITICAL: Part(("blocks",), [*zip(KINDS)], critical_row),
         MASS: Part(("what", "value"), [(what, x) for what in DAMPED for x in DAMPED[what]], mass_row),
-        f"W1 at {MUCH} critical steps": Part(
-            ("model",), [("dem-dynamic",), ("fem",)], lambda model: outcome_row(run_beyond(model))
-        ),
+        BEYOND: Part(("model",), [("dem-dynamic",), ("fem",)], lambda model: outcome_row(run_beyond(model))),
     },
-    charts=[Chart("time-step", "Growth of a vibration a step, and the steps at which it begins", _draw)],
+    charts=[Chart("Growth of a vibration a step, and the steps at which it begins", _draw)],
 )

@@ -23,13 +23,13 @@ from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.limit import limit_nonassociated
 from runningbond.scene import Array, Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import looks_of
+from runningbond.studies.charts import LOOKS, looks_of
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wall
 
 SUITE = Criteria(collapse=U_CRIT)
 WALLS = (SLIDING, TOPPLING, W1)
 WEIGHTLESS = "point-load-4"  # the published wall without weight
-REST, FAR, INTERVAL = CRITERIA = ("rest [force units]", "u_crit [block sizes]", "steps between looks")
+REST, FAR, INTERVAL = ("rest [force units]", "u_crit [block sizes]", "steps between looks")
 DEFAULT: dict[str, float] = {REST: SUITE.rest, FAR: U_CRIT, INTERVAL: SUITE.interval}
 LOOSE = (0.01, 0.03)  # thresholds of rest so loose that (4) is seen
 TINY, LARGE = (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6), (1e-4, 1e-3, *LOOSE, 0.1, 0.3)
@@ -37,13 +37,8 @@ RESTS = (*TINY, *(x * SUITE.rest for x in (0.5, 1, 2)), *LARGE)
 FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4, 1.6)
 FARS_WEIGHTLESS = (1e-3, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4)
 INTERVALS = (1, 20, *(int(x * SUITE.interval) for x in (0.5, 1, 2)), 2000)
-SWEEPS = {
-    **{(name, REST): RESTS for name in WALLS},
-    **{(name, FAR): FARS for name in (W1, W2)},
-    (WEIGHTLESS, FAR): FARS_WEIGHTLESS,
-    (W1, INTERVAL): INTERVALS,
-}
-"""Values of a criterion on a wall, ascending."""
+SWEEPS = {(name, REST): RESTS for name in WALLS}  # values of a criterion on a wall, ascending
+SWEEPS |= {(W1, FAR): FARS, (W2, FAR): FARS, (WEIGHTLESS, FAR): FARS_WEIGHTLESS, (W1, INTERVAL): INTERVALS}
 
 WIDTH, BUDGET = 0.005, 1_000_000  # relative width of the brackets, and steps after which a load is left undecided
 PART, SCALED = "Searches for λ, one criterion changed", "λ / λ known"
@@ -62,9 +57,9 @@ def search(name: str, criterion: str, value: float) -> Row:
     first = FIRST_STEP / run.system.measure(run.system.live)
     criteria = Criteria(chosen[FAR] * scene.block_size, chosen[REST], BUDGET, int(chosen[INTERVAL]))
     result = load_steps(run, first, WIDTH, criteria)
-    lower, upper, borne = result.lower, result.upper, result.borne
-    if lower is None or upper is None or borne is None or result.verdict == "undecided":
-        infeasible = lower is None and result.verdict == "collapse"
+    lower, upper, borne, verdict = result.lower, result.upper, result.borne, result.verdict
+    if lower is None or upper is None or borne is None or verdict == "undecided":
+        infeasible = lower is None and verdict == "collapse"
         return {"answer": "infeasible" if infeasible else "undecided", "λ lower": lower, "λ upper": upper}
     # The suite leaves its bracket as wide as a loose threshold of rest makes it uncertain; here its edge is looked for.
     settling = RAMP * result.rests[0][1].steps
@@ -93,13 +88,11 @@ def believed(name: str, rest: float) -> float:
 def plateau(rows: Sequence[Row]) -> tuple[float, float]:
     """Smallest and largest value of a criterion about the suite's that find the same λ, to the width of brackets."""
     values = [row["value"] for row in rows]
-    first = last = values.index(DEFAULT[rows[0]["criterion"]])
-    multiplier = rows[first]["λ"]
+    own = values.index(DEFAULT[rows[0]["criterion"]])
+    multiplier = rows[own]["λ"]
     same = [row.get("λ") is not None and abs(row["λ"] - multiplier) <= WIDTH * multiplier for row in rows]
-    while first > 0 and same[first - 1]:
-        first -= 1
-    while last < len(rows) - 1 and same[last + 1]:
-        last += 1
+    others = [-1, *(place for place, is_same in enumerate(same) if not is_same), len(rows)]
+    first, last = max(x for x in others if x < own) + 1, min(x for x in others if x > own) - 1
     return values[first], values[last]
 
 
@@ -125,11 +118,10 @@ def _draw(figure: Figure, rows: Rows) -> None:
         _draw_sweep(left, sweep(rows, name, REST), name, colour, marker, 0.93)
         theory = [believed(name, rest) / known_wall(name).multiplier for rest in many]
         left.plot(many, theory, color=colour, lw=1)
-    limits = {"xlim": (2e-17, 1), "ylim": (0.9, 1.5)}
-    left.set(xscale="log", xlabel="threshold of rest [force units]", ylabel=SCALED, **limits)
+    left.set(xscale="log", xlabel="threshold of rest [force units]", ylabel=SCALED, xlim=(2e-17, 1), ylim=(0.9, 1.5))
     left.annotate("?  undecided", (1e-12, 0.945), color="0.4", fontsize=8)
     left.set_title("at rest; lines: λ taken for standing, by theory", fontsize=10)
-    looks = dict(zip((W1, W2, WEIGHTLESS), list(looks_of(range(4)).values())[1:], strict=True))
+    looks = dict(zip((W1, W2, WEIGHTLESS), LOOKS[1:4], strict=True))
     for name, (colour, marker) in looks.items():
         label = f"{name}, no weight" if name == WEIGHTLESS else name
         _draw_sweep(right, sweep(rows, name, FAR), label, colour, marker, 0.75, joined=True)
@@ -144,7 +136,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     right.set_title("fallen", fontsize=10)
     for axes in (left, right):
         axes.plot([], [], "o", ms=11, mfc="none", mec="0.3", label="the suite's")
-        axes.legend(fontsize=8, frameon=False, loc="upper left")
+        axes.legend(loc="upper left")
 
 
 def _unit(rows: Sequence[Row]) -> float:
@@ -177,6 +169,6 @@ STUDY = Study(
     "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
     "large costs steps, and in the end is `undecided`",
     parts={PART: Part(("wall", "criterion", "value"), CASES, search)},
-    charts=[Chart("verdict", "λ by the threshold of rest and by the displacement that counts as a collapse", _draw)],
+    charts=[Chart("λ by the threshold of rest and by the displacement that counts as a collapse", _draw)],
     fits=fits,
 )

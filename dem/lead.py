@@ -1,0 +1,122 @@
+"""What leads a wall: the displacements that its beam or its supports are taken through, and the reaction to them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from runningbond.limit.kinematics import control_row
+from runningbond.limit.settlement import largest_displacement, reaction_unit
+from runningbond.scene import Array, Scene
+
+from .pushover import StaticState
+from .static_system import Control, StaticSystem
+
+STEPS = 25
+"""Least number of steps in the longest leg of a way."""
+
+GROWTH = 1.3
+"""Growth of steps from one to the next."""
+
+REGULAR = 1e-6
+"""Share of the elastic stiffness by which the tangent of a first guess is made regular."""
+
+
+def is_led(scene: Scene) -> bool:
+    """Whether displacements are prescribed to a scene, not loads."""
+    return scene.settlement is not None or any(key.startswith("beam.drive.displacement") for key in scene.extras)
+
+
+@dataclass(frozen=True, eq=False)
+class Lead:
+    """What leads a wall: the beam's drive, or the supports with a share of their settlement."""
+
+    system: StaticSystem
+    origin: StaticState  # at rest under the dead load
+    first_step: float  # load that an elastic first step is worth
+
+    @property
+    def scene(self) -> Scene:
+        """The scene."""
+        return self.system.equilibrium.scene
+
+    @property
+    def settles(self) -> bool:
+        """Whether supports are led, not the beam."""
+        return self.scene.settlement is not None
+
+    @cached_property
+    def metre(self) -> float:
+        """Displacement [m] that counts as 1: the settlement asked for, or the unit of f_live · q."""
+        if self.settles:
+            moved = float(control_row(self.scene) @ self.scene.support_motion.ravel())
+            return moved or largest_displacement(self.scene)
+        return self.system.equilibrium.force_unit / self.system.equilibrium.live_unit * self.system.length_unit
+
+    @cached_property
+    def joule(self) -> float:
+        """Work on the wall [J] of a force that counts as 1, on the way of 1."""
+        return -reaction_unit(self.scene) if self.settles else self.metre
+
+    @cached_property
+    def goals(self) -> Array:
+        """Values that are led to one after the other."""
+        drive = self.scene.beam.drive if self.scene.beam else None
+        return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path) / self.metre
+
+    @cached_property
+    def elastic_step(self) -> float:
+        """First step, of a wall that has not opened anywhere."""
+        system = self.system
+        if system.support_jump is not None:
+            return self.first_step / float(np.abs(system.support_jump).max())
+        load = np.append(np.zeros(system.unknowns - 1), self.first_step)
+        step = system.solve(system.elastic, Control(self.first_step, multiplier=True), load)
+        return abs(float(system.equilibrium.live @ step[: system.freedoms]))
+
+    def stops(self, share: float) -> Iterator[tuple[float, bool]]:
+        """Values to hold on the way, each with whether it is the first of a leg, in steps of that share's length."""
+        at, goals = 0.0, self.goals
+        longest = np.abs(np.diff(goals, prepend=0.0)).max() / STEPS
+        for goal in goals:
+            lengths = [0.0]
+            step = min(self.elastic_step, longest)
+            while lengths[-1] < abs(goal - at):
+                lengths.append(lengths[-1] + share * step)
+                step = min(step * GROWTH**share, longest)
+            for k, length in enumerate(lengths[1:]):
+                yield float(at + (goal - at) * length / lengths[-1]), k == 0
+            at = goal
+
+    def control(self, value: float) -> Control:
+        """The equation that holds a value."""
+        return Control(value if self.settles else self.origin.displacement + value, multiplier=self.settles)
+
+    def value(self, state: StaticState) -> float:
+        """The value that is held in a state."""
+        return state.multiplier if self.settles else state.displacement - self.origin.displacement
+
+    def force(self, state: StaticState) -> float:
+        """Reaction of the drive along its first move [N], or of the supports against theirs, as a share."""
+        system, jump = self.system, self.system.support_jump
+        if jump is None:
+            return system.equilibrium.live_unit * state.multiplier
+        work = float((jump[:, : len(state.force)] * state.force.T).sum() + jump[0, len(state.force) :] @ state.pull)
+        return -work * system.equilibrium.force_unit * system.length_unit / reaction_unit(self.scene)
+
+    def onward(self, before: StaticState, now: StaticState, value: float) -> Array:
+        """Unknowns ahead, if the wall goes on as in its last step."""
+        ahead = (value - self.value(now)) / (self.value(now) - self.value(before))
+        return np.asarray(now.x + ahead * (now.x - before.x))
+
+    def elastically(self, now: StaticState, value: float) -> Array:
+        """Unknowns ahead, if no point opens or slides farther."""
+        if self.settles:
+            return np.append(now.x[:-1], value)
+        response = self.system.respond(now.x, now.plastic_slip)
+        pressed = (response.normal != 0)[:, None, None]
+        tangent = self.system.elastic * np.where(pressed, 1.0, REGULAR)
+        ahead = self.control(value)
+        right = np.append(np.zeros(self.system.unknowns - 1), ahead.value - now.displacement)
+        return np.asarray(now.x + self.system.solve(tangent, ahead, right))

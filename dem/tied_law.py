@@ -1,0 +1,78 @@
+"""Ties beside joint points: bars that pull, never push, and yield.
+
+With e a bar's elongation, K = E A / L, P its preload and Y its yield force, its plastic elongation e_p its history,
+
+    F = min(max(P + K (e − e_p), 0), Y),      e_p ← e − (Y − P) / K  where it yields,                         (1)
+
+so that it unloads elastically, and goes slack earlier once it has yielded.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_array, vstack
+
+from runningbond.joints import PointLaw, PointResponse
+from runningbond.limit.kinematics import point_operator
+from runningbond.scene import Array, Scene
+
+
+@dataclass(frozen=True, eq=False)
+class TiedLaw:
+    """Joint points, then ties, each of which is a point that opens by its elongation and never slips.
+
+    Parameters
+    ----------
+    joints
+        Law of the joint points.
+    stiffness, yield_force, preload : (nt,) float
+        K, Y and P of the ties.
+    """
+
+    joints: PointLaw
+    stiffness: Array
+    yield_force: Array
+    preload: Array
+
+    @property
+    def normal_stiffness(self) -> Array:
+        """K_n and K, ``(np + nt,)``."""
+        return np.append(self.joints.normal_stiffness, self.stiffness)
+
+    @property
+    def shear_stiffness(self) -> Array:
+        """K_t, and zero of ties, ``(np + nt,)``."""
+        return np.append(self.joints.shear_stiffness, np.zeros(len(self.stiffness)))
+
+    def __call__(self, opening: Array, slip: Array, plastic: Array) -> PointResponse:
+        """Answer to the jumps of points and elongations of ties ``(np + nt,)`` with a given history."""
+        n = len(self.joints.normal_stiffness)
+        joints = self.joints(opening[:n], slip[:n], plastic[:n])
+        trial = self.preload + self.stiffness * (opening[n:] - plastic[n:])
+        yields = trial > self.yield_force
+        longer = opening[n:] - (self.yield_force - self.preload) / self.stiffness
+        tangent = np.zeros((len(trial), 2, 2))
+        tangent[:, 0, 0] = np.where((trial >= 0) & ~yields, self.stiffness, 0.0)
+        return PointResponse(
+            np.append(joints.normal, trial.clip(0.0, self.yield_force)),
+            np.append(joints.tangential, np.zeros(len(trial))),
+            np.append(joints.plastic_slip, np.where(yields, longer, plastic[n:])),
+            np.concatenate([joints.tangent, tangent]),
+        )
+
+
+def tie_ends(scene: Scene) -> csr_array:
+    """Elongation of ties by their first ends alone, then by their second ones, ``(2 nt, 3 nb)``; zero of anchors."""
+    ties, centroid = scene.ties, scene.blocks.centroid
+    ends = []
+    for k, sense in enumerate((-1.0, 1.0)):
+        held = ties.block[:, k] >= 0
+        along = np.where(held[:, None], sense * ties.direction, 0.0)
+        ends.append(point_operator(np.where(held, ties.block[:, k], 0), ties.ends[:, k], along, centroid))
+    return csr_array(vstack(ends))
+
+
+def elongation(scene: Scene) -> csr_array:
+    """Elongation of each tie, ``(nt, 3 nb)``."""
+    ends = tie_ends(scene)
+    return csr_array(ends[: len(scene.ties)] + ends[len(scene.ties) :])

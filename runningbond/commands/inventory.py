@@ -1,0 +1,156 @@
+"""What a scene holds, in rows of a table: counts, weights, supports, ties, and loads with their resultants."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from runningbond.joints import wall_points
+from runningbond.pictures.legend import CONDITIONS, is_bed, strength, used_block_materials, used_joint_materials
+from runningbond.pictures.quantities import counted, millimetres, minus, pair, readable
+from runningbond.scene import ANCHOR, Action, Array, Beam, BeamLoad, Forces, LineLoad, Moment, Scene, Settlement, Tilt
+from runningbond.scene.loads import KINDS
+
+Row = tuple[str, str]
+
+
+def rows(scene: Scene) -> list[Row]:
+    """Everything there is to say of a scene in numbers, each with its unit."""
+    return [*_blocks(scene), *_joints(scene), *_held(scene), *_loads(scene), *_assigned(scene)]
+
+
+def _blocks(scene: Scene) -> Iterator[Row]:
+    low, high = scene.blocks.extent(scene.wall)
+    pieces = scene.part_of[scene.wall & (scene.part_of >= 0)]
+    parts = "" if len(pieces) == len(set(pieces)) else f" in {len(pieces)} parts"
+    yield "blocks", f"{len(set(pieces))}{parts}, of which {int((scene.wall & scene.fixed).sum())} held"
+    for k in used_block_materials(scene):
+        own, material = (scene.material_of_block == k) & (scene.part_of >= 0), scene.block_materials[k]
+        mass = float(scene.mass[own].sum())
+        count = counted(len(set(scene.part_of[own])), "block")
+        yield f"  of {material.name}", f"{count} of {material.density:g} kg/m³, {_mass(scene, mass)}"
+    x, y = (f"{minus(low[i])} … {minus(high[i])} m" for i in (0, 1))
+    yield "extent", f"x {x}, y {y}, {scene.thickness:.4g} m thick"
+    yield "mass of the wall", f"{float(scene.mass[scene.wall].sum()):.5g} kg"
+    gravity = float(np.hypot(*scene.load.gravity))
+    yield "weight of what moves", readable(gravity * float(scene.mass[~scene.fixed].sum()), "N")
+
+
+def _mass(scene: Scene, mass: float) -> str:
+    return f"{mass:.5g} kg, {readable(mass * float(np.hypot(*scene.load.gravity)), 'N')}"
+
+
+def _joints(scene: Scene) -> Iterator[Row]:
+    joints, bed = scene.joints, is_bed(scene)
+    cracks = int(joints.inner.sum())
+    lengths = f", {joints.length.min():.4g} … {joints.length.max():.4g} m long" if len(joints) else ""
+    inner = f", and {counted(cracks, 'potential crack')}" if cracks else ""
+    yield "joints", f"{len(joints) - cracks}{inner}{lengths}"
+    for k in used_joint_materials(scene):
+        own, material = scene.material_of_joint == k, scene.joint_materials[k]
+        inset = f", contacts {material.inset:g} m from the ends" if material.inset else ""
+        lie = f"{int((own & bed).sum())} bed, {int((own & ~bed).sum())} head"
+        yield f"  of {material.name}", f"{lie}: {strength(material)}{inset}"
+    tolerance = f"{scene.blocks.tolerance:.3g} m count as contact"
+    yield "contact points", f"{len(wall_points(scene))}, two to a joint; gaps up to {tolerance}"
+
+
+def _held(scene: Scene) -> Iterator[Row]:
+    """Supports, the beam and ties."""
+    ground = int((~scene.wall).sum())
+    held = [f"ground in {counted(ground, 'piece')}" if ground > 1 else "ground"] if ground else []
+    held += [counted(int((scene.wall & scene.fixed).sum()), "fixed block")] if (scene.wall & scene.fixed).any() else []
+    pins = scene.pins.direction.any(axis=1)
+    for block in np.unique(scene.pins.block[pins]):
+        own = (scene.pins.block == block) & pins
+        x, y = scene.pins.point[own][0]
+        held.append(f"{'roller' if own.sum() == 1 else 'pin'} at ({minus(x)}, {minus(y)}) m")
+    yield "supports", ", ".join(held) or "none"
+    if scene.beam is not None:
+        yield "beam", _beam(scene, scene.beam)
+    ties = scene.ties
+    for k in range(len(ties)):
+        ends = " to ".join(
+            f"({minus(x)}, {minus(y)}) m, {_body(scene, int(block))},"
+            for block, (x, y) in zip(ties.block[k], ties.ends[k], strict=True)
+        )
+        stiffness = readable(float(ties.stiffness[k]), "N/m")
+        preload = f", preload {readable(float(ties.preload[k]), 'N')}" if ties.preload[k] else ""
+        yield (
+            f"tie[{k}]",
+            f"from {ends} E A / L = {stiffness}, yields at {readable(float(ties.yield_force[k]), 'N')}{preload}",
+        )
+
+
+def _body(scene: Scene, block: int) -> str:
+    """What a block is called, or what an end of a tie is in."""
+    if block == ANCHOR:
+        return "an anchor fixed in space"
+    number = scene.part_of[block]
+    return f"block {number}" if number >= 0 else "the beam" if scene.wall[block] else "the ground"
+
+
+def _beam(scene: Scene, beam: Beam) -> str:
+    joint = f"on joints of {beam.joint or scene.joint.name}"
+    return f"{beam.height:.4g} m high, {_mass(scene, beam.mass)}, {CONDITIONS[beam.condition]}, {joint}"
+
+
+def _loads(scene: Scene) -> Iterator[Row]:
+    """Each load with its resultant, and what all live ones come to."""
+    x, y = scene.load.gravity
+    yield "gravity", f"({minus(x)}, {minus(y)}) m/s²"
+    corner = scene.blocks.extent(scene.wall)[0]
+    about = f"about ({minus(corner[0])}, {minus(corner[1])})"
+    for key, load in scene.load.named():
+        if isinstance(load, Settlement):
+            yield key, _settlement(scene, load)
+            continue
+        yield key, f"{_kind(scene, load)}: {_resultant(scene, load.forces(scene), corner)} {about}"
+    if scene.settlement is None:
+        yield "live load at λ = 1", f"{_resultant(scene, scene.live_forces, corner)} {about}"
+
+
+def _resultant(scene: Scene, forces: Forces, corner: Array) -> str:
+    """Force and moment about a point that forces put on what moves."""
+    loose = ~scene.fixed
+    on_mass = scene.mass[:, None] * forces.acceleration * loose[:, None]
+    own = loose[forces.block]
+    force = on_mass.sum(axis=0) + forces.force[own].sum(axis=0)
+    moment = forces.moment[loose].sum()
+    for arm, push in ((scene.blocks.centroid - corner, on_mass), (forces.at[own] - corner, forces.force[own])):
+        moment += (arm[:, 0] * push[:, 1] - arm[:, 1] * push[:, 0]).sum()
+    force[np.abs(force) < 1e-9 * np.abs(force).max()] = 0.0
+    return f"{pair(force, 'N')}, {readable(float(moment), 'N m')}"
+
+
+def _kind(scene: Scene, load: Action) -> str:
+    """What kind of load it is, in words."""
+    match load:
+        case BeamLoad():
+            path = scene.beam.drive.path if scene.beam and scene.beam.drive and load.key == "beam.drive" else ()
+            moves = ", ".join(minus(1e3 * x) for x in path[:8]) + (", …" if len(path) > 8 else "")
+            rate = scene.beam.drive.rate if path and scene.beam and scene.beam.drive else None
+            speed = f" at {millimetres(rate)}/s" if rate else ""
+            return f"moved to {moves} mm{speed}, the force that takes" if path else "on the beam"
+        case LineLoad():
+            length = float(np.hypot(*np.subtract(load.end, load.start)))
+            return f"{readable(float(np.hypot(*load.force)), 'N/m')} along {length:.4g} m"
+        case Moment():
+            return f"on {_body(scene, int(np.flatnonzero(load.forces(scene).moment)[0]))}"
+        case Tilt():
+            return "tilt of the ground, λ = tan α"
+        case _:
+            return next((name for name, kind in KINDS.items() if type(load) is kind), type(load).__name__)
+
+
+def _settlement(scene: Scene, load: Settlement) -> str:
+    moving = counted(int(load.moving(scene).sum()), "support")
+    parts = [f"by ({', '.join(millimetres(x) for x in load.by)})"] if any(load.by) else []
+    parts += [f"turned by {minus(load.rotation_angle)}°"] if load.rotation_angle else []
+    return f"{moving} moved {' and '.join(parts)}; λ is the share of the reaction"
+
+
+def _assigned(scene: Scene) -> Iterator[Row]:
+    """What became of each entry of ``assign``."""
+    for line in scene.assigned:
+        key, _, text = line.partition(": ")
+        yield key, text

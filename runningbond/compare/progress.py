@@ -1,0 +1,71 @@
+"""What a run says of itself while it goes on: the load, the bracket so far, the motion, the part of the budget."""
+
+import math
+
+import numpy as np
+
+from dem.pushover import LoadPath, StaticState
+from dem.static import BUDGET as STATIC_BUDGET
+from runningbond.dynamics import Criteria, Run, State
+from runningbond.dynamics.collapse import CALM
+from runningbond.dynamics.collapse_load import BUDGET
+from runningbond.results.outcome import number
+
+
+class StaticProgress:
+    """Looks at `dem.static` on its way."""
+
+    def __init__(self) -> None:
+        self._path: LoadPath | None = None
+
+    def __call__(self, path: LoadPath, state: StaticState) -> None:
+        """Look at a state of rest."""
+        self._path = path
+
+    def line(self) -> str:
+        """How far it has come."""
+        path = self._path
+        if path is None:
+            return "settles under its dead load"
+        unit, nd = path.system.equilibrium.live_unit, path.system.freedoms
+        last = path.past[-1] if path.past and path.upper is None else path.rests[-1]  # of a wall that is led
+        moved = path.system.length_unit * np.abs(last.x[:nd] - path.rests[0].x[:nd])
+        upper = None if path.upper is None else unit * path.upper
+        spent = f"{1 - path.budget / STATIC_BUDGET:.0%} of the budget"
+        return f"{_bracket(unit * last.multiplier, upper)}; moved {1e3 * moved.max(initial=0.0):.2g} mm, {spent}"
+
+
+class MotionProgress:
+    """Looks at blocks in motion on their way."""
+
+    def __init__(self) -> None:
+        self._load, self._looks, self._calm = math.nan, 0, 0
+        self._lower: float | None = None
+        self._upper: float | None = None
+        self._seen: tuple[Run, State] | None = None
+
+    def __call__(self, run: Run, state: State, multiplier: float) -> None:
+        """Look at a run."""
+        if multiplier != self._load:
+            # A load that was left before its budget ran out was borne, or brought the wall down.
+            if 0 < self._looks < BUDGET // Criteria.interval and self._calm < CALM:
+                self._upper = self._load
+            self._load, self._looks, self._calm = multiplier, 0, 0
+        self._looks += 1
+        self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
+        if self._calm == CALM:
+            self._lower = multiplier
+        self._seen = run, state
+
+    def line(self) -> str:
+        """How far it has come."""
+        if self._seen is None:
+            return "gets ready"
+        run, state = self._seen
+        spent, speed = self._looks * Criteria.interval / BUDGET, 1e3 * run.system.farthest(state.velocity)
+        held = f"λ {number(self._load)}, {spent:.1%} of its budget, {speed:.2g} mm/s"
+        return held if self._lower is None else f"{held}; {_bracket(self._lower, self._upper)}"
+
+
+def _bracket(lower: float, upper: float | None) -> str:
+    return f"rests at {number(lower)}" + ("" if upper is None else f", falls at {number(upper)}")

@@ -1,0 +1,73 @@
+"""The pushover curve of one outcome as a chart: load against the displacement of the control point."""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from runningbond.results import Outcome
+from runningbond.results.reactions import AT_REST
+from runningbond.scene import Array, Scene
+
+from .captions import is_force, load_symbol, multiplier_text, wall_title
+from .style import DARK, SMALL_TYPE, TYPE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+CURVE, FALL, BAND = "#0b559f", "#c2410c", "#f2c879"
+"""Colours of states at rest, of a fall, and of the bracket."""
+
+SEEN = 0.04
+"""Share of the axis below which the displacement at half the peak is not seen, and the axis is bent into a log one."""
+
+
+def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
+    """Draw a curve that is not empty, its bracket as a band and the collapse load as a line in it."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(5.2, 3.7), layout="constrained", dpi=200)
+    axes = figure.add_subplot()
+    moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
+    rests = outcome.curve_columns().get(AT_REST, np.ones(len(load))) == 1
+    if outcome.lower is not None and outcome.upper is not None:
+        axes.axhspan(outcome.lower, outcome.upper, color=BAND, lw=0, alpha=0.6)
+    if outcome.multiplier is not None:
+        axes.axhline(outcome.multiplier, color=DARK, lw=0.8, ls="--")
+    symbol, (answer, bracket) = load_symbol(scene), multiplier_text(scene, outcome)
+    level = max((x for x in (outcome.upper, outcome.multiplier, outcome.lower) if x is not None), default=load.max())
+    axes.annotate(
+        f"{answer}  {bracket}".strip(),
+        (0.02, level),
+        (0, 2),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        fontsize=TYPE,
+        color=DARK,
+    )
+    axes.plot(moved[rests], load[rests], ".-", color=CURVE, lw=1.2, ms=4, label="at rest")
+    if not rests.all():
+        last = np.flatnonzero(~rests)[0]
+        axes.plot(moved[last - 1 :], load[last - 1 :], ":", color=FALL, lw=1.0)
+        axes.plot(moved[~rests], load[~rests], "x", color=FALL, ms=6, mew=1.5, label="falls")
+        axes.legend(frameon=False, fontsize=SMALL_TYPE + 1, loc="lower right")
+    half = _half_way(moved, load)
+    if 0 < half < SEEN * np.ptp(moved):
+        linear = 10.0 ** np.ceil(np.log10(half))
+        axes.set_xscale("symlog", linthresh=linear)
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.axvspan(min(0.0, moved.min()), linear, color="0.93", lw=0, zorder=0)
+        for word, place, align in (("linear", -4, "right"), ("logarithmic", 4, "left")):
+            spot: dict[str, Any] = {"textcoords": "offset points", "ha": align, "fontsize": SMALL_TYPE}
+            axes.annotate(word, (linear, 0.0), (place, 3), **spot)
+    axes.set_ylim(min(0.0, load.min()), 1.12 * max(load.max(), level) or 1.0)
+    axes.set_xlabel("displacement of the control point along the live load [mm]", fontsize=TYPE + 1)
+    axes.set_ylabel(f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}", fontsize=TYPE + 1)
+    axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2)
+    axes.tick_params(labelsize=TYPE)
+    axes.spines[["top", "right"]].set_visible(False)
+    return figure
+
+
+def _half_way(moved: Array, load: Array) -> float:
+    """Displacement at which the load first is half its peak."""
+    return float(np.abs(moved[np.argmax(load >= load.max() / 2)]))

@@ -1,0 +1,145 @@
+"""The key to a drawing of a wall: what its colours and lines are, material by material."""
+
+import textwrap
+from typing import Any
+
+import numpy as np
+
+from runningbond.scene import Array, JointMaterial, Mask, Scene
+
+from .captions import Caption, is_force, wall_title
+from .quantities import counted, minus, readable
+from .style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
+from .ties import TIE, tie_kinds
+
+LONGEST = 58
+"""Characters of a line of the key."""
+
+CONDITIONS = {
+    "free": "free to turn",
+    "level": "kept level, free to rise",
+    "fixed-height": "kept level and at its height",
+}
+"""What the conditions of a beam mean."""
+
+
+def wall_caption(scene: Scene) -> Caption:
+    """The words around a drawing of a wall: its name, its size, and the key to its colours."""
+    length, height = np.subtract(*scene.blocks.extent(scene.wall)[::-1])
+    used = used_block_materials(scene)
+    density = f", {scene.block_materials[used[0]].density:g} kg/m³" if len(used) == 1 else ""
+    density += "" if any(scene.load.gravity) else ", no gravity"
+    n = int(scene.part_of.max()) + 1
+    size = f"{length:.4g} × {height:.4g} m, {scene.thickness:.4g} m thick{density}"
+    counts = f"{counted(n, 'block')}, {counted(len(scene.joints), 'joint')}"
+    key = [*_materials(scene), *_bodies(scene), *_loads(scene)]
+    return Caption(wall_title(scene.title), "", [size, counts], key, columns=1)
+
+
+def block_colours(scene: Scene) -> Array:
+    """Colour of each block of the wall, ``(nw, 3)``: by material, of what is held and of the beam their own."""
+    colours = np.array([BLOCK_COLOURS[k % len(BLOCK_COLOURS)] for k in scene.material_of_block])
+    colours[scene.fixed] = HELD
+    if scene.beam is not None:
+        colours[scene.beam.block] = BEAM
+    return np.asarray(colours[scene.wall])
+
+
+def joint_colour(number: int) -> str:
+    """Colour of a joint material."""
+    return JOINT_COLOURS[number % len(JOINT_COLOURS)]
+
+
+def used_block_materials(scene: Scene) -> list[int]:
+    """Materials that blocks of the wall are of."""
+    return [int(k) for k in np.unique(scene.material_of_block[scene.part_of >= 0])]
+
+
+def used_joint_materials(scene: Scene) -> list[int]:
+    """Materials that joints are of."""
+    return [int(k) for k in np.unique(scene.material_of_joint)]
+
+
+def is_bed(scene: Scene) -> Mask:
+    """Whether each joint lies flatter than 45°, ``(nj,)``."""
+    run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
+    return np.asarray(run[:, 0] > run[:, 1], dtype=np.bool_)
+
+
+def strength(material: JointMaterial) -> str:
+    """What a joint can bear, in a line."""
+    cohesion = f", c = {_stress(material.cohesion)}" if material.cohesion else ""
+    tension = f", fₜ = {_stress(material.tensile_strength)}" if material.tensile_strength else ""
+    return f"tan φ = {material.friction:.3g}{cohesion}{tension}"
+
+
+def _stress(value: float) -> str:
+    """A strength, in MPa as the field has it, or in less where it is very small."""
+    return f"{value / 1e6:.3g} MPa" if value >= 1e4 else readable(value, "Pa")
+
+
+def _materials(scene: Scene) -> list[Any]:
+    """Blocks, where they are of more than one material, and joints."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    used = used_block_materials(scene)
+    handles: list[Any] = []
+    if len(used) > 1:
+        for k in used:
+            block, colour = scene.block_materials[k], BLOCK_COLOURS[k % len(BLOCK_COLOURS)]
+            name = "blocks" if k == 0 else block.name
+            handles.append(Patch(fc=colour, ec="0.5", lw=0.5, label=f"{name}: {block.density:g} kg/m³"))
+    bed, several = is_bed(scene), len(used_joint_materials(scene)) > 1
+    for k in used_joint_materials(scene):
+        own = scene.material_of_joint == k
+        material = scene.joint_materials[k]
+        lies = " (bed)" if bed[own].all() else " (head)" if not bed[own].any() else ""
+        name = {"joint": "joints", "inner_joint": "potential cracks"}.get(material.name, f"{material.name} joints")
+        text = f"{name}{lies if several and material.name != 'inner_joint' else ''}: {strength(material)}"
+        handles.append(Line2D([], [], color=joint_colour(k), lw=1.2, label=_wrapped(text)))
+    return handles
+
+
+def _bodies(scene: Scene) -> list[Any]:
+    """The beam, ties and a support that moves."""
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    handles: list[Any] = []
+    if scene.beam is not None:
+        mass = f"{scene.beam.mass:g} kg" if scene.beam.mass else "weightless"
+        text = f"stiff beam: {mass}, {CONDITIONS[scene.beam.condition]}"
+        handles.append(Patch(fc=BEAM, ec=DARK, lw=1.0, label=_wrapped(text)))
+    kinds = tie_kinds(scene)
+    for number, (kind, members) in enumerate(kinds.items(), 1):
+        name = f"tie {number}" if len(kinds) > 1 else f"{len(members)} ties" if len(members) > 1 else "tie"
+        handles.append(Line2D([], [], color=TIE, lw=1.6, label=_wrapped(f"{name}: {kind}")))
+    if (scene.ties.block < 0).any():
+        handles.append(Patch(fc="white", ec="0.45", hatch="//////", lw=0, label="anchor fixed in space"))
+    if scene.settlement is not None:
+        handles.append(Patch(fc="none", ec=MOTION, hatch="//////", lw=0.6, label="support that moves"))
+    return handles
+
+
+def _loads(scene: Scene) -> list[Any]:
+    """Colours of loads, where there are dead ones beside the weight, and the path of a beam that is driven."""
+    from matplotlib.lines import Line2D
+
+    look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
+    path = scene.beam.drive.path if scene.beam and scene.beam.drive else ()
+    has_live = scene.settlement is None and not path
+    kinds = {
+        "dead load": (DEAD, bool(scene.load.dead)),
+        "live load P, which grows": (DARK, has_live and is_force(scene)),
+        "live load, times λ": (DARK, has_live and bool(scene.load.dead) and not is_force(scene)),
+        _wrapped(f"given displacement: {', '.join(minus(1e3 * u) for u in path)} mm"): (MOTION, bool(path)),
+    }
+    return [
+        Line2D([0, 1], [0, 0], color=colour, label=name, **look) for name, (colour, there) in kinds.items() if there
+    ]
+
+
+def _wrapped(text: str) -> str:
+    held = text.replace(" ", "\xa0").replace(",\xa0", ", ").replace(":\xa0", ": ")
+    return "\n".join(textwrap.wrap(held, LONGEST)).replace("\xa0", " ")

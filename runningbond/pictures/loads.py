@@ -1,0 +1,286 @@
+"""Arrows of loads, with their sizes: live ones dark and times λ, dead ones blue."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from runningbond.scene import (
+    Action,
+    Array,
+    Beam,
+    BeamLoad,
+    Body,
+    Indices,
+    Lateral,
+    LineLoad,
+    Moment,
+    PointLoad,
+    Settlement,
+    Tilt,
+)
+from runningbond.scene.actions import unit_vector
+
+from .captions import is_force
+from .deformed_shape import DeformedShape
+from .gravity import draw_gravity, draw_tilt
+from .labels import Spot
+from .quantities import millimetres, minus, readable, times_lambda
+from .sketch import Sketch
+from .style import DARK, DEAD, MOTION
+
+EARTH = (0.0, -9.81)
+
+MANY = 4
+"""Forces of one load from which on each has an arrow, but not a size of its own."""
+
+
+class LoadDrawing:
+    """Draws the loads of a wall into a sketch, one after another, each clear of those before it."""
+
+    def __init__(self, sketch: Sketch, shape: DeformedShape) -> None:
+        self.sketch, self.shape, self.scene, self.a = sketch, shape, shape.scene, sketch.a
+        self.low, self.high = self.scene.blocks.extent(self.scene.wall)
+        self.rows: list[Array] = []
+        self.alone: list[Array] = []
+        self.pushes: dict[tuple[bool, float, float], list[str]] = {}
+
+    def draw(self) -> None:
+        """Draw all loads: along lines first, then at points, and on the whole wall last."""
+        load = self.scene.load
+        loads = [(action, False) for action in load.dead] + [(action, True) for action in load.live]
+        order: tuple[Any, ...] = (LineLoad, (PointLoad, BeamLoad), Moment)
+        ranks = [next((k for k, kinds in enumerate(order) if isinstance(one, kinds)), 3) for one, _ in loads]
+        for k in np.argsort(ranks, kind="stable"):
+            self._draw(*loads[k])
+        for (live, x, y), texts in self.pushes.items():
+            self._push(np.array([x, y]), "\n+ ".join(texts), *_look(live))
+        if load.gravity != EARTH and any(load.gravity):
+            draw_gravity(self.sketch, self.low, self.high, load.gravity)
+
+    def _draw(self, action: Action, live: bool) -> None:
+        colour, name = _look(live)
+        match action:
+            case LineLoad():
+                self._line(action, live, colour, name)
+            case PointLoad():
+                self._point(np.array(action.at), action.blocks(self.scene), action.force, live, colour, name)
+            case BeamLoad():
+                self._beam(action, live)
+            case Moment():
+                at = np.array(action.at)
+                self._turn(self._moved(at, self.scene.blocks.containing(at)[:1]), action.moment, live, colour, name)
+            case Tilt():
+                draw_tilt(self.sketch, self.low, self.high, action.direction)
+            case Lateral():
+                self._on_mass(np.array(action.direction), "weight", live)
+            case Body():
+                size = readable(math.hypot(*action.acceleration), "m/s²")
+                self._on_mass(unit_vector(np.array(action.acceleration)), size, live)
+            case Settlement():
+                pass  # drawn with the support that it moves
+            case _:
+                self._own(action, live, colour, name)
+
+    def _own(self, action: Action, live: bool, colour: str, name: str) -> None:
+        """A load of a user's own, by the arrows that it gives and the forces there; of many only the sum is said."""
+        forces = action.forces(self.scene)
+        arrows = action.arrows(self.scene)
+        tips = [(arrow, arrow.at) for arrow in arrows if arrow.at is not None]
+        for arrow, at in tips:
+            force = forces.force[(forces.at == at).all(axis=1)].sum(axis=0)
+            if len(tips) <= MANY:
+                self._point(at, arrow.block, (float(force[0]), float(force[1])), live, colour, name)
+                continue
+            tip = self._moved(at, arrow.block)
+            self.sketch.arrow(name, [tip - 1.5 * self.a * arrow.direction, tip], colour)
+            self.rows.append(np.sort([tip - 1.5 * self.a * arrow.direction, tip], axis=0))
+        if len(tips) > MANY:
+            arrow, at = tips[len(tips) // 2]
+            total = f"Σ {readable(float(np.hypot(*forces.force.sum(axis=0))), 'N')}"
+            spot = Spot(self._moved(at, arrow.block) - 1.5 * self.a * arrow.direction, _side(-arrow.direction))
+            self.sketch.label(times_lambda(total, live=live), [spot], colour)
+        for arrow in arrows[len(tips) :]:
+            self._on_mass(arrow.direction, "forces on mass", live)
+        turned = np.flatnonzero(forces.moment)
+        for block in turned:
+            said = "" if len(turned) <= MANY else "Σ " if block == turned[0] else None
+            moment = float(forces.moment.sum() if said else forces.moment[block])
+            self._turn(self.scene.blocks.centroid[block], moment, live, colour, name, said)
+
+    def _moved(self, at: Array, block: Indices) -> Array:
+        return np.asarray(at + self.shape.drawn_displacement(block, at))
+
+    def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
+        size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
+        self._force(self._moved(at, block), unit_vector(np.array(force)), size, colour, name)
+
+    def _force(self, tip: Array, direction: Array, text: str, colour: str, name: str, *, both: bool = False) -> None:
+        """An arrow to a point, or from it where it would else run through the wall, and its size beside it."""
+        a = self.a
+        pulls = self._inside(tip - 0.5 * a * direction) and not self._inside(tip + 0.5 * a * direction)
+        tip = tip + 2.2 * a * direction if pulls else tip
+        tail = tip - 2.2 * a * direction
+        for other in self.alone:
+            run = other[1] - other[0]
+            if np.hypot(*(other[1] - tip)) < 0.5 * a and run @ direction > 0.9 * np.hypot(*run):
+                tip = other[0] - 0.2 * a * direction
+                tail = tip - 2.2 * a * direction
+        while any(_meet(np.array([tail, tail + 1.3 * a * direction]), box) for box in self.rows):
+            tail = tail - 0.6 * a * direction
+        self.alone.append(np.array([tail, tip]))
+        self.sketch.arrow(name, [tail, tip], colour, both=both)
+        across = np.array([-direction[1], direction[0]])
+        beside = tail + 0.7 * a * direction
+        sides = [-across, across] if across[0] < -0.1 else [across, -across]
+        spots = [Spot(beside, _side(one)) for one in sides]
+        end = Spot(tip, _side(direction)) if pulls else Spot(tail, _side(-direction))
+        self.sketch.label(text, [*spots, end] if abs(direction[1]) > 0.5 else [end, *spots], colour)
+
+    def _inside(self, at: Array) -> bool:
+        found = self.scene.blocks.containing(at)
+        return bool(self.scene.wall[found].any())
+
+    def _line(self, load: LineLoad, live: bool, colour: str, name: str) -> None:
+        """A row of arrows under a bar, moved outwards until no other row is in its way."""
+        a, direction = self.a, unit_vector(np.array(load.force))
+        block, share = load.parts(self.scene)
+        run = np.subtract(load.end, load.start)
+        along = run / np.hypot(*run)
+        n = int(np.clip(np.hypot(*run) / (1.5 * a) + 1, 2, 60))
+        places = np.linspace(0.0, 1.0, n)
+        of = block[np.minimum(np.searchsorted(share[:, 1], places), len(block) - 1)]
+        tips = np.array(
+            [
+                self._moved(np.array(load.start) + place * run, np.array([one]))
+                for place, one in zip(places, of, strict=True)
+            ]
+        )
+        text = times_lambda(readable(math.hypot(*load.force), "N/m"), live=live)
+        middle = tips.mean(axis=0)
+        is_shear = abs(along @ direction) > 0.97
+        away = np.array([-along[1], along[0]]) if is_shear else -direction
+        if self._inside(middle + 0.5 * a * away) and not self._inside(middle - 0.5 * a * away):
+            away = -away
+        if is_shear:
+            tips = tips + 0.6 * a * away
+        elif away @ direction > 0:  # it pulls
+            tips = tips + 1.5 * a * direction
+        both = np.concatenate([tips - (0.9 if is_shear else 1.5) * a * direction, tips])
+        air = 0.35 * a * away if is_shear else np.zeros(2)
+        while any(_meet(np.concatenate([both - air, both + air]), box) for box in self.rows):
+            both = both + 0.5 * a * away
+        tails, tips = both[:n], both[n:]
+        self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
+        for tail, tip in zip(tails, tips, strict=True):
+            self.sketch.arrow(name, [tail, tip], colour)
+        if not is_shear:
+            self.sketch.line(name, [tails[0], tails[-1]], color=colour, lw=1.2, zorder=6)
+        ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
+        outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ away))
+        spots = [Spot(outer, _side(away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
+        self.sketch.label(text, spots, colour)
+
+    def _beam(self, load: BeamLoad, live: bool) -> None:
+        """A force on the beam, up to its edge; a displacement that it is given in the colour of motions."""
+        beam = self.scene.beam
+        assert beam is not None
+        forces = load.forces(self.scene)
+        at, number = forces.at[0], forces.block
+        direction = unit_vector(np.array(load.force))
+        low, high = self.scene.blocks.extent(int(number[0]))
+        half, middle = (high - low) / 2, (low + high) / 2
+        reach = min(half[k] / abs(direction[k]) for k in (0, 1) if abs(direction[k]) > 1e-9)
+        tip = middle - reach * direction
+        if load.height is not None and abs(direction[0]) > 0.5:
+            tip[1] = at[1]
+        edge = self._moved(np.clip(tip, low, high), number)
+        tip = self._moved(tip, number)
+        text, colour, name, both = self._drive_text(beam, load, live)
+        if not low[1] <= at[1] <= high[1]:
+            aside = np.array([-math.copysign(1.2 * self.a, direction[0]), 0.0])
+            tip = np.array([edge[0], tip[1]]) + aside
+            shoulder = np.array([edge[0], middle[1]])
+            self.sketch.line("beam", [shoulder, shoulder + aside, tip], lw=1.8)
+            self._height(tip, at[1] - self.low[1], -math.copysign(1.0, direction[0]))
+        self._force(tip, direction, text, colour, name, both=both)
+
+    def _height(self, at: Array, height: float, side: float) -> None:
+        """The height of a point above the base of the wall, as a dimension."""
+        foot = np.array([at[0], at[1] - height])
+        self.sketch.line("dimension", [foot, at], lw=0.5)
+        for end in (foot, at):
+            self.sketch.line("dimension", [end - 0.25 * self.a, end + 0.25 * self.a], lw=0.7)
+        middle = (foot + at) / 2
+        spots = [Spot(middle, (one, 0.0), upright=True) for one in (side, -side)]
+        self.sketch.label(f"{minus(height)} m", spots)
+
+    def _drive_text(self, beam: Beam, load: BeamLoad, live: bool) -> tuple[str, str, str, bool]:
+        path = beam.drive.path if beam.drive and live else ()
+        if not path:
+            unit = live and is_force(self.scene)
+            text = "P" if unit else times_lambda(readable(math.hypot(*load.force), "N"), live=live)
+            return text, *_look(live), False
+        if len(path) == 1:
+            return f"u = {millimetres(path[0])}", MOTION, "motion", False
+        low, high = min(path), max(path)
+        span = f"±{millimetres(high)}" if low == -high else f"{minus(1e3 * low)} … {millimetres(high)}"
+        moves = int(np.count_nonzero(np.diff([0.0, *path])))
+        return f"u = {span}\n{moves} moves", MOTION, "motion", True
+
+    def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str, said: str | None = "") -> None:
+        """A moment's arrow, and its size after what is to be said of it; None for no word."""
+        a = self.a
+        self.sketch.turn(name, at, 0.9 * a, colour, clockwise=moment < 0)
+        if said is None:
+            return
+        text = times_lambda(said + readable(abs(moment), "N m"), live=live)
+        sides = [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
+        self.sketch.label(text, [Spot(at + 0.9 * a * np.array(side), side) for side in sides], colour)
+
+    def _on_mass(self, direction: Array, size: str, live: bool) -> None:
+        """Note a load on the mass of all blocks: those along one direction share their arrows."""
+        x, y = np.round(direction, 6).tolist()
+        self.pushes.setdefault((live, x, y), []).append(times_lambda(size, live=live))
+
+    def _push(self, direction: Array, text: str, colour: str, name: str) -> None:
+        """A row of arrows along the side on which all blocks are pushed, and what they are."""
+        a, low, high = self.a, self.low, self.high
+        flat = abs(direction[0]) >= abs(direction[1])
+        inwards = np.array([np.sign(direction[0]), 0.0] if flat else [0.0, np.sign(direction[1])])
+        across = np.abs(inwards[::-1])
+        reach, width = float((high - low) @ np.abs(inwards)) / 2, float((high - low) @ across) / 2
+        n = int(np.clip(width / (0.6 * a), 2, 5))
+        places = width * np.linspace(-0.8, 0.8, n) if n > 2 else np.array([-0.4, 0.4]) * width
+        tips = (low + high) / 2 - (reach + 0.7 * a) * inwards + places[:, None] * across
+        ends = np.concatenate([tips - 1.5 * a * direction, tips])
+        taken = [*self.rows, *self.sketch.taken()]
+        while any(_meet(ends, box) for box in taken):
+            ends = ends - 0.6 * a * inwards
+        self.rows.append(np.array([ends.min(axis=0), ends.max(axis=0)]))
+        tails, tips = ends[: len(places)], ends[len(places) :]
+        for tail, tip in zip(tails, tips, strict=True):
+            self.sketch.arrow(name, [tail, tip], colour)
+        highest = max(tails, key=lambda tail: float(tail[1])) + 0.3 * a * direction
+        beside = Spot(tails.mean(axis=0), _side(-inwards), upright=flat)
+        above = Spot(highest, (float(-np.sign(direction[0])) if flat else 0.0, 1.0))
+        length = max(map(len, text.split("\n"))) * 4 * self.sketch.point
+        self.sketch.label(text, [beside, above] if not flat or 2.5 * width > length else [above, beside], colour)
+
+
+def _look(live: bool) -> tuple[str, str]:
+    """Colour and name of live or dead loads."""
+    return (DARK, "live load") if live else (DEAD, "dead load")
+
+
+def _side(direction: Array) -> tuple[float, float]:
+    """The side of a point that a direction leads to, one of eight."""
+    x, y = np.rint(1.2 * unit_vector(direction) / np.abs(unit_vector(direction)).max())
+    return float(np.clip(x, -1, 1)), float(np.clip(y, -1, 1))
+
+
+def _meet(points: Array, box: Array) -> bool:
+    """Whether the box around points ``(n, 2)`` shares an area with another ``(2, 2)`` [m]."""
+    sides = np.minimum(points.max(axis=0), box[1]) - np.maximum(points.min(axis=0), box[0])
+    slack = 1e-9 * np.abs(box).max()
+    return bool((sides > -slack).all() and sides.max() > slack)

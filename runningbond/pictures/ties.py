@@ -1,0 +1,60 @@
+"""Ties: lines from end plate to end plate, or to an anchor in hatched space."""
+
+import numpy as np
+
+from runningbond.scene import ANCHOR, Scene
+
+from .deformed_shape import DeformedShape
+from .labels import Spot
+from .quantities import readable
+from .sketch import Sketch
+from .style import SMALL_TYPE
+
+TIE = "0.1"
+"""Colour of ties."""
+
+
+def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
+    """Draw ties between where their ends have moved to; where they differ, each with the number of its kind."""
+    ties, a = shape.scene.ties, sketch.a
+    kinds = tie_kinds(shape.scene)
+    for k in range(len(ties)):
+        ends = np.array(
+            [
+                at + shape.drawn_displacement(np.array([block]), at)
+                for block, at in zip(ties.block[k], ties.ends[k], strict=True)
+            ]
+        )
+        along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
+        across = np.array([-along[1], along[0]])
+        sketch.line("tie", ends, color=TIE, lw=1.6)
+        for end, block, outward in zip(ends, ties.block[k], (-along, along), strict=True):
+            plate = end + np.outer([-0.6 * a, 0.6 * a], across)
+            if block == ANCHOR:
+                plate = end + np.outer([-a, a], across)
+                back = plate[::-1] + 0.9 * a * outward
+                sketch.area("anchor", [*plate, *back], fc="white", ec="0.45", hatch="//////", lw=0)
+            sketch.line("anchor" if block == ANCHOR else "tie plate", plate, color=TIE, lw=2.2)
+        if len(kinds) > 1:
+            number = next(n for n, kind in enumerate(kinds.values(), 1) if k in kind)
+            middle = ends.mean(axis=0)
+            spots = [
+                Spot(
+                    middle + 0.2 * a * side,
+                    (float(np.sign(side[0])) if abs(side[0]) > 0.4 else 0.0, float(np.sign(side[1]))),
+                )
+                for side in (across, -across)
+            ]
+            sketch.label(f"tie {number}", spots, TIE, SMALL_TYPE)
+
+
+def tie_kinds(scene: Scene) -> dict[str, list[int]]:
+    """Ties that are alike, by what a key says of them."""
+    ties = scene.ties
+    kinds: dict[str, list[int]] = {}
+    for k in range(len(ties)):
+        preload = f", preload {readable(ties.preload[k], 'N')}" if ties.preload[k] else ""
+        stiffness, strength = readable(ties.young[k] * ties.area[k], "N"), readable(ties.yield_force[k], "N")
+        text = f"E A = {stiffness}, yields at {strength}{preload}"
+        kinds.setdefault(text, []).append(k)
+    return kinds

@@ -1,0 +1,130 @@
+"""What holds a wall, and with which forces: the path quantities of an outcome.
+
+A held block is one that is fixed and touched, or pinned, as a beam may be. What holds it is the balance of its joint
+forces and loads,
+
+    R = B_nᵀ N + B_tᵀ S − f_dead − λ f_live,
+
+of a fixed one the joint forces alone, for loads on it go straight into the ground. Reactions act on the wall.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from runningbond.joints import JointPoints
+from runningbond.scene import Array, Forces, Indices, Scene
+
+WORKS = ("work of the dead load [J]", "work of the live load [J]")
+AT_REST = "at rest"
+
+
+def resultants(body: Indices, at: Array, force: Array, about: Array) -> Array:
+    """Sums of forces ``(n, 2)`` at points ``(n, 2)`` on bodies ``(n,)``, moments about ``(k, 2)``: ``(k, 3)``."""
+    arm, total = at - about[body], np.zeros((len(about), 3))
+    np.add.at(total, body, np.column_stack([force, arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]]))
+    return total
+
+
+class Supports:
+    """The held blocks of a scene that is joined at some points.
+
+    Parameters
+    ----------
+    scene, points
+        The scene, and the points of which joint forces are known.
+    owner : (n,) int
+        Block of each body that `points` know; None where bodies are the scene's blocks.
+
+    Attributes
+    ----------
+    block : (k,) int
+        The held blocks.
+    about : (k, 2) float
+        Point about which each one's moment is taken [m]: the middle of its pins, or of where it is touched.
+    """
+
+    def __init__(self, scene: Scene, points: JointPoints, owner: Indices | None = None) -> None:
+        sides = points.block if owner is None else owner[points.block]
+        touched = np.isin(np.arange(len(scene.blocks)), sides)
+        self._pins = scene.pins + scene.late_pins
+        self.block: Indices = np.union1d(np.flatnonzero(scene.fixed & touched), self._pins.block)
+        number = np.full(len(scene.blocks), -1)
+        number[self.block] = np.arange(len(self.block))
+        self._point, side = np.nonzero((number[sides] >= 0) & (sides[:, :1] != sides[:, 1:]))
+        self._body, self._points = number[sides][self._point, side], points.part(self._point)
+        self._sign = np.where(side == 1, 1.0, -1.0)[:, None]
+        self._scene = scene
+        self.about = np.array([self._middle(k) for k in range(len(self.block))]).reshape(-1, 2)
+        self._dead, self._live = (self._load(forces, number) for forces in (scene.dead_forces, scene.live_forces))
+
+    def _middle(self, k: int) -> Array:
+        pinned = self._pins.point[self._pins.block == self.block[k]]
+        at = pinned if len(pinned) else self._points.position[self._body == k]
+        return np.asarray((at.min(axis=0) + at.max(axis=0)) / 2)
+
+    def _load(self, forces: Forces, number: Indices) -> Array:
+        scene, block = self._scene, self.block
+        weight = scene.mass[block, None] * forces.acceleration[block]
+        load = resultants(np.arange(len(block)), scene.blocks.centroid[block], weight, self.about)
+        load[:, 2] += forces.moment[block]
+        here = number[forces.block] >= 0
+        load += resultants(number[forces.block[here]], forces.at[here], forces.force[here], self.about)
+        load[scene.fixed[block]] = 0.0
+        return load
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the numbers that `reactions` gives."""
+        heads = ("horizontal [N]", "vertical [N]", "moment about ({:.6g}, {:.6g}) [N m]")
+        return [
+            f"{name} {head.format(*about)}"
+            for name, about in zip(self._names(), self.about.tolist(), strict=True)
+            for head in heads
+        ]
+
+    def _names(self) -> list[str]:
+        scene = self._scene
+        ground = self.block[~scene.wall[self.block]]
+        names = {int(b): "ground" if len(ground) == 1 else f"ground {k + 1}" for k, b in enumerate(ground)}
+        if scene.beam is not None and scene.beam.block is not None:
+            names[scene.beam.block] = "beam"
+        return [names.get(int(b), f"{'block' if scene.fixed[b] else 'pinned block'} {b}") for b in self.block]
+
+    def reactions(self, force: Array, multiplier: float, *, at_rest: bool = True) -> Array:
+        """Horizontal and vertical reaction and moment of each held block, ``(3 k,)`` [N, N, N m].
+
+        Parameters
+        ----------
+        force : (np, 2) float
+            Normal and tangential forces of the points [N], tension positive.
+        multiplier
+            λ.
+        at_rest
+            Whether the wall rests; if not, what holds a pinned block also has its inertia to bear and is not a number.
+        """
+        points, (normal, tangential) = self._points, force[self._point].T[:, :, None]
+        pull = self._sign * (normal * points.normal + tangential * points.tangent)
+        total = resultants(self._body, points.position, pull, self.about) - self._dead - multiplier * self._live
+        if not at_rest:
+            total[~self._scene.fixed[self.block]] = np.nan
+        return total.ravel()
+
+    def path(
+        self, forces: Sequence[Array], multipliers: Iterable[float], works: Array, *, falls: bool = False
+    ) -> dict[str, Any]:
+        """Path and names of its columns, as `Outcome` has them, of states with point forces and works ``(n, 2)``.
+
+        All rest, or all but the last one where the wall `falls`.
+        """
+        resting = [True] * (len(forces) - falls) + [False] * falls
+        states = zip(forces, multipliers, resting, strict=True)
+        reactions = [self.reactions(force, load, at_rest=rests) for force, load, rests in states]
+        path = np.column_stack([np.reshape(reactions, (len(forces), -1)), works, resting])
+        return {"path": path, "path_columns": (*self.columns, *WORKS, AT_REST)}
+
+
+def collapse_state(scene: Scene, points: JointPoints, force: Array, multiplier: float) -> dict[str, Any]:
+    """The path of a model that knows the forces at collapse alone: one row, whose works are not numbers."""
+    return Supports(scene, points).path([force], [multiplier], np.full((1, 2), np.nan))

@@ -1,0 +1,184 @@
+"""Blocks from a drawing: DXF curves or a COMPAS assembly, closed, cut into chords and healed."""
+
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import shapely
+
+from ..arrays import Array
+from ..errors import SceneError
+from ..ranges import one_of
+from .compas import read_compas
+from .curves import ROUNDING, Arc, Chords
+from .dxf import KEY, Drawn, Sheet, read_dxf
+from .healing import heal as healed
+from .healing import missed_joints
+from .loops import join
+
+STRAIGHT = 2e-5
+"""How far a corner may lie off a straight side, in sizes of the smallest block: rounding, below any contact."""
+
+METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
+
+GROUND_LAYERS = ("ground", "soil", "support", "base", "terrain")
+"""Names of layers, in letters of any case, that hold pieces of the ground and nothing else."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """What a drawing holds.
+
+    Parameters
+    ----------
+    blocks : list of (n, 2) float
+        Outlines of the wall's blocks [m], counter-clockwise.
+    layers
+        Layer of each block; none for an assembly.
+    grounds : list of (n, 2) float
+        Outlines of the ground [m].
+    notes
+        What was joined, cut, moved and left out.
+    """
+
+    blocks: list[Array]
+    layers: tuple[str, ...]
+    grounds: list[Array]
+    notes: tuple[str, ...]
+
+
+def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
+    """Read a DXF drawing or, where the file's name ends in .json, a COMPAS assembly.
+
+    The ground is what lies on a layer of `GROUND_LAYERS` or, where there is none, the outline whose corners lie lowest
+    on average; of an assembly, its supports.
+
+    Parameters
+    ----------
+    units
+        A key of `METRES`.
+    heal
+        Gaps and overlaps up to this are closed [m]; None leaves all as they are.
+
+    Raises
+    ------
+    SceneError
+        For a file of another kind, or no drawing of a wall.
+    """
+    scale = METRES[one_of("wall.units", units, METRES)]
+    if path.suffix.lower() == ".json":
+        blocks, grounds, note = read_compas(path)
+        layers: list[str] = []
+        notes = [note]
+        if not grounds:
+            notes.append("assembly: no block is a support; the wall stands on what [support] says")
+        names = [f"{KEY}, assembly"] * (len(blocks) + len(grounds))
+    else:
+        sheet = read_dxf(path)
+        blocks, layers, names, notes = _outlines(sheet)
+        grounds = []
+        notes += _units_note(sheet, units)
+    outlines = _cleaned([scale * outline for outline in [*blocks, *grounds]], names)
+    blocks, grounds = outlines[: len(blocks)], outlines[len(blocks) :]
+    if path.suffix.lower() != ".json":
+        blocks, layers, grounds, more = _without_ground(blocks, layers, str(path))
+        notes += more
+    if not blocks:
+        raise SceneError(KEY, "is an assembly of supports; it needs at least one block", str(path))
+    if heal is not None:
+        joined, note = healed([*blocks, *grounds], heal)
+        blocks, grounds = joined[: len(blocks)], joined[len(blocks) :]
+    else:
+        note = missed_joints([*blocks, *grounds])
+    return Drawing(blocks, tuple(layers), grounds, (*notes, note) if note else tuple(notes))
+
+
+def _outlines(sheet: Sheet) -> tuple[list[Array], list[str], list[str], list[str]]:
+    """Closed outlines of a sheet with their layers and names, and what there is to say."""
+    ends = [piece.ends if isinstance(piece, Arc) else piece for curve in sheet.drawn for piece in curve.pieces]
+    corners = np.vstack([np.zeros((0, 2)), *ends])
+    tolerance = ROUNDING * float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
+    arcs = [piece for curve in sheet.drawn for piece in curve.pieces if isinstance(piece, Arc)]
+    chords = Chords(arcs, corners, tolerance)
+    found: list[tuple[Array, str, str]] = []
+    loose: dict[str, list[Array]] = {}
+    for curve in sheet.drawn:
+        points = _traced(curve, chords)
+        again = np.hypot(*(points[0] - points[-1])) <= tolerance
+        if curve.closed or (again and len(points) > 3):
+            found.append((points[:-1] if again else points, curve.layer, curve.name))
+        elif len(points) > 1:
+            loose.setdefault(curve.layer, []).append(points)
+    notes = []
+    for layer, curves in loose.items():
+        whole = [k for k, (_, its_layer, _) in enumerate(found) if its_layer == layer]
+        joined, cut, note = join(layer, curves, [found[k][0] for k in whole], tolerance)
+        notes.append(note)
+        gone = {whole[k] for k in cut}
+        found = [one for k, one in enumerate(found) if k not in gone]
+        found += [(outline, layer, f"{KEY}, layer {layer}") for outline in joined]
+    if arcs:
+        notes.append(
+            f"arcs: {len(arcs)} are cut into {chords.number} chords, which leave them by at most {chords.sagitta:.2g}"
+            " drawing units, at the same corners for all who share one"
+        )
+    if sheet.left_out:
+        notes.append(f"left out: {_listed(sheet.left_out)}")
+    return [one[0] for one in found], [one[1] for one in found], [one[2] for one in found], notes
+
+
+def _traced(curve: Drawn, chords: Chords) -> Array:
+    parts = [chords.cut(piece) if isinstance(piece, Arc) else piece for piece in curve.pieces]
+    return np.vstack([parts[0], *(part[1:] for part in parts[1:])])
+
+
+def _listed(left_out: Counter[tuple[str, str]]) -> str:
+    by_place: dict[str, list[str]] = {}
+    for (kind, place), number in left_out.items():
+        by_place.setdefault(place, []).append(f"{number} {kind}")
+    return "; ".join(f"{', '.join(kinds)} {place}" for place, kinds in by_place.items())
+
+
+def _units_note(sheet: Sheet, units: str) -> list[str]:
+    if sheet.units in (None, units):
+        return []
+    return [f"units: the drawing's header says {sheet.units}, wall.units says {units}, which counts"]
+
+
+def _without_ground(
+    outlines: list[Array], layers: list[str], path: str
+) -> tuple[list[Array], list[str], list[Array], list[str]]:
+    """Blocks with their layers, pieces of the ground, and a note where the ground had to be guessed."""
+    if len(outlines) < 2:
+        what = f"holds {len(outlines)} closed outlines; it needs the ground and at least one block"
+        raise SceneError(KEY, what, path)
+    ground = [k for k, layer in enumerate(layers) if layer.lower() in GROUND_LAYERS]
+    notes = []
+    if not ground:
+        ground = [min(range(len(outlines)), key=lambda k: float(outlines[k][:, 1].mean()))]
+        x, y = outlines[ground[0]].mean(axis=0)
+        notes.append(f"ground: no layer is named ground, so it is the lowest outline, at ({x:.4g}, {y:.4g})")
+    if len(ground) == len(outlines):
+        raise SceneError(KEY, f"has all its outlines on layer {layers[0]}, which is the ground's", path)
+    wall = [k for k in range(len(outlines)) if k not in set(ground)]
+    return [outlines[k] for k in wall], [layers[k] for k in wall], [outlines[k] for k in ground], notes
+
+
+def _cleaned(outlines: list[Array], names: list[str]) -> list[Array]:
+    """Outlines counter-clockwise, without corners in the middle of a straight side, which would cut a joint in two."""
+    polygons = []
+    for outline, name in zip(outlines, names, strict=True):
+        if len(outline) < 3:
+            raise SceneError(name, "must have at least three corners at finite coordinates")
+        # A side is straight from its first corner on, so the first one must be none in a side's middle.
+        first = int(np.lexsort(outline.T[::-1])[0])
+        polygon = shapely.Polygon(np.roll(outline, -first, axis=0))
+        if not polygon.is_valid:
+            raise SceneError(name, "crosses itself")
+        polygons.append(polygon)
+    if not polygons:
+        return []
+    least = STRAIGHT * float(np.sqrt(min(polygon.area for polygon in polygons)))
+    straight = shapely.simplify(polygons, least)
+    return [np.array(shapely.geometry.polygon.orient(polygon).exterior.coords)[:-1] for polygon in straight]

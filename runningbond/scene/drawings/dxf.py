@@ -1,0 +1,226 @@
+"""What a DXF file draws: its curves by layer, INSERTs exploded, and a count of all else."""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import SceneError
+from .curves import TURN, Arc, spline_points
+
+KEY = "wall.drawing"
+
+MOST = 300_000
+"""Entities that a drawing may hold once its INSERTs are exploded; a few that hold each other could be any number."""
+
+DEEPEST = 32
+"""INSERTs within INSERTs."""
+
+HEADER_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
+"""Codes of $INSUNITS."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """One curve: straight pieces, ``(n, 2)`` points in drawing units, and arcs, each from where the last one ends."""
+
+    layer: str
+    name: str
+    pieces: tuple[Array | Arc, ...]
+    closed: bool
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The curves of a drawing, entities left out by type and place, and the units that its header names."""
+
+    drawn: list[Drawn]
+    left_out: Counter[tuple[str, str]]
+    units: str | None
+
+
+def read_dxf(path: Path) -> Sheet:
+    """Read the model space of a DXF file.
+
+    Layers that are off or frozen are not seen in a CAD program and are not read here; what stands on layer 0 of a
+    block is on the layer of its INSERT.
+
+    Raises
+    ------
+    SceneError
+        For what is no DXF file, for meshes and for curves out of the drawing's plane.
+    """
+    if path.exists() and not path.is_file():  # a device has no end, and a pipe may have no other one
+        raise SceneError(KEY, "cannot be read as DXF: it is no regular file", str(path))
+    try:
+        from ezdxf.filemanagement import readfile
+    except Exception as error:  # its import reads settings of the user's, who may have no home
+        raise SceneError(KEY, f"cannot be read, for ezdxf cannot be imported: {error}", str(path)) from error
+    try:
+        document = readfile(path)
+        left_out: Counter[tuple[str, str]] = Counter()
+        drawn = []
+        for entity, layer, name in _Walk(document, left_out).all():
+            curve = _curve(entity, layer, name)
+            if curve is None:
+                left_out[entity.dxftype(), f"on layer {layer}"] += 1
+            elif curve.pieces:
+                drawn.append(curve)
+        return Sheet(drawn, left_out, HEADER_UNITS.get(document.header.get("$INSUNITS", 0)))
+    except SceneError:
+        raise
+    except OSError as error:
+        raise SceneError(KEY, f"cannot be read as DXF: {error.strerror or error}", str(path)) from error
+    except Exception as error:  # whatever its parsers raise on a file that is damaged
+        raise SceneError(KEY, f"is no valid DXF file: {error}", str(path)) from error
+
+
+class _Walk:
+    """Entities of a document's model space, INSERTs exploded, each with its layer and name."""
+
+    def __init__(self, document: Any, left_out: Counter[tuple[str, str]]) -> None:
+        self._document, self._left_out, self._seen = document, left_out, 0
+        self._layers = {layer.dxf.name.lower(): layer for layer in document.layers}
+
+    def all(self) -> Iterator[tuple[Any, str, str]]:
+        """The entities that are seen."""
+        return self._within(self._document.modelspace(), None, "", 0)
+
+    def _within(self, entities: Any, owner: str | None, within: str, depth: int) -> Iterator[tuple[Any, str, str]]:
+        for entity in entities:
+            self._count(1)
+            kind, own = entity.dxftype(), entity.dxf.get("layer", "0")
+            layer = owner if owner is not None and own == "0" else own
+            name = f"{KEY}, {kind} {entity.dxf.handle}" if not within else f"{within}, {kind}"
+            hidden = self._hidden(layer)
+            if entity.dxf.get("invisible", 0) or (hidden and (kind != "INSERT" or hidden == "frozen")):
+                self._left_out[kind, f"on layer {layer}, " + (f"which is {hidden}" if hidden else "invisible")] += 1
+            elif kind == "INSERT":
+                yield from self._exploded(entity, layer, name, depth)
+            else:
+                yield entity, layer, name
+
+    def _exploded(self, insert: Any, layer: str, name: str, depth: int) -> Iterator[tuple[Any, str, str]]:
+        if depth == DEEPEST:
+            raise SceneError(name, f"nests INSERTs more than {DEEPEST} deep, or in themselves")
+        if insert.block() is None or insert.block().block.is_xref:
+            self._left_out["INSERT of another file", f"on layer {layer}"] += 1
+            return
+        several = insert.mcount > 1
+        self._count(insert.dxf.row_count * insert.dxf.column_count if several else 1)
+        for attribute in insert.attribs:
+            self._left_out[attribute.dxftype(), f"on layer {layer}"] += 1
+
+        def skipped(entity: Any, _: str) -> None:
+            self._left_out[entity.dxftype(), f"on layer {layer}"] += 1
+
+        for one in insert.multi_insert() if several else [insert]:
+            parts = one.virtual_entities(skipped_entity_callback=skipped)
+            yield from self._within(parts, layer, name, depth + 1)
+
+    def _hidden(self, layer: str) -> str:
+        entry = self._layers.get(layer.lower())
+        if entry is None:
+            return ""
+        return "frozen" if entry.is_frozen() else "off" if entry.is_off() else ""
+
+    def _count(self, more: int) -> None:
+        self._seen += more
+        if self._seen > MOST:
+            raise SceneError(KEY, f"holds more than {MOST} entities, its INSERTs exploded")
+
+
+def _curve(entity: Any, layer: str, name: str) -> Drawn | None:
+    """An entity as a curve; None where it is none."""
+    kind = entity.dxftype()
+    closed = False
+    if kind == "LINE":
+        pieces: list[Array | Arc] = [_flat([entity.dxf.start, entity.dxf.end], name)]
+    elif kind in ("LWPOLYLINE", "POLYLINE"):
+        pieces, closed = _polyline(entity, name)
+    elif kind in ("ARC", "CIRCLE", "ELLIPSE"):
+        arc = _ellipse(entity, name) if kind == "ELLIPSE" else _circle(entity, name)
+        pieces, closed = [arc], arc.closed
+    elif kind == "SPLINE":
+        points = spline_points(entity.construction_tool())
+        pieces, closed = [_flat(points, name)], bool(entity.closed)
+    else:
+        return None
+    return Drawn(layer, name, tuple(pieces), closed)
+
+
+def _polyline(entity: Any, name: str) -> tuple[list[Array | Arc], bool]:
+    if entity.dxftype() == "LWPOLYLINE":
+        points, bulges = list(entity.vertices_in_wcs()), [row[0] for row in entity.get_points("b")]
+        closed = entity.closed
+    elif entity.is_2d_polyline or entity.is_3d_polyline:
+        corners = [v for v in entity.vertices if not v.dxf.flags & 16]  # 16: a spline's frame, not its curve
+        places = [v.dxf.location for v in corners]
+        points = places if entity.is_3d_polyline else list(entity.ocs().points_to_wcs(places))
+        bulges, closed = [v.dxf.bulge for v in corners], entity.is_closed
+    else:
+        raise SceneError(KEY, "holds a mesh; each block is one closed polyline")
+    flat = _flat(points, name)
+    sense = -1 if entity.dxf.extrusion.z < 0 else 1
+    if any(bulges):
+        _check_axis(entity, name)
+    pieces: list[Array | Arc] = []
+    following = np.roll(flat, -1, axis=0)
+    for p, q, bulge in list(zip(flat, following, bulges, strict=True))[: len(flat) if closed else -1]:
+        if (p != q).any():
+            pieces.append(Arc.from_bulge(p, q, sense * bulge) if abs(bulge) > 1e-12 else np.array([p, q]))
+    return pieces, bool(closed)
+
+
+def _circle(entity: Any, name: str) -> Arc:
+    _check_axis(entity, name)
+    system, radius = entity.ocs(), entity.dxf.radius
+    centre, along, up = (system.to_wcs(p) for p in (entity.dxf.center, (radius, 0, 0), (0, radius, 0)))
+    start, sweep = 0.0, TURN
+    if entity.dxftype() == "ARC":
+        start = float(np.radians(entity.dxf.start_angle))
+        sweep = _sweep(start, float(np.radians(entity.dxf.end_angle)))
+    return _arc(centre, along, up, start, sweep, name)
+
+
+def _ellipse(entity: Any, name: str) -> Arc:
+    _check_axis(entity, name)
+    start, sweep = entity.dxf.start_param, _sweep(entity.dxf.start_param, entity.dxf.end_param)
+    return _arc(entity.dxf.center, entity.dxf.major_axis, entity.minor_axis, start, sweep, name)
+
+
+def _arc(centre: Any, along: Any, up: Any, start: float, sweep: float, name: str) -> Arc:
+    axes = np.array([[along[0], along[1]], [up[0], up[1]]])
+    if not abs(np.linalg.det(axes)) > 0:
+        raise SceneError(name, "has no radius")
+    _finite(np.array([[start, sweep]]), name)
+    return Arc.along(_finite(np.array([[centre[0], centre[1]]]), name)[0], _finite(axes, name), start, sweep)
+
+
+def _sweep(start: float, end: float) -> float:
+    sweep = (end - start) % TURN
+    return TURN if sweep < 1e-12 or sweep > TURN - 1e-12 else float(sweep)
+
+
+def _flat(points: Any, name: str) -> Array:
+    """Points in space as points of the drawing's plane, or of one parallel to it, ``(n, 2)``."""
+    found = _finite(np.array([(p[0], p[1], p[2]) for p in points], dtype=float).reshape(-1, 3), name)
+    if len(found) and np.ptp(found[:, 2]) > 1e-6 * np.ptp(found[:, :2], axis=0).max():
+        raise SceneError(name, "does not lie in the drawing's plane")
+    return found[:, :2]
+
+
+def _check_axis(entity: Any, name: str) -> None:
+    axis = entity.dxf.extrusion
+    if abs(axis.x) + abs(axis.y) > 1e-9 * abs(axis.z):
+        raise SceneError(name, "does not lie in the drawing's plane")
+
+
+def _finite(values: Array, name: str) -> Array:
+    if not np.isfinite(values).all():
+        raise SceneError(name, "must have its corners at finite coordinates")
+    return values

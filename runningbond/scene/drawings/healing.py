@@ -1,0 +1,201 @@
+"""Gaps and overlaps between blocks as they were drawn: found, and closed where that is asked for."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_array, csc_array, csr_array, eye_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import spsolve
+from scipy.spatial import cKDTree
+
+from ..arrays import Array, Indices
+from ..blocks import Blocks, touching_boxes
+from ..errors import SceneError
+
+KEY = "wall.heal"
+
+SWEEPS = 200
+"""Most corrections of the corners; a dozen are enough where the gaps are as small beside the blocks as they may be."""
+
+NOTICED = 0.01
+"""Gap between facing edges, in sizes of the smaller block, below which a joint was surely meant."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Touches:
+    """What is to coincide.
+
+    Parameters
+    ----------
+    node : (nv,) int
+        The node that each corner becomes, with all corners that it is to meet.
+    lies, low, high : (n,) int
+        A node, and the ends of the edge that it is to lie on.
+    """
+
+    node: Indices
+    lies: Indices
+    low: Indices
+    high: Indices
+
+
+def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
+    """Close gaps and overlaps up to `reach` between neighbours.
+
+    Corners of two blocks that are each other's nearest become one, in their middle; those near another block's edge
+    are to lie on it. Damped Gauss-Newton steps, the least in the sum of squares, lead there: a joint along many blocks
+    becomes one straight line through their midst.
+
+    Parameters
+    ----------
+    polygons : list of (n, 2) float
+        Blocks and ground, counter-clockwise [m].
+    reach
+        Largest gap or overlap, and the furthest that a corner may move [m].
+
+    Returns
+    -------
+    healed : list of (n, 2) float
+    note
+        How many corners moved, and how far.
+
+    Raises
+    ------
+    SceneError
+        For a reach above a tenth of the smallest block's smaller side, and where corners would have to move further.
+    """
+    boxes = shapely.get_coordinates(shapely.oriented_envelope([shapely.Polygon(p) for p in polygons])).reshape(-1, 5, 2)
+    least = float(np.hypot(*(boxes[:, 1:3] - boxes[:, :2]).T).min())
+    if reach > least / 10:
+        what = f"must be at most a tenth of the smallest block's smaller side, {least / 10:.4g}"
+        raise SceneError(KEY, what, reach)
+    blocks = Blocks.from_polygons(polygons)
+    drawn = blocks.vertices
+    touches, gap = _touches(blocks, reach)
+    number = np.bincount(touches.node)[:, None]
+    nodes = np.column_stack([np.bincount(touches.node, x) for x in drawn.T]) / number
+    size = float(np.ptp(drawn, axis=0).max())
+    for _ in range(SWEEPS):
+        apart = _apart(touches, nodes)
+        if np.abs(apart).max(initial=0.0) <= 1e-13 * size:
+            break
+        nodes = nodes + _step(touches, nodes, apart, least)
+    corners = nodes[touches.node]
+    moved = np.hypot(*(corners - drawn).T)
+    worst = int(np.argmax(moved))
+    x, y = drawn[worst]
+    if moved[worst] > reach or np.abs(_apart(touches, nodes)).max(initial=0.0) > blocks.tolerance / 10:
+        what = f"closes no gaps near ({x:.4g}, {y:.4g}): the corner would move by {moved[worst]:.2g} m; draw it anew"
+        raise SceneError(KEY, what, reach)
+    healed = np.split(corners, blocks.first[1:-1])
+    for k in np.flatnonzero(~shapely.is_valid([shapely.Polygon(p) for p in healed])):
+        raise SceneError(KEY, f"makes {blocks.name(int(k))} cross itself; choose a smaller one", reach)
+    changed = int(np.sum(moved > blocks.tolerance / 100))
+    note = f"heal: {changed} corners moved, by at most {moved[worst]:.2g} m"
+    return healed, f"{note}, to close gaps and overlaps of up to {gap:.2g} m"
+
+
+def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
+    """What is to coincide within a reach, and how far apart it is at most [m]."""
+    corner, other = _twins(blocks, reach)
+    start = blocks.vertices
+    stop = start[blocks.successor]
+    lines = shapely.linestrings(np.stack([start, stop], axis=1))
+    c, e = shapely.STRtree(lines).query(shapely.points(start), predicate="dwithin", distance=reach)
+    along = stop[e] - start[e]
+    place = ((start[c] - start[e]) * along).sum(axis=1) / (along**2).sum(axis=1)
+    # A corner that has a twin on the edge's block meets it there, not beside it.
+    n = len(blocks)
+    pairs = np.concatenate([corner * n + blocks.owner[other], other * n + blocks.owner[corner]])
+    taken = np.isin(c * n + blocks.owner[e], pairs)
+    inside = (blocks.owner[c] != blocks.owner[e]) & (place > 0) & (place < 1) & ~taken
+    c, e, place, along = c[inside], e[inside], place[inside, None], along[inside]
+    gaps = [start[corner] - start[other], start[c] - start[e] - place * along]
+    shape = (len(start), len(start))
+    _, node = connected_components(coo_array((np.ones(len(corner)), (corner, other)), shape=shape), directed=False)
+    rows = np.unique(np.column_stack([node[c], node[e], node[blocks.successor[e]]]), axis=0)
+    rows = rows[(rows[:, :1] != rows[:, 1:]).all(axis=1)]
+    return _Touches(node.astype(np.int64), *rows.T), float(np.hypot(*np.vstack(gaps).T).max(initial=0.0))
+
+
+def _twins(blocks: Blocks, reach: float) -> tuple[Indices, Indices]:
+    """Corners of two blocks each of which is the other block's nearest."""
+    pairs = cKDTree(blocks.vertices).query_pairs(reach, output_type="ndarray")
+    pairs = np.vstack([pairs, pairs[:, ::-1]])
+    a, b = pairs[blocks.owner[pairs[:, 0]] != blocks.owner[pairs[:, 1]]].T
+    distance = np.hypot(*(blocks.vertices[a] - blocks.vertices[b]).T)
+    order = np.lexsort((b, distance, blocks.owner[b], a))
+    a, b = a[order], b[order]
+    nearest = np.ones(len(a), dtype=np.bool_)
+    nearest[1:] = (a[1:] != a[:-1]) | (blocks.owner[b[1:]] != blocks.owner[b[:-1]])
+    a, b = a[nearest], b[nearest]
+    n = len(blocks.vertices)
+    both = np.isin(a * n + b, b * n + a) & (a < b)
+    return a[both], b[both]
+
+
+def _apart(touches: _Touches, nodes: Array) -> Array:
+    """Distances of nodes from the lines of the edges that they are to lie on, to their left, ``(n,)`` [m]."""
+    _, normal = _place(touches, nodes)
+    found: Array = ((nodes[touches.lies] - nodes[touches.low]) * normal).sum(axis=1)
+    return found
+
+
+def _place(touches: _Touches, nodes: Array) -> tuple[Array, Array]:
+    """Where nodes lie along their edges, in lengths of these, ``(n,)``; the edges' normals, ``(n, 2)``."""
+    along = nodes[touches.high] - nodes[touches.low]
+    length = np.hypot(*along.T)[:, None]
+    place = ((nodes[touches.lies] - nodes[touches.low]) * along / length**2).sum(axis=1)
+    return place, np.column_stack([-along[:, 1], along[:, 0]]) / length
+
+
+def _step(touches: _Touches, nodes: Array, apart: Array, length: float) -> Array:
+    """Motion of all nodes that closes what is apart, but for a damping that fades as that does, ``(nn, 2)`` [m].
+
+    Conditions of which one follows from the others contradict each other a little for as long as edges are not in
+    line; undamped, they would move the corners by much.
+    """
+    place, normal = _place(touches, nodes)
+    values, columns = [], []
+    for node, share in ((touches.lies, np.ones_like(place)), (touches.low, place - 1), (touches.high, -place)):
+        values.append(share[:, None] * normal)
+        columns.append(2 * node[:, None] + [0, 1])
+    row = np.tile(np.repeat(np.arange(len(place)), 2), 3)
+    where = (row, np.concatenate(columns).ravel())
+    system = csr_array(coo_array((np.concatenate(values).ravel(), where), shape=(len(place), nodes.size)))
+    damping = max(10 * float(np.abs(apart).max()) / length, 1e-5)
+    matrix = csc_array(system.T @ system + damping**2 * eye_array(nodes.size))
+    return np.asarray(spsolve(matrix, -(system.T @ apart))).reshape(-1, 2)
+
+
+def missed_joints(polygons: Sequence[Array]) -> str:
+    """Say what the widest gap is that keeps facing edges from a joint, where there is one too small to be meant."""
+    blocks = Blocks.from_polygons(polygons)
+    start = blocks.vertices
+    stop = start[blocks.successor]
+    reach = NOTICED * np.sqrt(blocks.area)[blocks.owner][:, None]
+    a, b = touching_boxes(np.minimum(start, stop) - reach, np.maximum(start, stop) + reach)
+    a, b = a[blocks.owner[a] != blocks.owner[b]], b[blocks.owner[a] != blocks.owner[b]]
+    along, length = stop - start, np.hypot(*(stop - start).T)
+    along = along / length[:, None]
+    facing = (along[a] * along[b]).sum(axis=1) < -1 + NOTICED**2
+    a, b = a[facing], b[facing]
+    low, high = ((p[b] - start[a]) for p in (stop, start))
+    s_low, s_high = (low * along[a]).sum(axis=1), (high * along[a]).sum(axis=1)
+    overlap = np.minimum(s_high, length[a]) - np.maximum(s_low, 0.0)
+    outward = np.column_stack([along[a][:, 1], -along[a][:, 0]])
+    d_low, d_high = (low * outward).sum(axis=1), (high * outward).sum(axis=1)
+    s = np.stack([np.maximum(s_low, 0.0), np.minimum(s_high, length[a])])
+    gap = (d_low + (d_high - d_low) / (s_high - s_low) * (s - s_low)).max(axis=0)
+    narrow = (overlap > 0.1 * np.minimum(length[a], length[b])) & (gap > blocks.tolerance)
+    narrow &= gap < np.minimum(reach[a, 0], reach[b, 0])
+    if not narrow.any():
+        return ""
+    k = int(np.flatnonzero(narrow)[np.argmax(gap[narrow])])
+    unit = 10.0 ** (np.floor(np.log10(gap[k])) - 1)
+    enough = np.ceil(1.1 * gap[k] / unit) * unit
+    first, second = sorted((int(blocks.owner[a[k]]), int(blocks.owner[b[k]])))
+    between = f"{blocks.name(first)} and {blocks.name(second)}"
+    return f"a gap of {gap[k]:.2g} m between {between} leaves no joint there; [wall] heal = {enough:.2g} would close it"

@@ -1,0 +1,147 @@
+"""Lines and open curves joined into outlines: the areas that they enclose, as many of them as are blocks."""
+
+from collections import Counter
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..arrays import Array, Indices, Mask
+from ..errors import SceneError
+from .dxf import KEY
+
+
+def join(
+    layer: str, curves: Sequence[Array], outlines: Sequence[Array], tolerance: float
+) -> tuple[list[Array], list[int], str]:
+    """Join the open curves of one layer into outlines.
+
+    Where every line has as many neighbours as it was drawn times, each block has its own outline, and an enclosed
+    area that none goes round is an opening. Otherwise neighbours share lines, and every enclosed area is a block.
+
+    Parameters
+    ----------
+    layer
+        Name of the layer.
+    curves : list of (n, 2) float
+        Open curves.
+    outlines : list of (n, 2) float
+        Closed curves of the layer, which lines that end on them cut.
+    tolerance
+        Distance below which ends meet.
+
+    Returns
+    -------
+    found : list of (n, 2) float
+        Outlines.
+    cut : list of int
+        Outlines given that are replaced by the found ones.
+    note
+        How the lines were read.
+
+    Raises
+    ------
+    SceneError
+        For a loop that does not close, with the places of its ends.
+    """
+    edges, loose = _network(curves, tolerance)
+    cut: list[int] = []
+    closed: list[Array] = []
+    if len(loose) and outlines:
+        rings = shapely.linearrings([np.vstack([o, o[:1]]) for o in outlines])
+        _, at = shapely.STRtree(rings).query(shapely.points(loose), predicate="dwithin", distance=tolerance)
+        cut = sorted({int(k) for k in at})
+        closed = [np.vstack([outlines[k], outlines[k][:1]]) for k in cut]
+        edges, loose = _network([*curves, *closed], tolerance)
+    if len(loose):
+        places = " and ".join(f"({x:.6g}, {y:.6g})" for x, y in loose[:2].round(9) + 0.0)
+        more = f" and {len(loose) - 2} more" if len(loose) > 2 else ""
+        raise SceneError(f"{KEY}, layer {layer}", f"is open at {places}{more}; each block needs a closed outline")
+    faces = shapely.get_parts(shapely.polygonize(list(shapely.linestrings(edges))))
+    if any(len(face.interiors) for face in faces):
+        x, y = next(face for face in faces if len(face.interiors)).interiors[0].coords[0]
+        raise SceneError(f"{KEY}, layer {layer}", f"has a block with a hole, at ({x:.6g}, {y:.6g})")
+    own = _own_outlines(faces, edges, [*curves, *closed], tolerance)
+    chosen = faces if own is None else faces[own]
+    ways = f"{len(curves)} lines and curves are joined into {len(chosen)} outlines"
+    if own is None and len(faces) > 1:
+        ways += "; neighbours share lines, so every area that they enclose is a block, an opening too"
+    elif own is not None and not own.all():
+        ways += f"; {np.sum(~own)} areas within them are openings"
+    return [np.array(face.exterior.coords)[:-1] for face in chosen], cut, f"layer {layer}: {ways}"
+
+
+def _network(curves: Sequence[Array], tolerance: float) -> tuple[Array, Array]:
+    """Edges ``(n, 2, 2)`` between all crossings and corners of curves, and the ends ``(m, 2)`` that meet nothing."""
+    points = np.vstack(curves)
+    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    n = len(points)
+    _, group = connected_components(coo_array((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False)
+    _, first = np.unique(group, return_index=True)
+    corner = first[group]
+    stop = np.cumsum([len(curve) for curve in curves])
+    here = np.setdiff1d(np.arange(n), stop - 1)
+    ends = np.column_stack([corner[here], corner[here + 1]])
+    ends = ends[ends[:, 0] != ends[:, 1]]
+    if not len(ends):
+        return np.zeros((0, 2, 2)), points[:1]
+    split = _split_at_corners(points, np.unique(corner), ends, tolerance)
+    noded = shapely.get_parts(shapely.line_merge(shapely.unary_union(shapely.linestrings(points[split]))))
+    edges = np.vstack([np.stack([line[:-1], line[1:]], axis=1) for line in map(shapely.get_coordinates, noded)])
+    count = Counter(tuple(p) for p in edges.reshape(-1, 2).tolist())
+    return edges, np.array([p for p, times in count.items() if times == 1]).reshape(-1, 2)
+
+
+def _split_at_corners(points: Array, corners: Indices, ends: Indices, tolerance: float) -> Indices:
+    """Split edges, pairs of points, at corners that lie on them to within the tolerance, ``(n, 2)``."""
+    lines = shapely.linestrings(points[ends])
+    line, at = shapely.STRtree(shapely.points(points[corners])).query(lines, predicate="dwithin", distance=tolerance)
+    at = corners[at]
+    between = (at != ends[line, 0]) & (at != ends[line, 1])
+    line, at = line[between], at[between]
+    along = points[ends[line, 1]] - points[ends[line, 0]]
+    place = ((points[at] - points[ends[line, 0]]) * along).sum(axis=1)
+    owner = np.concatenate([np.arange(len(ends)), line, np.arange(len(ends))])
+    order = np.lexsort((np.concatenate([np.full(len(ends), -np.inf), place, np.full(len(ends), np.inf)]), owner))
+    chain = np.concatenate([ends[:, 0], at, ends[:, 1]])[order]
+    owner = owner[order]
+    within = owner[:-1] == owner[1:]
+    return np.column_stack([chain[:-1][within], chain[1:][within]])
+
+
+def _own_outlines(faces: Array, edges: Array, curves: Sequence[Array], tolerance: float) -> Mask | None:
+    """Faces that have outlines of their own, ``(nf,)`` bool; None where neighbours share lines.
+
+    An edge was drawn once for each of its blocks: whether the areas beside it are blocks follows from the outermost
+    edges inwards, and lines that are shared contradict themselves.
+    """
+    drawn = shapely.linestrings(np.vstack([np.stack([curve[:-1], curve[1:]], axis=1) for curve in curves]))
+    middle = shapely.points(edges.mean(axis=1))
+    edge, _ = shapely.STRtree(drawn).query(middle, predicate="dwithin", distance=tolerance)
+    times = np.bincount(edge, minlength=len(edges))
+    beside: dict[tuple[tuple[float, ...], ...], list[int]] = {}
+    for k, face in enumerate(faces):
+        ring = list(face.exterior.coords)
+        for p, q in pairwise(ring):
+            beside.setdefault((min(p, q), max(p, q)), []).append(k)
+    links: list[list[tuple[int, int]]] = [[] for _ in range(len(faces) + 1)]
+    for (p, q), m in zip(edges.tolist(), times, strict=True):
+        a, b = [*beside.get((min(tuple(p), tuple(q)), max(tuple(p), tuple(q))), []), -1, -1][:2]
+        links[a].append((b, int(m)))
+        links[b].append((a, int(m)))
+    share = {-1: 0}
+    ahead = [-1]
+    while ahead:
+        a = ahead.pop()
+        for b, m in links[a]:
+            wanted = m - share[a]
+            if wanted not in (0, 1) or share.get(b, wanted) != wanted:
+                return None
+            if b not in share:
+                share[b] = wanted
+                ahead.append(b)
+    return np.array([share[k] == 1 for k in range(len(faces))])

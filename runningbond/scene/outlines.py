@@ -1,0 +1,132 @@
+"""The outlines of a wall's blocks, from what a scene file says under ``[wall]``."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import cast, get_args
+
+import numpy as np
+
+from .arrays import Array
+from .bond import Bond, Ends, FirstCourse, bonded_rows, pattern_rows, rectangles
+from .cutting import cut_openings
+from .drawings import METRES, read_drawing
+from .errors import SceneError
+from .openings import read_openings
+from .ranges import ABOVE_ZERO
+from .table import Table
+
+ALIKE = 1e-9
+"""How far heights of courses that are alike may differ, and their sum from the wall's height, relatively."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outlines:
+    """What a scene file says of its blocks.
+
+    Parameters
+    ----------
+    polygons : list of (n, 2) float
+        Blocks of the wall [m], counter-clockwise.
+    grounds : list of (n, 2) float
+        Pieces of the ground [m]; none where the support is to make one.
+    bond
+        Nominal block, where the wall is bonded in courses that are alike.
+    layers
+        Layer of each block in a drawing; none of other walls.
+    materials
+        Names of the materials of single blocks, by their numbers.
+    notes
+        What was left out or mended of a drawing, a line each.
+    """
+
+    polygons: list[Array]
+    grounds: list[Array] = field(default_factory=list)
+    bond: Bond | None = None
+    layers: tuple[str, ...] = ()
+    materials: dict[int, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def read_outlines(wall: Table, folder: Path, block_names: Sequence[str]) -> Outlines:
+    """The outlines that the table of a wall describes.
+
+    Parameters
+    ----------
+    folder
+        Where drawings are looked up.
+    block_names
+        Names of the materials that blocks may have.
+
+    Raises
+    ------
+    SceneError
+        For what describes no wall, or describes one twice.
+    """
+    _refuse_mixed_descriptions(wall)
+    if "drawing" in wall:
+        path, heal = folder / wall.text("drawing"), wall.optional_number("heal", ABOVE_ZERO)
+        drawing = read_drawing(path, wall.choice("units", METRES), heal)
+        return Outlines(drawing.blocks, drawing.grounds, layers=drawing.layers, notes=drawing.notes)
+    width = wall.number("block_width", ABOVE_ZERO)
+    heights = _course_heights(wall)
+    bond = Bond(width, float(heights[0])) if heights is not None and np.ptp(heights) <= ALIKE * heights[0] else None
+    if heights is None:
+        bond = Bond(width, wall.number("block_height", ABOVE_ZERO))
+    if "courses" in wall:
+        rows = pattern_rows(wall.rows("courses"))
+        if heights is not None and len(heights) != len(rows):
+            what = f"must be as many as the courses of wall.courses, {len(rows)}"
+            raise SceneError("wall.course_heights", what, heights.tolist())
+    else:
+        length = wall.number("length", ABOVE_ZERO)
+        n_courses = _number_of_courses(wall, bond, heights)
+        first = cast(FirstCourse, wall.choice("first_course", get_args(FirstCourse), "full"))
+        ends = cast(Ends, wall.choice("ends", get_args(Ends), "flush"))
+        rows = bonded_rows(width, length, n_courses, first, ends)
+    levels = bond.levels(len(rows)) if bond else np.cumsum([0.0, *cast(Array, heights)])
+    polygons, openings = rectangles(rows, width, levels), read_openings(wall, block_names)
+    if not openings:
+        return Outlines(polygons, bond=bond)
+    polygons, materials = cut_openings(polygons, openings, width)
+    return Outlines(polygons, bond=bond, materials=materials)
+
+
+def _course_heights(wall: Table) -> Array | None:
+    """Heights of the courses ``(n,)`` [m] where a file lists them, None where all are of one block's height."""
+    key, heights = wall.key("course_heights"), wall.value("course_heights")
+    if heights is None:
+        return None
+    if "block_height" in wall:
+        raise SceneError(key, "does not go with wall.block_height; give one of them", heights)
+    if not isinstance(heights, list) or not heights:
+        raise SceneError(key, "must be a list of heights, one for each course, bottom to top", heights)
+    return np.array([ABOVE_ZERO.take(f"{key}[{k}]", height) for k, height in enumerate(heights)])
+
+
+def _number_of_courses(wall: Table, bond: Bond | None, heights: Array | None) -> int:
+    """Number of courses of a wall of a given height, or of those listed, whose sum the height is if it is given."""
+    if heights is None and bond:
+        return bond.courses_in(wall.number("height", ABOVE_ZERO))
+    listed = cast(Array, heights)
+    height, total = wall.optional_number("height", ABOVE_ZERO), float(listed.sum())
+    if height is not None and abs(height - total) > ALIKE * total:
+        raise SceneError("wall.height", f"must be left out, or be the sum of wall.course_heights, {total:.6g}", height)
+    return len(listed)
+
+
+def _refuse_mixed_descriptions(wall: Table) -> None:
+    """A wall is a drawing, a list of courses, or a length and height; the keys of two of them do not mix."""
+    by_size = ("length", "height", "first_course", "ends")
+    bonded = ("block_width", "block_height", "course_heights", "opening")
+    for description, strangers in (
+        ("drawing", ("courses", *by_size, *bonded)),
+        ("courses", ("units", "heal", *by_size)),
+        ("length", ("units", "heal")),
+    ):
+        if description in wall:
+            for key in strangers:
+                if key in wall:
+                    what = f"does not go with wall.{description}; describe the wall in one way"
+                    raise SceneError(f"wall.{key}", what)
+            return

@@ -1,0 +1,209 @@
+"""What looks like a slip in a scene: numbers in another unit, courses that do not line up, blocks that never touch.
+
+Nothing here is wrong in itself, and nothing is refused. A warning is a line that names the key, its value, and what it
+may be meant to be.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from .arrays import Array, Mask
+from .blocks import touching_boxes
+from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
+from .wall import Scene, table_of
+
+
+@dataclass(frozen=True)
+class Plausible:
+    """Range of what a number usually is, in its unit, and other units in which it may have been given."""
+
+    least: float
+    most: float
+    unit: str
+    others: Mapping[str, float] = field(default_factory=dict)
+
+    def doubts(self, key: str, value: float) -> Iterator[str]:
+        """A line on a number outside the range; none on 0, which says that there is nothing."""
+        if value == 0 or self.least <= value <= self.most:
+            return
+        middle = math.sqrt(self.least * self.most)
+        meant = {f"{value:g} {unit}": value * factor for unit, factor in self.others.items()}
+        likely = {text: one for text, one in meant.items() if self.least <= one <= self.most}
+        text = min(likely, key=lambda text: abs(math.log(likely[text] / middle)), default="")
+        hint = f"; is {text} meant, which is {likely[text]:.4g} {self.unit}?" if text else ""
+        yield f"{key} = {value:g}: is not within {self.least:g} … {self.most:g} {self.unit}{hint}"
+
+
+PRESSURES = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
+STRENGTH = Plausible(100.0, 1e8, "Pa", PRESSURES)
+ENERGY = Plausible(0.5, 1e5, "J/m²", {"N/mm": 1e3})
+STIFFNESS = Plausible(1e6, 1e16, "Pa/m", {"N/mm³": 1e9, "MPa/m": 1e6})
+OF_MATERIALS = {
+    "density": Plausible(200.0, 8000.0, "kg/m³", {"kN/m³": 1000 / 9.81, "t/m³": 1000.0}),
+    "young": Plausible(1e7, 1e13, "Pa", PRESSURES),
+    "cohesion": STRENGTH,
+    "tensile_strength": STRENGTH,
+    "compressive_strength": Plausible(1e4, 1e10, "Pa", PRESSURES),
+    "fracture_energy_1": ENERGY,
+    "fracture_energy_2": ENERGY,
+}
+OF_MORTAR = {
+    "young": Plausible(1e6, 1e13, "Pa", PRESSURES),
+    "thickness": Plausible(2e-4, 0.2, "m", {"mm": 1e-3, "cm": 1e-2}),
+}
+OF_TIES = Plausible(1e8, 1e12, "Pa", PRESSURES)
+SIZE = Plausible(0.05, 200.0, "m", {"mm": 1e-3, "cm": 1e-2, "km": 1e3})
+GRAVITY = Plausible(9.3, 10.3, "m/s²")
+FRICTION = (0.1, 1.5)
+ANGLES = (5.0, 60.0)
+"""Numbers that are rather an angle in degrees than its tangent."""
+
+THICKNESS = (0.02, 50.0)
+"""Thickness of the wall, in sizes of its middling block."""
+
+LARGEST_SETTLEMENT = 0.1
+"""Displacement of a support, in sizes of the wall."""
+
+LEVEL = 0.1
+"""Difference between levels, in heights of the lowest block, below which they are meant to be one."""
+
+REGULAR = 0.8
+"""Share of blocks that are rectangles in a wall that has courses."""
+
+NEAR = 0.1
+"""Gap between blocks of a course, in widths of the narrower one, that looks as if it were meant to be none."""
+
+
+def warnings(scene: Scene) -> tuple[str, ...]:
+    """What looks like a slip, a line each."""
+    return tuple(line for check in CHECKS for line in check(scene))
+
+
+def _materials(scene: Scene) -> Iterator[str]:
+    """Numbers of materials, and of ties."""
+    materials: tuple[BlockMaterial | JointMaterial, ...] = (*scene.block_materials, *scene.joint_materials)
+    for material in materials:
+        table = table_of(material)
+        for name in (entry.name for entry in fields(material)):
+            value: Any = getattr(material, name)
+            if name in OF_MATERIALS and value is not None:
+                yield from OF_MATERIALS[name].doubts(f"{table}.{name}", value)
+            elif isinstance(value, Mortar):
+                for own, usual in OF_MORTAR.items():
+                    yield from usual.doubts(f"{table}.mortar.{own}", getattr(value, own))
+            elif isinstance(value, Stiffness):
+                for own in ("normal", "shear"):
+                    yield from STIFFNESS.doubts(f"{table}.{own}_stiffness", getattr(value, own))
+            elif name == "friction":
+                yield from _friction(f"{table}.friction", value)
+    for k, young in enumerate(scene.ties.young.tolist()):
+        yield from OF_TIES.doubts(f"tie[{k}].young", young)
+
+
+def _friction(key: str, friction: float) -> Iterator[str]:
+    """Tan φ; 0 is a joint without friction, and meant."""
+    least, most = FRICTION
+    if friction > most:
+        angle = ANGLES[0] <= friction <= ANGLES[1]
+        hint = f"; is friction_angle = {friction:g} meant, tan φ = {math.tan(math.radians(friction)):.3g}?"
+        yield f"{key} = {friction:.4g}: is tan φ, and above {most:g}{hint if angle else ''}"
+    elif 0 < friction < least:
+        yield f"{key} = {friction:.4g}: is tan φ, and below {least:g}; an angle is friction_angle, in degrees"
+
+
+def _sizes(scene: Scene) -> Iterator[str]:
+    """Sizes of the wall, gravity, and settlements."""
+    low, high = scene.blocks.extent(_own_blocks(scene))
+    longest = float(max(high - low))
+    side = "length" if longest == (high - low)[0] else "height"
+    if scene.bond is None:
+        side = f"drawing: {side}"
+    yield from SIZE.doubts(f"wall.{side}", longest)
+    middling = float(np.median(np.sqrt(scene.blocks.area[_own_blocks(scene)])))
+    least, most = (share * middling for share in THICKNESS)
+    if not least <= scene.thickness <= most:
+        what = f"is odd for blocks of about {middling:.3g} m"
+        hint = f"; are {scene.thickness:g} mm meant?" if least <= 1e-3 * scene.thickness <= most else ""
+        yield f"wall.thickness = {scene.thickness:g}: {what}{hint}"
+    yield from GRAVITY.doubts("load.gravity", float(np.hypot(*scene.load.gravity)))
+    moved = float(np.hypot(*scene.support_motion[:, :2].T).max())
+    if moved > LARGEST_SETTLEMENT * longest:
+        yield f"load.live.by = {moved:g}: moves a support by more than a tenth of the wall's size; are mm meant?"
+
+
+def _own_blocks(scene: Scene) -> Mask:
+    """Blocks of the wall but for a beam on top, ``(nb,)``."""
+    own = scene.wall.copy()
+    if scene.beam is not None:
+        own[scene.beam.block] = False
+    return own
+
+
+def _courses(scene: Scene) -> Iterator[str]:
+    """Courses whose blocks are not on one level, and a course that ends short of those above and below it."""
+    own = _own_blocks(scene)
+    low, high = (corner[own] for corner in scene.blocks.boxes)
+    size = high - low
+    full = scene.blocks.area[own] >= (1 - 1e-6) * size.prod(axis=1)
+    levels = _distinct(low[:, 1], scene.blocks.tolerance)
+    if full.mean() < REGULAR or 2 * len(levels) > max(len(full), 4):
+        return
+    gaps = np.diff(levels)
+    close = np.flatnonzero(gaps < LEVEL * size[:, 1].min())
+    if len(close):
+        y, gap = levels[close[0]], gaps[close[0]]
+        yield f"wall: courses do not line up: blocks stand at y = {y:.6g} and {y + gap:.6g} m, {1e3 * gap:.3g} mm apart"
+        return
+    middle = (levels + np.append(levels[1:], high[:, 1].max())) / 2
+    half = float(np.median(size[:, 0])) / 2 * (1 + 1e-6)
+    there = [(low[:, 1] < y) & (y < high[:, 1]) for y in middle]
+    for side, ends, sign in (("left", -low[:, 0], -1.0), ("right", high[:, 0], 1.0)):
+        reach = np.array([ends[here].max(initial=-np.inf) for here in there])
+        for k in np.flatnonzero(_short(reach, half)):
+            what = f"the course there ends at x = {sign * reach[k]:.4g} m on the {side}"
+            yield f"wall: at y = {middle[k]:.4g} m: {what}, more than half a block short of its neighbours"
+
+
+def _distinct(values: Array, tolerance: float) -> Array:
+    """Values in ascending order, those that differ by less than a tolerance taken as one."""
+    values = np.sort(values)
+    return np.asarray(values[np.append(True, np.diff(values) > tolerance)])
+
+
+def _short(reach: Array, half: float) -> Mask:
+    """Courses that end more than half a block short of both neighbours; at an end of the wall, where all others agree.
+
+    Gables, steps and openings at the side, which are several courses high, are none of these.
+    """
+    if len(reach) < 3:
+        return np.zeros(len(reach), dtype=np.bool_)
+    inner = np.minimum(reach[:-2], reach[2:]) - reach[1:-1] > half
+    first, last = (
+        min(rest) - end > half and np.ptp(rest) <= half
+        for rest, end in ((reach[1:], reach[0]), (reach[:-1], reach[-1]))
+    )
+    return np.concatenate([[first], inner, [last]])
+
+
+def _head_joints(scene: Scene) -> Iterator[str]:
+    """Blocks that stand side by side, and nowhere touch."""
+    ends, own = scene.joints.ends, _own_blocks(scene)
+    run = np.abs(ends[:, 1] - ends[:, 0])
+    if (run[:, 1] > run[:, 0])[own[scene.joints.block].all(axis=1)].any():
+        return
+    low, high = (corner[own] for corner in scene.blocks.boxes)
+    reach = NEAR * np.median((high - low)[:, 0]) / 2 * np.array([1.0, 0.0])
+    a, b = touching_boxes(low - reach, high + reach)
+    beside = np.minimum(high[a], high[b]) - np.maximum(low[a], low[b])
+    lower = np.minimum((high - low)[a, 1], (high - low)[b, 1])
+    near = (a < b) & (beside[:, 1] > lower / 2) & (beside[:, 0] <= 0)
+    if near.any():
+        gap = f"{1e3 * float((-beside[near, 0]).max()):.3g} mm"
+        yield f"wall: no head joint: blocks that stand side by side are up to {gap} apart, and nowhere touch"
+
+
+CHECKS = (_sizes, _materials, _courses, _head_joints)

@@ -1,0 +1,157 @@
+"""``runningbond run``: its curve, what it writes, and what it says while it goes on."""
+
+import csv
+import json
+import os
+import pty
+import re
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+
+from runningbond.commands import terminal
+from runningbond.commands.command_line import command
+from runningbond.compare.models import MODELS, run_model
+from runningbond.compare.published import published_scene
+from runningbond.pictures.curve import curve_figure
+from runningbond.results import load_outcome
+
+from ..walls import content, panel, write_toml
+
+STIFFNESS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+SMALL: dict[str, Any] = {"wall__length": 0.48, "wall__height": 0.24, "joint": {"friction": 0.6} | STIFFNESS}
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> str:
+    return str(write_toml(content(**SMALL), tmp_path / "small.toml"))
+
+
+def read_csv(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_run_writes_its_curve_and_says_what_it_wrote(
+    small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What is written is the stored outcome's; all of the push arrives at the base."""
+    out = tmp_path / "out"
+    assert command(["run", small, "--model", "dem-static", "--out", str(out)]) == 0
+    written = [line for line in capsys.readouterr().out.splitlines() if line.startswith(str(out))]
+    assert {Path(line).name.split("-")[0] for line in written} >= {"outcome.json", "arrays", "curve.csv", "curve.png"}
+    assert all(Path(line).is_file() for line in written)
+    assert (out / "curve.png").read_bytes().startswith(b"\x89PNG")
+    rows, outcome = read_csv(out / "curve.csv"), load_outcome(out)[0]
+    load = np.array([float(row["λ"]) for row in rows])
+    assert np.array_equal(load, outcome.curve[:, 1])
+    assert np.array_equal([float(row["control displacement [m]"]) for row in rows], outcome.curve[:, 0])
+    weight = 9.81 * 1800 * 0.48 * 0.24 * 0.12
+    assert [float(row["ground horizontal [N]"]) for row in rows] == pytest.approx(-load * weight, abs=1e-6 * weight)
+    assert [float(row["ground vertical [N]"]) for row in rows] == pytest.approx(np.full(len(rows), weight))
+
+
+@pytest.mark.parametrize(("model", "rows"), [("limit", 1), ("limit-nonassociated", 1), ("homog", None)])
+def test_models_without_a_path_write_the_collapse_if_anything(
+    model: str, rows: int | None, small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And leave nothing of an earlier run's behind."""
+    for name in ("curve.csv", "curve.png"):
+        (tmp_path / name).write_bytes(b"old")
+    assert command(["run", small, "--model", model, "--out", str(tmp_path), "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert not (tmp_path / "curve.png").exists()
+    assert (tmp_path / "curve.csv").exists() == (rows is not None)
+    if rows is not None:
+        (row,) = read_csv(tmp_path / "curve.csv")
+        assert float(row["λ"]) == printed["multiplier"]
+        assert row["control displacement [m]"] == row["work of the live load [J]"] == ""
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+def test_the_curve_is_drawn_with_its_bracket_and_units(model: str) -> None:
+    """Every state is in the picture, the bracket within its axis; a fall is drawn as one."""
+    scene = published_scene("wall-w1")
+    outcome = run_model(model, scene, 0.02)
+    axes = curve_figure(scene, outcome).axes[0]
+    assert scene.title in axes.get_title()
+    assert "[mm]" in axes.get_xlabel()
+    assert "λ" in axes.get_ylabel()
+    low, high = axes.get_ylim()
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert low <= outcome.lower <= outcome.upper < high
+    drawn = np.vstack([line.get_xydata() for line in axes.lines if str(line.get_label()) in ("at rest", "falls")])
+    assert drawn == pytest.approx(outcome.curve * (1e3, 1.0))
+    assert ("falls" in [line.get_label() for line in axes.lines]) == (model == "dem-dynamic")
+    assert axes.get_xscale() == "symlog"  # a plateau a thousand times as long as the elastic range
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+def test_progress_tells_the_bracket_so_far(model: str) -> None:
+    """In the end it encloses the outcome's: it knows neither a peak under displacements nor what the last load did."""
+    make = MODELS[model].progress
+    assert make is not None
+    progress = make()
+    assert "λ" not in progress.line()
+    outcome = run_model(model, panel(**SMALL), 0.05, progress)
+    assert outcome.lower is not None
+    rests, falls = map(float, re.findall(r"(?:rests|falls) at ([.\d]+)", progress.line()))
+    assert rests <= outcome.lower + 1e-4
+    assert outcome.upper is not None
+    assert outcome.upper - 1e-4 <= falls <= 1.1 * rests
+    assert "% of " in progress.line()
+
+
+def test_progress_changes_no_number() -> None:
+    make = MODELS["dem-dynamic"].progress
+    assert make is not None
+    scene = panel(**SMALL)
+    told, silent = (run_model("dem-dynamic", scene, 0.05, observer) for observer in (make(), None))
+    assert np.array_equal(told.path, silent.path, equal_nan=True)
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_progress_is_for_terminals_and_leaves_nothing_behind(
+    is_terminal: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The line is cut to the terminal's width and wiped in the end; in a pipe there is none."""
+    with (
+        patch.object(terminal, "PATIENCE", 0.0),
+        patch.object(sys.stderr, "isatty", lambda: is_terminal),
+        patch.object(terminal, "get_terminal_size", lambda: SimpleNamespace(columns=20)),
+    ):
+        asked = threading.Event()
+
+        def told() -> str:
+            asked.set()
+            return 40 * "x"
+
+        with terminal.progress_line("fem", told):
+            assert not is_terminal or asked.wait()
+    out, err = capsys.readouterr()
+    assert out == ""
+    if not is_terminal:
+        assert err == ""
+        assert not asked.is_set()
+    else:
+        assert err.startswith("\r\x1b[Kfem 0 s: xx")
+        assert err.endswith("\r\x1b[K")
+        assert max(map(len, err.split("\r\x1b[K"))) == 19
+
+
+def test_json_is_pure_on_a_terminal_too(small: str) -> None:
+    """With standard error on a terminal and standard output in a pipe, the latter is one object."""
+    master, slave = pty.openpty()
+    line = [sys.executable, "-m", "runningbond", "run", small, "--model", "limit", "--json"]
+    done = subprocess.run(line, stdout=subprocess.PIPE, stderr=slave, check=True)
+    os.close(slave)
+    os.close(master)
+    assert json.loads(done.stdout)["status"] == "collapse"

@@ -1,0 +1,413 @@
+"""What is drawn around a wall says what its scene does: each load with its size, ties, supports, the beam."""
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import same_color
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import FancyArrowPatch, Patch
+from matplotlib.text import Text
+
+from runningbond.pictures.captions import to_png, to_svg
+from runningbond.pictures.flat import figure_of
+from runningbond.pictures.labels import Label, Spot, place_labels
+from runningbond.pictures.quantities import counted, millimetres, pair, readable
+from runningbond.pictures.style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
+from runningbond.results import Outcome
+from runningbond.scene import Action, Array, Forces, Scene, scene_from_dict
+
+from ..scene.test_loads import Wind
+from .scenes import SCENES, facade, large, line, on_a_step, point, settling_portal, wall
+
+
+@dataclass(frozen=True)
+class Own(Action):
+    """An acceleration and a moment at once."""
+
+    def forces(self, scene: Scene) -> Forces:
+        moment = np.zeros(len(scene.blocks))
+        moment[0] = 7.0
+        return Forces.on(scene, (1.0, 0.0), moment)
+
+
+NAMES = [*SCENES, "on_a_step"]
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[Scene, Figure]]:
+    """A scene and its figure by name, each made once."""
+    made: dict[str, tuple[Scene, Figure]] = {}
+
+    def draw(name: str) -> tuple[Scene, Figure]:
+        if name not in made:
+            scene = (
+                on_a_step(tmp_path_factory.mktemp("step")) if name == "on_a_step" else scene_from_dict(SCENES[name]())
+            )
+            figure = figure_of(scene)
+            made[name] = scene, figure
+        return made[name]
+
+    return draw
+
+
+def words(figure: Figure) -> list[Text]:
+    """All texts of a figure that say something: labels, captions and key."""
+    axes = figure.axes[0]
+    legend = axes.get_legend()
+    key = legend.get_texts() if legend else []
+    return [text for text in [*axes.texts, *key] if text.get_text()]
+
+
+def labels(figure: Figure) -> list[str]:
+    """The labels of a figure, without captions, which are annotations."""
+    return [text.get_text() for text in figure.axes[0].texts if type(text) is Text]
+
+
+def named(figure: Figure, name: str, kind: Any) -> list[Any]:
+    return [
+        artist for artist in figure.axes[0].get_children() if isinstance(artist, kind) and artist.get_label() == name
+    ]
+
+
+def arrows(figure: Figure) -> Counter[str]:
+    """Numbers of arrows by what they stand for."""
+    found = [artist for artist in figure.axes[0].get_children() if isinstance(artist, FancyArrowPatch)]
+    return Counter(str(artist.get_label()) for artist in found if artist.get_label())
+
+
+def assert_legible(figure: Figure) -> None:
+    """No two boxes of text overlap by more than rounding, and nothing is cut off, arrows included."""
+    figure.draw_without_rendering()  # texts have no place before
+    texts, whole = words(figure), figure.bbox
+    for artist in (*texts, *(one for one in figure.axes[0].get_children() if isinstance(one, FancyArrowPatch))):
+        box = artist.get_window_extent()
+        assert whole.x0 <= box.x0 <= box.x1 <= whole.x1
+        assert whole.y0 <= box.y0 <= box.y1 <= whole.y1
+    for one, other in combinations(texts, 2):
+        a, b = one.get_window_extent(), other.get_window_extent()
+        common = min(a.x1, b.x1) - max(a.x0, b.x0), min(a.y1, b.y1) - max(a.y0, b.y0)
+        assert min(common) <= 1.5, f"{one.get_text()!r} and {other.get_text()!r}"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_words_stand_clear_of_each_other_and_inside(name: str, drawn: Any) -> None:
+    assert_legible(drawn(name)[1])
+
+
+@st.composite
+def loaded(draw: st.DrawFn) -> dict[str, Any]:
+    """A wall of any shape and size under a few loads, perhaps with a beam or a tie."""
+    length, height = draw(st.sampled_from([(1.0, 1.0), (4.0, 1.0), (2.0, 4.0), (60.0, 30.0), (0.1, 0.1)]))
+    sizes, ends = st.floats(1.0, 1e7), st.sampled_from([(0.0, 1.0), (0.0, 0.5), (0.25, 0.75)])
+    sides = st.sampled_from([(0.0, -1.0), (1.0, 0.0), (-1.0, 0.0), (0.6, -0.8), (0.0, 1.0)])
+
+    def load() -> dict[str, Any]:
+        kind, (x, y), size = (
+            draw(st.sampled_from(["lateral", "body", "point", "line", "moment"])),
+            draw(sides),
+            draw(sizes),
+        )
+        start, end = draw(ends)
+        return {
+            "lateral": {"kind": "lateral", "direction": [x, y]},
+            "body": {"kind": "body", "acceleration": [x, y]},
+            "point": point(length * start, height, size * x, size * y),
+            "line": line(height, length * start, length * end, [0.0, -size]),
+            "moment": {"kind": "moment", "at": [0.51 * length, 0.97 * height], "moment": size * (x or 1.0)},
+        }[kind]
+
+    tables = wall(length, height, (length / 4, height / 6)) | {
+        "load": {"gravity": draw(st.sampled_from([9.81, [1, -9]]))}
+    }
+    tables["load"] |= {"dead": [load() for _ in range(draw(st.integers(0, 3)))], "live": [load(), load()]}
+    if draw(st.booleans()):
+        tables["tie"] = [{"from": [0.03 * length, 0.9 * height], "to": [1.2 * length, 0.9 * height]}]
+        tables["tie"][0] |= {"area": 1e-4, "young": 2e11, "yield": 1e4}
+    return tables
+
+
+@settings(max_examples=10, deadline=None, derandomize=True)
+@given(loaded())
+def test_any_wall_can_be_read_whatever_loads_it(tables: dict[str, Any]) -> None:
+    assert_legible(figure_of(scene_from_dict(tables)))
+
+
+LIVE, DEAD_LOAD, MOVED = "live load", "dead load", "motion"
+
+
+@pytest.mark.parametrize(
+    ("name", "said", "counts"),
+    [
+        ("facade", ["5 kN/m", "8 kN/m", "λ · weight"], {LIVE: 5, DEAD_LOAD: 36}),
+        ("settling_portal", ["20 mm"], {MOVED: 1}),
+        ("turning_support", ["0.5°", "5 mm"], {MOVED: 2}),
+        ("shear_wall", ["0.625 m", "100 kN", "u = ±4 mm\n6 moves"], {MOVED: 1, DEAD_LOAD: 1}),
+        ("kept_beam", ["50 kN", "λ · 1 kN"], {LIVE: 1, DEAD_LOAD: 1}),
+        ("free_beam", ["20 kN", "30 kN", "u = 10 mm"], {MOVED: 1, DEAD_LOAD: 2}),
+        ("tied", ["tie 1", "tie 2", "λ · 2 kN m", "λ · weight"], {LIVE: 6}),
+        ("tilted", ["g = 1.62 m/s²", "α", "λ = tan α"], {LIVE: 1, "gravity": 1}),
+        ("cracked", ["P"], {LIVE: 1}),
+        ("one_block", ["λ · 1.044 kN/m"], {LIVE: 5}),
+        ("on_a_step", ["λ · 1 kN", "λ · weight"], {LIVE: 6}),
+    ],
+)
+def test_each_load_is_drawn_with_its_size(name: str, said: list[str], counts: dict[str, int], drawn: Any) -> None:
+    scene, figure = drawn(name)
+    assert sorted(labels(figure)) == said
+    found = arrows(figure)
+    for kind in ("live load", "motion", "gravity"):
+        assert found[kind] == counts.get(kind, 0), kind
+    assert bool(found["dead load"]) == bool(scene.load.dead)
+    if name != "facade":  # how many stand for a load along a line depends on how large it is drawn
+        assert found["dead load"] == counts.get("dead load", 0)
+
+
+def test_every_load_of_many_is_said_once(drawn: Any) -> None:
+    """Ten loads and a vector of gravity: those on the mass along one direction share their arrows and a label."""
+    _, figure = drawn("many_loads")
+    shared = "λ · 2 m/s²\n+ λ · weight"
+    own = ["λ · 1 kN", "λ · 1.5 kN/m", "λ · 2 kN", "λ · 500 N", "5 kN", "2 kN/m", "500 N m", "weight", "1 m/s²"]
+    assert sorted(labels(figure)) == sorted([shared, *own, "g = (1, −9.5) m/s²"])
+    for text in figure.axes[0].texts:
+        if type(text) is Text:
+            assert same_color(text.get_color(), DARK if "λ" in text.get_text() else DEAD)
+    assert {"dead load", "live load, times λ"} <= {text.get_text() for text in words(figure)}
+
+
+@pytest.mark.parametrize(
+    ("load", "direction"),
+    [
+        (point(0.5, 1.0, 0, -2e3), (0, -1)),
+        (point(0.0, 0.9, 2e3, 0), (1, 0)),
+        (point(2.0, 0.9, 2e3, 0), (1, 0)),
+        (point(0.5, 1.0, 0, 2e3), (0, 1)),
+        ({"kind": "lateral", "direction": "left"}, (-1, 0)),
+        ({"kind": "body", "acceleration": [0, -3]}, (0, -1)),
+        (line(1.0, 0, 2, [0, -1e3]), (0, -1)),
+        (line(1.0, 0, 2, [0, 1e3]), (0, 1)),
+        (line(1.0, 0, 2, [1e3, 0]), (1, 0)),
+        (line(1.0, 0, 2, [-6e2, -8e2]), (-0.6, -0.8)),
+    ],
+)
+def test_arrows_point_where_the_load_does_and_stand_outside(load: dict[str, Any], direction: Any) -> None:
+    """A push ends at the wall or short of it and a pull starts there, so that no arrow lies over a block."""
+    scene = scene_from_dict(wall(2.0, 1.0) | {"load": {"gravity": 9.81, "live": load}})
+    for arrow in named(figure_of(scene), "live load", FancyArrowPatch):
+        tail, tip = arrow._path_original.vertices
+        assert (tip - tail) / np.hypot(*(tip - tail)) == pytest.approx(np.array(direction), abs=1e-9)
+        x, y = (tail + tip) / 2
+        assert not (0 < x < 2 and 0 < y < 1)
+
+
+def faces(figure: Figure) -> Array:
+    """Colours of the blocks, ``(nw, 3)``."""
+    (blocks,) = [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
+    return np.asarray(blocks.get_facecolor())[:, :3]
+
+
+@pytest.mark.parametrize(("height", "said"), [(0.5, ["λ · 60 N"] * 2), (2.0, ["λ · Σ 480 N"])])
+def test_a_load_of_ones_own_is_drawn_by_its_arrows(height: float, said: list[str]) -> None:
+    """Wind on two courses has a size at each; on eight it is said once, in sum."""
+    tables = wall(1.0, height) | {"load": {"gravity": 9.81, "live": [Wind(800.0)]}}
+    figure = figure_of(scene_from_dict(tables))
+    assert labels(figure) == said
+    assert arrows(figure)["live load"] == height / 0.25
+
+
+def test_an_own_load_on_mass_and_moments_is_drawn() -> None:
+    tables = wall(1.0, 0.5) | {"load": {"gravity": 9.81, "live": [Own()]}}
+    assert sorted(labels(figure_of(scene_from_dict(tables)))) == ["λ · 7 N m", "λ · forces on mass"]
+
+
+def test_blocks_have_the_colour_of_their_material(drawn: Any) -> None:
+    scene, figure = drawn("facade")
+    colours = np.array([BLOCK_COLOURS[k] for k in scene.material_of_block[scene.wall]])
+    assert faces(figure) == pytest.approx(colours)
+    assert len(np.unique(colours, axis=0)) == 2
+    said = [text.get_text() for text in words(figure)]
+    assert "oak: 700 kg/m³" in said
+    assert "blocks: 2000 kg/m³" in said
+    assert faces(drawn("kept_beam")[1])[-1] == pytest.approx(np.array(BEAM))
+    held = scene_from_dict(wall(2.0, 1.0, support={"kind": "fixed-first-course"}))
+    assert (np.abs(faces(figure_of(held)) - HELD) < 1e-9).all(axis=1).tolist() == held.fixed.tolist()
+
+
+def test_joints_have_the_colour_of_their_material(drawn: Any) -> None:
+    """Those of bed joints and of head joints are told apart in the key, and an unused material is not in it."""
+    scene, figure = drawn("kept_beam")
+    lines = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
+    assert [len(one.get_segments()) for one in lines] == [(scene.material_of_joint == k).sum() for k in (1, 2)]
+    assert all(same_color(np.asarray(one.get_color())[0], JOINT_COLOURS[k]) for k, one in enumerate(lines, 1))
+    said = [text.get_text() for text in words(figure)]
+    assert "mortar joints (bed): tan φ = 0.75, c = 0.1 MPa,\nfₜ = 0.05 MPa" in said
+    assert "dry joints (head): tan φ = 0.4" in said
+    assert not [text for text in said if text.startswith("joints")]
+
+
+def test_a_tie_runs_from_plate_to_plate_and_to_its_anchor(drawn: Any) -> None:
+    scene, figure = drawn("tied")
+    ties = [np.array(tie.get_xydata()) for tie in named(figure, "tie", Line2D)]
+    assert np.array(ties) == pytest.approx(scene.ties.ends)
+    assert len(named(figure, "tie plate", Line2D)) == 3
+    assert [one.get_hatch() is not None for one in named(figure, "anchor", Patch)] == [True]
+    said = [text.get_text() for text in words(figure)]
+    assert "tie 1: E A = 63 MN, yields at 70 kN, preload 5 kN" in said
+    assert "anchor fixed in space" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "guides", "hatched"), [("shear_wall", 2, 0), ("kept_beam", 4, 2), ("free_beam", 0, 0)]
+)
+def test_a_beam_is_guided_as_its_condition_says(name: str, guides: int, hatched: int, drawn: Any) -> None:
+    """Two rollers under a bar that is free to rise, or under hatched bars that are not; none on a free beam."""
+    _, figure = drawn(name)
+    parts = named(figure, "beam guide", Patch)
+    assert len(parts) == guides
+    assert sum(part.get_hatch() is not None for part in parts) == hatched
+    assert len(named(figure, "beam", Patch)) == 1
+
+
+def test_a_drive_acts_at_its_height(drawn: Any) -> None:
+    _, figure = drawn("shear_wall")
+    (arrow,) = named(figure, "motion", FancyArrowPatch)
+    assert arrow._path_original.vertices[:, 1] == pytest.approx(0.625)
+    assert same_color(arrow.get_edgecolor(), MOTION)
+    assert arrow.get_arrowstyle().arrow == "<|-|>"  # to and fro
+
+
+def test_the_support_that_moves_alone_has_its_colour(drawn: Any) -> None:
+    """Ground from x = 1.9 m on goes down; where it goes to is a level dashed line below."""
+    _, figure = drawn("settling_portal")
+    for patch in named(figure, "support", Patch):
+        x = patch.get_xy()[:, 0]
+        assert same_color(patch.get_edgecolor(), MOTION if x.min() > 1.8 else "0.45")
+    (dashed,) = named(figure, "motion", Line2D)
+    x, y = np.array(dashed.get_xydata()).T
+    assert x.min() == pytest.approx(1.9)
+    assert y[0] == y[1] < 0
+    assert "support that moves" in [text.get_text() for text in words(figure)]
+
+
+def test_ground_is_tilted_to_the_side_of_the_load(drawn: Any) -> None:
+    _, figure = drawn("tilted")
+    slopes = [np.diff(one.get_xydata(), axis=0)[0] for one in named(figure, "live load", Line2D)]
+    level, tilted = slopes
+    assert level[1] == 0
+    assert tilted[0] < 0 > tilted[1]
+
+
+def shear(scene: Scene, factor: float) -> Array:
+    """Motion of a wall whose courses slide on each other."""
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[scene.wall, 0] = factor * scene.blocks.centroid[scene.wall, 1]
+    return motion
+
+
+def test_in_a_mechanism_ties_hang_between_moved_ends_and_anchors_stay() -> None:
+    scene = scene_from_dict(SCENES["tied"]())
+    motion = shear(scene, 1.0)
+    figure = figure_of(scene, Outcome("", "limit", "collapse", 0.5, motion=motion))
+    ends = np.array([one.get_xydata() for one in named(figure, "tie", Line2D)])
+    moved = ends - scene.ties.ends
+    scale = moved[0, 0, 0] / motion[scene.ties.block[0, 0], 0]
+    expected = np.where(scene.ties.block < 0, 0.0, motion[scene.ties.block, 0])
+    assert moved[:, :, 0] == pytest.approx(scale * expected, abs=1e-9)
+    assert moved[1, 1] == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_in_a_mechanism_the_beam_and_the_ground_are_where_they_move_to() -> None:
+    scene = scene_from_dict(SCENES["kept_beam"]())
+    assert scene.beam is not None
+    motion = shear(scene, -1.0)
+    figure = figure_of(scene, Outcome("", "limit", "collapse", 50.0, motion=motion))
+    (beam,) = named(figure, "beam", Patch)
+    aside = beam.get_xy()[:-1] - scene.blocks.polygon(int(scene.beam.block or 0))
+    assert (aside[:, 0] < -0.05).all()
+    assert aside == pytest.approx(np.tile(aside[0], (4, 1)), abs=1e-9)
+
+    portal = scene_from_dict(settling_portal())
+    down = portal.support_motion / 0.02
+    down[portal.wall & (portal.blocks.centroid[:, 0] > 1.5), 1] = -1.0
+    figure = figure_of(portal, Outcome("", "limit", "collapse", 0.4, motion=down))
+    level = {round(float(one.get_xy()[:, 1].max()), 3) for one in named(figure, "support", Patch)}
+    assert len(level) == 2
+    assert max(level) == 0.0
+    assert min(level) < -0.1
+
+
+def test_numbers_are_those_that_assign_knows_and_stand_in_their_blocks() -> None:
+    """Of blocks that may crack both halves have one number, in the middle of the whole."""
+    plain, cracked = scene_from_dict(facade()), scene_from_dict(SCENES["cracked"]())
+    for scene in (plain, cracked):
+        texts = [text for text in figure_of(scene, numbers=True).axes[0].texts if text.get_text().isdigit()]
+        assert [text.get_text() for text in texts] == [str(k) for k in range(scene.part_of.max() + 1)]
+        for number, text in enumerate(texts):
+            parts = np.flatnonzero(scene.part_of == number)
+            low, high = (np.array(corner)[parts] for corner in scene.blocks.boxes)
+            assert (low.min(axis=0) < text.get_position()).all()
+            assert (high.max(axis=0) > text.get_position()).all()
+    assert not labels(figure_of(plain))[0].isdigit()
+    chosen = facade()
+    chosen["assign"] = [{"block": "oak", "blocks": [137]}]
+    again = scene_from_dict(chosen)
+    assert np.flatnonzero(again.material_of_block == 1).tolist() == np.flatnonzero(plain.part_of == 137).tolist()
+
+
+def test_numbers_can_be_read_in_a_wall_of_two_thousand_blocks() -> None:
+    """The sheet grows until they can, up to five columns wide."""
+    scene = scene_from_dict(large())
+    figure = figure_of(scene, numbers=True)
+    numbers = [text for text in figure.axes[0].texts if text.get_text().isdigit()]
+    assert len(numbers) == scene.wall.sum() == 2025
+    assert figure.get_size_inches()[0] > 10
+    assert np.median([text.get_fontsize() for text in numbers]) > 2.5
+
+
+@pytest.mark.parametrize("numbers", [False, True])
+def test_pictures_of_both_kinds_are_written(numbers: bool, tmp_path: Path) -> None:
+    scene = on_a_step(tmp_path)
+    assert to_svg(figure_of(scene, numbers=numbers)).startswith(b"<?xml")
+    assert to_svg(figure_of(scene, numbers=numbers)) == to_svg(figure_of(scene, numbers=numbers))
+    assert to_png(figure_of(scene, numbers=numbers)).startswith(b"\x89PNG")
+
+
+def test_labels_move_out_of_each_others_way() -> None:
+    """Ten labels for one point, which may stand on its right, or above or below it."""
+    spots = [Spot(np.zeros(2), side) for side in ((1.0, 0.0), (0.0, 1.0), (0.0, -1.0))]
+    placed = place_labels([Label("10 kN", spots) for _ in range(10)], np.zeros((0, 2, 2)), 0.01)
+    for one, other in combinations(placed, 2):
+        assert (np.abs(one.middle - other.middle) >= 0.999 * (one.half + other.half)).any()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (readable(999.0, "N"), "999 N"),
+        (readable(1e3, "N"), "1 kN"),
+        (readable(-2.5e6, "N m"), "−2.5 MN m"),
+        (readable(0.25, "N"), "0.25 N"),
+        (readable(0.0, "N/m"), "0 N/m"),
+        (pair(np.array([0.0, -1500.0]), "N"), "(0, −1.5) kN"),
+        (millimetres(-0.0125), "−12.5 mm"),
+        (counted(1, "joint"), "1 joint"),
+        (counted(0, "joint"), "0 joints"),
+    ],
+)
+def test_quantities_are_in_the_unit_that_suits_them(text: str, said: str) -> None:
+    assert text == said
+
+
+def test_what_is_around_a_wall_leaves_room_to_it(drawn: Any) -> None:
+    """Even with a load of every kind the wall takes more than 40 % of the width."""
+    left, right = drawn("many_loads")[1].axes[0].get_xlim()
+    assert 4.0 / (right - left) > 0.4

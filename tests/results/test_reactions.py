@@ -1,0 +1,142 @@
+"""Reactions and works along a path: what is held bears what pushes, state by state."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.compare.models import run_model
+from runningbond.joints import wall_points
+from runningbond.results import Outcome, Supports, load_outcome, save_outcome
+from runningbond.results.reactions import AT_REST, WORKS
+from runningbond.scene import Array, Scene
+
+from ..walls import courses, panel
+
+STIFFNESS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+POINT = {"gravity": 9.81, "live": {"kind": "point", "at": [0.24, 0.18], "force": [100.0, -30.0]}}
+WALLS: dict[str, dict[str, Any]] = {
+    "base": {},
+    "held course": {"support__kind": "fixed-first-course"},
+    "corners": {"support__kind": "corners"},
+    "pinned": {"support__kind": "pinned-corners"},
+    "pushed left": {"load__live": {"kind": "lateral", "direction": "left"}},
+    "point": {"load": POINT},
+}
+
+
+def wall(name: str) -> Scene:
+    """Three courses of two blocks."""
+    size = {"wall__length": 0.48, "wall__height": 0.18, "block__young": 1e12}
+    return panel(**size, joint={"friction": 0.6, "cohesion": 2e3} | STIFFNESS, **WALLS[name])
+
+
+def sums(scene: Scene, outcome: Outcome) -> tuple[Array, Array]:
+    """Reactions of all supports and loads on what moves, both about the origin, of each row ``(n, 3)``."""
+    about, total = Supports(scene, wall_points(scene)).about, np.zeros((len(outcome.path), 3))
+    for k, (x, y) in enumerate(about):
+        px, py, moment = outcome.path[:, 3 * k : 3 * k + 3].T
+        total += np.column_stack([px, py, moment + x * py - y * px])
+    load = np.zeros((2, 3))
+    for row, forces in zip(load, (scene.dead_forces, scene.live_forces), strict=True):
+        free = ~scene.fixed
+        push = (scene.mass[:, None] * forces.acceleration)[free]
+        at, push = np.vstack([scene.blocks.centroid[free], forces.at]), np.vstack([push, forces.force])
+        row[:2], row[2] = push.sum(axis=0), (at[:, 0] * push[:, 1] - at[:, 1] * push[:, 0]).sum()
+    return total, load[0] + outcome.curve_columns()["multiplier"][:, None] * load[1]
+
+
+TOLERANCES = {"limit": 1e-6, "limit-nonassociated": 1e-6, "dem-static": 1e-6, "dem-dynamic": 3e-4}
+EACH = [(model, tolerance, name) for model, tolerance in TOLERANCES.items() for name in WALLS]
+
+
+@pytest.mark.parametrize(
+    ("model", "tolerance", "name"), [*EACH, ("fem", 3e-4, "base"), ("fem", 3e-4, "corners"), ("fem", 3e-4, "point")]
+)
+def test_reactions_balance_the_loads_in_every_state_at_rest(model: str, tolerance: float, name: str) -> None:
+    """In force and moment: to the tolerance of a program, and of rest: each block's 1e-5 weights, of each block."""
+    scene = wall(name)
+    outcome = run_model(model, scene, 0.3)
+    rests = outcome.curve_columns()[AT_REST] == 1
+    assert rests.any(), outcome.message
+    reactions, loads = sums(scene, outcome)
+    assert np.abs(reactions + loads)[rests].max() < tolerance * np.abs(loads[rests]).max()
+    held = np.unique(scene.pins.block)
+    for k in np.flatnonzero(np.isin(Supports(scene, wall_points(scene)).block, held)):
+        assert np.abs(outcome.path[rests, 3 * k + 2]).max() < tolerance * np.abs(loads[rests]).max()
+
+
+def test_a_block_on_its_base_by_hand() -> None:
+    """A block of 1 m × 2 m × 1 m and 1000 kg/m³ topples at λ = 0.5; then the base bears it at its right corner."""
+    joint = {"friction": 0.9} | STIFFNESS
+    scene = courses([[1]], width=1, height=2, wall__thickness=1.0, block__density=1000.0, joint=joint)
+    outcome = run_model("limit", scene)
+    weight = 2000 * 9.81
+    columns = outcome.curve_columns()
+    heads = ("horizontal [N]", "vertical [N]", "moment about (0.5, 0) [N m]")
+    horizontal, vertical, moment = (float(columns[f"ground {head}"][0]) for head in heads)
+    assert (horizontal, vertical) == pytest.approx((-weight / 2, weight))
+    assert moment == pytest.approx(0.5 * weight)
+    assert np.isnan([columns[work][0] for work in WORKS]).all()
+
+
+def test_stepped_ground_is_a_support_a_piece() -> None:
+    """A beam on two held blocks, its weight in the middle: half of it on each, no moment about where they touch it."""
+    joint = {"friction": 0.6} | STIFFNESS
+    scene = courses([[1, -1, 1], [3]], width=0.2, height=0.2, joint=joint, support__kind="fixed-first-course")
+    outcome = run_model("dem-static", scene, 0.05)
+    columns, weight = outcome.curve_columns(), 9.81 * float(scene.mass[~scene.fixed].sum())
+    vertical = [values[0] for name, values in columns.items() if "vertical" in name]
+    assert vertical == pytest.approx([weight / 2, weight / 2], rel=1e-6)
+    assert [name.split(" horizontal")[0] for name in columns if "horizontal" in name] == ["block 0", "block 1"]
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+def test_the_loads_work_is_what_they_do_on_the_path(model: str) -> None:
+    """A force P = λ f at the control point works ∫ P du; the dead load of an elastic pile weight times settlement."""
+    scene = wall("point")
+    outcome = run_model(model, scene, 0.1)
+    columns = outcome.curve_columns()
+    rests = columns[AT_REST] == 1
+    moved, load = columns["displacement"][rests], columns["multiplier"][rests]
+    trapezoids = np.append(0.0, np.cumsum((load[1:] + load[:-1]) / 2 * np.diff(moved))) * np.hypot(100, 30)
+    live = columns[WORKS[1]][rests]
+    assert live == pytest.approx(trapezoids, rel=0.15, abs=0.02 * trapezoids[-1])
+    assert columns[WORKS[0]][rests][0] > 0
+    assert (np.diff(live) >= 0).all()
+
+
+def test_the_path_comes_back_from_disk(tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder, outcome = tmp_path_factory.mktemp("path"), run_model("dem-static", wall("base"), 0.1)
+    save_outcome(outcome, folder)
+    back = load_outcome(folder)[0]
+    assert back.path_columns == outcome.path_columns
+    assert np.array_equal(back.path, outcome.path)
+
+
+def test_a_path_has_as_many_rows_as_the_curve() -> None:
+    with pytest.raises(ValueError, match="path has 3 rows"):
+        Outcome("wall", "mine", "undecided", curve=np.zeros((2, 2)), path=np.zeros((3, 1)), path_columns=("x",))
+
+
+def test_what_falls_holds_its_pins_with_more_than_forces() -> None:
+    """The last row of a wall that fell is in motion: what holds a pinned block then is not known."""
+    columns = run_model("dem-dynamic", wall("corners"), 0.1).curve_columns()
+    assert columns[AT_REST].tolist() == [1] * (len(columns[AT_REST]) - 1) + [0]
+    pinned = [values for name, values in columns.items() if name.startswith("pinned block")]
+    assert len(pinned) == 6
+    assert all(np.isnan(values[-1]) and np.isfinite(values[:-1]).all() for values in pinned)
+
+
+def test_a_held_beam_bears_what_its_joints_do_not() -> None:
+    """A beam that is level and does not rise, pushed 0.1 m above its middle, on joints that carry nothing."""
+    beam = {"height": 0.1, "mass": 50.0, "condition": "fixed-height", "drive": {"force": [2.0, 0.0], "at": 0.39}}
+    scene = panel(wall__length=0.48, wall__height=0.24, load={"gravity": 9.81}, beam=beam | {"force": [0.0, -300.0]})
+    supports = Supports(scene, wall_points(scene))
+    reactions = supports.reactions(np.zeros((len(wall_points(scene)), 2)), 3.0)
+    columns = dict(zip(supports.columns, reactions, strict=True))
+    named = {name: value for name, value in columns.items() if name.startswith("beam")}
+    assert list(named) == [
+        f"beam {head}" for head in ("horizontal [N]", "vertical [N]", "moment about (0.24, 0.29) [N m]")
+    ]
+    assert list(named.values()) == pytest.approx([-6.0, 300 + 50 * 9.81, 0.6])

@@ -1,0 +1,106 @@
+"""Materials reach the blocks and joints that they were assigned to, and later entries win."""
+
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import numpy as np
+import pytest
+
+from runningbond.results.scene_arrays import scene_from_arrays, scene_to_arrays
+from runningbond.scene import Scene, read_scene
+from tests.walls import content, panel, write_toml
+
+from .test_scene import GROUND
+
+MATERIALS: dict[str, Any] = {
+    "materials": {"oak": {"density": 700.0}, "stone": {"density": 2600.0}},
+    "joints": {"mortar": {"friction": 0.75, "cohesion": 1e5}, "dust": {"friction": 0.3, "inset": 0.01}},
+}
+
+
+def assigned(*entries: dict[str, Any], **changes: Any) -> Scene:
+    return panel(**MATERIALS, assign=list(entries), **changes)
+
+
+def names_of_blocks(scene: Scene) -> list[str]:
+    return [scene.block_materials[k].name for k in scene.material_of_block]
+
+
+def names_of_joints(scene: Scene) -> list[str]:
+    return [scene.joint_materials[k].name for k in scene.material_of_joint]
+
+
+def test_later_entries_win() -> None:
+    scene = assigned(
+        {"block": "oak", "box": [[0, 0], [1.44, 0.3]]},
+        {"block": "stone", "blocks": [0, 1]},
+        {"block": "block", "blocks": [1]},
+    )
+    names = names_of_blocks(scene)
+    assert names[:2] == ["stone", "block"]
+    low = scene.blocks.centroid[:, 1] <= 0.3
+    assert {names[k] for k in np.flatnonzero(scene.wall & low)[2:]} == {"oak"}
+    assert {names[k] for k in np.flatnonzero(scene.wall & ~low)} == {"block"}
+    assert scene.mass[0] == pytest.approx(2600 * scene.blocks.area[0] * 0.12)
+    assert scene.mass[2] == pytest.approx(700 * scene.blocks.area[2] * 0.12)
+
+
+def test_bed_and_head_joints_apart() -> None:
+    scene = assigned({"joint": "mortar", "orientation": "bed"}, {"joint": "dust", "orientation": "head"})
+    run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
+    assert names_of_joints(scene) == ["mortar" if dx > dy else "dust" for dx, dy in run]
+
+
+def test_joints_by_the_pair_of_their_blocks() -> None:
+    """Either way round, "*" for any block, and "ground" for what the wall stands on."""
+    oak = {"block": "oak", "box": [[0, 0.1], [1.44, 0.2]]}
+    scene = assigned(
+        oak, {"joint": "mortar", "between": ["*", "oak"]}, {"joint": "dust", "between": ["ground", "block"]}
+    )
+    blocks = np.array([*names_of_blocks(scene)[:-1], "ground"], dtype=object)[scene.joints.block]
+    for pair, name in zip(blocks, names_of_joints(scene), strict=True):
+        assert name == ("mortar" if "oak" in pair else "dust" if "ground" in pair else "joint")
+
+
+def test_joints_in_a_box_are_those_whose_middle_is_there() -> None:
+    scene = assigned({"joint": "mortar", "box": [[0, 0.35], [1.44, 0.37]]})
+    middle = scene.joints.ends.mean(axis=1)[:, 1]
+    assert names_of_joints(scene) == ["mortar" if 0.35 <= y <= 0.37 else "joint" for y in middle]
+
+
+def test_cracks_keep_their_material_and_halves_that_of_their_block() -> None:
+    inner = {"friction": 1.0, "cohesion": 1e6}
+    scene = assigned({"block": "oak", "blocks": [0]}, {"joint": "mortar", "box": [[-9, -9], [9, 9]]}, inner_joint=inner)
+    names = np.array(names_of_joints(scene))
+    assert (names == np.where(scene.joints.inner, "inner_joint", "mortar")).all()
+    assert names_of_blocks(scene)[:2] == ["oak", "oak"]
+    assert names_of_blocks(scene)[2] == "block"
+
+
+def test_blocks_and_joints_by_layer(tmp_path: Path) -> None:
+    document = ezdxf.new()  # type: ignore[attr-defined]
+    for layer, y in (("0", 0.0), ("OAK", 100.0)):
+        corners = [(0.0, y), (200.0, y), (200.0, y + 100.0), (0.0, y + 100.0)]
+        document.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
+    document.modelspace().add_lwpolyline(GROUND, close=True)
+    document.saveas(tmp_path / "wall.dxf")
+    wall = {"drawing": "wall.dxf", "units": "mm", "thickness": 0.12}
+    entries = [{"block": "oak", "layer": "OAK"}, {"joint": "mortar", "layer": "OAK"}]
+    scene = read_scene(write_toml(content(wall=wall, assign=entries, **MATERIALS), tmp_path / "wall.toml"))
+    assert names_of_blocks(scene)[:2] == ["block", "oak"]
+    of = dict(zip(map(tuple, scene.joints.block.tolist()), names_of_joints(scene), strict=True))
+    assert of == {(0, 1): "mortar", (0, 2): "joint"}
+
+
+def test_a_scene_of_everything_survives_its_file_of_arrays() -> None:
+    beam = {"height": 0.1, "mass": 20.0, "condition": "level", "drive": {"force": [1, 0], "at": 0.7}}
+    tie = {"from": [0, 0.39], "to": [9, 0.39], "area": 3e-4, "young": 2.1e11, "yield": 7e4}
+    line = {"kind": "line", "from": [0, 0.6], "to": [1.44, 0.6], "force": [0, -1e3]}
+    scene = assigned({"block": "oak", "blocks": [0]}, load__dead=[line], beam=beam, tie=[tie])
+    again = scene_from_arrays(scene_to_arrays(scene))
+    assert again.beam == scene.beam
+    assert again.extras == scene.extras == ("tie", "beam")
+    assert (again.material_of_block == scene.material_of_block).all()
+    assert (again.ties.ends == scene.ties.ends).all()
+    assert (again.dead_forces.force == scene.dead_forces.force).all()

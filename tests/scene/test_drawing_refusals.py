@@ -1,0 +1,210 @@
+"""Drawings that are none of a wall: one line that says what and where."""
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from runningbond.scene import SceneError, scene_from_dict
+
+from .drafting import BRICKS, Draw, box, closed, dxf, lines, own_lines, scene_of, tables
+from .test_compas import assembly, mesh, model, untyped
+
+
+def polyline(*corners: tuple[float, ...], close: bool = True) -> Draw:
+    return lambda _, space: space.add_lwpolyline(corners, close=close)
+
+
+def tilted(_: Any, space: Any) -> None:
+    space.add_arc((0, 0), 10, 0, 180).dxf.extrusion = (0, 1, 1)
+
+
+def solid(_: Any, space: Any) -> None:
+    space.add_polyface().append_face([(0, 0, 0), (200, 0, 0), (200, 100, 0)])
+
+
+def in_itself(document: Any, space: Any) -> None:
+    document.blocks.new("A").add_blockref("B", (0, 0))
+    document.blocks.new("B").add_blockref("A", (0, 0))
+    space.add_blockref("A", (0, 0))
+
+
+def without_end(document: Any, space: Any) -> None:
+    document.blocks.new("A").add_lwpolyline(BRICKS[0], close=True)
+    space.add_blockref("A", (0, 0), dxfattribs={"row_count": 30_000, "column_count": 30_000, "row_spacing": 1})
+
+
+def texts(_: Any, space: Any) -> None:
+    space.add_text("wall")
+
+
+SQUARE = [(0, 0, 200, 0), (200, 0, 200, 100), (200, 100, 0, 100), (0, 100, 0, 0)]
+
+
+@pytest.mark.parametrize(
+    ("draw", "said"),
+    [
+        (texts, "holds 1 closed outlines; it needs the ground and at least one block"),
+        (closed(BRICKS, "soil"), "has all its outlines on layer soil, which is the ground's"),
+        (
+            polyline((0, 0), (200, 0), (200, 100), close=False),
+            "layer 0: is open at (0, 0) and (200, 100); each block needs",
+        ),
+        (lines(*SQUARE[:3]), "layer 0: is open at (0, 0) and (0, 100)"),
+        (lines(*SQUARE[:3], (0, 100, 0, 0.1)), "is open at (0, 0) and (0, 0.1)"),
+        (lines(*SQUARE, (200, 50, 260, 50)), "is open at (260, 50); each"),
+        (lines(*SQUARE, (0, 500, 9, 500), (0, 600, 9, 600)), "is open at (0, 500) and (9, 500) and 2 more"),
+        (lines((0, 0, 0, 0), layer="beds"), "layer beds: is open at (0, 0)"),
+        (lambda _, space: space.add_arc((0, 0), 50, 0, 180), "is open at (50, 0) and (-50, 0)"),
+        (polyline((0, 0), (200, 100), (200, 0), (0, 100)), "crosses itself"),
+        (polyline((0, 0), (200, 0), (0, 0), (200, 0)), "crosses itself"),
+        (polyline((0, 0), (200, 0)), "must have at least three corners"),
+        (own_lines([box(0, 0, 300, 300), box(100, 100, 200, 200)]), "has a block with a hole, at (100, 100)"),
+        (closed([box(0, 0, 300, 300), box(100, 100, 200, 200)]), "overlaps"),
+        (closed([BRICKS[0], BRICKS[0]]), "overlaps"),
+        (lambda _, space: space.add_line((0, 0, 0), (0, 9, 1)), "LINE 2F: does not lie in the drawing's plane"),
+        (
+            lambda _, space: space.add_polyline3d([(0, 0, 0), (9, 0, 0), (9, 9, 1)], close=True),
+            "does not lie in the drawing's",
+        ),
+        (tilted, "does not lie in the drawing's plane"),
+        (solid, "holds a mesh; each block is one closed polyline"),
+        (in_itself, "nests INSERTs more than 32 deep, or in themselves"),
+        (without_end, "holds more than 300000 entities, its INSERTs exploded"),
+        (lambda _, space: space.add_circle((0, 0), 0), "has no radius"),
+        (lambda _, space: space.add_circle((math.nan, 0), 1), "must have its corners at finite coordinates"),
+        (polyline((0, 0), (math.inf, 0), (0, 9)), "must have its corners at finite coordinates"),
+    ],
+)
+def test_what_is_drawn_is_no_wall(draw: Draw, said: str, tmp_path: Path) -> None:
+    with pytest.raises(SceneError) as refused:
+        scene_of(dxf(tmp_path / "wall.dxf", draw))
+    assert said in str(refused.value)
+    assert str(refused.value).startswith("wall.drawing") or "overlaps" in said
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("wall", "said"),
+    [
+        ({"units": "miles"}, 'wall.units = \'miles\': must be one of "mm", "cm", "m", "in", "ft"'),
+        ({"units": 1}, "wall.units = 1: must be one of"),
+        ({"heal": 0}, "wall.heal = 0: must be a number above 0"),
+        ({"heal": -1e-3}, "wall.heal = -0.001: must be a number above 0"),
+        ({"heal": "1 mm"}, "wall.heal = '1 mm': must be a number above 0"),
+        ({"heal": True}, "wall.heal = True: must be a number above 0"),
+        ({"heal": 0.02}, "wall.heal = 0.02: must be at most a tenth of the smallest block's smaller side, 0.005"),
+        ({"healing": 1e-3}, 'wall.healing = 0.001: is not a key of [wall]; did you mean "heal"?'),
+        ({"drawing": 3}, "wall.drawing = 3: must be a string"),
+        ({"course_heights": [0.1]}, "wall.course_heights: does not go with wall.drawing"),
+    ],
+)
+def test_keys_of_a_drawing(wall: dict[str, Any], said: str, tmp_path: Path) -> None:
+    dxf(tmp_path / "wall.dxf", closed())
+    with pytest.raises(SceneError) as refused:
+        scene_from_dict(tables(**wall), folder=tmp_path)
+    assert said in str(refused.value)
+
+
+@pytest.mark.parametrize("how", [{"length": 1.44, "height": 0.72}, {"courses": [[1.0]]}])
+def test_only_a_drawing_is_healed(how: dict[str, Any]) -> None:
+    wall = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.1, "heal": 1e-3, **how}
+    with pytest.raises(SceneError, match=r"wall\.heal: does not go with wall\.(length|courses); describe the wall"):
+        scene_from_dict(tables() | {"wall": wall})
+
+
+def test_a_bed_that_is_curved_is_not_made_straight(tmp_path: Path) -> None:
+    """Courses in bond on a parabola: no blocks of four straight sides fit, and 0.2 mm do not make them."""
+
+    def bed(x: float) -> float:
+        return 200 + (x - 1000) ** 2 * 7.5e-6
+
+    lower = [[(x, 0), (x + 100, 0), (x + 100, bed(x + 100)), (x, bed(x))] for x in range(0, 2000, 100)]
+    upper = [[(x, bed(x)), (x + 100, bed(x + 100)), (x + 100, 400), (x, 400)] for x in range(-50, 1950, 100)]
+    path = dxf(tmp_path / "wall.dxf", closed([*lower, *upper]))
+    with pytest.raises(
+        SceneError, match=r"wall\.heal = 0\.0002: closes no gaps near \(2, 0\.2075\): the corner would move"
+    ):
+        scene_of(path, heal=2e-4)
+
+
+def spoilt(change: Callable[[dict[str, Any]], Any], layout: Callable[[], dict[str, Any]] = assembly) -> str:
+    found = layout()
+    change(found)
+    return json.dumps(found)
+
+
+def nodes(found: dict[str, Any]) -> dict[str, Any]:
+    return dict(found["data"]["graph"]["data"]["node"])
+
+
+def vertices(found: dict[str, Any]) -> dict[str, Any]:
+    return dict(nodes(found)["0"]["block"]["data"]["vertex"])
+
+
+def holed(found: dict[str, Any]) -> None:
+    """A frame of four prisms about a hole, as one mesh."""
+    parts = [mesh(o) for o in (box(0, 0, 3, 1), box(2, 1, 3, 2), box(0, 2, 3, 3), box(0, 1, 1, 2))]
+    whole: dict[str, Any] = {"vertex": {}, "face": {}}
+    for k, part in enumerate(parts):
+        whole["vertex"] |= {str(8 * k + int(key)): vertex for key, vertex in part["vertex"].items()}
+        whole["face"] |= {f"{k} {key}": [8 * k + c for c in face] for key, face in part["face"].items()}
+    nodes(found)["0"]["block"]["data"].update(whole)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "is no valid JSON file"),
+        ("{", "is no valid JSON file"),
+        ("[" * 100_000, "is no valid JSON file"),
+        (
+            "[1, 2]",
+            'wall.drawing, dtype = \'(none)\': must be "compas_assembly.datastructures/Assembly" or "compas_dem',
+        ),
+        ('{"dtype": "compas.datastructures/Mesh", "data": {}}', "wall.drawing, dtype = 'compas.datastructures/Mesh'"),
+        ('{"dtype": 7}', "wall.drawing, dtype = 7: must be"),
+        ('{"dtype": "compas_assembly.datastructures/Assembly"}', "is no COMPAS assembly"),
+        ('{"assembly": {"vertex": {}}, "blocks": {}}', "is an assembly without blocks"),
+        (spoilt(lambda a: a.pop("data")), "is no COMPAS assembly"),
+        (spoilt(lambda a: nodes(a)["0"].pop("block")), "is no COMPAS assembly: KeyError, 'block'"),
+        (spoilt(lambda a: vertices(a)["0"].pop("x")), "is no COMPAS assembly: KeyError, 'x'"),
+        (spoilt(lambda a: vertices(a)["0"].update(x="a")), "is no COMPAS assembly: ValueError"),
+        (spoilt(lambda a: vertices(a)["0"].update(x=math.nan)), "node 0: must have its corners at finite coordinates"),
+        (spoilt(lambda a: vertices(a)["0"].update(x=-0.1)), "node 0: is no prism across the wall"),
+        (spoilt(lambda a: nodes(a)["0"]["block"]["data"]["face"].pop("0")), "node 0: is no prism across the wall"),
+        (spoilt(lambda a: nodes(a)["0"]["block"]["data"]["face"].update({"0": [0, 1, 99]})), "is no COMPAS assembly"),
+        (
+            spoilt(lambda a: [v.update(y=v["y"] + 0.3) for v in vertices(a).values()]),
+            "node 0: is not as thick along any",
+        ),
+        (spoilt(lambda a: [v.update(y=2 * v["y"]) for v in vertices(a).values()]), "node 0: is not as thick along any"),
+        (spoilt(lambda a: [n.update(is_support=True) for n in nodes(a).values()]), "is an assembly of supports"),
+        (spoilt(holed), "node 0: is no prism across the wall, with one outline on either side and no hole"),
+        (spoilt(lambda a: a["blocks"]["0"].pop("face"), untyped), "is no COMPAS assembly: KeyError, 'face'"),
+        (spoilt(lambda a: a["data"].update(transformation={}), model), "element Block 0: is moved as a whole"),
+        (spoilt(lambda a: a["data"]["elements"]["0"]["data"].pop("geometry"), model), "element Block 0: is moved as a"),
+        (
+            spoilt(lambda a: a["data"]["elements"]["1"]["data"].update(transformation={}), model),
+            "is no COMPAS assembly",
+        ),
+    ],
+)
+def test_a_json_file_that_is_no_assembly_of_a_wall(text: str, said: str, tmp_path: Path) -> None:
+    (tmp_path / "wall.json").write_text(text)
+    with pytest.raises(SceneError) as refused:
+        scene_of(tmp_path / "wall.json", units="m")
+    assert said in str(refused.value)
+    assert str(refused.value).startswith("wall.drawing")
+    assert "\n" not in str(refused.value)
+
+
+def test_a_folder_is_no_assembly(tmp_path: Path) -> None:
+    (tmp_path / "wall.json").mkdir()
+    with pytest.raises(SceneError, match="cannot be read as JSON: it is no regular file"):
+        scene_of(tmp_path / "wall.json", units="m")
+    with pytest.raises(SceneError, match="cannot be read as JSON: No such file"):
+        scene_of(tmp_path / "none.json", units="m")

@@ -1,0 +1,333 @@
+"""A drawing is read as what it shows, however it was drawn."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.scene.drawings import curves, read_drawing
+
+from .drafting import BRICKS, COURSES, Draw, box, closed, dxf, lines, multiplier, own_lines, scene_of
+
+
+def nearly_closed(_: Any, space: Any) -> None:
+    """The last corner repeats the first but for 6e-13 mm, as in published drawings."""
+    for outline in BRICKS:
+        space.add_lwpolyline([*outline, (outline[0][0] + 6e-13, outline[0][1])])
+
+
+def old_polylines(_: Any, space: Any) -> None:
+    for k, outline in enumerate(BRICKS):
+        if k % 2:
+            space.add_polyline2d(outline, close=True)
+        else:
+            space.add_polyline3d([(*corner, 3.0) for corner in outline], close=True)
+
+
+def shared(_: Any, space: Any) -> None:
+    """Each course line and each head joint once."""
+    for k in range(4):
+        space.add_line((0, 100 * k), (400, 100 * k))
+    for k, xs in enumerate(COURSES):
+        for x in xs:
+            space.add_line((x, 100 * k), (x, 100 * (k + 1)))
+
+
+def halves(_: Any, space: Any) -> None:
+    """Two open polylines a block, in either sense."""
+    for a, b, c, d in BRICKS:
+        space.add_lwpolyline([a, b, c])
+        space.add_lwpolyline([a, d, c])
+
+
+def cut_outline(_: Any, space: Any) -> None:
+    """A closed outline of each course, cut by its head joints."""
+    for k, xs in enumerate(COURSES):
+        space.add_lwpolyline(box(0, 100 * k, 400, 100 * (k + 1)), close=True)
+        for x in xs[1:-1]:
+            space.add_line((x, 100 * k), (x, 100 * (k + 1)))
+
+
+def inserts(document: Any, space: Any) -> None:
+    """One brick of unit size: scaled, mirrored, turned, nested and in an array."""
+    brick = document.blocks.new("BRICK")
+    brick.add_lwpolyline(box(0, 0, 1, 1), close=True)
+    pair = document.blocks.new("PAIR")
+    pair.add_blockref("BRICK", (0, 0))
+    pair.add_blockref("BRICK", (2, 1), dxfattribs={"xscale": -1, "yscale": -1})
+    space.add_blockref(
+        "BRICK", (0, 0), dxfattribs={"xscale": 200, "yscale": 100, "column_count": 2, "column_spacing": 200}
+    )
+    space.add_blockref("BRICK", (100, 100), dxfattribs={"xscale": 100, "yscale": 100, "rotation": 90})
+    space.add_blockref("BRICK", (300, 100), dxfattribs={"xscale": -200, "yscale": 100})
+    space.add_blockref("BRICK", (300, 200), dxfattribs={"xscale": 100, "yscale": 100, "rotation": -90})
+    space.add_blockref("PAIR", (0, 200), dxfattribs={"xscale": 200, "yscale": 100})
+
+
+WAYS: dict[str, Draw] = {
+    "closed": closed(),
+    "nearly closed": nearly_closed,
+    "old polylines": old_polylines,
+    "own lines": own_lines(),
+    "shared lines": shared,
+    "halves": halves,
+    "cut outlines": cut_outline,
+    "inserts": inserts,
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_one_wall_drawn_in_every_way_bears_one_load(way: str, tmp_path: Path) -> None:
+    exact = scene_of(dxf(tmp_path / "wall.dxf", closed()))
+    scene = scene_of(dxf(tmp_path / "other.dxf", WAYS[way]))
+    assert len(scene.joints) == len(exact.joints) == 14
+    assert np.sort(scene.blocks.area) == pytest.approx(np.sort(exact.blocks.area))
+    assert multiplier(scene) == pytest.approx(multiplier(exact), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("way", "said"),
+    [
+        ("shared lines", "layer 0: 14 lines and curves are joined into 7 outlines; neighbours share lines, so every"),
+        ("own lines", "layer 0: 28 lines and curves are joined into 7 outlines"),
+        ("cut outlines", "joined into 7 outlines"),
+    ],
+)
+def test_how_lines_were_read_is_said(way: str, said: str, tmp_path: Path) -> None:
+    (note,) = scene_of(dxf(tmp_path / "wall.dxf", WAYS[way])).notes
+    assert said in note
+
+
+def test_an_area_that_no_outline_goes_round_is_an_opening(tmp_path: Path) -> None:
+    """Four bricks round a hole, each with its own LINEs."""
+    around = [box(0, 0, 100, 300), box(200, 0, 300, 300), box(100, 0, 200, 100), box(100, 200, 200, 300)]
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", own_lines(around)), "mm")
+    assert len(drawing.blocks) == 4
+    assert "1 areas within them are openings" in drawing.notes[0]
+
+
+def test_lines_that_cross_are_cut_where_they_do(tmp_path: Path) -> None:
+    cross = lines(
+        (0, 0, 200, 0), (200, 0, 200, 200), (200, 200, 0, 200), (0, 200, 0, 0), (0, 90, 200, 90), (70, 0, 70, 200)
+    )
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", cross), "mm")
+    assert sorted(round(1e6 * a) for a in _areas(drawing.blocks)) == [6300, 7700, 11700, 14300]
+
+
+def _areas(outlines: list[Any]) -> list[float]:
+    return [float((o[:, 0] * np.roll(o[:, 1], -1) - np.roll(o[:, 0], -1) * o[:, 1]).sum() / 2) for o in outlines]
+
+
+# --- layers, and what is left out ----------------------------------------------------------------------------------
+
+
+def test_everything_left_out_is_counted_by_type_and_layer(tmp_path: Path) -> None:
+    def more(document: Any, space: Any) -> None:
+        document.layers.add("AXES").freeze()
+        document.layers.add("GRID").off()
+        for _ in range(3):
+            space.add_text("brick", dxfattribs={"layer": "NOTES"})
+        space.add_point((3, 3), dxfattribs={"layer": "NOTES"})
+        space.add_hatch().paths.add_polyline_path(BRICKS[0])
+        space.add_line((0, -99), (0, 999), dxfattribs={"layer": "AXES"})
+        space.add_line((0, -99), (0, 999), dxfattribs={"layer": "GRID"})
+        space.add_linear_dim((0, -20), (0, 0), (200, 0)).render()
+
+    scene = scene_of(dxf(tmp_path / "wall.dxf", closed(), more))
+    (note,) = scene.notes
+    assert note.startswith("left out: ")
+    for part in (
+        "3 TEXT, 1 POINT on layer NOTES",
+        "1 HATCH, 1 DIMENSION on layer 0",
+        "1 LINE on layer AXES, which is frozen",
+        "1 LINE on layer GRID, which is off",
+    ):
+        assert part in note
+
+
+def test_what_is_on_layer_0_of_a_block_is_on_the_layer_of_its_insert(tmp_path: Path) -> None:
+    def draw(document: Any, space: Any) -> None:
+        block = document.blocks.new("BRICK")
+        block.add_lwpolyline(box(0, 0, 200, 100), close=True)
+        block.add_lwpolyline(box(200, 0, 400, 100), close=True, dxfattribs={"layer": "LIME"})
+        space.add_blockref("BRICK", (0, 0), dxfattribs={"layer": "TUFF"})
+
+    assert read_drawing(dxf(tmp_path / "wall.dxf", draw), "mm").layers == ("TUFF", "LIME")
+
+
+@pytest.mark.parametrize("name", ["ground", "Soil", "SUPPORT", "base", "Terrain"])
+def test_pieces_of_the_ground_are_on_a_layer_of_its_own(name: str, tmp_path: Path) -> None:
+    """A lintel on two blocks on a stepped ground of two pieces; one block lies lower than the ground's higher piece."""
+    pieces = [box(-100, -200, 100, -100), [(200, -50), (700, -50), (700, 40), (600, 40), (600, 0), (200, 0)]]
+    blocks = [box(0, -100, 100, 100), box(500, 0, 600, 100), box(0, 100, 600, 200)]
+    path = dxf(tmp_path / "wall.dxf", closed(blocks, "ASHLAR"), closed(pieces, name), ground=False)
+    scene = scene_of(path)
+    assert scene.wall.tolist() == [True, True, True, False, False]
+    assert scene.fixed.tolist() == [False, False, False, True, True]
+    assert scene.notes == ()
+    assert len(scene.joints) == 5
+    assert multiplier(scene) > 0
+
+
+def test_without_such_a_layer_the_lowest_outline_is_the_ground_and_is_said_to_be(tmp_path: Path) -> None:
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, box(-500, -50, 900, 0)]), ground=False), "mm")
+    assert (len(drawing.blocks), len(drawing.grounds)) == (7, 1)
+    assert drawing.notes == ("ground: no layer is named ground, so it is the lowest outline, at (0.2, -0.025)",)
+
+
+def test_a_header_with_other_units_is_pointed_out(tmp_path: Path) -> None:
+    def header(document: Any, _: Any) -> None:
+        document.header["$INSUNITS"] = 5
+
+    (note,) = read_drawing(dxf(tmp_path / "wall.dxf", closed(), header), "mm").notes
+    assert note == "units: the drawing's header says cm, wall.units says mm, which counts"
+
+
+# --- arcs ------------------------------------------------------------------------------------------------------------
+
+
+def at(radius: float, angle: float) -> tuple[float, float]:
+    return radius * math.cos(angle), radius * math.sin(angle)
+
+
+INNER, OUTER, STONES = 1000.0, 1200.0, 9
+
+
+def bulged(_: Any, space: Any) -> None:
+    """Stones of a round arch as polylines, alternately clockwise."""
+    for k, (a, b) in enumerate(pairwise(np.linspace(0, math.pi, STONES + 1))):
+        bulge = math.tan((b - a) / 4)
+        corners = [at(INNER, a), at(OUTER, a), at(OUTER, b), at(INNER, b)]
+        bulges = [0, bulge, 0, -bulge]
+        if k % 2:
+            corners, bulges = corners[::-1], [0, -bulge, 0, bulge]
+        space.add_lwpolyline([(*p, c) for p, c in zip(corners, bulges, strict=True)], "xyb", close=True)
+
+
+def of_arcs(_: Any, space: Any) -> None:
+    """Stones of the same arch, each of two ARCs and two LINEs."""
+    for a, b in pairwise(np.linspace(0, math.pi, STONES + 1)):
+        for angle in (a, b):
+            space.add_line(at(INNER, angle), at(OUTER, angle))
+        for radius in (INNER, OUTER):
+            space.add_arc((0, 0), radius, math.degrees(a), math.degrees(b))
+
+
+def of_two_arcs(_: Any, space: Any) -> None:
+    """The same arch as one ring, cut by its joints."""
+    for angle in np.linspace(0, math.pi, STONES + 1):
+        space.add_line(at(INNER, angle), at(OUTER, angle))
+    for radius in (INNER, OUTER):
+        space.add_arc((0, 0), radius, 0, 180)
+
+
+def mirrored(document: Any, space: Any) -> None:
+    """One half of the polylines, and its mirror image by an INSERT; the keystone is in the middle."""
+    half = document.blocks.new("HALF")
+    for k, (a, b) in enumerate(pairwise(np.linspace(0, math.pi, STONES + 1))):
+        corners = [at(INNER, a), at(OUTER, a), at(OUTER, b), at(INNER, b)]
+        bulge = math.tan((b - a) / 4)
+        rows = [(*p, c) for p, c in zip(corners, (0, bulge, 0, -bulge), strict=True)]
+        if k < STONES // 2:
+            half.add_lwpolyline(rows, "xyb", close=True)
+        elif k == STONES // 2:
+            space.add_lwpolyline(rows, "xyb", close=True)
+    space.add_blockref("HALF", (0, 0))
+    space.add_blockref("HALF", (0, 0), dxfattribs={"xscale": -1})
+
+
+SPRINGINGS = closed([box(-1500, -100, -900, 0), box(900, -100, 1500, 0)], "ground")
+
+
+def arch_load(draw: Draw, folder: Path) -> float:
+    return multiplier(scene_of(dxf(folder / "wall.dxf", draw, SPRINGINGS, ground=False)))
+
+
+@pytest.mark.parametrize("draw", [of_arcs, of_two_arcs, mirrored])
+def test_one_arch_drawn_in_every_way_bears_one_load(draw: Draw, tmp_path: Path) -> None:
+    assert arch_load(draw, tmp_path) == pytest.approx(arch_load(bulged, tmp_path), rel=1e-9)
+
+
+def test_the_load_of_an_arch_converges_with_the_square_of_its_chords(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A quarter of the sagitta, and so half of the chord, leaves a quarter of the error."""
+    loads = []
+    for sagitta in (4e-3, 1e-3, 2.5e-4, 1e-6):
+        monkeypatch.setattr(curves, "SAGITTA", sagitta)
+        loads.append(arch_load(bulged, tmp_path))
+    errors = np.abs(np.array(loads[:3]) - loads[3])
+    assert errors[:-1] / errors[1:] == pytest.approx(4, rel=0.35)
+
+
+def test_chords_leave_their_arcs_by_no_more_than_is_said(tmp_path: Path) -> None:
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", bulged, SPRINGINGS, ground=False), "mm")
+    (note,) = drawing.notes
+    assert "arcs: 18 are cut into" in note
+    said = float(note.split("at most ")[1].split()[0])
+    middles = np.vstack([(o + np.roll(o, -1, axis=0)) / 2 for o in drawing.blocks]) * 1e3
+    radii = np.hypot(*middles.T)
+    near = np.min([np.abs(radii - INNER), np.abs(radii - OUTER)], axis=0)
+    chords = near < 50
+    assert near[chords].max() == pytest.approx(said, rel=0.05)
+    assert said <= curves.SAGITTA * OUTER
+
+
+def test_stones_and_a_filling_along_one_arc_touch_all_along(tmp_path: Path) -> None:
+    """The filling's one arc runs over the stones' nine, in the other sense."""
+
+    def filling(_: Any, space: Any) -> None:
+        top = [(-1500, 0, 0), (-1200, 0, -1), (1200, 0, 0), (1500, 0, 0), (1500, 1500, 0), (-1500, 1500, 0)]
+        space.add_lwpolyline(top, "xyb", close=True, dxfattribs={"layer": "fill"})
+
+    scene = scene_of(dxf(tmp_path / "wall.dxf", bulged, filling, SPRINGINGS, ground=False))
+    fill = int(np.argmax(scene.blocks.area * scene.wall))
+    touching = (scene.joints.block == fill).any(axis=1) & (
+        scene.joints.block[:, 0] + scene.joints.block[:, 1] < fill * 2 + 1
+    )
+    radii = np.hypot(*scene.joints.ends[touching].reshape(-1, 2).T)
+    on_arc = np.abs(radii - OUTER / 1e3) < 1e-9
+    assert on_arc.sum() >= 2 * 9
+    length = scene.joints.length[touching][on_arc.reshape(-1, 2).all(axis=1)].sum()
+    assert length == pytest.approx(math.pi * OUTER / 1e3, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["circle", "bulges", "ellipse", "spline"])
+def test_round_blocks_are_cut_to_their_area(kind: str, tmp_path: Path) -> None:
+    def draw(document: Any, space: Any) -> None:
+        if kind == "circle":
+            space.add_circle((200, 150), 100)
+        elif kind == "bulges":
+            space.add_lwpolyline([(100, 150, 1), (300, 150, 1)], "xyb", close=True)
+        elif kind == "ellipse":
+            block = document.blocks.new("ROUND")
+            block.add_circle((0, 0), 1)
+            space.add_blockref("ROUND", (200, 150), dxfattribs={"xscale": 200, "yscale": 50})
+        else:
+            nodes = [(200 + 100 * math.cos(t), 150 + 100 * math.sin(t)) for t in np.linspace(0, 2 * math.pi, 41)]
+            space.add_spline([(*p, 0) for p in nodes])
+
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", draw), "mm")
+    (block,) = drawing.blocks
+    assert _areas([block])[0] == pytest.approx(math.pi * 1e-2, rel=3e-3)
+
+
+def test_two_blocks_along_one_spline_touch(tmp_path: Path) -> None:
+    """One draws the spline as the other does backwards."""
+    nodes = [(0, 100, 0), (60, 130, 0), (140, 80, 0), (200, 100, 0)]
+
+    def draw(_: Any, space: Any) -> None:
+        for layer, order, end in (("a", nodes, 0), ("b", nodes[::-1], 220)):
+            space.add_open_spline(order, dxfattribs={"layer": layer})
+            for p, q in pairwise([(0, 100), (0, end), (200, end), (200, 100)]):
+                space.add_line(p, q, dxfattribs={"layer": layer})
+
+    scene = scene_of(dxf(tmp_path / "wall.dxf", draw))
+    a, b = scene.joints.block.T
+    between = (a == 0) & (b == 1)
+    assert scene.joints.ends[between][..., 0].min() == 0
+    assert scene.joints.ends[between][..., 0].max() == pytest.approx(0.2)
+    assert (scene.joints.ends[between][:, 0, 0] - scene.joints.ends[between][:, 1, 0]).sum() == pytest.approx(0.2)

@@ -1,0 +1,120 @@
+"""Gaps and overlaps of a drawing: closed where that is asked for, and said where it is not."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from runningbond.scene import Array, Blocks, SceneError, find_joints
+from runningbond.scene.drawings import read_drawing
+from runningbond.scene.drawings.healing import heal, missed_joints
+
+from .drafting import BRICKS, GROUND, Outline, closed, dxf, multiplier, scene_of
+
+
+def metres(outlines: list[Outline]) -> list[Array]:
+    return [np.array(outline) / 1e3 for outline in outlines]
+
+
+def sloppy(outlines: list[Array], reach: float, seed: int) -> list[Array]:
+    """Corners moved at random by less than 0.35 of a reach each way, so that any two that met are within it."""
+    rng = np.random.default_rng(seed)
+    return [outline + rng.uniform(-0.35, 0.35, outline.shape) * reach for outline in outlines]
+
+
+def touching(outlines: list[Array]) -> int:
+    return len(find_joints(Blocks.from_polygons(outlines)))
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=st.integers(0, 10**6), reach=st.sampled_from([1e-4, 1e-3, 4e-3]))
+def test_healed_blocks_touch_wherever_they_were_meant_to(seed: int, reach: float) -> None:
+    drawn = sloppy(metres([*BRICKS, GROUND]), reach, seed)
+    healed, note = heal(drawn, reach)
+    assert touching(healed) == 14
+    moved = max(np.hypot(*(a - b).T).max() for a, b in zip(drawn, healed, strict=True))
+    assert moved <= reach
+    assert f"by at most {moved:.2g} m" in note
+
+
+def test_what_touches_already_stays_where_it_is() -> None:
+    drawn = metres([*BRICKS, GROUND])
+    healed, note = heal(drawn, 1e-3)
+    assert all((a == b).all() for a, b in zip(drawn, healed, strict=True))
+    assert note.startswith("heal: 0 corners moved")
+
+
+@pytest.mark.parametrize("reach", [1e-3, 1e-4])
+def test_a_healed_wall_bears_the_load_of_the_exact_one(reach: float, tmp_path: Path) -> None:
+    """To the share that the gaps are of the blocks: the load is a continuous function of the shape."""
+    exact = multiplier(scene_of(dxf(tmp_path / "wall.dxf", closed())))
+    for seed in range(4):
+        drawn = [1e3 * o for o in sloppy(metres(BRICKS), reach, seed)]
+        scene = scene_of(dxf(tmp_path / "wall.dxf", closed([list(map(tuple, o)) for o in drawn])), heal=reach)
+        assert scene.notes[-1].startswith("heal: ")
+        assert multiplier(scene) == pytest.approx(exact, rel=reach / 0.1)
+
+
+def test_parallel_gaps_heal_to_the_exact_load(tmp_path: Path) -> None:
+    """Bricks drawn 0.4 mm too small all round leave 0.8 mm of gap, and the wall its own shape but for its outline."""
+    exact = multiplier(scene_of(dxf(tmp_path / "wall.dxf", closed())))
+    small = [
+        [
+            (x + 0.4 * (1 if x == min(p[0] for p in o) else -1), y + 0.4 * (1 if y == min(p[1] for p in o) else -1))
+            for x, y in o
+        ]
+        for o in BRICKS
+    ]
+    scene = scene_of(dxf(tmp_path / "wall.dxf", closed(small)), heal=1e-3)
+    assert len(scene.joints) == 14
+    assert multiplier(scene) == pytest.approx(exact, rel=3e-3)
+
+
+def test_overlaps_are_healed_too(tmp_path: Path) -> None:
+    outlines: list[Outline] = [
+        [(0, -0.3), (200, -0.3), (200, 100.4), (0, 100.4)],
+        [(0, 100), (200, 100), (200, 200), (0, 200)],
+    ]
+    with pytest.raises(SceneError, match="overlaps"):
+        scene_of(dxf(tmp_path / "wall.dxf", closed(outlines)))
+    scene = scene_of(dxf(tmp_path / "wall.dxf", closed(outlines)), heal=5e-4)
+    assert len(scene.joints) == 2
+    assert "gaps and overlaps of up to 0.0004 m" in scene.notes[-1]
+
+
+def test_a_joint_along_many_blocks_heals_to_one_straight_line() -> None:
+    rng = np.random.default_rng(3)
+    lower = [np.array([(k, 0), (k + 1, 0), (k + 1, 1), (k, 1)]) + [0, -0.01 * rng.random()] for k in range(12)]
+    upper = [np.array([(k, 1), (k + 1, 1), (k + 1, 2), (k, 2)]) + [0.5, 0.01 * rng.random()] for k in range(12)]
+    healed, _ = heal([*lower, *upper], 0.02)
+    bed = np.vstack([o[2:] for o in healed[:12]] + [o[:2] for o in healed[12:]])
+    slope = np.polyfit(bed[:, 0], bed[:, 1], 1)
+    assert np.abs(bed[:, 1] - np.polyval(slope, bed[:, 0])).max() < 1e-9
+
+
+def test_stones_of_an_arch_heal() -> None:
+    stones = []
+    for a, b in pairwise(np.linspace(0, math.pi, 12)):
+        stones.append(np.array([[r * math.cos(t), r * math.sin(t)] for r, t in ((2, a), (2.4, a), (2.4, b), (2, b))]))
+    healed, _ = heal(sloppy(stones, 2e-3, 5), 2e-3)
+    assert touching(healed) == 10
+
+
+def test_a_gap_that_takes_a_joint_away_is_said_and_what_would_close_it(tmp_path: Path) -> None:
+    outlines: list[Outline] = [*BRICKS[:5], *[[(x, y + 0.5) for x, y in o] for o in BRICKS[5:]]]
+    path = dxf(tmp_path / "wall.dxf", closed(outlines))
+    (note,) = read_drawing(path, "mm").notes
+    assert note.startswith(
+        "a gap of 0.0005 m between block 2 at (0.05, 0.15) and block 5 at (0.1, 0.2505) leaves no joint"
+    )
+    proposed = float(note.split("heal = ")[1].split()[0])
+    assert len(scene_of(path, heal=proposed).joints) == 14
+
+
+def test_a_wide_gap_is_meant() -> None:
+    apart = [[(x, y + (40 if k >= 5 else 0)) for x, y in o] for k, o in enumerate(BRICKS)]
+    assert missed_joints(metres([*BRICKS, GROUND])) == missed_joints(metres([*apart, GROUND])) == ""

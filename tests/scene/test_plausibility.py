@@ -1,0 +1,185 @@
+"""What looks like a slip: each warning on a scene that has it, and none on a near one that has not."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.commands.command_line import command
+from runningbond.commands.terminal import remarks
+from runningbond.compare.published import PUBLISHED, published_scene
+from runningbond.scene import BlockMaterial, JointMaterial, Load, Scene, build_scene
+from runningbond.scene.plausibility import warnings
+from runningbond.studies.accuracy.walls import all_walls
+from runningbond.studies.walls import KNOWN, known_wall
+
+from ..walls import content, courses, panel, write_toml
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+OAK = {"materials": {"oak": {"density": 700.0}}}
+
+
+def test_no_published_wall_looks_like_a_slip() -> None:
+    assert {case.name: warnings(published_scene(case.name)) for case in PUBLISHED} == {
+        case.name: () for case in PUBLISHED
+    }
+
+
+def test_no_wall_of_the_studies_looks_like_a_slip() -> None:
+    scenes = {name: wall.scene for name, wall in all_walls().items()} | {name: known_wall(name).scene for name in KNOWN}
+    assert {name: warnings(scene) for name, scene in scenes.items()} == dict.fromkeys(scenes, ())
+
+
+def joint(**keys: Any) -> dict[str, Any]:
+    return {"joint": {"friction": 0.6, "cohesion": 2e5, "mortar": MORTAR} | keys}
+
+
+def stiff(**keys: Any) -> dict[str, Any]:
+    return {"joint": {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9} | keys}
+
+
+def tie(young: float) -> dict[str, Any]:
+    return {"tie": [{"from": [0.1, 0.7], "to": [1.4, 0.7], "area": 1e-4, "young": young, "yield": 2e4}]}
+
+
+def settles(by: float) -> dict[str, Any]:
+    return {"load__live": {"kind": "settlement", "box": [[0.0, -1.0], [0.72, 0.1]], "by": [0.0, -by]}}
+
+
+def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
+    sizes = {"length": 1.44, "height": 0.72, "block_width": 0.24, "block_height": 0.06}
+    return {"wall": {key: size * value for key, value in sizes.items()} | {"thickness": thickness}}
+
+
+@pytest.mark.parametrize(
+    ("odd", "says", "near"),
+    [
+        ({"block__density": 18.0}, "block.density = 18: * is 18 kN/m³ meant, which is 1835 kg/m³?", 250.0),
+        ({"block__density": 1.8}, "block.density = 1.8: * is 1.8 t/m³ meant, which is 1800 kg/m³?", 7800.0),
+        ({"block__density": 18000.0}, "block.density = 18000: is not within 200 … 8000 kg/m³", 2700.0),
+        ({"block__young": 5.0}, "block.young = 5: * is 5 GPa meant", 5e9),
+        ({"block__young": 5000.0}, "block.young = 5000: * is 5000 MPa meant", 5e7),
+        ({"joint__friction": 30.0}, "joint.friction = 30: * is friction_angle = 30 meant, tan φ = 0.577?", 1.5),
+        ({"joint__friction": 1.6}, "joint.friction = 1.6: is tan φ, and above 1.5", 1.4),
+        ({"joint__friction": 0.01}, "joint.friction = 0.01: is tan φ, and below 0.1; an angle is friction_angle", 0.0),
+        (joint(mortar=MORTAR | {"young": 1.0}), "joint.mortar.young = 1: * is 1 GPa meant", joint()),
+        (joint(mortar=MORTAR | {"thickness": 10}), "joint.mortar.thickness = 10: * is 10 mm meant", joint()),
+        (joint(cohesion=0.2), "joint.cohesion = 0.2: * is 0.2 MPa meant, which is 2e+05 Pa?", joint(cohesion=200.0)),
+        (joint(cohesion=2e8, tensile_strength=1e5), "joint.cohesion = 2e+08: is not within", joint(cohesion=9e7)),
+        (joint(tensile_strength=0.1), "joint.tensile_strength = 0.1: * is 0.1 MPa", joint(tensile_strength=1e5)),
+        (joint(fracture_energy_1=0.02), "joint.fracture_energy_1 = 0.02: * 0.02 N/mm", joint(fracture_energy_1=20.0)),
+        (stiff(normal_stiffness=10.0), "joint.normal_stiffness = 10: * is 10 N/mm³ meant", stiff()),
+        (stiff(shear_stiffness=4.0), "joint.shear_stiffness = 4: * is 4 N/mm³ meant", stiff(shear_stiffness=4e6)),
+        ({"load__gravity": 981.0}, "load.gravity = 981: is not within 9.3 … 10.3 m/s²", 10.0),
+        (scaled(1e3, 120.0), "wall.length = 1440: * is 1440 mm meant, which is 1.44 m?", scaled(10.0, 1.0)),
+        (scaled(0.01, 0.001), "wall.length = 0.0144: is not within 0.05 … 200 m", scaled(0.1, 0.012)),
+        ({"wall__thickness": 120.0}, "wall.thickness = 120: is odd for blocks of about 0.12 m; are 120 mm meant?", 3.0),
+        ({"wall__thickness": 1e-3}, "wall.thickness = 0.001: is odd for blocks", 0.01),
+        ({"materials": {"oak": {"density": 7.0}}}, "materials.oak.density = 7: * is 7 kN/m³ meant", OAK),
+        (tie(210.0), "tie[0].young = 210: * is 210 GPa meant", tie(2.1e11)),
+        (settles(2.0), "load.live.by = 2: moves a support by more than a tenth", settles(0.02)),
+    ],
+)
+def test_numbers_in_another_unit(odd: dict[str, Any], says: str, near: Any) -> None:
+    """The line names the key, the value and what may be meant; the wall beside it, as it may well be, has none."""
+    near = near if isinstance(near, dict) else dict.fromkeys(odd, near)
+    first, _, second = says.partition(" * ")
+    (line,) = warnings(panel(**odd))
+    assert line.startswith(first)
+    assert second in line
+    assert "\n" not in line
+    assert warnings(panel(**near)) == ()
+
+
+def test_weightless_is_meant() -> None:
+    live = {"kind": "point", "at": [1.44, 0.72], "force": [1.0, 0.0]}
+    assert warnings(panel(load={"gravity": 0.0, "live": live})) == ()
+
+
+@pytest.mark.parametrize(
+    ("pattern", "says"),
+    [
+        ([[1, 1, 1], [1, 1], [1, 1, 1]], ["on the right", "x = 0.8 m"]),
+        ([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1], [0.5, 1, 0.5]], ["y = 0.6125 m", "x = 0.8 m"]),
+        ([[1, 1, 1], [-1, 1, 1], [1, 1, 1]], ["on the left", "x = 0.4 m"]),
+        ([[1, 1, 1], [-0.5, 1, 1], [1, 1, 1]], []),  # toothed
+        ([[1, 1, 1, 1, 1], [-1, 1, 1, 1], [-2, 1]], []),  # a gable
+        ([[1, 1, 1], [0.5, 1, 1], [1, 1], [0.5, 1, 0.5], [1, 1, 1]], []),  # an opening at the side
+        ([[1, -1, 1], [0.5, 2, 0.5]], []),  # two courses say nothing
+        ([[1], [1], [1]], []),
+    ],
+)
+def test_a_course_that_ends_short(pattern: list[list[float]], says: list[str]) -> None:
+    lines = warnings(courses(pattern, joint={"friction": 0.6}))
+    assert len(lines) == bool(says)
+    for words in says:
+        assert words in lines[0]
+        assert "more than half a block short" in lines[0]
+
+
+def boxes(*places: tuple[float, float, float, float]) -> Scene:
+    outlines = [np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]]) for x, y, w, h in places]
+    brick, dry = BlockMaterial(1800.0), JointMaterial(0.6)
+    return build_scene("boxes", outlines, thickness=0.12, load=Load(), block=brick, joint=dry)
+
+
+@pytest.mark.parametrize(("drop", "is_odd"), [(0.002, True), (0.0, False), (0.05, False)])
+def test_courses_that_do_not_line_up(drop: float, is_odd: bool) -> None:
+    """A block 2 mm lower than its neighbours leaves a gap above it; one 5 cm lower is another course."""
+    low = [(0.2, 0.0, 0.2, 0.1 - drop)]
+    first = [(0.0, 0.0, 0.2, 0.1), (0.4, 0.0, 0.2, 0.1), (0.6, 0.0, 0.2, 0.1)]
+    second = [(x, 0.1 - (drop if x == 0.2 else 0.0), 0.2, 0.1) for x in (0.0, 0.2, 0.4, 0.6)]
+    lines = warnings(boxes(*low, *first, *second))
+    assert [line.startswith("wall: courses do not line up") for line in lines] == [True] * is_odd
+    if is_odd:
+        assert "y = 0.098 and 0.1 m, 2 mm apart" in lines[0]
+
+
+@pytest.mark.parametrize(("gap", "is_odd"), [(0.002, True), (0.0, False), (0.08, False)])
+def test_blocks_side_by_side_that_never_touch(gap: float, is_odd: bool) -> None:
+    """Head joints of 2 mm that were drawn open; piers are apart, and blocks that touch have their joints."""
+    piers = [(x, y, 0.2, 0.1) for y in (0.0, 0.1) for x in (0.0, 0.2 + gap, 0.4 + 2 * gap)]
+    lines = warnings(boxes(*piers))
+    assert [line.startswith("wall: no head joint") for line in lines] == [True] * is_odd
+    assert all("2 mm apart" in line for line in lines)
+
+
+def test_a_drawing_in_millimetres_read_as_metres() -> None:
+    (size, thick) = warnings(boxes(*((240.0 * k, 0.0, 240.0, 60.0) for k in range(6))))
+    assert size.startswith("wall.drawing: length = 1440: ")
+    assert "is 1440 mm meant" in size
+    assert thick.startswith("wall.thickness = 0.12: is odd")
+
+
+@pytest.fixture
+def odd(tmp_path: Path) -> str:
+    return str(write_toml(content(block__density=18.0), tmp_path / "odd.toml"))
+
+
+@pytest.mark.parametrize(
+    "line", ["run {} --model limit --json", "run {} --model limit", "compare {} --models limit --jobs 1 --out {}-out"]
+)
+def test_commands_warn_on_standard_error(line: str, odd: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command([word.format(odd) if word.startswith("{}") else word for word in line.split()]) == 0
+    out, err = capsys.readouterr()
+    assert "kN/m³" not in out
+    (said,) = [row for row in err.splitlines() if row.startswith("warning: ")]
+    assert "block.density = 18" in said
+
+
+def test_show_warns_below_its_table(odd: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["show", odd]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1].startswith("warning: block.density = 18: is not within")
+
+
+def test_a_plain_wall_is_shown_without_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["show", "panel-01"]) == 0
+    assert "warning" not in capsys.readouterr().out
+
+
+def test_what_a_drawing_healed_is_said_with_the_warnings() -> None:
+    scene = replace(panel(block__density=18.0), notes=("2 gaps of up to 0.1 mm closed",))
+    assert remarks(scene) == ("note: 2 gaps of up to 0.1 mm closed", *(f"warning: {x}" for x in warnings(scene)))
