@@ -94,7 +94,7 @@ def collapse_by_steps(
         with threadpool_limits(limits=1, user_api="blas"):
             if is_led(scene):
                 outcome = collapse_of_led(
-                    outcome, scene, run, tolerance, point_order, is_self_locking, criteria, observe
+                    outcome, scene, run, tolerance, points, point_order, is_self_locking, criteria, observe
                 )
                 return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
             most, farthest = LARGEST_LOAD * first, LARGEST_DISPLACEMENT * sizes

@@ -33,7 +33,9 @@ class Way:
     best: State  # where the answer is
     motion: Array  # (nd,) how the wall moved where it had come farthest
     moves: bool  # whether forces are means of a motion, and not of rests
-    rows: list[tuple[float, float]] = field(default_factory=lambda: [(0.0, 0.0)])  # displacement [m] and force
+    rows: list[tuple[float, float]] = field(default_factory=list)  # displacement [m] and force
+    points: list[Array] = field(default_factory=list)  # (np, 2) forces of the joint points [N] in each
+    works: list[tuple[float, float]] = field(default_factory=list)  # of the dead load and of what leads [J]
     verdict: Verdict = "stable"
 
     @property
@@ -76,6 +78,13 @@ class Lead:
         """Move supports, in place; the share of the dead load that they bear meanwhile."""
         return self.run.carry(state, speed, steps, given=given) / self.run.system.carried.work
 
+    def note(self, way: Way, state: State, moved: float, force: float) -> None:
+        """Add a row of a state to a way."""
+        dead = float(self.run.system.dead @ state.motion)
+        way.rows.append((moved, force))
+        way.points.append(np.column_stack(self.run.forces(state)))
+        way.works.append((dead, state.external - dead))
+
     def go(self, way: Way, speed: float) -> State:
         """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
         state = self.start.copy()
@@ -85,6 +94,7 @@ class Lead:
 
     def _drive(self, way: Way, state: State, speed: float) -> None:
         run, at, farthest, most = self.run, 0.0, 0.0, 0.0
+        self.note(way, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
         given, recent = run.given(state), deque([state.motion.copy()], maxlen=SEEN)
         for goal in self.goals.tolist():
@@ -101,7 +111,7 @@ class Lead:
                 moved = float(run.system.live @ (state.motion - self.start.motion))
                 if force > most:
                     most, way.best = force, state.copy()
-                way.rows.append((moved, force))
+                self.note(way, state, moved, force)
                 if moved > farthest:
                     farthest, way.motion = moved, state.motion - recent[0]
                 recent.append(state.motion.copy())
@@ -112,7 +122,7 @@ class Lead:
     def _settle(self, way: Way, state: State, speed: float) -> None:
         run, given = self.run, self.run.given(state)
         motion, far, _ = run.system.carried
-        way.rows = [(0.0, self.share(state, 0.0, self.criteria.interval, given))]
+        self.note(way, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
         pace = _pace(2 * SOFT)
         steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
         shares = np.linspace(0.0, 1.0, STAGES + 1) ** 2  # small at first, where reactions change most
@@ -126,7 +136,7 @@ class Lead:
             if way.verdict != "stable":
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
-            way.rows.append((far * settled, bears))
+            self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)
 

@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.results import Outcome, fastest_corner_by_one
+from runningbond.joints import JointPoints
+from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.scene import Array, Indices, Scene
 
@@ -44,6 +45,7 @@ def collapse_of_led(
     scene: Scene,
     run: Run,
     tolerance: float,
+    points: JointPoints,
     point_order: Indices,
     is_self_locking: Callable[[], bool],
     criteria: Criteria,
@@ -78,13 +80,13 @@ def collapse_of_led(
             if _spread(lead, answers) <= tolerance and not _rate(scene):
                 break
     except KeyboardInterrupt:
-        curve = ways[-1].curve if ways else outcome.curve
-        return replace(outcome, curve=curve, message="interrupted: the way so far")
+        outcome = _path(outcome, scene, run, points, ways[-1]) if ways and ways[-1].rows else outcome
+        return replace(outcome, message="interrupted: the way so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     # What a support hardly moves does hardly any work.
     lost = run.unaccounted(last, LITTLE * run.system.carried.work)
-    outcome = _arrays(outcome, lead, way, point_order)
+    outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, way, answers, tolerance)
@@ -126,12 +128,20 @@ def _spread(lead: Lead, answers: list[float]) -> float:
 
 
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
-    """Curve, forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
+    """Forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
     run = lead.run
     force, motion = np.column_stack(run.forces(way.best))[point_order], run.system.motion_of_blocks(way.motion)
     if motion.any():
         outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion))
-    return replace(outcome, curve=way.curve, force=force)
+    return replace(outcome, force=force)
+
+
+def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Way) -> Outcome:
+    """Curve, reactions and works of a way; its states rest, but for those of a motion, whose inertia is left out."""
+    loads = [force if way.moves else 0.0 for _, force in way.rows]
+    path = Supports(scene, points, run.system.owner).path(way.points, loads, np.array(way.works))
+    path["path"][:, -1] = not way.moves
+    return replace(outcome, curve=way.curve, **path)
 
 
 def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], tolerance: float) -> Outcome:

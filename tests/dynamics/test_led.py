@@ -182,6 +182,13 @@ def test_a_sliding_block_goes_round_a_loop_of_its_friction(model: Any) -> None:
     work = float((np.diff(x) * (force[1:] + force[:-1]) / 2).sum())
     assert work == pytest.approx(0.6 * N * 0.007, rel=0.01)
     assert "the other way it takes" in outcome.message
+    known = dict(zip(outcome.path_columns, outcome.path.T, strict=True))
+    slides = np.abs(force) > 0.59 * N
+    assert known["ground horizontal [N]"][slides] == pytest.approx(-force[slides], rel=0.02)
+    weight = 9.81 * 1800 * 0.24 * 0.06 * 0.12
+    assert known["ground vertical [N]"] == pytest.approx(N + weight, rel=1e-2)
+    assert known["work of the live load [J]"][-1] == pytest.approx(work, rel=0.01)
+    assert not known["at rest"].any()
 
 
 def test_a_beam_of_fixed_height_makes_the_pier_a_strut() -> None:
@@ -337,8 +344,8 @@ def test_cracks_between_all_triangles_refuse_what_they_would_tear(extra: dict[st
         pieces(scene, wall_mesh(scene, 1), "blocks")
 
 
-@pytest.mark.parametrize("after", [1, 12])
-def test_ctrl_c_leaves_the_way_so_far(after: int) -> None:
+@pytest.mark.parametrize(("after", "rows"), [(1, 0), (12, 111)])
+def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int) -> None:
     seen: list[float] = []
 
     def stop(run: Run, state: State, multiplier: float) -> None:
@@ -349,7 +356,7 @@ def test_ctrl_c_leaves_the_way_so_far(after: int) -> None:
     outcome = dem_dynamic(under_beam("level", {"displacement": [0.001, 0]}), observe=stop)
     assert (outcome.status, outcome.multiplier) == ("undecided", None)
     assert "interrupted" in outcome.message
-    assert len(outcome.curve) == 1 + 10 * (after - 1)
+    assert len(outcome.curve) == len(outcome.path) == rows
 
 
 def test_a_recorder_keeps_the_way_that_counts() -> None:
