@@ -7,6 +7,7 @@ import pytest
 
 from dem.dynamic import dem_dynamic, finite_pushover
 from dem.rigid_system import rigid_system
+from dem.static import dem_static
 from fem_interface.cracks import pieces
 from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem, fem_pushover
@@ -287,6 +288,32 @@ def test_a_lintel_turns_on_the_settling_pier_and_loads_it_by_its_lever(
     turn = 1e-3 / 0.8
     moved = outcome.motion[2] / np.abs(outcome.motion[2, 2]) * turn
     assert moved[1:] == pytest.approx([-turn * 0.3, -turn], rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    "led",
+    [
+        {
+            "load__live": None,
+            "beam": {"height": 0.1, "condition": "level", "force": [0, -5e3], "drive": {"displacement": [0.004, 0]}},
+        },
+        {"load__live": {"kind": "settlement", "box": [[0.24, -1], [1, 0]], "by": [0, -1e-3]}},
+    ],
+)
+def test_a_wall_of_many_blocks_is_led_as_from_equilibrium_to_equilibrium(led: dict[str, Any]) -> None:
+    """The bracket of motion holds the answer of statics, and so do the reactions at the end."""
+    size = {"block_width": 0.24, "block_height": 0.12, "thickness": 0.12, "length": 0.48, "height": 0.96}
+    scene = panel(wall=size, joint__mortar=MORTAR, **led)
+    moving, still = dem_dynamic(scene, 0.02), dem_static(scene, 0.02)
+    assert moving.status == still.status == "collapse"
+    assert still.multiplier is not None
+    assert moving.lower is not None
+    assert moving.upper is not None
+    assert moving.lower <= still.multiplier * (1 + 1e-3)
+    assert moving.upper >= still.multiplier * (1 - 1e-3)
+    ends = [dict(zip(each.path_columns, each.path[-1], strict=True)) for each in (moving, still)]
+    vertical = [name for name in ends[0] if name.startswith("ground") and "vertical" in name]
+    assert [ends[0][name] for name in vertical] == pytest.approx([ends[1][name] for name in vertical], rel=0.02)
 
 
 def test_the_work_of_a_moving_support_is_in_the_ledger() -> None:
