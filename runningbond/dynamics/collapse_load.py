@@ -118,7 +118,7 @@ def collapse_by_steps(
 def _note_on_beam(scene: Scene) -> str:
     """What there is to say of a beam that is too light to move as it is."""
     beam = None if scene.beam is None else scene.beam.block
-    if beam is None or scene.density[beam] == scene.inertial_density[beam]:
+    if beam is None or np.isclose(scene.density[beam], scene.inertial_density[beam]):
         return ""
     inertia = scene.inertial_density[beam] * scene.thickness * scene.blocks.area[beam]
     return f"the beam of {scene.mass[beam]:.4g} kg moves with the inertia of {inertia:.4g} kg"
