@@ -82,7 +82,7 @@ class Run:
         self, system: BlockSystem, *, local: float = LOCAL, viscous: float = VISCOUS, dt: float | None = None
     ) -> None:
         self.system, self.local, self.viscous = system, local, viscous
-        self._given_step = dt
+        self._given_step, self._tied = dt, len(system.ties) > 0
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -96,8 +96,8 @@ class Run:
         self.safe_step = stable_step(square, self.viscous, self.local)
         self.dt = self._given_step or self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
-        kernels, tied = (interface.gather, interface.law.kernel, interface.scatter), len(self.system.ties) > 0
-        self._step = {control: stepper(*kernels, control, tied) for control in CONTROLS}
+        kernels = (interface.gather, interface.law.kernel, interface.scatter)
+        self._step = {control: stepper(*kernels, control, self._tied) for control in CONTROLS}
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
@@ -157,14 +157,13 @@ class Run:
         """Take steps under a constant load and a control; what `stepper` sums up."""
         total, system = 0.0, self.system
         live = system.carried.motion if control == "carried" else system.live
-        ties = (*system.ties, state.stretch) if len(system.ties) else ()
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
+            step, ties = self._step[control], (*system.ties, state.stretch) if self._tied else ()
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             coefficients = (piece, self.dt, self.local, self._viscosity, load, live, speed)
-            given_and_kept = (*self._arrays, ties, arrays, self._work, watch)
-            taken, stable, multipliers, work = self._step[control](*coefficients, *given_and_kept)
+            taken, stable, multipliers, work = step(*coefficients, *self._arrays, ties, arrays, self._work, watch)
             total += multipliers
             state.external += float(load.dot(state.motion)) - before + work
             state.steps += taken
