@@ -24,6 +24,8 @@ def finite_system(scene: Scene) -> BlockSystem:
         If the scene gives its joints no stiffness, or pins corners, or glues its joints: a joint that has slid
         away from where it was glued has a cohesion that only a law with damage can speak of.
     """
+    if scene.extras:
+        raise SceneError(scene.extras[0], "is not taken at finite displacements")
     if len(scene.pins):
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
     if scene.joint.cohesion > 0:

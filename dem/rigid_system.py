@@ -3,13 +3,16 @@
 import numpy as np
 
 from runningbond.dynamics import (
+    NOTHING_CARRIED,
     BlockSystem,
+    Carried,
     ContactSearch,
     Interface,
     Restraint,
     block_frequency_squared,
     force_unit,
     joint_shares,
+    tie_rows,
 )
 from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.joints.law import KernelLaw
@@ -21,7 +24,9 @@ from runningbond.limit.kinematics import (
     live_load,
     mass_matrix_diagonal,
     pin_operator,
+    point_operator,
 )
+from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.scene import Array, Indices, Scene, free_motions
 
 from .joint_order import joint_order
@@ -54,10 +59,19 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
     restraint, mass = _restraint(scene, held_masses(scene))
     dead, live, control = dead_load(scene), live_load(scene), control_row(scene)
     for row in (dead, live, control):
-        for freedom, basis in zip(restraint.freedom, restraint.basis, strict=True):
-            row[freedom] = basis.T @ row[freedom]
+        _restrain(row, restraint)
     dead[np.isinf(mass)] = live[np.isinf(mass)] = 0.0
     order, still = np.argsort(rigid.ravel()), np.zeros_like(mass)
+
+    def displacement(block: int, at: Array, direction: Array) -> Array:
+        row = point_operator(np.array([block]), at[None], direction[None], scene.blocks.centroid).toarray()[0]
+        return _restrain(row, restraint)[order]
+
+    moved, carried = scene.support_motion.ravel()[order], NOTHING_CARRIED
+    if scene.settlement:
+        far = float(control[order] @ moved) or largest_displacement(scene)
+        carried = Carried(moved, far, reaction_unit(scene))
+    moving = ~scene.fixed | scene.support_motion.any(axis=1)
     strength = wall_strength(scene, wall_points(scene))
     return BlockSystem(
         mass=mass[order],
@@ -71,6 +85,9 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
         owner=np.arange(len(scene.blocks)),
         restraint=Restraint(rigid.ravel()[restraint.freedom], restraint.basis),
         interface=interface,
+        ties=tie_rows(scene.ties, moving, displacement),
+        late=rigid[scene.late_pins.block, 1],
+        carried=carried,
         contacts=contacts,
     )
 
@@ -86,6 +103,13 @@ def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw)
     A single block held at both corners has no joint and no frequency: it does not move, and any will do.
     """
     return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0)) or 1.0
+
+
+def _restrain(row: Array, restraint: Restraint) -> Array:
+    """A row per motion of the blocks ``(3 nb,)``, in place turned into one per restrained coordinates."""
+    for freedom, basis in zip(*restraint, strict=True):
+        row[freedom] = basis.T @ row[freedom]
+    return row
 
 
 def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
@@ -104,7 +128,7 @@ def _own_frequencies(scene: Scene, points: JointPoints, law: KernelLaw, share: f
     """Bound of each movable block's largest ω² against its own side of its joints, ``(nb,)`` [1/s²]."""
     n = len(scene.blocks)
     jump = jump_operator(points, scene.blocks.centroid)
-    part = joint_shares(np.where(scene.fixed, np.inf, scene.mass)[points.block], share)
+    part = joint_shares(held_masses(scene)[::3][points.block], share)
     own = np.zeros((n, 3, 3))
     sides = ((jump.opening, law.normal_stiffness), (jump.slip, law.shear_stiffness))
     for operator, stiffness in ((operator, k * points.area) for operator, k in sides):

@@ -109,6 +109,8 @@ def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
         raise ValueError(f'cracks = {cracks!r}: must be "joints" or "blocks"')
     if cracks == "joints":
         return Pieces(scene, mesh, np.arange(len(scene.blocks)), np.arange(len(mesh.points)))
+    if scene.extras:
+        raise SceneError(scene.extras[0], 'does not go with cracks = "blocks", in triangles that are not held by it')
     if scene.inner_joint is None:
         raise SceneError("inner_joint", "is missing; cracks inside blocks need its strength and its stiffness")
     return _in_triangles(scene, mesh)

@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from runningbond.joints.mohr_coulomb import truncated_cone
-from runningbond.scene import Array, Indices, JointMaterial, Mortar, Scene, SceneError
+from runningbond.scene import Array, Indices, JointMaterial, Mortar, Scene, SceneError, table_of
 
 Energies: TypeAlias = Literal["given", "corrected", "printed"]
 """Fracture energies of the scene; of Eqs. 4–5 with the strengths in their places; of Eqs. 4–5 as printed."""
@@ -52,7 +52,9 @@ def fractured(scene: Scene, energies: Energies) -> tuple[list[JointMaterial], In
             materials.append(material)
             continue
         if not isinstance(material.elasticity, Mortar):
-            raise SceneError("joint.mortar", f'is missing; "{energies}" fracture energies follow from it')
+            raise SceneError(
+                f"{table_of(material)}.mortar", f'is missing; "{energies}" fracture energies follow from it'
+            )
         _, tension, _ = truncated_cone(material)
         energy_1, energy_2 = formula(float(length[joint]), material.cohesion, tension, material.elasticity.young)
         materials.append(replace(material, fracture_energy_1=energy_1, fracture_energy_2=energy_2))

@@ -164,7 +164,8 @@ def _kinds(wall: ModalWall, exponent: float) -> list[_Kind]:
     joint = wall.elements
     n, ne, _ = joint.weights.shape
     block = joint.points.block[:ne]
-    part = joint_shares(np.where(wall.scene.fixed, np.inf, wall.scene.mass)[block], exponent)
+    inertia = wall.scene.inertial_density * wall.scene.thickness * wall.scene.blocks.area
+    part = joint_shares(np.where(wall.scene.fixed, np.inf, inertia)[block], exponent)
     normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne])
     springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)
 
@@ -182,6 +183,8 @@ def _kinds(wall: ModalWall, exponent: float) -> list[_Kind]:
     for template in wall.templates:
         modes = template.modes
         moving = np.isfinite(modes.mass)
+        if not moving.any():
+            continue
         shape = modes.shape[:, moving].reshape(-1, 2, moving.sum())
         seen = {likeness[of_block[b]].tobytes(): of_block[b] for b in template.blocks}
         joints = np.zeros((len(seen), shape.shape[2], shape.shape[2]))

@@ -149,7 +149,8 @@ class ModalWall:
                 for t in self.templates
             ]
         result = np.concatenate([*(force.ravel() for force in each), [0.0]])
-        np.add.at(result, self.rigid[:, 2], forces.moment)
+        for t in self.templates:
+            result[self.rigid[t.blocks]] += forces.moment[t.blocks, None] * t.modes.free[2]
         for block, at, force in zip(forces.block.tolist(), forces.at, forces.force, strict=True):
             result += self.displacement_row(block, at, force)
         return result

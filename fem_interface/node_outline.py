@@ -84,6 +84,8 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
         If the scene pins corners, pushes at a point, has blocks that crack, or glues its joints for ever.
     """
     joint = scene.joint
+    if scene.extras:
+        raise SceneError(scene.extras[0], "is not taken at finite displacements")
     if len(scene.pins):
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
     if not (scene.live_forces.on_mass_alone and scene.dead_forces.on_mass_alone):

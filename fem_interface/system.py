@@ -4,9 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from runningbond.dynamics import BlockSystem, Interface, Restraint, force_unit
+from runningbond.dynamics import NOTHING_CARRIED, BlockSystem, Carried, Interface, Restraint, force_unit, tie_rows
 from runningbond.joints.wall_law import kernel_law
 from runningbond.joints.wall_points import wall_strength
+from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.scene import Array, Indices
 
 from .block_kernels import ModalJoints, gather_modes, nodal_tables, scatter_modes
@@ -63,18 +64,28 @@ def block_system(
     """The blocks of a wall with scaled modes, under its loads, on an interface."""
     scene, pieces = wall.scene, wall.pieces
     dead, live = wall.load(scene.dead_forces, loads), wall.load(scene.live_forces, loads)
+    dead[np.isinf(wall.mass)] = live[np.isinf(wall.mass)] = 0.0
+    control, carried = wall.control_row(), NOTHING_CARRIED
+    if scene.settlement:
+        moved = np.zeros_like(wall.mass)
+        moved[wall.rigid] = scene.support_motion
+        far = float(control @ moved) or largest_displacement(scene)
+        carried = Carried(moved, far, reaction_unit(scene))
     return BlockSystem(
         mass=scaled.mass,
         stiffness=wall.stiffness,
         viscosity=scaled.viscosity,
         dead=dead,
         live=live,
-        control=wall.control_row(),
+        control=control,
         force_unit=force_unit(scene, wall.block, wall.mass, live, wall_strength(scene, wall.elements.points)),
         rigid=wall.rigid,
         owner=pieces.owner,
         restraint=_restraint(wall),
         interface=interface,
+        ties=tie_rows(scene.ties, wall.place[:, 0] >= 0, wall.displacement_row),
+        late=wall.rigid[scene.late_pins.block, 1],
+        carried=carried,
         block_motion=None if pieces.are_blocks else motion_of_blocks(pieces),
         source=wall,
     )

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from meshing import WallMesh
-from runningbond.scene import Array, Indices, Scene, SceneError, table_of
+from runningbond.scene import Array, Indices, Mask, Scene, SceneError, table_of
 
 from .modes import ModeCount, Modes, block_modes, degree_of
 from .operators import mass_matrix, nodes_of_degree, stiffness_matrix, strain_matrix
@@ -34,23 +34,29 @@ class Template:
 
 
 def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
-    """Templates of the movable blocks; where there are very many, several have the same modes.
+    """Templates of the blocks that move, a beam and supports in rigid modes alone.
+
+    Where there are very many blocks of one kind, several templates have the same modes.
 
     Raises
     ------
     SceneError
         If blocks are to deform and the scene does not say how stiff they are.
     """
-    alike: dict[tuple[int, int, float, bytes], list[int]] = {}
+    alike: dict[tuple[int, int, bytes, int], list[int]] = {}
     order = scene.column_by_column
-    for block in order[~scene.fixed[order]].tolist():
-        # Congruent blocks of one material that are held alike.
+    carried: Mask = np.asarray(scene.support_motion.any(axis=1))
+    stiff = carried | (np.arange(len(scene.blocks)) == (scene.beam.block if scene.beam else -1))
+    for block in order[~scene.fixed[order] | carried[order]].tolist():
+        # Congruent blocks of one material that are held alike; each stiff one by itself.
         held = held_displacements(mesh, scene, block).tobytes()
-        key = int(mesh.shape[block]), int(scene.material_of_block[block]), float(scene.density[block]), held
+        key = int(mesh.shape[block]), int(scene.material_of_block[block]), held, block if stiff[block] else -1
         alike.setdefault(key, []).append(block)
     result = []
     for blocks in alike.values():
-        modes, strain = _modes(mesh, scene, blocks[0], count)
+        modes, strain = _modes(mesh, scene, blocks[0], 3 if stiff[blocks[0]] else count)
+        if carried[blocks[0]]:
+            modes = replace(modes, mass=np.full(3, np.inf), inert=np.zeros((3, 2)))
         most = max(4, LARGE // modes.shape.size)
         result += [Template(np.array(blocks[i : i + most]), modes, strain) for i in range(0, len(blocks), most)]
     return result
@@ -84,6 +90,13 @@ def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
     rows = np.zeros((len(own), len(points), 2))
     for row, pin in zip(rows, own, strict=True):
         distance = np.hypot(*(points - scene.pins.point[pin]).T)
+        if scene.pins.turn[pin]:
+            # The rotation of a stiff body, from two nodes of it.
+            other = int(np.argmax(np.hypot(*(points - points[0]).T)))
+            x, y = points[other] - points[0]
+            row[other] = np.array([-y, x]) / (x**2 + y**2)
+            row[0] = -row[other]
+            continue
         node = int(np.argmin(distance))
         if distance[node] > scene.blocks.tolerance:
             raise SceneError(scene.blocks.name(block), "is pinned where its mesh has no node")
@@ -103,9 +116,11 @@ def _modes(mesh: WallMesh, scene: Scene, block: int, count: ModeCount) -> tuple[
         raise SceneError(f"{table_of(material)}.young", "is missing; this model needs it unless its blocks are rigid")
     else:
         K = stiffness_matrix(corners, triangles, material.young, material.poisson, scene.thickness, degree).toarray()
-    M = mass_matrix(corners, triangles, float(scene.density[block]), scene.thickness, degree).toarray()
+    density = float(scene.inertial_density[block])
+    M = mass_matrix(corners, triangles, density, scene.thickness, degree).toarray()
     held = held_displacements(mesh, scene, block)
     further = np.zeros((len(held), len(M) - held.shape[1]))
     modes = block_modes(points, K, M, np.hstack([held, further]), count)
+    modes = replace(modes, inert=modes.inert * (scene.density[block] / density))
     strain = strain_matrix(corners, triangles, degree) @ modes.shape
     return replace(modes, rigid=modes.rigid[: 2 * len(corners)], shape=modes.shape[: 2 * len(corners)]), strain

@@ -109,7 +109,7 @@ class MotionRecorder(SeriesRecorder):
         if multiplier != self._multiplier:
             self._next_load(multiplier)
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
-        if self._calm == CALM:
+        if run.led or self._calm == CALM:
             self.keep(self._frame(run, state, multiplier))
             self._moments = []
         elif not self._moments or state.steps >= self._moments[-1][0] + self._stride:
@@ -168,7 +168,8 @@ def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
 
 def stresses(wall: ModalWall, motion: Array) -> Array:
     """Mean plane stress σ_x, σ_y, τ_xy of each triangle, ``(nt, 3)`` [Pa], after a motion ``(nd,)``."""
-    young, poisson = wall.scene.block.young or 0.0, wall.scene.block.poisson
+    materials = [(material.young or 0.0, material.poisson) for material in wall.scene.block_materials]
+    young, poisson = np.array(materials)[wall.scene.material_of_block[wall.mesh.triangle_block]].T
     strain_x, strain_y, shear = wall.strain(motion).T
     plane = young / (1 - poisson**2)
     normal = (plane * (strain_x + poisson * strain_y), plane * (strain_y + poisson * strain_x))

@@ -6,12 +6,15 @@ from .controls import Drive, drive, pushover_curve, ramp, settled_drive
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
-from .system import BlockSystem, ContactSearch, Interface, Restraint, force_unit
+from .system import NOTHING_CARRIED, BlockSystem, Carried, ContactSearch, Interface, Restraint, force_unit
+from .ties import tie_rows
 from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
 
 __all__ = [
+    "NOTHING_CARRIED",
     "U_CRIT",
     "BlockSystem",
+    "Carried",
     "ContactSearch",
     "Criteria",
     "Drive",
@@ -35,4 +38,5 @@ __all__ = [
     "settle",
     "settled_drive",
     "stable_step",
+    "tie_rows",
 ]

@@ -10,7 +10,7 @@ with v half a step behind q (Cundall & Strack 1979; Munjiza 2004).
 """
 
 from functools import cache
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
 from .system import Kernel
+from .ties import pull
 
 kernel = compiled.kernel
 
@@ -37,6 +38,11 @@ it is not watched; the largest energy supplied so far ``(1,)`` [J], brought up t
 
 These are plain tuples: to take a named one apart costs a call of the kernels a tenth of the steps of a small wall.
 """
+
+Control: TypeAlias = Literal["held", "driven", "carried"]
+"""What the steps prescribe: a constant load alone, the live load's power besides, or the velocity of held modes."""
+
+CONTROLS: tuple[Control, ...] = get_args(Control)
 
 LOOK = 100
 """Steps between two looks at the energy."""
@@ -105,27 +111,29 @@ def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most
     spent = 0.0
     for i in range(motion.size):
         supplied += load[i] * motion[i]
-        if mobility[i] > 0.0:
+        if mobility[i] > 0.0:  # what is held may be carried on, and knows neither inertia nor damping
             held += 0.5 * velocity[i] * velocity[i] / mobility[i]
+            spent += damped[i]
         held += 0.5 * stiffness[i] * motion[i] * motion[i]
-        spent += damped[i]
     most[0] = max(most[0], supplied)
     # Local damping that makes a mode unstable gives energy instead of taking it.
     return bool(max(spent, 0.0) + CERTAIN_SHARE * held <= TOO_MUCH_SPENT * most[0])
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
-    """Compile the loop of a model: at a constant load, or `driven` at a prescribed work-conjugate speed.
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied: bool = False) -> Any:
+    """Compile the loop of a model: at a constant load, or at a prescribed speed besides; `tied` where it has ties.
 
     Returns
     -------
     step
         ``step(steps, dt, local, joint_viscosity, load, live, speed, …)`` holds a constant load; driven, it keeps
-        live · v at the speed [W] besides, by a multiplier of the live load. Returns the steps taken, whether no more
-        energy is spent than was supplied, the sum of the multipliers and the work of the live load. It looks at the
-        energy every `LOOK` steps of the state's life, and stops where it does not add up.
+        live · v at the speed [W] besides, by a multiplier of the live load; carried, held modes move at the speed
+        [1/s] times `live`. Returns the steps taken, whether no more energy is spent than was supplied, the sum of
+        the multipliers, or of what presses on the carried modes per unit of their motion, and the work of either. It
+        looks at the energy every `LOOK` steps of the state's life, and stops where it does not add up.
     """
+    driven, carried = control == "driven", control == "carried"
 
     @kernel
     def step(
@@ -140,6 +148,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
         parameters: Any,
         modes: Modes,
         restraint: tuple[Indices, Array],
+        ties: Any,
         state: StateArrays,
         work: Work,
         watch: Watch,
@@ -168,6 +177,16 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, driven: bool) -> Any:
             else:
                 force[:] = load
                 scatter(normal, tangential, geometry, force)
+            if tied:
+                pull(ties, motion, force)
+            if carried:
+                pressed = 0.0
+                for i in range(live.size):
+                    if live[i] != 0.0:
+                        pressed += live[i] * force[i]
+                        velocity[i] = speed * live[i]
+                total += pressed
+                worked -= pressed * speed * dt
             if driven:
                 pushed, before = 0.0, 0.0
                 for i in range(live.size):

@@ -12,15 +12,13 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
+from .led import UNACCOUNTED, collapse_of_led, is_led
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
 
 FIRST_STEP = 0.05
 """First load step, in live loads as large as the largest dead one (for a weightless wall, as the strongest joint)."""
-
-UNACCOUNTED = 0.01
-"""Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
 
 LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 """Multiplier, in first steps, and displacement, in block sizes, beyond which no collapse is looked for.
@@ -90,9 +88,15 @@ def collapse_by_steps(
     criteria = Criteria(collapse=collapse * sizes, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
+    note = "; ".join(filter(None, (note, _note_on_beam(scene))))
     try:
         # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):
+            if is_led(scene):
+                outcome = collapse_of_led(
+                    outcome, scene, run, tolerance, points, point_order, is_self_locking, criteria, observe
+                )
+                return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
             most, farthest = LARGEST_LOAD * first, LARGEST_DISPLACEMENT * sizes
             result = load_steps(run, first, tolerance, criteria, most=most, farthest=farthest, observe=observe)
     except Unstable as error:
@@ -109,6 +113,15 @@ def collapse_by_steps(
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
     parts = (outcome.message, note, long if run.dt > run.safe_step else "", stiffness)
     return replace(outcome, message="; ".join(part for part in parts if part))
+
+
+def _note_on_beam(scene: Scene) -> str:
+    """What there is to say of a beam that is too light to move as it is."""
+    beam = None if scene.beam is None else scene.beam.block
+    if beam is None or np.isclose(scene.density[beam], scene.inertial_density[beam]):
+        return ""
+    inertia = scene.inertial_density[beam] * scene.thickness * scene.blocks.area[beam]
+    return f"the beam of {scene.mass[beam]:.4g} kg moves with the inertia of {inertia:.4g} kg"
 
 
 def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Criteria) -> str:
@@ -147,7 +160,7 @@ def _judge(
         return _never_fallen(outcome, result, is_self_locking)
     motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(_fall(run, result, result.fallen)))
     outcome = replace(outcome, lower=result.lower, upper=result.upper, motion=motion)
-    lost = _unaccounted(run, result.fallen)
+    lost = run.unaccounted(result.fallen)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     if result.verdict == "undecided":
@@ -187,17 +200,6 @@ def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
         if run.system.live @ motion > 0 and overlap <= DRAWN_OVERLAP * run.system.farthest(motion):
             return motion
     return motions[-1]
-
-
-def _unaccounted(run: Run, state: State) -> float:
-    """Share of the work of the loads that the energy ledger misses.
-
-    Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
-    """
-    ledger = run.ledger(state)
-    dead = float(run.system.dead @ state.motion)
-    work = abs(dead) + abs(ledger.external - dead)
-    return abs(ledger.residual) / work if work else 0.0
 
 
 def _curve(run: Run, result: LoadSteps) -> Array:

@@ -163,6 +163,7 @@ def _search(
     most, farthest = limits
     result.lower, result.borne = 0.0, state
     result.rests.append((0.0, state))
+    run = run.held_late(state)
     probe = state.copy()
     answered = settle(run, probe, first, criteria, sudden=True) != "undecided"
     # A wall that comes to rest slowly is loaded as slowly as the budget allows.

@@ -11,10 +11,11 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array
 
-from .central_differences import stepper
+from .central_differences import CONTROLS, Control, stepper
 from .contact_update import ContactUpdate, contacts_of
 from .state import State
 from .system import BlockSystem, Interface
+from .ties import YIELD
 from .time_step import stable_step
 
 LOCAL, VISCOUS = 0.5, 0.1
@@ -38,11 +39,13 @@ class Ledger:
     joint: float
     friction: float
     damped: float
+    ties: float = 0.0
 
     @property
     def residual(self) -> float:
         """Work that the integration lost or made up."""
-        return self.external - self.kinetic - self.elastic - self.joint - self.friction - self.damped
+        spent = self.kinetic + self.elastic + self.joint + self.friction + self.damped + self.ties
+        return self.external - spent
 
 
 class Unstable(ArithmeticError):
@@ -79,7 +82,8 @@ class Run:
         self, system: BlockSystem, *, local: float = LOCAL, viscous: float = VISCOUS, dt: float | None = None
     ) -> None:
         self.system, self.local, self.viscous = system, local, viscous
-        self._given_step = dt
+        self._given_step, self._tied = dt, len(system.ties) > 0
+        self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
         self._update = None if search is None else ContactUpdate(system, search)
@@ -88,11 +92,12 @@ class Run:
     def _take_up(self, interface: Interface, contacts: Contacts | None) -> None:
         """Go on with an interface, on contacts."""
         self.interface, self._contacts = interface, contacts
-        self.safe_step = stable_step(interface.frequency_squared, self.viscous, self.local)
+        square = self.system.ties.frequency_squared(interface.frequency_squared, self.system.mass)
+        self.safe_step = stable_step(square, self.viscous, self.local)
         self.dt = self._given_step or self.safe_step
-        self._viscosity = 2 * self.viscous / math.sqrt(interface.frequency_squared) / self.dt
+        self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._hold, self._drive = stepper(*kernels, driven=False), stepper(*kernels, driven=True)
+        self._step = {control: stepper(*kernels, control, self._tied) for control in CONTROLS}
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
@@ -132,25 +137,33 @@ class Run:
         Unstable
             As soon as the energy that is watched does not add up; the state is left as it is then.
         """
-        self._advance(state, dead * self.system.dead + multiplier * self.system.live, None, steps, given)
+        self._advance("held", state, dead * self.system.dead + multiplier * self.system.live, 0.0, steps, given)
 
     def drive(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
         """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier.
 
         `given` watches the energy as in `hold`.
         """
-        return self._advance(state, self.system.dead, speed, steps, given) / steps
+        return self._advance("driven", state, self.system.dead, speed, steps, given) / steps
 
-    def _advance(self, state: State, load: Array, speed: float | None, steps: int, given: float) -> float:
-        """Take steps under a constant load, driven besides where there is a speed; the sum of the multipliers."""
-        total = 0.0
+    def carry(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
+        """Take steps with supports moved at a speed [1/s], in their motion at λ = 1.
+
+        Returns the mean of what the wall presses them with, per unit of that motion [J]; `given` as in `hold`.
+        """
+        return self._advance("carried", state, self.system.dead, speed, steps, given) / steps
+
+    def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
+        """Take steps under a constant load and a control; what `stepper` sums up."""
+        total, system = 0.0, self.system
+        live = system.carried.motion if control == "carried" else system.live
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
-            step = self._hold if speed is None else self._drive
+            step, ties = self._step[control], (*system.ties, state.stretch) if self._tied else ()
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
-            coefficients = (piece, self.dt, self.local, self._viscosity, load, self.system.live, speed or 0.0)
-            taken, stable, multipliers, work = step(*coefficients, *self._arrays, arrays, self._work, watch)
+            coefficients = (piece, self.dt, self.local, self._viscosity, load, live, speed)
+            taken, stable, multipliers, work = step(*coefficients, *self._arrays, ties, arrays, self._work, watch)
             total += multipliers
             state.external += float(load.dot(state.motion)) - before + work
             state.steps += taken
@@ -159,9 +172,27 @@ class Run:
                 raise Unstable(state.steps, self.dt, self.safe_step)
         return total
 
+    def held_late(self, state: State) -> "Run":
+        """The run of the system whose dead load is on (`BlockSystem.held_late`); a state is brought to rest there."""
+        system = self.system.held_late
+        if system is self.system:
+            return self
+        state.velocity[self.system.late] = 0.0
+        return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
+
+    def unaccounted(self, state: State, least: float = 0.0) -> float:
+        """Share of the work of the loads, or of a least one [J], that the energy ledger misses.
+
+        Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
+        """
+        ledger = self.ledger(state)
+        dead = float(self.system.dead @ state.motion)
+        work = max(abs(dead) + abs(ledger.external - dead), least)
+        return abs(ledger.residual) / work if work else 0.0
+
     def given(self, state: State) -> float:
-        """Energy [J] of a state that its loads did not supply: none but for one that was set in motion by hand."""
-        return max(0.0, -self.ledger(state).residual)
+        """Energy [J] of a state that its loads did not supply: of ties' preloads, or of being set in motion by hand."""
+        return max(0.0, -self.ledger(state).residual) - self.system.ties.stored(np.zeros(len(self.system.ties)))
 
     def unbalanced(self, state: State) -> float:
         """Largest unbalanced force of the last step, relative to its block's weight."""
@@ -185,7 +216,7 @@ class Run:
     def ledger(self, state: State) -> Ledger:
         """Account for the work of the loads so far."""
         opening, _, normal, tangential = self.tractions(state)
-        system, law, area = self.system, self.interface.law, self.interface.area
+        system, law, area, ties = self.system, self.interface.law, self.interface.area, self.system.ties
         moving = np.isfinite(system.mass)
         return Ledger(
             external=state.external,
@@ -193,5 +224,6 @@ class Run:
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
             joint=float(area @ law.stored(law, opening, normal, tangential)),
             friction=float(area @ state.history[FRICTION_WORK]) + state.friction,
-            damped=float(state.damped.sum() + area @ state.history[DAMPED_WORK]) + state.absorbed,
+            damped=float(state.damped[moving].sum() + area @ state.history[DAMPED_WORK]) + state.absorbed,
+            ties=ties.stored(ties.force(state.motion, state.stretch)) + float(ties.constants[:, YIELD] @ state.stretch),
         )

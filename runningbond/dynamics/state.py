@@ -31,6 +31,7 @@ class State:
     time: float = 0.0  # time since the start [s]
     # (1,) largest energy that was supplied at any look at it [J]
     supplied: Array = field(default_factory=lambda: np.zeros(1))
+    stretch: Array = field(default_factory=lambda: np.zeros(0))  # (nt,) plastic elongation of the ties [m]
     # work spent on earlier contacts and on their viscosity [J], up to when the present ones were found
     friction: float = 0.0
     absorbed: float = 0.0
@@ -47,11 +48,12 @@ class State:
         nd = len(system.mass)
         motion = np.zeros(nd) if motion is None else motion.copy()
         history = history_free_of_shear(interface, motion)
-        return cls(motion, np.zeros(nd), history, np.zeros(nd), np.zeros(nd), contacts)
+        stretch = np.zeros(len(system.ties))
+        return cls(motion, np.zeros(nd), history, np.zeros(nd), np.zeros(nd), contacts, stretch=stretch)
 
     def copy(self) -> "State":
         """A state that goes its own way from here."""
-        arrays = ("motion", "velocity", "history", "damped", "unbalanced", "supplied")
+        arrays = ("motion", "velocity", "history", "damped", "unbalanced", "supplied", "stretch")
         return replace(self, **{name: getattr(self, name).copy() for name in arrays})
 
 

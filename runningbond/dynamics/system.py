@@ -6,7 +6,7 @@ one for ever; at finite ones a `ContactSearch` finds the contacts anew as bodies
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
@@ -18,6 +18,8 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints import PointStrength
 from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
+
+from .ties import NO_TIE_ROWS, TieRows
 
 Kernel: TypeAlias = Callable[..., Any]
 
@@ -32,6 +34,17 @@ class Restraint(NamedTuple):
     def none(cls) -> "Restraint":
         """No body is restrained."""
         return cls(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3)))
+
+
+class Carried(NamedTuple):
+    """Supports that move."""
+
+    motion: Array  # (nd,) motion of their modes, which are held, at λ = 1
+    displacement: float = 0.0  # how far that takes them [m]
+    work: float = 0.0  # work of their reaction against it [J] where they bear all of the dead load
+
+
+NOTHING_CARRIED = Carried(np.zeros(0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +106,9 @@ class BlockSystem:
     owner: Indices  # (n,) block that each body is part of
     restraint: Restraint  # bodies held at points
     interface: Interface  # what holds them together: at finite displacements that of the undeformed contacts
+    ties: TieRows = NO_TIE_ROWS  # bars between them
+    late: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))  # modes held once the dead load is on
+    carried: Carried = NOTHING_CARRIED  # supports that move
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
     # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
     block_motion: csr_array | None = None
@@ -107,6 +123,16 @@ class BlockSystem:
     def weightless(self) -> bool:
         """Whether nothing loads it but the live load."""
         return not self.dead.any()
+
+    @property
+    def held_late(self) -> "BlockSystem":
+        """The system whose dead load is on, and whose late modes are held."""
+        if not len(self.late):
+            return self
+        mass, live, unit = self.mass.copy(), self.live.copy(), self.force_unit.copy()
+        mass[self.late] = unit[self.late] = np.inf
+        live[self.late] = 0.0
+        return replace(self, mass=mass, live=live, force_unit=unit, late=self.late[:0])
 
     def measure(self, force: Array) -> float:
         """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
@@ -156,7 +182,7 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
     block : (nd,) int
         Block of each mode.
     mass : (nd,) float
-        Modal masses, not scaled; inf where a mode is held.
+        Modal masses, not scaled; inf where a mode is held. A beam's own is that of its inertia.
     live : (nd,) float
         Modal live load.
     strength
@@ -164,5 +190,6 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
     """
     gravity = float(np.hypot(*scene.load.gravity))
     each = np.full(len(scene.blocks), strength.strongest or float(np.abs(live).max()) or 1.0)
-    force = gravity * scene.mass if gravity > 0 else each
-    return np.asarray(force[block] * np.sqrt(mass / scene.mass[block]))
+    inertia = scene.inertial_density * scene.thickness * scene.blocks.area
+    force = gravity * inertia if gravity > 0 else each
+    return np.asarray(force[block] * np.sqrt(mass / inertia[block]))

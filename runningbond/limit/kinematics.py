@@ -65,9 +65,9 @@ def tie_operator(scene: Scene) -> csr_array:
 
 
 def mass_matrix_diagonal(scene: Scene) -> Array:
-    """Mass, mass and polar moment of inertia of each block, ``(3 nb,)`` [kg, kg, kg m²]."""
-    inertia = scene.density * scene.thickness * scene.blocks.polar_moment
-    return np.column_stack([scene.mass, scene.mass, inertia]).ravel()
+    """Mass, mass and polar moment of inertia of each block in motion, ``(3 nb,)`` [kg, kg, kg m²]."""
+    inertia = scene.inertial_density * scene.thickness * np.array([*[scene.blocks.area] * 2, scene.blocks.polar_moment])
+    return np.asarray(inertia.T.ravel())
 
 
 def dead_load(scene: Scene) -> Array:

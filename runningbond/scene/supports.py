@@ -81,10 +81,11 @@ def free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
     (3, 3) and (3,) float
         A motion a column, and columns of zeros where there are fewer; their masses, inf where there is none. With
         pins motions are of the block's own mass, and their coordinates its root mean square displacement [m]; without,
-        they are the identity.
+        or where pins hold its rotation alone, they are the translations along x and y and the rotation themselves.
     """
-    if len(held) == 0:
-        return np.eye(3), inertia.copy()
+    if not held[:, :2].any():
+        turns = not held.any()
+        return np.diag([1.0, 1.0, float(turns)]), np.array([*inertia[:2], inertia[2] if turns else np.inf])
     root = np.sqrt(inertia)
     _, size, vectors = np.linalg.svd(held / root)
     rank = int((size > 1e-9 * size.max()).sum())

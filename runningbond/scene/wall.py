@@ -132,6 +132,17 @@ class Scene:
         return density
 
     @cached_property
+    def inertial_density(self) -> Array:
+        """Density with which each block resists acceleration, ``(nb,)`` [kg/m³]: a beam's is at least the default one.
+
+        One of hardly any mass would ask models of motion for hardly any time step; at rest it makes no difference.
+        """
+        density = self.density.copy()
+        if self.beam is not None:
+            density[self.beam.block] = np.maximum(density[self.beam.block], self.block.density)
+        return density
+
+    @cached_property
     def mass(self) -> Array:
         """Mass of each block, ``(nb,)`` [kg]."""
         return self.density * self.thickness * self.blocks.area

@@ -1,0 +1,147 @@
+"""How walls are led: a beam along its path at a slow speed, supports to their settlement from rest to rest."""
+
+from collections import deque
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+
+from runningbond.scene import Array, Scene
+
+from .collapse import Criteria, Verdict, hold_load
+from .load_stepping import NEARLY_AT_REST
+from .run import Observer, Run
+from .state import State
+
+ROWS, LEAST_ROWS = 200, 40
+"""Rows of the curve in the longest leg of a drive, and at least in each."""
+
+SOFT = 10
+"""Rows in which a leg gathers its speed, and in which it slows down to turn."""
+
+SEEN = 10
+"""Rows between two looks of an observer, and over which a mechanism is drawn."""
+
+STAGES = 20
+"""Rests on the way of a settlement."""
+
+
+@dataclass
+class Way:
+    """What was seen on a way that was gone through once, from a state at rest."""
+
+    best: State  # where the answer is
+    motion: Array  # (nd,) how the wall moved where it had come farthest
+    moves: bool  # whether forces are means of a motion, and not of rests
+    rows: list[tuple[float, float]] = field(default_factory=list)  # displacement [m] and force
+    points: list[Array] = field(default_factory=list)  # (np, 2) forces of the joint points [N] in each
+    works: list[tuple[float, float]] = field(default_factory=list)  # of the dead load and of what leads [J]
+    verdict: Verdict = "stable"
+
+    @property
+    def curve(self) -> Array:
+        """Displacement [m] and force, ``(n, 2)``; of a motion each force is the middle one of three."""
+        curve = np.array(self.rows)
+        if self.moves and len(curve) > 2:
+            force = curve[:, 1]
+            curve[1:-1, 1] = np.median([force[:-2], force[1:-1], force[2:]], axis=0)
+        return curve
+
+
+@dataclass(frozen=True, eq=False)
+class Lead:
+    """How a wall is led, from its rest under the dead load."""
+
+    scene: Scene
+    run: Run
+    start: State
+    criteria: Criteria
+    observe: Observer
+
+    @property
+    def settles(self) -> bool:
+        """Whether supports are led, not the beam."""
+        return self.scene.settlement is not None
+
+    @property
+    def goals(self) -> Array:
+        """Displacements along the first move [m], or parts of the settlement, one after the other."""
+        drive = self.scene.beam.drive if self.scene.beam else None
+        return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path)
+
+    @property
+    def longest(self) -> float:
+        """Longest leg."""
+        return float(np.abs(np.diff(self.goals, prepend=0.0)).max())
+
+    def share(self, state: State, speed: float, steps: int, given: float) -> float:
+        """Move supports, in place; the share of the dead load that they bear meanwhile."""
+        return self.run.carry(state, speed, steps, given=given) / self.run.system.carried.work
+
+    def note(self, way: Way, state: State, moved: float, force: float) -> None:
+        """Add a row of a state to a way."""
+        dead = float(self.run.system.dead @ state.motion)
+        way.rows.append((moved, force))
+        way.points.append(np.column_stack(self.run.forces(state)))
+        way.works.append((dead, state.external - dead))
+
+    def go(self, way: Way, speed: float) -> State:
+        """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
+        state = self.start.copy()
+        self.observe(self.run, state, 0.0)
+        (self._settle if self.settles else self._drive)(way, state, speed)
+        return state
+
+    def _drive(self, way: Way, state: State, speed: float) -> None:
+        run, at, farthest, most = self.run, 0.0, 0.0, 0.0
+        self.note(way, state, 0.0, 0.0)
+        mobility = float((run.system.live**2 / run.system.mass).sum())
+        given, recent = run.given(state), deque([state.motion.copy()], maxlen=SEEN)
+        for goal in self.goals.tolist():
+            if goal == at:
+                continue
+            n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
+            pace = _pace(n)
+            steps = max(1, round(abs(goal - at) / (speed * run.dt * pace.sum())))
+            top = (goal - at) / (run.dt * steps * pace.sum())
+            for k, part in enumerate(pace.tolist()):
+                before = float(run.system.live @ state.velocity)
+                force = run.drive(state, top * part, steps, given=given)
+                force -= (top * part - before) / (mobility * steps * run.dt)  # what the driven body's own inertia takes
+                moved = float(run.system.live @ (state.motion - self.start.motion))
+                if force > most:
+                    most, way.best = force, state.copy()
+                self.note(way, state, moved, force)
+                if moved > farthest:
+                    farthest, way.motion = moved, state.motion - recent[0]
+                recent.append(state.motion.copy())
+                if (k + 1) % SEEN == 0:
+                    self.observe(run, state, force)
+            at = goal
+
+    def _settle(self, way: Way, state: State, speed: float) -> None:
+        run, given = self.run, self.run.given(state)
+        motion, far, _ = run.system.carried
+        self.note(way, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
+        pace = _pace(2 * SOFT)
+        steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
+        shares = np.linspace(0.0, 1.0, STAGES + 1) ** 2  # small at first, where reactions change most
+        for before, settled in pairwise(shares.tolist()):
+            for part in pace.tolist():
+                self.share(state, (settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
+            state.velocity[motion != 0] = 0.0
+            rest = self.criteria.rest if settled == 1 else NEARLY_AT_REST
+            way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
+            way.motion = state.motion - self.start.motion
+            if way.verdict != "stable":
+                return
+            bears = self.share(state, 0.0, self.criteria.interval, given)
+            self.note(way, state, far * settled, bears)
+            way.best = state.copy()
+            self.observe(run, state, bears)
+
+
+def _pace(rows: int) -> Array:
+    """Part of the top speed in each row of a leg, which starts and ends softly."""
+    k = np.arange(rows)
+    return np.asarray(np.minimum(1.0, (np.minimum(k, rows - 1 - k) + 0.5) / SOFT))

@@ -1,0 +1,187 @@
+"""Walls that are led: a beam is pushed along a path at a slow speed, or supports are moved from rest to rest.
+
+The whole way is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
+along its first move, or the share of the dead load that supports bear at the settlement asked for. It is one of a
+collapse if a mechanism has formed: if over the last tenth of the way it has changed by less than the tolerance, or the
+wall falls. Else the wall still hardens, or the support still sheds load, where the way ends.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from runningbond.joints import JointPoints
+from runningbond.results import Outcome, Supports, fastest_corner_by_one
+from runningbond.results.outcome import number
+from runningbond.scene import Array, Indices, Scene
+
+from .collapse import Criteria, settle
+from .lead import Lead, Way
+from .run import Observer, Run, Unstable
+from .state import State
+
+STEPS, UNHURRIED = 20_000, 20
+"""Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest.
+"""
+
+LAST = 0.1
+"""Part of a way over which a force that has formed a mechanism no longer changes."""
+
+LITTLE = 0.01
+"""Share of the dead load below which a reaction need not be relatively accurate."""
+
+UNACCOUNTED = 0.01
+"""Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
+
+
+def is_led(scene: Scene) -> bool:
+    """Whether displacements are prescribed to a scene, not loads."""
+    return scene.settlement is not None or any(key.startswith("beam.drive.displacement") for key in scene.extras)
+
+
+def collapse_of_led(
+    outcome: Outcome,
+    scene: Scene,
+    run: Run,
+    tolerance: float,
+    points: JointPoints,
+    point_order: Indices,
+    is_self_locking: Callable[[], bool],
+    criteria: Criteria,
+    observe: Observer,
+) -> Outcome:
+    """Lead a wall through the displacements of its scene; an outcome so far, and the rest as of `collapse_by_steps`.
+
+    Returns
+    -------
+    Outcome
+        `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
+        and `upper` lie about the answer as far as the last halving of the speed has changed it.
+    """
+    state, ways, answers = State.at_rest(run.system), list[Way](), list[float]()
+    try:
+        verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
+        outcome = replace(outcome, steps=state.steps)
+        if verdict == "collapse":
+            return replace(outcome, status="infeasible", message="collapses under its dead load")
+        if verdict == "undecided":
+            return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+        run = run.held_late(state)
+        run.led = True
+        lead = Lead(scene, run, state, criteria, observe)
+        for speed in _speeds(lead):
+            ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
+            last = lead.go(way, speed)
+            outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
+            if way.verdict == "undecided":
+                break
+            answers.append(float(way.curve[-1, 1] if lead.settles else way.curve[:, 1].max()))
+            if _spread(lead, answers) <= tolerance and not _rate(scene):
+                break
+    except KeyboardInterrupt:
+        outcome = _path(outcome, scene, run, points, ways[-1]) if ways and ways[-1].rows else outcome
+        return replace(outcome, message="interrupted: the way so far")
+    except Unstable as error:
+        return replace(outcome, status="failed", steps=error.steps, message=str(error))
+    # What a support hardly moves does hardly any work.
+    lost = run.unaccounted(last, LITTLE * run.system.carried.work)
+    outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
+    if lost > UNACCOUNTED:
+        return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
+    outcome = _judge(outcome, lead, way, answers, tolerance)
+    if outcome.status == "undecided" and outcome.upper is None and is_self_locking():
+        message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
+        return replace(outcome, status="unbounded", message=message)
+    return outcome
+
+
+def _rate(scene: Scene) -> float | None:
+    return scene.beam.drive.rate if scene.beam and scene.beam.drive else None
+
+
+def _speeds(lead: Lead) -> list[float]:
+    """Speeds to go at one after the other: twice the rate and the rate, or ever slower ones that the budget allows."""
+    if rate := _rate(lead.scene):
+        return [2 * rate, rate]
+    legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
+    steps = max(STEPS, UNHURRIED * lead.start.steps)
+    runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
+    return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
+
+
+def _bracket(answers: list[float]) -> tuple[float, float]:
+    """The answer as far on either side of the last one as that lies from the one at twice its speed.
+
+    What speed adds falls at least as fast as speed.
+    """
+    fast, slow = answers[-2:]
+    return slow - abs(fast - slow), slow + abs(fast - slow)
+
+
+def _spread(lead: Lead, answers: list[float]) -> float:
+    """Width of the bracket, relative to its larger end."""
+    if len(answers) < 2:
+        return np.inf
+    lower, upper = _bracket(answers)
+    return (upper - lower) / max(-lower, upper, LITTLE if lead.settles else 0.0) if upper > lower else 0.0
+
+
+def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
+    """Forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
+    run = lead.run
+    force, motion = np.column_stack(run.forces(way.best))[point_order], run.system.motion_of_blocks(way.motion)
+    if motion.any():
+        outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion))
+    return replace(outcome, force=force)
+
+
+def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Way) -> Outcome:
+    """Curve, reactions and works of a way; its states rest, but for those of a motion, whose inertia is left out."""
+    loads = [force if way.moves else 0.0 for _, force in way.rows]
+    path = Supports(scene, points, run.system.owner).path(way.points, loads, np.array(way.works))
+    path["path"][:, -1] = not way.moves
+    return replace(outcome, curve=way.curve, **path)
+
+
+def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], tolerance: float) -> Outcome:
+    """Verdict on some ways, of which the last one is drawn."""
+    what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
+    what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
+    other = -float(outcome.curve[:, 1].min())
+    if len(lead.goals) > 1 and other > 0:
+        what += f"; the other way it takes {number(other)}"
+    what += "; small displacements"
+    at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"
+    if way.verdict == "undecided" or len(answers) < 2:
+        return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
+    least, most = _bracket(answers)
+    outcome = replace(outcome, lower=least, upper=most)
+    fell = way.verdict == "collapse"
+    if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
+        still = "the support still sheds load" if lead.settles else "the wall still hardens"
+        message = f"no answer: {still} at the displacement asked for, {at}: {number(answers[-1])}; {what}"
+        bounds = (None, most) if lead.settles else (least, None)
+        return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
+    if _spread(lead, answers) > tolerance and not _rate(lead.scene):
+        return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
+    fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""
+    return replace(outcome, status="collapse", multiplier=answers[-1], message=what + fall)
+
+
+def formed(curve: Array, tolerance: float, least: float | None = None) -> bool:
+    """Whether a mechanism has formed: a force no longer grows over the last part of a way.
+
+    Parameters
+    ----------
+    curve : (n, 2) float
+        Displacement and force.
+    least
+        Smallest force that matters, of one that is not to change at all.
+    """
+    value, force = curve.T
+    late = value >= (1 - LAST) * value.max()
+    if least is not None:
+        return bool(np.ptp(force[late]) <= tolerance * max(float(np.abs(force[late]).max()), least))
+    most = float(force[late].max())
+    return most - float(force[~late].max(initial=0.0)) <= tolerance * most

@@ -1,0 +1,408 @@
+"""Ties, beams and supports that move, by the two models in motion, against what statics says."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dem.dynamic import dem_dynamic, finite_pushover
+from dem.rigid_system import rigid_system
+from dem.static import dem_static
+from fem_interface.cracks import pieces
+from fem_interface.modal_wall import modal_wall
+from fem_interface.model import fem, fem_pushover
+from fem_interface.system import system_of
+from meshing import wall_mesh
+from runningbond.compare.recording import MotionRecorder
+from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics.led import formed
+from runningbond.dynamics.ties import tie_rows
+from runningbond.joints import joint_stiffness
+from runningbond.results import Outcome
+from runningbond.scene import (
+    Array,
+    BlockMaterial,
+    JointMaterial,
+    Load,
+    Mortar,
+    Scene,
+    SceneError,
+    Settlement,
+    build_scene,
+)
+from tests.fem_interface.walls import MORTAR
+from tests.walls import panel
+
+MODELS = (dem_dynamic, fem)
+TIE = {"from": [0.0, 0.03], "to": [-1.0, 0.03], "area": 1e-6, "young": 2.1e11, "yield": 5.0}
+N = 2000.0
+
+
+def block(width: float = 0.24, height: float = 0.06, **changes: Any) -> Scene:
+    """One block on the ground, friction 0.6."""
+    size = {"length": width, "height": height, "block_width": width, "block_height": height, "thickness": 0.12}
+    return panel(wall=size, joint__mortar=MORTAR, block__young=1e12, block__poisson=0.2, **changes)
+
+
+def under_beam(condition: str, drive: dict[str, Any], **changes: Any) -> Scene:
+    """The block under a beam without mass that N presses down."""
+    beam = {"height": 0.1, "condition": condition, "force": [0, -N], "drive": drive}
+    return block(load__live=None, beam=beam, **changes)
+
+
+def brackets(outcome: Outcome, exact: float, width: float) -> None:
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower <= exact * (1 + 1e-6)
+    assert outcome.upper >= exact * (1 - 1e-6)
+    assert outcome.upper - outcome.lower <= width * outcome.upper
+
+
+# --- ties ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("preload", [0.0, 4.0])
+def test_a_block_on_a_tie_slides_where_friction_and_the_tie_give_way(model: Any, preload: float) -> None:
+    """λ = μ + T_y / W, whatever the preload."""
+    scene = block(tie=[{**TIE, "preload": preload}])
+    brackets(model(scene, 3e-3), 0.6 + 5.0 / (9.81 * scene.mass[0]), 3e-3)
+
+
+def test_a_block_topples_about_its_corner_against_a_tie_at_its_top() -> None:
+    """λ W h/2 = W b/2 + T_y h."""
+    scene = block(0.06, 0.24, tie=[{**TIE, "from": [0.0, 0.24], "to": [-1.0, 0.24]}])
+    brackets(dem_dynamic(scene, 3e-3), 0.25 + 2 * 5.0 / (9.81 * scene.mass[0]), 3e-3)
+
+
+def test_a_tie_that_is_pushed_does_not_push_back() -> None:
+    """A block pushed towards the anchor slides at μ."""
+    scene = block(tie=[{**TIE, "from": [0.24, 0.03], "to": [1.0, 0.03]}])
+    brackets(dem_dynamic(scene, 3e-3), 0.6, 3e-3)
+
+
+@pytest.mark.parametrize("preload", [0.0, 4.0])
+def test_energy_of_a_tie_that_yields_is_accounted_for(preload: float) -> None:
+    """Stretched by 10 elastic lengths and let go: T_y × the rest is spent, the tie is slack, and nothing is lost."""
+    scene = block(tie=[{**TIE, "preload": preload}])
+    run = Run(rigid_system(scene))
+    state = State.at_rest(run.system)
+    settle(run, state, 0.0, Criteria(collapse=1.0))
+    elongation = run.system.ties.elongation(state.motion)[0]
+    given = run.given(state)
+    stretched = 10 * 5.0 / scene.ties.stiffness[0]
+    speed = scene.mass[0] * 9.81 * stretched / (4000 * run.dt)
+    held = np.median([run.drive(state, speed, 100, given=given) for _ in range(50)])
+    assert held * scene.mass[0] * 9.81 == pytest.approx(0.6 * scene.mass[0] * 9.81 + 5.0, rel=1e-3)
+    plastic = run.system.ties.elongation(state.motion)[0] - (5.0 - preload) / scene.ties.stiffness[0]
+    assert state.stretch[0] == pytest.approx(plastic, rel=1e-3)
+    assert run.unaccounted(state) < 1e-3
+    for _ in range(60):
+        run.drive(state, -speed, 100, given=given)
+    assert run.system.ties.force(state.motion, state.stretch)[0] == 0.0
+    ledger = run.ledger(state)
+    stored = preload**2 / (2 * scene.ties.stiffness[0])
+    assert ledger.ties == pytest.approx(5.0 * state.stretch[0] - stored, rel=1e-9)
+    assert run.unaccounted(state) < 1e-3
+    assert state.copy().stretch is not state.stretch
+    assert run.system.ties.elongation(state.motion)[0] < elongation + state.stretch[0]
+
+
+def test_ties_pull_two_blocks_together_where_their_material_points_are() -> None:
+    """Elongation is (u_b − u_a) · n, in rigid and in modal coordinates alike."""
+    tie = {**TIE, "from": [0.06, 0.05], "to": [0.30, 0.10]}
+    scene = panel(wall__length=0.48, wall__height=0.12, joint__mortar=MORTAR, block__young=1e10, tie=[tie])
+    rigid, modal = rigid_system(scene), system_of(modal_wall(scene))
+    motion = np.where(scene.fixed[:, None], 0.0, np.random.default_rng(0).normal(size=(len(scene.blocks), 3)))
+    a, b = scene.ties.block[0]
+    ends = scene.ties.ends[0] - scene.blocks.centroid[[a, b]]
+    moved = motion[[a, b], :2] + motion[[a, b], 2:] * np.column_stack([-ends[:, 1], ends[:, 0]])
+    exact = (moved[1] - moved[0]) @ scene.ties.direction[0]
+    for system in (rigid, modal):
+        coordinates = np.zeros(len(system.mass))
+        coordinates[system.rigid[~scene.fixed]] = motion[~scene.fixed]
+        assert system.ties.elongation(coordinates)[0] == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_stiff_tie_shortens_the_time_step_as_a_spring_does() -> None:
+    """On joints that are nothing beside it ω² is that of the block on its tie."""
+    scene = block(tie=[{**TIE, "area": 1.0, "to": [-0.01, 0.03]}])
+    soft = block(tie=[TIE])
+    rows, mass = rigid_system(scene).ties, rigid_system(scene).mass
+    exact = scene.ties.stiffness[0] / scene.mass[0]
+    assert rows.frequency_squared(1e-9 * exact, mass) == pytest.approx(exact, rel=1e-3)
+    assert Run(rigid_system(soft)).dt < Run(rigid_system(block())).dt
+    assert tie_rows(block().ties, ~scene.fixed, lambda *_: mass).frequency_squared(3.0, mass) == 3.0
+
+
+# --- beams ---------------------------------------------------------------------------------------------------
+
+FORCE, DISPLACEMENT = {"force": [1, 0]}, {"displacement": [0.002, 0]}
+
+
+@pytest.mark.parametrize(("model", "drive"), [(dem_dynamic, FORCE), (dem_dynamic, DISPLACEMENT), (fem, DISPLACEMENT)])
+@pytest.mark.parametrize("condition", ["level", "free"])
+def test_a_pier_rocks_in_double_bending_under_a_level_beam_and_as_a_cantilever_under_a_free_one(
+    model: Any, condition: str, drive: dict[str, Any]
+) -> None:
+    """V h = (N + W/2) b between opposite corners; V h = (N + W) b/2 where the beam turns with the pier."""
+    scene = under_beam(condition, {**drive, "at": 0.72}, width=0.24, height=0.72)
+    weight = 9.81 * scene.mass[0]
+    exact = (N + weight / 2 if condition == "level" else (N + weight) / 2) * 0.24 / 0.72
+    brackets(model(scene, 0.01), exact, 0.01)
+
+
+def test_a_pier_that_is_pushed_to_the_left_answers_as_one_pushed_to_the_right() -> None:
+    right, left = (
+        dem_dynamic(under_beam("level", {"displacement": [u, 0], "at": 0.72}, width=0.24, height=0.72), 0.01)
+        for u in (0.001, -0.001)
+    )
+    assert left.multiplier == pytest.approx(right.multiplier, rel=1e-6)
+    assert left.curve == pytest.approx(right.curve, rel=1e-5, abs=1e-8)
+    assert left.motion[0] == pytest.approx(right.motion[0] * [-1, 1, -1], abs=1e-6)
+
+
+def test_a_thin_beam_does_not_say_how_far_a_collapse_is() -> None:
+    thin, none = block(beam={"height": 0.01}), block()
+    assert thin.lowest_block == none.lowest_block
+    assert thin.block_sizes.min() == none.block_sizes.min()
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_sliding_block_goes_round_a_loop_of_its_friction(model: Any) -> None:
+    """± μ N, and 4 μ N u for each round of amplitude u, the ledger closing in the run."""
+    path = [0.001, -0.001, 0.001, -0.001]
+    outcome = model(under_beam("level", {"displacement": [path]}), 0.02)
+    brackets(outcome, 0.6 * N, 0.02)
+    x, force = outcome.curve.T
+    assert x.min() == pytest.approx(-0.001, rel=1e-9)
+    assert x[-1] == pytest.approx(-0.001, rel=1e-9)
+    assert np.median(force[np.gradient(x) < 0]) == pytest.approx(-0.6 * N, rel=1e-3)
+    work = float((np.diff(x) * (force[1:] + force[:-1]) / 2).sum())
+    assert work == pytest.approx(0.6 * N * 0.007, rel=0.01)
+    assert "the other way it takes" in outcome.message
+    known = dict(zip(outcome.path_columns, outcome.path.T, strict=True))
+    slides = np.abs(force) > 0.59 * N
+    assert known["ground horizontal [N]"][slides] == pytest.approx(-force[slides], rel=0.02)
+    weight = 9.81 * 1800 * 0.24 * 0.06 * 0.12
+    assert known["ground vertical [N]"] == pytest.approx(N + weight, rel=1e-2)
+    assert known["work of the live load [J]"][-1] == pytest.approx(work, rel=0.01)
+    assert not known["at rest"].any()
+
+
+def test_a_beam_of_fixed_height_makes_the_pier_a_strut() -> None:
+    """k = 1 / (2/k_t + 2 (h/b)²/k_n) of the two corners that it stands on; nothing gives way."""
+    scene = under_beam("fixed-height", {"displacement": [1e-4, 0], "at": 0.72}, width=0.24, height=0.72)
+    outcome = dem_dynamic(scene, 0.02)
+    area, stiffness = 0.12 * 0.24 / 2, joint_stiffness(scene.joint)
+    exact = 0.5 / (1 / (stiffness.shear * area) + 9 / (stiffness.normal * area))
+    x, force = outcome.curve[len(outcome.curve) // 2 : -20].T
+    assert np.polyfit(x, force, 1)[0] == pytest.approx(exact, rel=1e-3)
+    assert outcome.status in ("undecided", "unbounded")
+    assert outcome.upper is None
+    assert "still hardens at the displacement asked for" in outcome.message
+
+
+def test_the_rate_that_is_given_is_kept() -> None:
+    """Twice the time at half the rate; the bracket says what the rate does."""
+    slow, fast = (
+        dem_dynamic(under_beam("level", {"displacement": [0.0005, 0], "rate": rate}), 1e-6) for rate in (1e-3, 2e-3)
+    )
+    assert slow.status == fast.status == "collapse"
+    assert slow.steps is not None
+    assert fast.steps is not None
+    assert slow.steps == pytest.approx(2 * fast.steps, rel=0.02)
+    assert "at its rate and at twice that" in slow.message
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_heavy_beam_without_motion_presses_with_its_weight_and_a_light_one_with_none(model: Any) -> None:
+    """A lateral load does not push a beam of no mass: λ W = μ (W + N)."""
+    beam = {"height": 0.05, "condition": "level", "force": [0, -20.0]}
+    light, heavy = (model(block(beam={**beam, "mass": mass}), 5e-3) for mass in (0.0, 6.0))
+    weight = 9.81 * 1800 * 0.24 * 0.06 * 0.12
+    brackets(light, 0.6 * (1 + 20 / weight), 5e-3)
+    assert "moves with the inertia of 2.592 kg" in light.message
+    brackets(heavy, 0.6 * (1 + 20 / (weight + 6 * 9.81)), 5e-3)
+    assert "inertia" not in heavy.message
+
+
+def test_a_beam_stays_stiff_whatever_the_modes_of_blocks() -> None:
+    wall = modal_wall(under_beam("fixed-height", DISPLACEMENT), modes="all")
+    beam = wall.scene.beam
+    assert beam is not None
+    template = wall.templates[wall.place[beam.block, 0]]
+    assert template.modes.shape.shape[1] == 3
+    assert np.isfinite(template.modes.mass).tolist() == [True, True, False]
+    assert template.modes.free == pytest.approx(np.diag([1.0, 1.0, 0.0]))
+    assert not template.modes.inert.any()
+
+
+def test_a_moment_on_a_pinned_block_turns_it_in_modes_as_in_freedoms() -> None:
+    """The same acceleration along the load, f · M⁻¹ f, about a pinned corner."""
+    changes = {"support__kind": "corners", "load__live": {"kind": "moment", "at": [0.1, 0.03], "moment": 2.0}}
+    scene = panel(wall__length=0.48, wall__height=0.12, joint__mortar=MORTAR, block__young=1e10, **changes)
+    rigid, modal = rigid_system(scene), system_of(modal_wall(scene, modes=3))
+    (x, y), (mass, inertia) = scene.blocks.centroid[0], (scene.mass[0], scene.density[0] * 0.12)
+    exact = 4.0 / (inertia * scene.blocks.polar_moment[0] + mass * (x**2 + y**2))
+    for system in (rigid, modal):
+        assert float((system.live**2 / system.mass).sum()) == pytest.approx(exact, rel=1e-9)
+
+
+# --- supports that move --------------------------------------------------------------------------------------
+
+OAK = BlockMaterial(700.0, 1e10, 0.3, name="oak")
+
+
+def lintel(live: Settlement, materials: tuple[BlockMaterial, ...] = ()) -> Scene:
+    """A lintel of 1 m on piers of 0.3 m, 0.6 m apart; ground under the right one may move."""
+    corners = [(0.0, 0.0, 0.3, 0.5), (0.9, 0.0, 0.3, 0.5), (0.1, 0.5, 1.0, 0.2)]
+    return build_scene(
+        "lintel",
+        [np.array([[x, y], [x + b, y], [x + b, y + h], [x, y + h]]) for x, y, b, h in corners],
+        thickness=0.12,
+        block=BlockMaterial(1800.0, 1e10, 0.2),
+        joint=JointMaterial(0.6, elasticity=Mortar(**MORTAR)),
+        load=Load(live=(live,)),
+        materials=materials,
+        material_of={2: "oak"} if materials else None,
+    )
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("materials", [(), (OAK,)])
+def test_a_lintel_turns_on_the_settling_pier_and_loads_it_by_its_lever(
+    model: Any, materials: tuple[BlockMaterial, ...]
+) -> None:
+    """Between the left pier's inner edge and its own right end: W_l (0.6 − 0.3) / (1.1 − 0.3), and the pier."""
+    scene = lintel(Settlement(((0.75, -1.0), (2.0, 0.1)), (0.0, -1e-3)), materials)
+    outcome = model(scene, 0.01)
+    share = (scene.mass[1] + 0.375 * scene.mass[2]) / scene.mass[:3].sum()
+    brackets(outcome, share, 0.01)
+    assert outcome.multiplier == pytest.approx(share, rel=1e-5)
+    assert outcome.curve[-1, 0] == pytest.approx(1e-3)
+    half = (scene.mass[1] + scene.mass[2] / 2) / scene.mass[:3].sum()
+    assert outcome.curve[0, 1] == pytest.approx(half, rel=1e-3)  # at first
+    turn = 1e-3 / 0.8
+    moved = outcome.motion[2] / np.abs(outcome.motion[2, 2]) * turn
+    assert moved[1:] == pytest.approx([-turn * 0.3, -turn], rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    "led",
+    [
+        {
+            "load__live": None,
+            "beam": {"height": 0.1, "condition": "level", "force": [0, -5e3], "drive": {"displacement": [0.004, 0]}},
+        },
+        {"load__live": {"kind": "settlement", "box": [[0.24, -1], [1, 0]], "by": [0, -1e-3]}},
+    ],
+)
+def test_a_wall_of_many_blocks_is_led_as_from_equilibrium_to_equilibrium(led: dict[str, Any]) -> None:
+    """The bracket of motion holds the answer of statics, and so do the reactions at the end."""
+    size = {"block_width": 0.24, "block_height": 0.12, "thickness": 0.12, "length": 0.48, "height": 0.96}
+    scene = panel(wall=size, joint__mortar=MORTAR, **led)
+    moving, still = dem_dynamic(scene, 0.02), dem_static(scene, 0.02)
+    assert moving.status == still.status == "collapse"
+    assert still.multiplier is not None
+    assert moving.lower is not None
+    assert moving.upper is not None
+    assert moving.lower <= still.multiplier * (1 + 1e-3)
+    assert moving.upper >= still.multiplier * (1 - 1e-3)
+    ends = [dict(zip(each.path_columns, each.path[-1], strict=True)) for each in (moving, still)]
+    vertical = [name for name in ends[0] if name.startswith("ground") and "vertical" in name]
+    assert [ends[0][name] for name in vertical] == pytest.approx([ends[1][name] for name in vertical], rel=0.02)
+
+
+def test_the_work_of_a_moving_support_is_in_the_ledger() -> None:
+    """It takes what the dead load gives, but for what joints spend; moved back, it gives it again."""
+    scene = lintel(Settlement(((0.75, -1.0), (2.0, 0.1)), (0.0, -1e-3)))
+    run = Run(rigid_system(scene))
+    state = State.at_rest(run.system)
+    settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
+    for speed in (1.0, -1.0):
+        for _ in range(50):
+            run.carry(state, speed / (5000 * run.dt), 100, given=run.given(state))
+        state.velocity[run.system.carried.motion != 0] = 0.0
+        settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
+        assert abs(run.ledger(state).residual) < 1e-3 * 9.81 * scene.mass[1] * 1e-3
+    assert run.system.motion_of_blocks(state.motion)[4] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_support_that_turns_moves_its_wall_with_it() -> None:
+    """A pier on ground that turns about its middle leans by its angle and bears on: the share is half its arm."""
+    scene = block(load__live={"kind": "settlement", "box": [[-1, -1], [1, 0]], "rotation_angle": 0.05})
+    outcome = dem_dynamic(scene, 0.05)
+    assert outcome.motion[0, 2] > 0
+    assert outcome.status == "collapse", outcome.message
+
+
+# --- what is refused, and what ends a way --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
+@pytest.mark.parametrize(
+    ("extra", "key"),
+    [
+        ({"tie": [TIE]}, "tie"),
+        ({"beam": {"height": 0.1}}, "beam"),
+        ({"load__live": {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}}, "load.live settlement"),
+    ],
+)
+def test_finite_displacements_refuse_what_they_do_not_know(pushover: Any, extra: dict[str, Any], key: str) -> None:
+    with pytest.raises(SceneError, match=f"{key}: is not taken at finite displacements"):
+        pushover(block(**extra), 0.01)
+
+
+@pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
+def test_finite_displacements_refuse_joints_of_several_materials(pushover: Any) -> None:
+    joints = {"lime": {"friction": 0.7, "mortar": MORTAR}}
+    assign = [{"joint": "lime", "box": [[0, 0], [1, 0.01]]}]
+    with pytest.raises(SceneError, match="joints: finite displacements need one material"):
+        pushover(block(joints=joints, assign=assign), 0.01)
+
+
+@pytest.mark.parametrize("extra", [{"tie": [TIE]}, {"beam": {"height": 0.1}}])
+def test_cracks_between_all_triangles_refuse_what_they_would_tear(extra: dict[str, Any]) -> None:
+    scene = block(inner_joint={"friction": 0.6, "mortar": MORTAR}, **extra)
+    with pytest.raises(SceneError, match='does not go with cracks = "blocks"'):
+        pieces(scene, wall_mesh(scene, 1), "blocks")
+
+
+@pytest.mark.parametrize(("after", "rows"), [(1, 0), (12, 111)])
+def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int) -> None:
+    seen: list[float] = []
+
+    def stop(run: Run, state: State, multiplier: float) -> None:
+        seen.extend([multiplier] if run.led else [])
+        if len(seen) == after:
+            raise KeyboardInterrupt
+
+    outcome = dem_dynamic(under_beam("level", {"displacement": [0.001, 0]}), observe=stop)
+    assert (outcome.status, outcome.multiplier) == ("undecided", None)
+    assert "interrupted" in outcome.message
+    assert len(outcome.curve) == len(outcome.path) == rows
+
+
+def test_a_recorder_keeps_the_way_that_counts() -> None:
+    """Frames of the last way alone, from rest to the displacement asked for."""
+    scene = under_beam("level", {"displacement": [0.001, 0]})
+    recorder = MotionRecorder(scene, None)
+    outcome = dem_dynamic(scene, observe=recorder)
+    recorder.finish(outcome)
+    assert scene.beam is not None
+    moved = np.array([frame.motion[scene.beam.block or 0, 0] for frame in recorder.frames])
+    assert (np.diff(moved) >= 0).all()
+    assert len(moved) == 21
+    assert moved[-1] == pytest.approx(0.001, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("force", "expected"),
+    [([1.0, 2.0, 3.0], False), ([1.0, 3.0, 2.0], True), ([2.0, 3.0, 3.001], True), ([0.0, 0.0, 0.0], True)],
+)
+def test_a_mechanism_has_formed_where_the_force_no_longer_grows(force: list[float], expected: bool) -> None:
+    x: Array = np.array([0.0, 0.5, 1.0])
+    assert formed(np.column_stack([x, force]), 0.01) == expected
