@@ -23,11 +23,6 @@ REGULAR = 1e-6
 """Share of the elastic stiffness by which the tangent of a first guess is made regular."""
 
 
-def is_led(scene: Scene) -> bool:
-    """Whether displacements are prescribed to a scene, not loads."""
-    return scene.settlement is not None or any(key.startswith("beam.drive.displacement") for key in scene.extras)
-
-
 @dataclass(frozen=True, eq=False)
 class Lead:
     """What leads a wall: the beam's drive, or the supports with a share of their settlement."""

@@ -150,13 +150,14 @@ def _arrays(outcome: Outcome, lead: Lead, run: Run) -> Outcome:
     forces = [system.equilibrium.force_unit * state.force for state in states]
     dead = np.array([state.x[: system.freedoms] for state in states]) @ system.per_freedom(dead_load(lead.scene))
     live = np.append(0.0, np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(value))) * lead.joule
+    ties = [system.equilibrium.force_unit * state.pull for state in states]
     held = Supports(lead.scene, system.equilibrium.points)
     return replace(
         outcome,
         curve=np.column_stack([lead.metre * value, force]),
         motion=fastest_corner_by_one(lead.scene.blocks, moving) if moving.any() else np.zeros((0, 3)),
         force=forces[most],
-        **held.path(forces, force, np.column_stack([dead, live])),
+        **held.path(forces, ties, force, np.column_stack([dead, live])),
     )
 
 

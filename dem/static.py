@@ -28,7 +28,6 @@ from runningbond.limit.kinematics import control_row, dead_load, live_load
 from runningbond.results import Outcome, Supports
 from runningbond.scene import Scene
 
-from .lead import is_led
 from .led import lead_along
 from .pushover import NOISE, LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
 from .relaxation import relax
@@ -104,7 +103,7 @@ def dem_static(
                 rest = replace(rest, x=late)
             path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
             observe(path, path.rests[0])
-            if is_led(scene):
+            if scene.is_led:
                 outcome = lead_along(outcome, path, tolerance, first_step)
             else:
                 undecided = _climb(path, first_step, tolerance, past)
@@ -163,6 +162,7 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
     mean = (loads[1:] + loads[:-1]) / 2
     works = np.column_stack([dead, loads[0] * live[0] + np.append(0.0, np.cumsum(mean * np.diff(live)))])
     forces = [equations.force_unit * state.force for state in states]
+    ties = [equations.force_unit * state.pull for state in states]
     moving = path.fall if path.fall is not None else q[-1] - q[-2] if len(q) > 1 else None
     result = replace(
         result,
@@ -171,7 +171,7 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
         curve=np.column_stack([(q - q[0]) @ moved, loads]),
         motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
         force=equations.force_unit * peak.force,
-        **Supports(equations.scene, equations.points).path(forces, loads, works),
+        **Supports(equations.scene, equations.points).path(forces, ties, loads, works),
     )
     if not undecided:
         heights = path.far * system.length_unit / equations.scene.lowest_block

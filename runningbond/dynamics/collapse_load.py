@@ -12,7 +12,7 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
-from .led import UNACCOUNTED, collapse_of_led, is_led
+from .led import UNACCOUNTED, collapse_of_led
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
@@ -92,7 +92,7 @@ def collapse_by_steps(
     try:
         # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):
-            if is_led(scene):
+            if scene.is_led:
                 outcome = collapse_of_led(
                     outcome, scene, run, tolerance, points, point_order, is_self_locking, criteria, observe
                 )
@@ -213,8 +213,9 @@ def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dic
     dead = np.array([run.system.dead @ state.motion for _, state in states])
     works = np.column_stack([dead, [state.external for _, state in states] - dead])
     forces = [np.column_stack(run.forces(state)) for _, state in states]
+    ties = [run.system.ties.force(state.motion, state.stretch) for _, state in states]
     supports = Supports(scene, points, run.system.owner)
-    return supports.path(forces, [load for load, _ in states], works, falls=len(states) > len(result.rests))
+    return supports.path(forces, ties, [load for load, _ in states], works, falls=len(states) > len(result.rests))
 
 
 def _states(result: LoadSteps) -> list[tuple[float, State]]:

@@ -35,6 +35,7 @@ class Way:
     moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[tuple[float, float]] = field(default_factory=list)  # displacement [m] and force
     points: list[Array] = field(default_factory=list)  # (np, 2) forces of the joint points [N] in each
+    ties: list[Array] = field(default_factory=list)  # (nt,) forces of the ties [N] in each
     works: list[tuple[float, float]] = field(default_factory=list)  # of the dead load and of what leads [J]
     verdict: Verdict = "stable"
 
@@ -83,6 +84,7 @@ class Lead:
         dead = float(self.run.system.dead @ state.motion)
         way.rows.append((moved, force))
         way.points.append(np.column_stack(self.run.forces(state)))
+        way.ties.append(self.run.system.ties.force(state.motion, state.stretch))
         way.works.append((dead, state.external - dead))
 
     def go(self, way: Way, speed: float) -> State:

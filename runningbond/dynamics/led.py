@@ -35,11 +35,6 @@ UNACCOUNTED = 0.01
 """Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
 
 
-def is_led(scene: Scene) -> bool:
-    """Whether displacements are prescribed to a scene, not loads."""
-    return scene.settlement is not None or any(key.startswith("beam.drive.displacement") for key in scene.extras)
-
-
 def collapse_of_led(
     outcome: Outcome,
     scene: Scene,
@@ -139,7 +134,7 @@ def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Out
 def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Way) -> Outcome:
     """Curve, reactions and works of a way; its states rest, but for those of a motion, whose inertia is left out."""
     loads = [force if way.moves else 0.0 for _, force in way.rows]
-    path = Supports(scene, points, run.system.owner).path(way.points, loads, np.array(way.works))
+    path = Supports(scene, points, run.system.owner).path(way.points, way.ties, loads, np.array(way.works))
     path["path"][:, -1] = not way.moves
     return replace(outcome, curve=way.curve, **path)
 

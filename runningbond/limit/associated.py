@@ -256,5 +256,5 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
         force=force,
         pull=system.force_unit * forces.tie,
         held=-system.force_unit * forces.reaction,
-        **collapse_state(system.scene, system.points, force, static),
+        **collapse_state(system.scene, system.points, force, system.force_unit * forces.tie, static),
     )

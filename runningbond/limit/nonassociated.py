@@ -234,7 +234,7 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         force=force,
         pull=cut.force_unit * least.tie,
         held=-cut.force_unit * least.reaction,
-        **collapse_state(cut.scene, cut.points, force, multiplier),
+        **collapse_state(cut.scene, cut.points, force, cut.force_unit * least.tie, multiplier),
     )
 
 

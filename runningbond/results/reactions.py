@@ -1,11 +1,11 @@
 """What holds a wall, and with which forces: the path quantities of an outcome.
 
-A held block is one that is fixed and touched, or pinned, as a beam may be. What holds it is the balance of its joint
-forces and loads,
+A held block is one that is fixed and touched or tied, or pinned, as a beam may be. What holds it is the balance of its
+joint forces, its ties' pulls and its loads,
 
-    R = B_nᵀ N + B_tᵀ S − f_dead − λ f_live,
+    R = B_nᵀ N + B_tᵀ S + B_tieᵀ T − f_dead − λ f_live,
 
-of a fixed one the joint forces alone, for loads on it go straight into the ground. Reactions act on the wall.
+of a fixed one the forces alone, for loads on it go straight into the ground. Reactions act on the wall.
 """
 
 from collections.abc import Iterable, Sequence
@@ -47,7 +47,7 @@ class Supports:
 
     def __init__(self, scene: Scene, points: JointPoints, owner: Indices | None = None) -> None:
         sides = points.block if owner is None else owner[points.block]
-        touched = np.isin(np.arange(len(scene.blocks)), sides)
+        touched = np.isin(np.arange(len(scene.blocks)), [*sides.ravel(), *scene.ties.block.ravel()])
         self._pins = scene.pins + scene.late_pins
         self.block: Indices = np.union1d(np.flatnonzero(scene.fixed & touched), self._pins.block)
         number = np.full(len(scene.blocks), -1)
@@ -55,13 +55,19 @@ class Supports:
         self._point, side = np.nonzero((number[sides] >= 0) & (sides[:, :1] != sides[:, 1:]))
         self._body, self._points = number[sides][self._point, side], points.part(self._point)
         self._sign = np.where(side == 1, 1.0, -1.0)[:, None]
+        # A tie draws its second end against its direction, and its first one along it.
+        tied = np.append(number, -1)[scene.ties.block]
+        self._tie, end = np.nonzero(tied >= 0)
+        self._tied, self._tied_at = tied[self._tie, end], scene.ties.ends[self._tie, end]
+        self._along = np.where(end == 1, 1.0, -1.0)[:, None] * scene.ties.direction[self._tie]
         self._scene = scene
         self.about = np.array([self._middle(k) for k in range(len(self.block))]).reshape(-1, 2)
         self._dead, self._live = (self._load(forces, number) for forces in (scene.dead_forces, scene.live_forces))
 
     def _middle(self, k: int) -> Array:
         pinned = self._pins.point[self._pins.block == self.block[k]]
-        at = pinned if len(pinned) else self._points.position[self._body == k]
+        touched = self._points.position[self._body == k]
+        at = next(each for each in (pinned, touched, self._tied_at[self._tied == k]) if len(each))
         return np.asarray((at.min(axis=0) + at.max(axis=0)) / 2)
 
     def _load(self, forces: Forces, number: Indices) -> Array:
@@ -76,13 +82,14 @@ class Supports:
 
     @property
     def columns(self) -> list[str]:
-        """Names of the numbers that `reactions` gives."""
+        """Names of the numbers that `reactions` gives, and of the ties' forces."""
+        ties = [f"tie {k} [N]" for k in range(len(self._scene.ties))]
         heads = ("horizontal [N]", "vertical [N]", "moment about ({:.6g}, {:.6g}) [N m]")
         return [
             f"{name} {head.format(*about)}"
             for name, about in zip(self._names(), self.about.tolist(), strict=True)
             for head in heads
-        ]
+        ] + ties
 
     def _names(self) -> list[str]:
         scene = self._scene
@@ -92,13 +99,15 @@ class Supports:
             names[scene.beam.block] = "beam"
         return [names.get(int(b), f"{'block' if scene.fixed[b] else 'pinned block'} {b}") for b in self.block]
 
-    def reactions(self, force: Array, multiplier: float, *, at_rest: bool = True) -> Array:
-        """Horizontal and vertical reaction and moment of each held block, ``(3 k,)`` [N, N, N m].
+    def reactions(self, force: Array, tie: Array, multiplier: float, *, at_rest: bool = True) -> Array:
+        """Horizontal and vertical reaction and moment of each held block, ``(3 k,)`` [N, N, N m], and ties' forces.
 
         Parameters
         ----------
         force : (np, 2) float
             Normal and tangential forces of the points [N], tension positive.
+        tie : (nt,) float
+            Forces of the ties [N].
         multiplier
             λ.
         at_rest
@@ -107,24 +116,31 @@ class Supports:
         points, (normal, tangential) = self._points, force[self._point].T[:, :, None]
         pull = self._sign * (normal * points.normal + tangential * points.tangent)
         total = resultants(self._body, points.position, pull, self.about) - self._dead - multiplier * self._live
+        total += resultants(self._tied, self._tied_at, tie[self._tie, None] * self._along, self.about)
         if not at_rest:
             total[~self._scene.fixed[self.block]] = np.nan
-        return total.ravel()
+        return np.append(total.ravel(), tie)
 
     def path(
-        self, forces: Sequence[Array], multipliers: Iterable[float], works: Array, *, falls: bool = False
+        self,
+        forces: Sequence[Array],
+        ties: Sequence[Array],
+        multipliers: Iterable[float],
+        works: Array,
+        *,
+        falls: bool = False,
     ) -> dict[str, Any]:
-        """Path and names of its columns, as `Outcome` has them, of states with point forces and works ``(n, 2)``.
+        """Path and names of its columns, as `Outcome` has them, of states with forces of points and ties, and works.
 
-        All rest, or all but the last one where the wall `falls`.
+        Works are ``(n, 2)``. All states rest, or all but the last one where the wall `falls`.
         """
         resting = [True] * (len(forces) - falls) + [False] * falls
-        states = zip(forces, multipliers, resting, strict=True)
-        reactions = [self.reactions(force, load, at_rest=rests) for force, load, rests in states]
+        states = zip(forces, ties, multipliers, resting, strict=True)
+        reactions = [self.reactions(force, tie, load, at_rest=rests) for force, tie, load, rests in states]
         path = np.column_stack([np.reshape(reactions, (len(forces), -1)), works, resting])
         return {"path": path, "path_columns": (*self.columns, *WORKS, AT_REST)}
 
 
-def collapse_state(scene: Scene, points: JointPoints, force: Array, multiplier: float) -> dict[str, Any]:
+def collapse_state(scene: Scene, points: JointPoints, force: Array, tie: Array, multiplier: float) -> dict[str, Any]:
     """The path of a model that knows the forces at collapse alone: one row, whose works are not numbers."""
-    return Supports(scene, points).path([force], [multiplier], np.full((1, 2), np.nan))
+    return Supports(scene, points).path([force], [tie], [multiplier], np.full((1, 2), np.nan))

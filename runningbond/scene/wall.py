@@ -152,6 +152,11 @@ class Scene:
         """The live load that moves a support; None where there is none."""
         return next((load for load in self.load.live if isinstance(load, Settlement)), None)
 
+    @property
+    def is_led(self) -> bool:
+        """Whether displacements are prescribed to it, not loads."""
+        return self.settlement is not None or any(key.startswith("beam.drive.displacement") for key in self.extras)
+
     @cached_property
     def support_motion(self) -> Array:
         """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``: that of moving supports."""
@@ -387,7 +392,7 @@ def _check(scene: Scene) -> None:
             raise SceneError(f"{table_of(material)}.inset", what, material.inset)
     if not scene.load.live:
         raise SceneError("load.live", "is missing: nothing is multiplied by λ")
-    if (scene.settlement or any(key.startswith("beam.drive") for key in scene.extras)) and len(scene.load.live) > 1:
+    if scene.is_led and len(scene.load.live) > 1:
         raise SceneError("load.live", "must be alone where a support or the beam is moved by a displacement")
     for key, load in scene.load.named():
         load.check(scene, key)

@@ -133,10 +133,32 @@ def test_a_held_beam_bears_what_its_joints_do_not() -> None:
     beam = {"height": 0.1, "mass": 50.0, "condition": "fixed-height", "drive": {"force": [2.0, 0.0], "at": 0.39}}
     scene = panel(wall__length=0.48, wall__height=0.24, load={"gravity": 9.81}, beam=beam | {"force": [0.0, -300.0]})
     supports = Supports(scene, wall_points(scene))
-    reactions = supports.reactions(np.zeros((len(wall_points(scene)), 2)), 3.0)
+    reactions = supports.reactions(np.zeros((len(wall_points(scene)), 2)), np.zeros(0), 3.0)
     columns = dict(zip(supports.columns, reactions, strict=True))
     named = {name: value for name, value in columns.items() if name.startswith("beam")}
     assert list(named) == [
         f"beam {head}" for head in ("horizontal [N]", "vertical [N]", "moment about (0.24, 0.29) [N m]")
     ]
     assert list(named.values()) == pytest.approx([-6.0, 300 + 50 * 9.81, 0.6])
+
+
+@pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static", "dem-dynamic"])
+def test_ties_take_their_part(model: str) -> None:
+    """A pier pushed to the right, tied to a rock beside it and to an anchor: all that holds it balances its loads."""
+    rock = {"from": [0.1, 0.5], "to": [-0.5, -0.05], "area": 1e-5, "young": 2e11, "yield": 150.0}
+    anchor = {"from": [0.1, 0.7], "to": [-1.0, 0.7], "area": 1e-5, "young": 2e11, "yield": 80.0, "preload": 20.0}
+    joint = {"friction": 0.9} | STIFFNESS
+    pier = {"wall__thickness": 0.5, "width": 0.4, "height": 0.4, "joint": joint}
+    scene = courses([[1], [1]], **pier, tie=[rock, anchor])  # type: ignore[arg-type]
+    outcome = run_model(model, scene, 0.02)
+    columns = {name: values[0] for name, values in outcome.curve_columns().items()}
+    if model != "limit" and model != "limit-nonassociated":
+        rests = outcome.curve_columns()[AT_REST] == 1
+        columns = {name: values[rests][-1] for name, values in outcome.curve_columns().items()}
+    weight = 9.81 * float(scene.mass[scene.wall].sum())
+    horizontal, vertical = columns["ground horizontal [N]"], columns["ground vertical [N]"]
+    load = next(value for name, value in columns.items() if name.startswith(("λ", "multiplier")))
+    assert vertical == pytest.approx(weight, rel=1e-4)
+    assert horizontal - columns["tie 1 [N]"] == pytest.approx(-load * weight, rel=1e-3)
+    assert 0 <= columns["tie 0 [N]"] <= 150 * (1 + 1e-9)
+    assert columns["tie 1 [N]"] <= 80 * (1 + 1e-9)
