@@ -10,7 +10,6 @@ import numpy as np
 from .arrays import Array
 from .bond import Bond, Ends, FirstCourse, bonded_rows, pattern_rows, rectangles
 from .cutting import cut_openings
-from .drawings import METRES, read_drawing
 from .errors import SceneError
 from .openings import read_openings
 from .ranges import ABOVE_ZERO
@@ -65,6 +64,8 @@ def read_outlines(wall: Table, folder: Path, block_names: Sequence[str]) -> Outl
     """
     _refuse_mixed_descriptions(wall)
     if "drawing" in wall:
+        from .drawings import METRES, read_drawing  # only now: healing needs a good part of scipy
+
         path, heal = folder / wall.text("drawing"), wall.optional_number("heal", ABOVE_ZERO)
         drawing = read_drawing(path, wall.choice("units", METRES), heal)
         return Outlines(drawing.blocks, drawing.grounds, layers=drawing.layers, notes=drawing.notes)

@@ -10,7 +10,7 @@ import shapely
 
 from .actions import Action, nonzero_vector, unit_vector
 from .arrays import Array, Indices
-from .errors import SceneError, keys_of
+from .errors import SceneError
 from .forces import Arrow, Forces
 from .ranges import Range, vector
 from .table import Table
@@ -79,16 +79,15 @@ class LineLoad(Action):
         low, high = blocks.boxes
         reach = blocks.tolerance
         near = (high >= np.minimum(self.start, self.end) - reach) & (low <= np.maximum(self.start, self.end) + reach)
-        owners: list[int] = []
-        shares: list[tuple[float, float]] = []
-        for block in np.flatnonzero(near.all(axis=1) & ~scene.fixed):
-            common = shapely.intersection(shapely.buffer(shapely.Polygon(blocks.polygon(int(block))), reach), line)
-            for piece in shapely.get_parts(common):
-                along = np.sort((shapely.get_coordinates(piece) - start) @ run) / length**2
-                if along[-1] - along[0] > 3 * reach / length:
-                    owners.append(int(block))
-                    shares.append((float(along[0]), float(along[-1])))
-        return self._each_part_once(scene, np.array(owners, dtype=np.int64), np.reshape(shares, (-1, 2)))
+        close = np.flatnonzero(near.all(axis=1) & ~scene.fixed)
+        common = shapely.intersection(shapely.buffer(blocks.shapes(close), reach), line)
+        pieces, of = shapely.get_parts(common, return_index=True)
+        at, piece = shapely.get_coordinates(pieces, return_index=True)
+        share = np.column_stack([np.full(len(pieces), np.inf), np.full(len(pieces), -np.inf)])
+        np.minimum.at(share[:, 0], piece, (at - start) @ run / length**2)
+        np.maximum.at(share[:, 1], piece, (at - start) @ run / length**2)
+        long = share[:, 1] - share[:, 0] > 3 * reach / length
+        return self._each_part_once(scene, close[of[long]], share[long])
 
     def _each_part_once(self, scene: "Scene", owner: Indices, share: Array) -> tuple[Indices, Array]:
         """Cut the line where blocks begin and end, and give each of its parts to one of the blocks there."""
@@ -133,11 +132,6 @@ class LineLoad(Action):
             at=np.array(self.start) + at[:, None] * run,
             force=size[:, None] * np.array(self.force),
         )
-
-    def check(self, scene: "Scene", key: str) -> None:
-        """Refuse a line of which a part is on no block, or on two that share it."""
-        with keys_of(key, "load.live"):
-            self.parts(scene)
 
     def arrows(self, scene: "Scene") -> tuple[Arrow, ...]:
         """A row of arrows along the line."""

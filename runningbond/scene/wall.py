@@ -16,7 +16,7 @@ from .beam import Beam
 from .blocks import Blocks
 from .bond import Bond
 from .cracks import cut_in_half
-from .errors import SceneError
+from .errors import SceneError, keys_of
 from .forces import Forces
 from .loads import Load
 from .materials import BlockMaterial, JointMaterial
@@ -398,7 +398,8 @@ def _check(scene: Scene) -> None:
         load.check(scene, key)
         if isinstance(load, Settlement):
             continue
-        forces = load.forces(scene)
+        with keys_of(key, "load.live"):
+            forces = load.forces(scene)
         size = sum(float(np.abs(part).sum()) for part in (forces.acceleration, forces.moment, forces.force))
         if not 0 < size < np.inf:
             raise SceneError(key, "must put finite forces on the blocks, not all of them zero", load)
