@@ -130,21 +130,30 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
     if result.x is None or status != "optimal":
         none = np.zeros(0)
         return ForceSolution(status, np.nan, none, none, none, none, int(result.nit))
+    return solution_of(
+        system, forces, status, np.asarray(result.x), np.asarray(result.eqlin.marginals), int(result.nit)
+    )
+
+
+def solution_of(
+    system: Equilibrium, forces: ForceSet, status: ProgramStatus, found: Array, marginals: Array, iterations: int
+) -> ForceSolution:
+    """Unknowns ``(n,)`` and multipliers of equations ``(nd,)`` of a `force_program`, by what they are."""
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
-    ties = slice(len(result.x) - 1 - n_pins - len(system.tie_yield), len(result.x) - 1 - n_pins)
-    rays = result.x[: n_rays * n].reshape(n_rays, n)
+    ties = slice(len(found) - 1 - n_pins - len(system.tie_yield), len(found) - 1 - n_pins)
+    rays = found[: n_rays * n].reshape(n_rays, n)
     tangential = (np.asarray(forces.slopes) * rays).sum(axis=0)
     if forces.has_shear:
-        tangential = tangential + result.x[n_rays * n : (n_rays + 1) * n]
+        tangential = tangential + found[n_rays * n : (n_rays + 1) * n]
     return ForceSolution(
         status,
-        float(result.x[-1]),
+        float(found[-1]),
         rays.sum(axis=0),
         tangential,
-        result.x[-1 - n_pins : -1],
-        np.asarray(result.eqlin.marginals) / _mechanism_scale(system),
-        int(result.nit),
-        result.x[ties],
+        found[-1 - n_pins : -1],
+        marginals / _mechanism_scale(system),
+        iterations,
+        found[ties],
     )
 
 

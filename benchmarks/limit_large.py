@@ -1,0 +1,64 @@
+"""Associated limit analysis of large running-bond walls: interior point and repair beside HiGHS, in one run.
+
+    python -m benchmarks.limit_large [BLOCKS …]
+
+Processor seconds, medians of runs made in turn; HiGHS is asked up to `HIGHS_UP_TO` blocks.
+"""
+
+import statistics
+import sys
+import time
+
+from runningbond.limit import equilibrium, limit
+from runningbond.limit.force_program import coulomb, solve_forces
+from runningbond.scene import Scene, scene_from_dict
+
+SIZES = {300: (12, 24), 1176: (24, 48), 5000: (50, 99), 10000: (70, 140)}
+"""Blocks a course, and courses."""
+
+RUNS = 3
+HIGHS_UP_TO = 1176
+
+
+def wall(blocks: int, courses: int) -> Scene:
+    """Panel of blocks 240 × 60 × 120 mm pushed sideways by its weight."""
+    return scene_from_dict(
+        {
+            "title": "large panel",
+            "wall": {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12}
+            | {"length": 0.24 * blocks, "height": 0.06 * courses},
+            "block": {"density": 1800.0},
+            "joint": {"friction": 0.6},
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+        }
+    )
+
+
+def main(sizes: list[int]) -> None:
+    """Print a row a wall."""
+    print("blocks   lower        upper        width     limit [s]   HiGHS alone [s]   its λ")
+    for size in sizes:
+        scene = wall(*SIZES[size])
+        seconds: tuple[list[float], list[float]] = ([], [])
+        highs = "–"
+        for _ in range(RUNS):
+            start = time.process_time()
+            outcome = limit(scene)
+            seconds[0].append(time.process_time() - start)
+            if size <= HIGHS_UP_TO:
+                start = time.process_time()
+                system = equilibrium(scene).under_live_load()
+                highs = f"{solve_forces(system, coulomb(system.strength)).multiplier:.10f}"
+                seconds[1].append(time.process_time() - start)
+        if outcome.lower is None or outcome.upper is None:
+            raise SystemExit(f"{size} blocks: {outcome.status}, {outcome.message}")
+        old = f"{statistics.median(seconds[1]):.2f}" if seconds[1] else "–"
+        print(
+            f"{scene.wall.sum():6d} {outcome.lower:12.9f} {outcome.upper:12.9f} "
+            f"{outcome.upper / outcome.lower - 1:9.1e} {statistics.median(seconds[0]):11.2f} {old:>17} {highs:>14}"
+        )
+
+
+if __name__ == "__main__":
+    main([int(one) for one in sys.argv[1:]] or list(SIZES))

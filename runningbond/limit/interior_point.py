@@ -1,0 +1,101 @@
+"""Linear programs of forces by Clarabel's interior point, stated over mechanisms (Goulart & Chen 2024).
+
+The dual of `force_program` has three unknowns a block in place of some twelve; its conic multipliers are the forces:
+
+    min −b·y + (u − l)·w,   a_j·y ≤ c_j,   a_j·y − w_j ≤ c_j with w ≥ 0 for forces bounded on both sides.
+
+What comes back is near an optimum and inside all bounds, but balances and obeys nothing exactly; `repair` makes a proof
+of it. No vertex is looked for: of several mechanisms that collapse at the same load, and of several states of force,
+it leaves a mix of all.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import clarabel
+import numpy as np
+from scipy.sparse import block_array, csc_array, csc_matrix, eye_array
+
+from runningbond.scene import Array
+
+from .force_program import ProgramStatus
+
+FARTHEST = 1e4
+"""Largest and smallest stiffness of a force in `InteriorPoint.compliance`, relative; farther apart rounding wins."""
+
+
+@dataclass(frozen=True, eq=False)
+class InteriorPoint:
+    """Where the interior point came to rest, in the unknowns of a `force_program` with n forces and m equations.
+
+    Parameters
+    ----------
+    status, iterations
+        What Clarabel thinks of it.
+    forces, motion : (n,) float, (m,) float
+        Approximate optimum, and its multipliers of equations.
+    slack : (n,) float
+        Reduced costs c − Aᵀ y that the solver means to have; of forces within bounds they are not negative.
+    compliance : (n,) float
+        How far each force is from its bounds beside how far its point is from closing, relative: 1 in the middle.
+    """
+
+    status: ProgramStatus
+    iterations: int
+    forces: Array
+    motion: Array
+    slack: Array
+    compliance: Array
+
+
+def interior_point(program: dict[str, Any], tolerance: float) -> InteriorPoint:
+    """Solve a `force_program` to a relative tolerance."""
+    matrix, (low, high) = program["A_eq"], program["bounds"].T
+    m, free, boxed = matrix.shape[0], np.isinf(low), np.isfinite(high) & (low < high)
+    half = ~free & np.isinf(high)
+    # Free ones first, for their rows are equations; what is boxed last. What is fixed is no unknown.
+    order = np.concatenate([np.flatnonzero(kind) for kind in (free, half, boxed)])
+    n, n_boxed, n_free = len(order), int(boxed.sum()), int(free.sum())
+    least = np.where(free, 0.0, low)
+    at_least = csc_array((-np.ones(n_boxed), (np.arange(n - n_boxed, n), np.arange(n_boxed))), shape=(n, n_boxed))
+    rows = block_array([[matrix[:, order].T, at_least], [csc_array((n_boxed, m)), -eye_array(n_boxed)]])
+    range_ = (high - low)[boxed]
+    cost = np.concatenate([matrix @ least - program["b_eq"], range_])
+    right = np.concatenate([program["c"][order], np.zeros(n_boxed)])
+    cones = [clarabel.ZeroConeT(n_free), clarabel.NonnegativeConeT(n + n_boxed - n_free)]
+    nothing = csc_matrix((len(cost), len(cost)))
+    solution = clarabel.DefaultSolver(nothing, cost, csc_matrix(rows), right, cones, _settings(tolerance)).solve()
+
+    dual, slacks = np.array(solution.z), np.array(solution.s)
+    forces, slack, compliance = least.copy(), np.zeros(len(low)), np.zeros(len(low))
+    forces[order] += dual[:n]
+    slack[order] = slacks[:n]
+    slack[boxed] -= slacks[n:]
+    motion = np.array(solution.x)[:m]
+    unit = (np.abs(motion).max() or 1.0) / (dual[:n].max(initial=0.0) or 1.0)
+    with np.errstate(divide="ignore", over="ignore"):
+        stiffness = slacks[:n] / dual[:n]
+        stiffness[n - n_boxed :] += slacks[n:] / dual[n:]
+        compliance[order] = (unit / stiffness).clip(1 / FARTHEST, FARTHEST)
+    compliance[free] = FARTHEST
+    return InteriorPoint(_status(str(solution.status)), solution.iterations, forces, motion, slack, compliance)
+
+
+def _settings(tolerance: float) -> Any:
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.max_threads = 1
+    settings.equilibrate_enable = False  # `Equilibrium` has scaled the equations, and more takes more iterations
+    settings.direct_solve_method = "qdldl"  # its own choice, for large walls, is several times slower
+    settings.iterative_refinement_enable = False  # a quarter of the time, for what is repaired afterwards
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
+    return settings
+
+
+def _status(status: str) -> ProgramStatus:
+    """Status of the program of forces; that of mechanisms is its dual."""
+    if "PrimalInfeasible" in status:
+        return "unbounded"
+    if "DualInfeasible" in status:
+        return "infeasible"
+    return "optimal" if "Solved" in status else "numerical"

@@ -1,0 +1,83 @@
+"""Associated limit analysis of large walls: an interior point, and the proof made of what it leaves.
+
+HiGHS's vertex is exact and, up to some two hundred blocks, found as fast; above, its cost grows faster.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from runningbond.scene import Array
+
+from .equilibrium import Equilibrium
+from .force_program import ForceSolution, coulomb, force_program, solution_of
+from .interior_point import interior_point
+from .kinematics import movable_freedoms
+from .repair import admissible, balanced
+
+LARGE = 600
+"""Freedoms, three a block, from which the interior point is asked first."""
+
+VERY_LARGE = 4500
+"""Freedoms from which the interior point is asked for less, and believed with a wider bracket."""
+
+CLOSE, WIDE = 1e-6, 1e-4
+"""Relative width of the bracket with which the answer for a large and a very large wall is believed."""
+
+ROUGH = 1e-4
+"""Relative tolerance with which forces of a wall at rest are looked for; they need not be extreme."""
+
+
+def resting_forces(system: Equilibrium) -> Array | None:
+    """Forces, unknowns of a `force_program`, that balance the dead load strictly within all bounds; None if not found.
+
+    They prove that the wall stands.
+    """
+    program = force_program(system, coulomb(system.strength), "zero")
+    point = interior_point(program, ROUGH)
+    if point.status != "optimal":
+        return None
+    return balanced(program, point, None)
+
+
+def proved(system: Equilibrium, resting: Array | None) -> ForceSolution:
+    """Solve the associated limit analysis; the status is ``optimal`` for exact forces and mechanism only.
+
+    `resting` are forces of the same system before its live load (`Equilibrium.under_dead_load`).
+    """
+    forces = coulomb(system.strength)
+    program = force_program(system, forces)
+    point = interior_point(program, 1e-9 if tolerance_of(system) == CLOSE else 3e-7)
+    none = np.zeros(0)
+    if point.status in ("infeasible", "unbounded"):
+        return ForceSolution(point.status, np.nan, none, none, none, none, point.iterations)
+    within = None if resting is None else _loaded(system, resting)
+    found, motion = balanced(program, point, within), admissible(program, point)
+    if found is None or motion is None or system.live @ motion <= 0:
+        return ForceSolution("numerical", np.nan, none, none, none, none, point.iterations)
+    solution = solution_of(system, forces, "optimal", found, motion, point.iterations)
+    return replace(solution, motion=motion / (system.live @ motion))
+
+
+def tolerance_of(system: Equilibrium) -> float:
+    """Relative width of the bracket, `CLOSE` or `WIDE`, with which an answer is believed."""
+    return CLOSE if system.freedoms < VERY_LARGE else WIDE
+
+
+def _loaded(system: Equilibrium, resting: Array) -> Array:
+    """Forces of the wall at rest as unknowns of the system under its live load.
+
+    What is held later holds nothing yet; what a support bears of them is their multiplier.
+    """
+    late = system.reaction.shape[1] - len(system.scene.pins)
+    forces = np.concatenate([resting[:-1], np.zeros(late), [0.0]])
+    if system.has_support:
+        program = force_program(system, coulomb(system.strength))
+        unbalanced = program["b_eq"] - program["A_eq"] @ forces
+        forces[-1] = unbalanced[-1] / program["A_eq"][-1, -1]
+    return forces
+
+
+def is_large(system: Equilibrium) -> bool:
+    """Whether the interior point is asked first."""
+    return len(movable_freedoms(system.scene)) >= LARGE

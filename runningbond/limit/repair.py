@@ -1,0 +1,117 @@
+"""Proofs from the approximate answer of an interior point: balanced forces, and a mechanism that obeys the flow rule.
+
+Both are corrected in the metric of the interior point's last step, where what is far from its bounds gives way first.
+Forces are balanced by weighted least squares, and moved towards those of the wall at rest, well inside all bounds, by
+as much as brings all of them inside. The mechanism is fitted, again and again, to reduced costs that are nowhere
+negative; points that go on closing count ten times more from time to time. The results are judged by what they are,
+to `ROUNDING`.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from scipy.sparse import block_array, csc_array, eye_array
+from scipy.sparse.linalg import splu
+
+from runningbond.scene import Array
+
+from .interior_point import InteriorPoint
+
+ROUNDING = 1e-11
+"""Imbalance relative to the largest force, and closing relative to the largest motion, that count as rounding."""
+
+ROUNDS, STEPS = 12, 40
+"""Metrics in which a mechanism is corrected until none of its points closes, and corrections in each."""
+
+HEAVIEST = 1e10
+"""Largest weight of a point that goes on closing; with larger ones the others are lost beside it."""
+
+DAMPING = 1e-13
+"""Stiffness, relative, of motions that no force resists."""
+
+Solve = Callable[[Array], tuple[Array, float]]
+
+
+def metric(program: dict[str, Any], weights: Array) -> Solve:
+    """Factorise A W Aᵀ, bordered by the column of the multiplier, the last one, which takes what no force balances.
+
+    The result maps right-hand sides ``(m,)`` to multipliers ``(m,)`` and the change of λ.
+    """
+    matrix = program["A_eq"]
+    stiffness = csc_array((matrix * weights[None]) @ matrix.T)
+    scale = 1 / np.sqrt(stiffness.diagonal() + np.finfo(float).tiny)
+    stiffness = csc_array(stiffness * scale[:, None] * scale[None] + DAMPING * eye_array(len(scale)))
+    fixed = program["bounds"][-1, 0] == program["bounds"][-1, 1]
+    column = np.zeros(len(scale)) if fixed else matrix[:, [-1]].toarray()[:, 0] * scale
+    size = float(np.abs(column).max()) or 1.0
+    border = csc_array(column[:, None] / size)
+    parts: list[list[csc_array]] = [[stiffness, border], [csc_array(border.T), csc_array([[-DAMPING]])]]
+    bordered = csc_array(block_array(parts))
+    factors = splu(bordered, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+    def solve(right: Array) -> tuple[Array, float]:
+        found = factors.solve(np.append(scale * right, 0.0))
+        return scale * found[:-1], found[-1] / size
+
+    return solve
+
+
+def balanced(program: dict[str, Any], point: InteriorPoint, resting: Array | None) -> Array | None:
+    """Forces ``(n,)`` in balance within their bounds, near an interior point's; None if there is no way to them.
+
+    `resting` are forces in balance strictly within the bounds, at any multiplier.
+    """
+    matrix, weights, forces = program["A_eq"], point.compliance.copy(), point.forces.copy()
+    weights[-1] = 0.0
+    solve = metric(program, weights)
+    for _ in range(3):
+        multipliers, change = solve(program["b_eq"] - matrix @ forces)
+        forces += weights * (matrix.T @ multipliers)
+        forces[-1] += change
+    if resting is not None:
+        forces = _inside(program, forces, resting)
+    unbalanced = float(np.abs(program["b_eq"] - matrix @ forces).max())
+    inside = bool((_room(program, forces) >= 0).all())
+    return forces if inside and unbalanced <= ROUNDING * np.abs(forces).max() else None
+
+
+def _room(program: dict[str, Any], forces: Array) -> Array:
+    """Distance of forces ``(n,)`` from the nearer of their bounds, negative beyond it."""
+    low, high = program["bounds"].T
+    return np.asarray(np.minimum(forces - low, high - forces))
+
+
+def _inside(program: dict[str, Any], forces: Array, resting: Array) -> Array:
+    """The first of a row of mixes of two states of force that is within the bounds."""
+    here, there = _room(program, forces), _room(program, resting)
+    beyond = here < 0
+    if not beyond.any():
+        return forces
+    share = float((here[beyond] / (here[beyond] - there[beyond])).max()) * (1 + 1e-9)
+    return np.asarray((1 - share) * forces + share * resting)
+
+
+def admissible(program: dict[str, Any], point: InteriorPoint) -> Array | None:
+    """Mechanism ``(m,)`` near an interior point's whose points open as the flow rule says; None if none was found."""
+    matrix, cost, (low, high) = program["A_eq"], program["c"], program["bounds"].T
+    half, free = np.isfinite(low) & np.isinf(high), np.isinf(low)
+    half[-1], free[-1] = False, False
+    motion, weights = point.motion.copy(), point.compliance.copy()
+    weights[-1] = 0.0
+    rounding = ROUNDING * float(np.abs(motion).max())
+    for k in range(ROUNDS):
+        slack = point.slack if k < 3 else 0.0  # where blocks wedge each other, no motion opens their points
+        solve = metric(program, weights)
+        for _ in range(STEPS):
+            reduced = cost - matrix.T @ motion
+            closing, held = half & (reduced < 0), np.abs(reduced[free]).max(initial=0.0)
+            if not closing.any() and held <= rounding:
+                return motion
+            goal = np.where(half, np.maximum(reduced, slack), np.where(free, 0.0, reduced))
+            last = motion
+            motion = motion + solve(matrix @ (weights * (reduced - goal)))[0]
+        if max(held, -reduced[closing].min(initial=0.0)) <= rounding:  # there is no motion that opens all of them
+            return last
+        weights[closing] = (10 * weights[closing]).clip(max=HEAVIEST)
+    return None

@@ -1,0 +1,141 @@
+"""Walls that the interior point is asked for: exact forces and mechanism, beside HiGHS's vertex."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.limit import LimitState, equilibrium, limit, limit_state
+from runningbond.limit.associated import judge
+from runningbond.limit.force_program import coulomb, force_program, solve_forces
+from runningbond.limit.interior_point import interior_point
+from runningbond.limit.proved import CLOSE, is_large, proved, resting_forces
+from runningbond.limit.repair import ROUNDING, admissible, balanced
+from runningbond.scene import Scene
+from tests.walls import panel
+
+SIZE = {"wall__length": 2.88, "wall__height": 1.32}
+"""275 blocks."""
+
+
+def ties(pull: float) -> list[dict[str, Any]]:
+    size = {"area": 1e-4, "young": 2e11, "yield": pull}
+    return [{"from": [0.03, 1.29], "to": [-1.0, 0.2]} | size, {"from": [0.03, 1.17], "to": [2.85, 1.17]} | size]
+
+
+def beam(condition: str) -> dict[str, Any]:
+    return {"height": 0.2, "condition": condition, "force": [0, -3e3], "drive": {"force": [1, 0]}}
+
+
+def at(x: float, force: list[float], gravity: float = 9.81) -> dict[str, Any]:
+    return {"gravity": gravity, "live": {"kind": "point", "at": [x, 1.32], "force": force}}
+
+
+SINKS = {"kind": "settlement", "box": [[1.5, -1], [4, 0.01]], "by": [0.0, -0.01]}
+COLLAPSES: dict[str, dict[str, Any]] = {
+    "dry": {},
+    "slides everywhere": {"joint__friction": 0.1},
+    "steep": {"joint__friction": 2.0},
+    "toothed": {"wall__ends": "toothed"},
+    "opening": {"wall__opening": [{"from": [1.2, 0.42], "to": [1.7, 0.9]}], "joint__friction": 1.0},
+    "cohesive": {"joint__cohesion": 2e3},
+    "cut off": {"joint__cohesion": 1e5, "joint__tensile_strength": 1e3},
+    "no friction": {"joint": {"friction": 0.0, "cohesion": 2e3, "tensile_strength": 1e3}},
+    "hardly cohesive": {"joint__cohesion": 1e-3},
+    "glued": {"joint__cohesion": 1e9},
+    "glued for good": {"joint__cohesion": 1e12},
+    "light": {"block__density": 1e-3, "joint__cohesion": 1e3},
+    "weightless": {"joint__cohesion": 1e5, "support__kind": "corners", "load": at(1.44, [0, -1], 0.0)},
+    "wedged": {"support__kind": "pinned-corners"},
+    "wedged and cohesive": {"support__kind": "pinned-corners", "joint__cohesion": 1e4},
+    "pushed at a corner": {"load": at(0.0, [1, 0])},
+    "pulled up": {"load": at(1.44, [0, 1])},
+    "tied": {"tie": ties(20.0), "joint__friction": 0.9},
+    "tied hard": {"tie": ties(2e4), "joint__friction": 0.9},
+    "free beam": {"beam": beam("free")},
+    "level beam": {"beam": beam("level")},
+    "settling": {"load__live": SINKS},
+    "settling and cohesive": {"load__live": SINKS, "joint__cohesion": 500.0},
+}
+
+
+def wall(name: str) -> Scene:
+    return panel(**{**SIZE, **COLLAPSES[name]})
+
+
+@pytest.mark.parametrize("name", COLLAPSES)
+def test_the_interior_point_s_repaired_bracket_holds_the_simplex_s_multiplier(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No wider than 1e-6, of forces and a mechanism admissible to rounding; HiGHS is not asked."""
+    scene = wall(name)
+    system = equilibrium(scene).under_live_load()
+    assert is_large(system)
+    state = limit_state(system)
+    exact = state.system.load(solve_forces(state.system, coulomb(state.system.strength)).multiplier)
+
+    def unasked(*_: object, **__: object) -> None:
+        pytest.fail("HiGHS was asked")
+
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    outcome = limit(scene)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower - 1e-9 * abs(exact) <= exact <= outcome.upper + 1e-9 * abs(exact)
+    assert outcome.upper - outcome.lower <= CLOSE * abs(exact)
+    for measure in ("residual", "violation", "penetration"):
+        assert state.measures[measure] <= ROUNDING
+
+
+@pytest.mark.parametrize(
+    ("changes", "status"),
+    [
+        ({"load": at(1.44, [0, -1])}, "unbounded"),
+        ({"support__kind": "pinned-corners", "load": at(1.44, [0, -1])}, "unbounded"),
+        ({"beam": beam("fixed-height")}, "unbounded"),
+        ({"support__kind": "corners"}, "infeasible"),
+        ({"wall__opening": [{"from": [0.5, 0.0], "to": [2.4, 0.6]}], "joint__friction": 0.1}, "infeasible"),
+    ],
+)
+def test_verdicts_are_those_of_highs(changes: dict[str, Any], status: str) -> None:
+    scene = panel(**{**SIZE, **changes})
+    assert limit(scene).status == status
+    system = equilibrium(scene).under_live_load()
+    assert judge(LimitState(system, solve_forces(system, coulomb(system.strength))))[0] == status
+
+
+def test_what_the_repair_leaves_is_exact_from_a_rough_interior_point() -> None:
+    """At 1e-4 the bracket is wide, and true all the same."""
+    system = equilibrium(wall("dry")).under_live_load()
+    exact = solve_forces(system, coulomb(system.strength)).multiplier
+    program = force_program(system, coulomb(system.strength))
+    point = interior_point(program, 1e-4)
+    resting = resting_forces(system.under_dead_load())
+    assert resting is not None
+    forces, motion = balanced(program, point, resting), admissible(program, point)
+    assert forces is not None
+    assert motion is not None
+    assert np.abs(program["A_eq"] @ forces - program["b_eq"]).max() <= 1e-12 * forces.max()
+    assert (forces >= 0).all()
+    assert (program["c"] - program["A_eq"].T @ motion)[:-1].min() >= -ROUNDING * np.abs(motion).max()
+    upper = -float(program["b_eq"] @ motion / (system.live @ motion))
+    assert forces[-1] < exact < upper
+    assert upper - forces[-1] < 1e-2 * exact
+
+
+def test_forces_that_cannot_be_brought_inside_prove_nothing() -> None:
+    """Without a state of rest to go to, or towards one that is outside itself."""
+    system = equilibrium(wall("dry")).under_live_load()
+    program = force_program(system, coulomb(system.strength))
+    point = interior_point(program, 1e-9)
+    outside = replace(point, forces=point.forces - 1.0)
+    assert balanced(program, outside, None) is None
+    assert admissible(program, replace(point, motion=-point.motion, slack=np.zeros_like(point.slack))) is None
+
+
+def test_a_wall_that_only_the_live_load_holds_up_rests_on_nothing() -> None:
+    system = equilibrium(panel(**SIZE, support__kind="corners")).under_live_load()
+    assert resting_forces(system.under_dead_load()) is None
+    assert proved(system, None).status != "optimal"
