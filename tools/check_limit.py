@@ -23,8 +23,9 @@ import numpy as np
 MOST = 1e-6
 """Most that a measure may be, relative to the largest force, motion or multiplier."""
 
-WIDEST = 1e-4
-"""Largest relative width of a bracket of the associated bounds; each end is checked by itself."""
+WIDEST, WIDEST_OF_LARGE, LARGE = 1e-6, 1e-4, 1500
+"""Largest relative width of a bracket of the associated bounds, of walls of fewer blocks than so many and of larger
+ones; each end is checked by itself."""
 
 CONTACT = 1e-4
 """Gap that counts as contact, in sizes (root of the area) of the smallest block."""
@@ -304,12 +305,13 @@ class Result:
             spent += ties.yield_force @ self.longer.clip(min=0.0)
         else:
             spent = self.normal @ self.opening + self.tangential @ self.slip + self.pull @ self.longer
+        widest = WIDEST if free.sum() < LARGE else WIDEST_OF_LARGE
         lower, upper, here = self.record["lower"], self.record["upper"], self.multiplier
         proved = here if not self.dilatant else lower if self.settles else upper
         found = {
             "multiplier of the mechanism": abs((spent - by_dead) / by_live - proved),
             "multiplier outside its bracket": max(lower - here, here - upper, 0.0),
-            "width of the bracket": (upper - lower) * MOST / WIDEST if self.dilatant else 0.0,
+            "width of the bracket": (upper - lower) * MOST / widest if self.dilatant else 0.0,
         }
         if self.settles:
             moving = np.abs(self.support).max(axis=1) > 0
