@@ -64,9 +64,7 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01, *, starts: int = 
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
 
 
-def _collapse(
-    outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float, starts: int
-) -> Outcome:
+def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float, starts: int) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
     cut = state.system
     bounded = state.forces.status == "optimal"
@@ -85,6 +83,8 @@ def _collapse(
     if cut.has_support and upper <= NOTHING and may_leave(cut):
         return _bridged(outcome, cut)
     least, multiplier = lowest.least, cut.load(lowest.least.multiplier)
+    # The others were proved on rounded equations.
+    lower, upper = (min(lower, multiplier), multiplier) if cut.has_support else (multiplier, max(upper, multiplier))
     message = _message(loads, result, tolerance, falling=cut.has_support)
     if cut.has_support:
         message = f"{message}; {reaction_note(cut.scene, multiplier)}"
@@ -94,7 +94,7 @@ def _collapse(
         status="collapse",
         multiplier=multiplier,
         lower=lower,
-        upper=max(lower, upper),
+        upper=upper,
         message=message,
         motion=cut.motion(lowest.motion),
         force=force,

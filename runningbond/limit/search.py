@@ -75,7 +75,9 @@ def search(system: Equilibrium, associated: ForceSolution, starts: int = STARTS)
     lowest, dry = np.inf, 0
     try:
         for pressure, weight in _first_pressures(descent, associated, starts):
-            start = _first_sequence(descent, pressure, found) if not found.starts else _sequence(descent, pressure, weight)
+            start = (
+                _first_sequence(descent, pressure, found) if not found.starts else _sequence(descent, pressure, weight)
+            )
             found.starts += 1
             rng = np.random.default_rng([0, found.starts])
             for certificate in list(start):
@@ -93,9 +95,7 @@ def search(system: Equilibrium, associated: ForceSolution, starts: int = STARTS)
     return found
 
 
-def _first_pressures(
-    descent: Descent, associated: ForceSolution, starts: int
-) -> Iterator[tuple[Array, float | None]]:
+def _first_pressures(descent: Descent, associated: ForceSolution, starts: int) -> Iterator[tuple[Array, float | None]]:
     """Pressures ``(np,)`` to start from, and the weight of new ones.
 
     Those of the associated solution, of the dead load, and of random forces that balance random loads.
