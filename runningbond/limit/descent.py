@@ -15,13 +15,16 @@ from runningbond.scene import Array
 
 from .certificates import NO_JUMP, Certificate, driving_forces
 from .equilibrium import Equilibrium
-from .force_program import ForceSolution, coulomb, force_program, solve_forces
+from .force_program import ForceSet, ForceSolution, force_program, solve_forces
 
 NO_FORCE = 1e-7
 """Force, in force units, that counts as none, and distance from the limit that counts as at it."""
 
 IN_VAIN = 3
 """Mechanisms of a certificate that bring nothing lower, after which it is left."""
+
+WALK = 12
+"""Steps of a walk that bring nothing lower, after which it ends."""
 
 LOWER = 1e-7
 """Multiplier, relative to itself and 1, by which a certificate has to be lower to count as lower."""
@@ -57,14 +60,36 @@ class Descent:
         jumps = np.concatenate([system.opening.T @ motion, system.slip.T @ motion, system.elongation(motion)])
         return bytes((np.sign(jumps) * (np.abs(jumps) > least)).astype(np.int8))
 
-    def state_at(self, multiplier: float, rng: np.random.Generator) -> Array | None:
-        """Pressures ``(np,)`` of random admissible forces under a load; None where there are none."""
+    def random_forces(
+        self, forces: ForceSet, rng: np.random.Generator, multiplier: float | None = None
+    ) -> ForceSolution | None:
+        """Forces of a set at a corner of it, balanced under a load or, of none, under any; None where there are none.
+
+        They minimise a random sum of pressures.
+        """
+        system, n, rays = self.system, len(self.system.points), len(forces.slopes)
         self.programs += 1
-        program, n = force_program(self.system, coulomb(self.system.strength), "zero"), len(self.system.points)
-        program["c"][: 2 * n] = np.tile(_weights(n, rng), 2)
-        program["bounds"][-1] = multiplier
+        program = force_program(system, forces, "smallest")
+        program["c"][:] = 0.0
+        program["c"][: rays * n] = np.tile(_weights(n, rng), rays)
+        if multiplier is not None:
+            program["bounds"][-1] = multiplier
         result = linprog(**program, method="highs-ds")  # type: ignore[call-overload]
-        return None if result.status else np.asarray(result.x[:n] + result.x[n : 2 * n])
+        if result.status:
+            return None
+        parts = result.x[: rays * n].reshape(rays, n)
+        tangential = (np.asarray(forces.slopes) * parts).sum(axis=0)
+        if forces.has_shear:
+            tangential = tangential + result.x[rays * n : (rays + 1) * n]
+        *_, tie, reaction, last = np.split(
+            result.x,
+            [
+                len(result.x) - 1 - k
+                for k in (system.reaction.shape[1] + len(system.tie_yield), system.reaction.shape[1], 0)
+            ],
+        )
+        none = np.zeros(0)
+        return ForceSolution("optimal", float(last[0]), parts.sum(axis=0), tangential, reaction, none, 0, tie)
 
     def mechanism(self, forces: ForceSolution, rng: np.random.Generator) -> Array | None:
         """A random extreme mechanism ``(nd,)`` that forces of a certificate drive, f_live · q = 1.
@@ -93,16 +118,36 @@ class Descent:
         )
         return None if result.status else np.asarray(result.eqlin.marginals) / self._power
 
+    def around(self, best: Certificate, rng: np.random.Generator) -> list[Certificate]:
+        """Certificates at ever smaller loads, by a walk over mechanisms that random forces on the last one drive too."""
+        lower: list[Certificate] = []
+        motion, in_vain = best.motion, 0
+        while in_vain < WALK:
+            in_vain += 1
+            driving = driving_forces(self.system, motion)
+            forces = None if driving is None else self.random_forces(driving, rng)
+            stepped = None if forces is None else self.mechanism(forces, rng)
+            found = None if stepped is None else self.least(stepped)
+            if forces is None or stepped is None or found is None:
+                motion = best.motion
+            elif is_lower(found.multiplier, best.least.multiplier):
+                lower += [Certificate(stepped, found, forces), *self.below(stepped, found, rng)]
+                best, in_vain = lower[-1], 0
+                motion = best.motion
+            else:
+                motion = stepped
+        return lower
+
     def below(self, motion: Array, forces: ForceSolution, rng: np.random.Generator) -> list[Certificate]:
         """Certificates at ever smaller loads, from a mechanism and the forces at its least load."""
         lower: list[Certificate] = []
         in_vain = 0
         while in_vain < IN_VAIN:
-            motion_ = self.mechanism(forces, rng)
-            found = None if motion_ is None else self.least(motion_)
-            if motion_ is not None and found is not None and is_lower(found.multiplier, forces.multiplier):
+            moved = self.mechanism(forces, rng)
+            found = None if moved is None else self.least(moved)
+            if moved is not None and found is not None and is_lower(found.multiplier, forces.multiplier):
                 # The forces drive the new mechanism too: every load in between is certified.
-                lower.append(Certificate(motion_, found, forces))
+                lower.append(Certificate(moved, found, forces))
                 forces, in_vain = found, 0
             else:
                 in_vain += 1

@@ -28,11 +28,8 @@ CERTIFIED_IN_A_ROW = 2
 SHORT = 16
 """Programs of every other sequence after which it ends without a certificate."""
 
-STARTS = 24
+STARTS = 80
 """Most starts."""
-
-DRY = 12
-"""Starts in a row that brought nothing lower, after which the search ends."""
 
 WEIGHTS = (0.6, 1.0, None, 0.3)
 """Fixed weights of a new pressure in the sequences after the first, in turn; None is (k + 1)^(−1/2)."""
@@ -66,7 +63,12 @@ class Search:
 
 def programs_allowed(system: Equilibrium) -> int:
     """Programs after which no further start is made: fewer where each costs more."""
-    return 60 + 60_000 // max(1, len(system.points))
+    return 60 + 200_000 // max(1, len(system.points))
+
+
+def dry_allowed(system: Equilibrium) -> int:
+    """Starts in a row that bring nothing lower, after which the search ends: a small wall has less to find."""
+    return min(max(8, system.freedoms // 2), 40)
 
 
 def search(system: Equilibrium, associated: ForceSolution, starts: int = STARTS) -> Search:
@@ -84,9 +86,12 @@ def search(system: Equilibrium, associated: ForceSolution, starts: int = STARTS)
                 found.certificates += [certificate, *descent.below(certificate.motion, certificate.least, rng)]
             least = min((each.least.multiplier for each in found.certificates), default=np.inf)
             dry = 0 if is_lower(least, lowest) else dry + 1
-            lowest = min(lowest, least)
+            if not dry:
+                best = min(found.certificates, key=lambda each: each.least.multiplier)
+                found.certificates += descent.around(best, rng)
+                lowest = min(each.least.multiplier for each in found.certificates)
             found.programs = descent.programs
-            if found.frictionless or dry == DRY or descent.programs > programs_allowed(system):
+            if found.frictionless or dry >= dry_allowed(system) or descent.programs > programs_allowed(system):
                 break
     except KeyboardInterrupt:
         if not found.certificates:
@@ -113,9 +118,9 @@ def _first_pressures(descent: Descent, associated: ForceSolution, starts: int) -
         rng = np.random.default_rng([1, start])
         top = associated.multiplier if bounded else 1.0
         share = rng.random() if start > 3 else 0.0
-        state = descent.state_at(share * top if top > 0 else (1 + share) * top, rng)
+        state = descent.random_forces(coulomb(system.strength), rng, share * top if top > 0 else (1 + share) * top)
         if state is not None:
-            yield state, weight
+            yield state.pressure, weight
 
 
 def _first_sequence(descent: Descent, pressure: Array, found: Search) -> list[Certificate]:
