@@ -74,8 +74,8 @@ class Descent:
         program["c"][: rays * n] = np.tile(_weights(n, rng), rays)
         if multiplier is not None:
             program["bounds"][-1] = multiplier
-        result = linprog(**program, method="highs-ds")  # type: ignore[call-overload]
-        if result.status:
+        result = linprog(**program, method="highs-ds")
+        if result.x is None or result.status:
             return None
         parts = result.x[: rays * n].reshape(rays, n)
         tangential = (np.asarray(forces.slopes) * parts).sum(axis=0)
@@ -119,7 +119,7 @@ class Descent:
         return None if result.status else np.asarray(result.eqlin.marginals) / self._power
 
     def around(self, best: Certificate, rng: np.random.Generator) -> list[Certificate]:
-        """Certificates at ever smaller loads, by a walk over mechanisms that random forces on the last one drive too."""
+        """Certificates at ever smaller loads, by a walk over mechanisms that random forces on the last one drive."""
         lower: list[Certificate] = []
         motion, in_vain = best.motion, 0
         while in_vain < WALK:

@@ -125,7 +125,8 @@ def _first_pressures(descent: Descent, associated: ForceSolution, starts: int) -
 
 def _first_sequence(descent: Descent, pressure: Array, found: Search) -> list[Certificate]:
     """Run the sequence from a first pressure ``(np,)``, certifying every second program, and note how it ended."""
-    system, certificates = descent.system, []
+    system = descent.system
+    certificates: list[Certificate] = []
     in_a_row, multiplier, growing = 0, -np.inf, True
     for k in range(PROGRAM_BUDGET):
         descent.programs += 1
