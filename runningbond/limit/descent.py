@@ -6,6 +6,7 @@ smallest load is as small or smaller. Mechanisms at the cone's edges move least 
 """
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.optimize import linprog
@@ -81,13 +82,8 @@ class Descent:
         tangential = (np.asarray(forces.slopes) * parts).sum(axis=0)
         if forces.has_shear:
             tangential = tangential + result.x[rays * n : (rays + 1) * n]
-        *_, tie, reaction, last = np.split(
-            result.x,
-            [
-                len(result.x) - 1 - k
-                for k in (system.reaction.shape[1] + len(system.tie_yield), system.reaction.shape[1], 0)
-            ],
-        )
+        sizes = np.array([len(system.tie_yield), system.reaction.shape[1], 1])
+        tie, reaction, last = np.split(result.x[-sizes.sum() :], np.cumsum(sizes)[:-1])
         none = np.zeros(0)
         return ForceSolution("optimal", float(last[0]), parts.sum(axis=0), tangential, reaction, none, 0, tie)
 
@@ -109,13 +105,8 @@ class Descent:
         cost = np.zeros(len(least))
         cost[-1] = -self._power
         self.programs += 1
-        result = linprog(
-            cost,
-            A_eq=self._matrix,
-            b_eq=np.zeros(system.freedoms),
-            bounds=np.column_stack([least, most]),
-            method="highs-ds",
-        )
+        bounds: Any = np.column_stack([least, most])
+        result = linprog(cost, A_eq=self._matrix, b_eq=np.zeros(system.freedoms), bounds=bounds, method="highs-ds")  # type: ignore[call-overload]
         return None if result.status else np.asarray(result.eqlin.marginals) / self._power
 
     def around(self, best: Certificate, rng: np.random.Generator) -> list[Certificate]:
