@@ -6,7 +6,6 @@ smallest load is as small or smaller. Mechanisms at the cone's edges move least 
 """
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from scipy.optimize import linprog
@@ -105,8 +104,9 @@ class Descent:
         cost = np.zeros(len(least))
         cost[-1] = -self._power
         self.programs += 1
-        bounds: Any = np.column_stack([least, most])
-        result = linprog(cost, A_eq=self._matrix, b_eq=np.zeros(system.freedoms), bounds=bounds, method="highs-ds")  # type: ignore[call-overload]
+        bounds = np.column_stack([least, most])
+        program = {"c": cost, "A_eq": self._matrix, "b_eq": np.zeros(system.freedoms), "bounds": bounds}
+        result = linprog(**program, method="highs-ds")  # type: ignore[call-overload]
         return None if result.status else np.asarray(result.eqlin.marginals) / self._power
 
     def around(self, best: Certificate, rng: np.random.Generator) -> list[Certificate]:

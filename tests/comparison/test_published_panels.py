@@ -63,9 +63,9 @@ def test_shipped_scenes_are_those_panels(row: int) -> None:
     assert shipped.joint.friction == 0.6
 
 
-NONASSOCIATED = {1: (0.6, 0.6), 2: (0.478, 0.499), 4: (0.089, 0.136), 5: (0.6, 0.6), 6: (0.423, 0.434)}
-"""Certified intervals recomputed for this project, by the panels' rows in Table 2. Row 6 was recorded to end at
-.431; that a higher load is certified too is proved below, on the forces themselves."""
+NONASSOCIATED = {1: (0.6, 0.6), 2: (0.4771, 0.4997), 4: (0.0893, 0.1592), 5: (0.6, 0.6), 6: (0.4210, 0.4339)}
+"""Certified intervals by the panels' rows in Table 2: each end is proved on the forces below and in tests/limit. Both
+ends may move apart as the search gets better; they may not come closer."""
 
 
 @pytest.mark.parametrize("row", NONASSOCIATED)
@@ -73,8 +73,8 @@ def test_true_friction_on_small_panels(row: int) -> None:
     outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"))
     low, high = NONASSOCIATED[row]
     assert outcome.status == "collapse"
-    assert outcome.lower == pytest.approx(low, abs=1.5e-3)
-    assert outcome.upper == pytest.approx(high, abs=1.5e-3)
+    assert outcome.lower == pytest.approx(low, abs=5e-4)
+    assert outcome.upper == pytest.approx(high, abs=5e-4)
 
 
 def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() -> None:
