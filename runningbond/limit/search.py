@@ -63,7 +63,7 @@ class Search:
 
 def programs_allowed(system: Equilibrium) -> int:
     """Programs after which no further start is made: fewer where each costs more."""
-    return 60 + 200_000 // max(1, len(system.points))
+    return 20 + 200_000 // max(1, len(system.points))
 
 
 def dry_allowed(system: Equilibrium) -> int:
