@@ -99,7 +99,7 @@ def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() 
 
 @pytest.mark.parametrize("row", [9, 12])
 def test_true_friction_on_tall_panels_lies_inside_the_certified_interval(row: int) -> None:
-    low, high = {9: (0.423, 0.4265), 12: (0.067, 0.082)}[row]
+    low, high = {9: (0.423, 0.4265), 12: (0.067, 0.118)}[row]  # of 12 to the associated bound
     outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"))
     assert outcome.lower is not None
     assert outcome.upper is not None
