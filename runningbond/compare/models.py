@@ -79,6 +79,8 @@ _EVERY_MODEL = (
         *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
         kind="certificate",
         takes=EXTRAS,
+        parameters=("starts",),
+        interruptible=True,
         cost=Cost(0.22, 1.87, 1.48),
         colour="#c2410c",
         marker="s",

@@ -1,156 +1,30 @@
 """Limit analysis with true Coulomb friction: slip without dilatancy.
 
-Static and kinematic theorems no longer hold and the collapse load need not be unique. After Gilbert,
-Casapulla & Ahmed (2006) a sequence of linear programs freezes each point's shear resistance at μ times a
-pressure that is brought up to date between programs. Here the pressure is averaged with weights
-(k + 1)^(−1/2) in program k, which settles where fixed weights keep wandering. What the sequence finds is only
-believed with a certificate: for the mechanism of one of its programs, forces under the full Coulomb law that
-vanish where the mechanism opens and are at the limit, against the motion, where it slides. The multipliers of
-such forces are an interval, every point of which is a load at which the wall can collapse.
+Static and kinematic theorems no longer hold and the collapse load need not be unique. What is reported is proved by a
+certificate (`certificates`), and the smallest load is that of the lowest certificate that a search over many starts
+found (`search`); nobody knows how to prove that there is none below.
 """
 
-import math
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import replace
 
 from runningbond.results import Outcome, collapse_state
-from runningbond.scene import Array, Scene
+from runningbond.scene import Scene
 
 from .associated import LimitState, judge, limit_state, spends_cut_strength
+from .canonical import canonical_order
+from .certificates import Certificate, certified_loads, certify
 from .equilibrium import Equilibrium, equilibrium
-from .force_program import ForceSet, ForceSolution, coulomb, frozen_friction, solve_forces
+from .force_program import coulomb, solve_forces
 from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
 from .remarks import remarks
+from .search import STARTS, Search, search
 
-PROGRAM_BUDGET = 40
-"""Programs of the sequence after which it ends without a certificate."""
-
-CERTIFIED_IN_A_ROW = 2
-"""Certificates in a row that end the sequence."""
-
-NO_JUMP = 1e-7
-"""Jump rate, relative to the mechanism's largest motion, that counts as none."""
-
-PENETRATION = 1e-6
-"""Closing rate, relative to the mechanism's largest motion, that rules a mechanism out."""
+LISTED = 4
+"""Intervals of certified loads, apart from each other, that a message lists; of more it tells the number."""
 
 
-@dataclass(frozen=True, eq=False)
-class Certificate:
-    """Proof that a wall can collapse: a scaled mechanism ``(nd,)``, and forces at the least and the most load on it."""
-
-    motion: Array
-    least: ForceSolution
-    most: ForceSolution
-
-
-def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
-    """Forces that obey Coulomb's law on a mechanism ``(nd,)``: none where it opens, at the limit where it slides.
-
-    A tie that lengthens is at yield, and one that shortens is slack. What holds a beam at its height presses it down,
-    if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other.
-    """
-    opening, slip = system.opening.T @ motion, system.slip.T @ motion
-    largest = float(np.abs(motion).max(initial=0.0))
-    if largest == 0.0 or opening.min(initial=0.0) < -PENETRATION * largest:
-        return None
-    opens, forward, backward = opening > NO_JUMP * largest, slip > NO_JUMP * largest, slip < -NO_JUMP * largest
-    longer = system.elongation(motion)
-    cone = coulomb(system.strength)
-    up, down = cone.most
-    return ForceSet(
-        cone.slopes,
-        (np.where(opens | backward, 0.0, up), np.where(opens | forward, 0.0, down)),
-        np.where(forward, cone.shear_high, cone.shear_low),
-        np.where(backward, cone.shear_low, cone.shear_high),
-        np.where(longer > NO_JUMP * largest, system.tie_yield, 0.0),
-        np.where(longer < -NO_JUMP * largest, 0.0, system.tie_yield),
-        late_least=0.0,
-    )
-
-
-def certify(system: Equilibrium, motion: Array) -> Certificate | None:
-    """Look for the loads that drive a mechanism; None where there are none. Of loads without end, the least counts."""
-    forces = driving_forces(system, motion)
-    if forces is None:
-        return None
-    least = solve_forces(system, forces, "smallest")
-    if least.status != "optimal":
-        return None
-    most = solve_forces(system, forces, "largest")
-    if most.status == "unbounded":
-        return Certificate(motion, least, least)
-    return Certificate(motion, least, most) if most.status == "optimal" else None
-
-
-@dataclass(frozen=True, eq=False)
-class Search:
-    """Result of the sequence of programs.
-
-    Parameters
-    ----------
-    certificates, programs
-        Every collapse that was proved, and the number of programs solved in the sequence.
-    frictionless
-        Whether normal forces alone carry any multiple of the live load.
-    growing
-        Whether each program of a full sequence carried more than the one before: friction grew with the load.
-    """
-
-    certificates: list[Certificate]
-    programs: int
-    frictionless: bool = False
-    growing: bool = False
-
-
-def search(system: Equilibrium, pressure: Array, high: float = np.inf) -> Search:
-    """Run the sequence from a first pressure ``(np,)``, certifying every second program.
-
-    A certificate whose loads all reach `high` is enough by itself.
-    """
-    certificates: list[Certificate] = []
-    in_a_row, multiplier, growing = 0, -np.inf, True
-    for k in range(PROGRAM_BUDGET):
-        program = solve_forces(system, frozen_friction(system.strength, pressure))
-        if program.status == "unbounded":
-            return Search(certificates, k + 1, frictionless=True)
-        if program.status != "optimal":
-            return Search(certificates, k + 1)
-        growing, multiplier = growing and program.multiplier > multiplier, program.multiplier
-        if k % 2:
-            certificate = certify(system, program.motion)
-            if certificate is not None:
-                certificates.append(certificate)
-            in_a_row = in_a_row + 1 if certificate is not None else 0
-            if in_a_row == CERTIFIED_IN_A_ROW or (certificate is not None and certificate.least.multiplier >= high):
-                return Search(certificates, k + 1)
-        weight = (k + 1.0) ** -0.5
-        pressure = (1 - weight) * pressure + weight * program.pressure
-    return Search(certificates, PROGRAM_BUDGET, growing=growing)
-
-
-def certified_loads(
-    certificates: Sequence[Certificate], load: Callable[[float], float], *, falling: bool = False
-) -> list[tuple[float, float]]:
-    """Loads at which collapse is certified, as intervals that do not touch, in order.
-
-    `load` makes them of multipliers; `falling` if it falls as they grow.
-    """
-    ends = [(load(c.least.multiplier), load(c.most.multiplier)) for c in certificates]
-    pairs = sorted((min(pair), max(pair)) if falling else pair for pair in ends)
-    merged = [pairs[0]]
-    for low, high in pairs[1:]:
-        if low <= merged[-1][1] + 1e-9 * abs(merged[-1][1]):
-            merged[-1] = merged[-1][0], max(high, merged[-1][1])
-        else:
-            merged.append((low, high))
-    return merged
-
-
-def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
+def limit_nonassociated(scene: Scene, tolerance: float = 0.01, *, starts: int = STARTS) -> Outcome:
     """Limit analysis of a scene with true Coulomb friction.
 
     Parameters
@@ -163,7 +37,7 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
     -------
     Outcome
         `lower` and `upper` are the smallest and largest load at which a collapse was certified, and
-        `multiplier` is the smallest; smaller ones are not excluded, and where several mechanisms were
+        `multiplier` is the smallest found; smaller ones are not excluded, and where several mechanisms were
         certified at loads apart from each other the message says at which. `motion` and `force` belong to it.
         Without a certificate the status is ``undecided`` and `upper` the associated load, which no true
         collapse load exceeds. Of a support that moves, `multiplier` is the largest share of the dead load that it was
@@ -184,42 +58,34 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01) -> Outcome:
     dofs = system.freedoms - system.has_support
     outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=dofs, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        outcome = _collapse(outcome, system, state, tolerance)
+        outcome = _collapse(outcome, system, state, tolerance, starts)
     else:
         outcome = replace(outcome, status=status)
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
 
 
-def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float) -> Outcome:
+def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float, starts: int) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
-    cut, associated = state.system, state.forces
-    bounded = associated.status == "optimal"
-    first = associated if bounded else solve_forces(cut, coulomb(cut.strength), "zero")
-    # A certificate within the tolerance of the associated bound leaves nothing to search for.
-    high = (1 - math.copysign(tolerance, associated.multiplier)) * associated.multiplier if bounded else np.inf
-    pressure = first.pressure if first.status == "optimal" else np.zeros(len(cut.points))
-    result = search(cut, pressure, high)
+    cut = state.system
+    bounded = state.forces.status == "optimal"
+    order = canonical_order(cut)
+    ordered = order.applied(cut)
+    result = search(ordered, solve_forces(ordered, coulomb(ordered.strength)), starts)
     outcome = replace(outcome, steps=1 + result.programs)
-    certificates = [
-        certificate
-        for certificate in result.certificates
-        if not spends_cut_strength(system, cut, certificate.motion, dilatancy=0.0)
-    ]
-    if not certificates:
-        return _uncertified(outcome, result, cut, associated.multiplier if bounded else None)
-    lowest = min(certificates, key=lambda certificate: certificate.least.multiplier)
-    loads = certified_loads(certificates, cut.load, falling=cut.has_support)
+    certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
+    certificates = [each for each in certificates if not spends_cut_strength(system, cut, each.motion, dilatancy=0.0)]
+    proved = _proved_again(cut, certificates)
+    if not proved:
+        return _uncertified(outcome, result, cut, state.forces.multiplier if bounded else None)
+    lowest = proved[0]
+    loads = certified_loads(proved, cut.load, falling=cut.has_support)
     lower, upper = loads[0][0], loads[-1][1]
     if cut.has_support and upper <= NOTHING and may_leave(cut):
         return _bridged(outcome, cut)
-    others, beyond = ("larger", "above") if cut.has_support else ("smaller", "below")
-    message = f"collapse is certified at every load of the interval; {others} ones are not excluded"
-    if len(loads) > 1:
-        listed = ", ".join(f"{low:.6g} … {high:.6g}" for low, high in loads)
-        message = f"collapse is certified at {listed}, and nothing is proved in between or {beyond}"
-    elif upper - lower > tolerance * abs(upper):
-        message += "; wider than the tolerance because the load of these mechanisms is not unique"
     least, multiplier = lowest.least, cut.load(lowest.least.multiplier)
+    # The others were proved on rounded equations.
+    lower, upper = (min(lower, multiplier), multiplier) if cut.has_support else (multiplier, max(upper, multiplier))
+    message = _message(loads, result, tolerance, falling=cut.has_support)
     if cut.has_support:
         message = f"{message}; {reaction_note(cut.scene, multiplier)}"
     force = cut.point_forces(least.pressure, least.tangential)
@@ -228,7 +94,7 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         status="collapse",
         multiplier=multiplier,
         lower=lower,
-        upper=max(lower, upper),
+        upper=upper,
         message=message,
         motion=cut.motion(lowest.motion),
         force=force,
@@ -236,6 +102,42 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         held=-cut.force_unit * least.reaction,
         **collapse_state(cut.scene, cut.points, force, cut.force_unit * least.tie, multiplier),
     )
+
+
+def _proved_again(system: Equilibrium, certificates: list[Certificate]) -> list[Certificate]:
+    """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations."""
+    remaining = sorted(certificates, key=lambda each: each.least.multiplier)
+    while remaining:
+        first = certify(system, remaining[0].motion)
+        if first is None:
+            del remaining[0]
+            continue
+        largest = certify(system, max(remaining, key=lambda each: each.most.multiplier).motion)
+        if largest is not None and largest.least.multiplier < first.least.multiplier:
+            first, largest = largest, first
+        return [first, *remaining[1:], *([largest] if largest is not None else [])]
+    return []
+
+
+def _message(loads: list[tuple[float, float]], result: Search, tolerance: float, *, falling: bool) -> str:
+    """What is proved, and how hard anything else was looked for."""
+    lower, upper = loads[0][0], loads[-1][1]
+    others, beyond = ("larger", "above") if falling else ("smaller", "below")
+    message = f"collapse is certified at every load of the interval; {others} ones are not excluded"
+    if len(loads) > 1:
+        listed = ", ".join(f"{low:.6g} … {high:.6g}" for low, high in loads)
+        if len(loads) > LISTED:
+            listed = f"{len(loads)} intervals from {lower:.6g} to {upper:.6g}"
+        message = f"collapse is certified at {listed}, and nothing is proved in between or {beyond}"
+    elif upper - lower > tolerance * abs(upper):
+        message += "; wider than the tolerance because the load of these mechanisms is not unique"
+    extreme = "largest" if falling else "lowest"
+    stopped = ", interrupted" if result.interrupted else ""
+    return f"{message}; {extreme} of {len(result.certificates)} certificates from {_effort(result)}{stopped}"
+
+
+def _effort(result: Search) -> str:
+    return f"{result.starts} starts, {result.programs} linear programs"
 
 
 def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
@@ -246,7 +148,7 @@ def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
 
 def _uncertified(outcome: Outcome, result: Search, system: Equilibrium, bound: float | None) -> Outcome:
     """Outcome of a wall without a certified collapse, under the associated multiplier if there is one."""
-    programs = f"no collapse certified in {result.programs} programs"
+    programs = f"no collapse certified from {_effort(result)}"
     if result.frictionless:
         message = JAMMED if system.has_support else "self-locking: normal forces carry any multiple of the live load"
         return replace(outcome, status="unbounded", message=message)

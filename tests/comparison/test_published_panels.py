@@ -13,7 +13,7 @@ import pytest
 
 from runningbond.compare import published_scene
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state
-from runningbond.limit.nonassociated import search
+from runningbond.limit.search import search
 from runningbond.scene import Scene, scene_from_dict
 from tests.walls import content
 
@@ -63,9 +63,9 @@ def test_shipped_scenes_are_those_panels(row: int) -> None:
     assert shipped.joint.friction == 0.6
 
 
-NONASSOCIATED = {1: (0.6, 0.6), 2: (0.478, 0.499), 4: (0.089, 0.136), 5: (0.6, 0.6), 6: (0.423, 0.434)}
-"""Certified intervals recomputed for this project, by the panels' rows in Table 2. Row 6 was recorded to end at
-.431; that a higher load is certified too is proved below, on the forces themselves."""
+NONASSOCIATED = {1: (0.6, 0.6), 2: (0.4771, 0.4997), 4: (0.0893, 0.1592), 5: (0.6, 0.6), 6: (0.4210, 0.4339)}
+"""Certified intervals by the panels' rows in Table 2: each end is proved on the forces below and in tests/limit. Both
+ends may move apart as the search gets better; they may not come closer."""
 
 
 @pytest.mark.parametrize("row", NONASSOCIATED)
@@ -73,14 +73,14 @@ def test_true_friction_on_small_panels(row: int) -> None:
     outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"))
     low, high = NONASSOCIATED[row]
     assert outcome.status == "collapse"
-    assert outcome.lower == pytest.approx(low, abs=1.5e-3)
-    assert outcome.upper == pytest.approx(high, abs=1.5e-3)
+    assert outcome.lower == pytest.approx(low, abs=5e-4)
+    assert outcome.upper == pytest.approx(high, abs=5e-4)
 
 
 def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() -> None:
     """Row 6: equilibrium, Coulomb's law and opposition to the slip, at the smallest and the largest load."""
     system = equilibrium(published_scene("panel-06"))
-    certificates = search(system, limit_state(system).forces.pressure).certificates
+    certificates = search(system, limit_state(system).forces, 2).certificates
     assert max(c.most.multiplier for c in certificates) * system.live_unit > 0.431
     for certificate in certificates:
         opening, slip = system.opening.T @ certificate.motion, system.slip.T @ certificate.motion
@@ -99,7 +99,7 @@ def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() 
 
 @pytest.mark.parametrize("row", [9, 12])
 def test_true_friction_on_tall_panels_lies_inside_the_certified_interval(row: int) -> None:
-    low, high = {9: (0.423, 0.4265), 12: (0.067, 0.082)}[row]
+    low, high = {9: (0.423, 0.4265), 12: (0.067, 0.118)}[row]  # of 12 to the associated bound
     outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"))
     assert outcome.lower is not None
     assert outcome.upper is not None

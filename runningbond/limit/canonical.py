@@ -1,0 +1,126 @@
+"""Equations in an order and on a side that do not depend on how a wall was drawn.
+
+A degenerate linear program has many optimal corners, and which one a solver stops at depends on the order of its rows
+and on the last bits of its numbers. A search that starts from such corners gives the same answer for a wall and for
+its mirror image only if both hand it the same numbers.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse import csc_array, diags_array
+
+from runningbond.joints import PointStrength
+from runningbond.scene import Array, Indices
+
+from .equilibrium import Equilibrium
+
+PLACE = 6
+"""Decimals of places and loads, in block sizes and largest loads, by which blocks are told apart."""
+
+ENTRY = 10
+"""Decimals of the equations' entries that are kept."""
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """A permutation of the equations and unknowns of an `Equilibrium`, seen from one side of the wall or the other.
+
+    Parameters
+    ----------
+    side
+        −1 for the wall's mirror image.
+    rows, points, ties, reactions : int arrays
+        Which equation, point, tie and reaction stands at each place.
+    sign : (nd,) float
+        Factor of each equation.
+    """
+
+    side: float
+    rows: Indices
+    points: Indices
+    ties: Indices
+    reactions: Indices
+    sign: Array
+
+    def applied(self, system: Equilibrium) -> Equilibrium:
+        """The same equations in this order, rounded; of its scene only the numbers of things are still of use."""
+        turn = diags_array(self.sign)
+
+        def ordered(matrix: csc_array, columns: Indices, sense: float = 1.0) -> csc_array:
+            entries = csc_array(turn @ matrix[self.rows][:, columns]) * sense
+            entries.data = np.round(entries.data, ENTRY)
+            entries.eliminate_zeros()
+            entries.sort_indices()
+            return entries
+
+        strength = system.strength
+        tension, shear = (_significant(part[self.points]) for part in (strength.tension, strength.shear))
+        return replace(
+            system,
+            strength=PointStrength(_significant(strength.friction[self.points]), tension, shear),
+            opening=ordered(system.opening, self.points),
+            slip=ordered(system.slip, self.points, self.side),
+            reaction=ordered(system.reaction, self.reactions),
+            tie=ordered(system.tie, self.ties),
+            tie_yield=_significant(system.tie_yield[self.ties]),
+            dead=np.round(self.sign * system.dead[self.rows], ENTRY),
+            live=np.round(self.sign * system.live[self.rows], ENTRY),
+        )
+
+    def restored(self, motion: Array) -> Array:
+        """A motion ``(nd,)`` of the ordered equations as one of those they were made of."""
+        own = np.empty_like(motion)
+        own[self.rows] = self.sign * motion
+        return own
+
+
+def _significant(values: Array) -> Array:
+    """Values of any size, rounded to ten digits."""
+    mantissa, exponent = np.frexp(values)
+    return np.ldexp(np.round(mantissa, ENTRY), exponent)
+
+
+def canonical_order(system: Equilibrium) -> Order:
+    """Order blocks by where they are and what loads them, from the side that comes first by that."""
+    scene, points = system.scene, system.points
+    free = np.flatnonzero(~scene.fixed)
+    unit, n = float(np.sqrt(scene.blocks.area[free].max())), len(free)
+    loads = np.hstack([part[: 3 * n].reshape(n, 3) for part in (system.live, system.dead)])
+
+    def places(at: Array, side: float) -> Array:
+        corner = (side * points.position[:, 0]).min(), points.position[:, 1].min()
+        return np.asarray(np.round((at * (side, 1.0) - corner) / unit, PLACE) + 0.0)
+
+    def table(side: float) -> Array:
+        turned = np.round(loads * np.tile([side, 1.0, side], 2), PLACE) + 0.0
+        return np.hstack([places(scene.blocks.centroid[free], side), turned])
+
+    def in_order(keys: Array) -> Indices:
+        return np.lexsort(keys.T[::-1])
+
+    def listed(side: float) -> list[list[float]]:
+        rows = table(side)
+        return [list(row) for row in rows[in_order(rows)]]
+
+    side = min((1.0, -1.0), key=listed)
+    blocks = in_order(table(side))
+    rank = np.full(len(scene.blocks), n)
+    rank[free[blocks]] = np.arange(n)
+    rest = np.arange(3 * n, system.freedoms)
+    pair = np.sort(rank[points.block], axis=1)
+    ends = places(scene.ties.ends.reshape(-1, 2), side).reshape(-1, 4)
+    ties = in_order(np.hstack([ends[:, ::2].sum(axis=1)[:, None], ends[:, 1::2].sum(axis=1)[:, None], abs(ends)]))
+    pins = [
+        in_order(np.column_stack([rank[each.block], places(each.point, side), np.abs(each.direction)]))
+        for each in (scene.pins, scene.late_pins)
+    ]
+    held = np.concatenate([pins[0], len(pins[0]) + pins[1]])[: system.reaction.shape[1]]
+    return Order(
+        side,
+        np.concatenate([(3 * blocks[:, None] + np.arange(3)).ravel(), rest]),
+        in_order(np.hstack([pair, places(points.position, side)])),
+        ties,
+        held.astype(np.int64),
+        np.concatenate([np.tile([side, 1.0, side], n), np.ones(len(rest))]),
+    )

@@ -1,0 +1,88 @@
+"""Certificates of collapse with true Coulomb friction.
+
+For a mechanism, forces under the full Coulomb law that vanish where it opens and are at the limit, against the motion,
+where it slides. The multipliers of such forces are an interval, every point of which is a load at which the wall can
+collapse.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from runningbond.scene import Array
+
+from .equilibrium import Equilibrium
+from .force_program import ForceSet, ForceSolution, coulomb, solve_forces
+
+NO_JUMP = 1e-7
+"""Jump rate, relative to the mechanism's largest motion, that counts as none."""
+
+PENETRATION = 1e-6
+"""Closing rate, relative to the mechanism's largest motion, that rules a mechanism out."""
+
+
+@dataclass(frozen=True, eq=False)
+class Certificate:
+    """Proof that a wall can collapse: a scaled mechanism ``(nd,)``, and forces at the least and the most load on it."""
+
+    motion: Array
+    least: ForceSolution
+    most: ForceSolution
+
+
+def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
+    """Forces that obey Coulomb's law on a mechanism ``(nd,)``: none where it opens, at the limit where it slides.
+
+    A tie that lengthens is at yield, and one that shortens is slack. What holds a beam at its height presses it down,
+    if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other.
+    """
+    opening, slip = system.opening.T @ motion, system.slip.T @ motion
+    largest = float(np.abs(motion).max(initial=0.0))
+    if largest == 0.0 or opening.min(initial=0.0) < -PENETRATION * largest:
+        return None
+    opens, forward, backward = opening > NO_JUMP * largest, slip > NO_JUMP * largest, slip < -NO_JUMP * largest
+    longer = system.elongation(motion)
+    cone = coulomb(system.strength)
+    up, down = cone.most
+    return ForceSet(
+        cone.slopes,
+        (np.where(opens | backward, 0.0, up), np.where(opens | forward, 0.0, down)),
+        np.where(forward, cone.shear_high, cone.shear_low),
+        np.where(backward, cone.shear_low, cone.shear_high),
+        np.where(longer > NO_JUMP * largest, system.tie_yield, 0.0),
+        np.where(longer < -NO_JUMP * largest, 0.0, system.tie_yield),
+        late_least=0.0,
+    )
+
+
+def certify(system: Equilibrium, motion: Array) -> Certificate | None:
+    """Look for the loads that drive a mechanism; None where there are none. Of loads without end, the least counts."""
+    forces = driving_forces(system, motion)
+    if forces is None:
+        return None
+    least = solve_forces(system, forces, "smallest")
+    if least.status != "optimal":
+        return None
+    most = solve_forces(system, forces, "largest")
+    if most.status == "unbounded":
+        return Certificate(motion, least, least)
+    return Certificate(motion, least, most) if most.status == "optimal" else None
+
+
+def certified_loads(
+    certificates: Sequence[Certificate], load: Callable[[float], float], *, falling: bool = False
+) -> list[tuple[float, float]]:
+    """Loads at which collapse is certified, as intervals that do not touch, in order.
+
+    `load` makes them of multipliers; `falling` if it falls as they grow.
+    """
+    ends = [(load(c.least.multiplier), load(c.most.multiplier)) for c in certificates]
+    pairs = sorted((min(pair), max(pair)) if falling else pair for pair in ends)
+    merged = [pairs[0]]
+    for low, high in pairs[1:]:
+        if low <= merged[-1][1] + 1e-9 * abs(merged[-1][1]):
+            merged[-1] = merged[-1][0], max(high, merged[-1][1])
+        else:
+            merged.append((low, high))
+    return merged
