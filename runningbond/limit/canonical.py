@@ -86,10 +86,11 @@ def canonical_order(system: Equilibrium) -> Order:
     scene, points = system.scene, system.points
     free = np.flatnonzero(~scene.fixed)
     unit, n = float(np.sqrt(scene.blocks.area[free].max())), len(free)
+    spread = points.position if len(points) else scene.blocks.vertices
     loads = np.hstack([part[: 3 * n].reshape(n, 3) for part in (system.live, system.dead)])
 
     def places(at: Array, side: float) -> Array:
-        corner = (side * points.position[:, 0]).min(), points.position[:, 1].min()
+        corner = (side * spread[:, 0]).min(), spread[:, 1].min()
         return np.asarray(np.round((at * (side, 1.0) - corner) / unit, PLACE) + 0.0)
 
     def table(side: float) -> Array:

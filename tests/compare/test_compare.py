@@ -229,7 +229,7 @@ def start(out: Path, *arguments: str) -> "subprocess.Popen[str]":
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_path: Path) -> None:
     """Stopped after its first result, by Ctrl-C or by force, in the middle of one that takes half a minute."""
-    models = ["limit", "limit-nonassociated"]
+    models = ["limit", "dem-static"]
     process = start(tmp_path, "panel-11", *FAST, "--models", ",".join(models))
     deadline = time.monotonic() + 60
     while not list(tmp_path.glob("*/*/outcome.json")) and time.monotonic() < deadline:
@@ -244,7 +244,7 @@ def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_p
     kept = {path.parent.relative_to(tmp_path) for path in tmp_path.glob("*/*/outcome.json")}
     assert kept
 
-    assert Path("panel-11", "limit-nonassociated") not in kept
+    assert Path("panel-11", "dem-static") not in kept
 
     scenes = {name: published_scene(name) for name in FAST}
     campaign = run_campaign(scenes, models, folder=tmp_path, jobs=2)
