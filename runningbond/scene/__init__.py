@@ -10,7 +10,7 @@ from .file import read_description, read_scene, scene_from_dict
 from .forces import Arrow, Forces
 from .loads import Load
 from .mass_loads import Body, Lateral, Tilt
-from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
+from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Stiffness
 from .point_loads import GivenForces, LineLoad, Moment, PointLoad
 from .segments import Joints, find_joints
 from .settlement import Settlement
@@ -31,6 +31,7 @@ __all__ = [
     "Blocks",
     "Body",
     "Bond",
+    "Closure",
     "Drive",
     "Forces",
     "GivenForces",

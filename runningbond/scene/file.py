@@ -10,7 +10,7 @@ from .assignment import ANY, BEAM, GROUND, read_assignments
 from .beam import read_beam
 from .errors import SceneError, keys_of
 from .loads import read_load
-from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness, check_friction
+from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Stiffness, check_friction
 from .outlines import read_outlines
 from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, Range
 from .supports import SUPPORT_KINDS, SupportKind
@@ -131,6 +131,7 @@ def _joint_material(joint: Table) -> JointMaterial:
         material = JointMaterial(
             friction=_friction(joint),
             elasticity=_elasticity(joint),
+            closure=_closure(joint),
             law=joint.value("law"),
             name=_material_name(joint),
             **joint.numbers(JointMaterial, "friction"),
@@ -149,6 +150,15 @@ def _friction(joint: Table) -> float:
     friction = math.tan(math.radians(angle))
     check_friction(key, friction, angle)
     return friction
+
+
+def _closure(joint: Table) -> Closure | None:
+    if "closure" not in joint:
+        return None
+    table = joint.table("closure")
+    closure = Closure(**table.numbers(Closure))
+    table.finish()
+    return closure
 
 
 def _elasticity(joint: Table) -> Mortar | Stiffness | None:

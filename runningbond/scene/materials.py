@@ -72,8 +72,30 @@ class Stiffness:
 
 
 @dataclass(frozen=True)
+class Closure:
+    """How a joint closes: its normal stiffness grows with the pressure p on it, dp/dδ = k_n + growth · p.
+
+    The semi-logarithmic law of rock joints (Evans, Kohl, Hopkirk & Rybach 1992), which a dry joint's stiffness under
+    several pressures gives as a straight line.
+
+    Parameters
+    ----------
+    growth
+        Stiffness per pressure [1/m]; `Stiffness.normal` is that without pressure.
+    stiffest
+        Stiffness at which the growth ends [Pa/m].
+    """
+
+    growth: Positive
+    stiffest: Positive
+
+    def __post_init__(self) -> None:
+        check_numbers(self, "joint.closure")
+
+
+@dataclass(frozen=True)
 class JointMaterial:
-    """Mohr–Coulomb joint: ``|τ| ≤ cohesion − σ friction``, ``σ ≤ tensile_strength``.
+    """Mohr–Coulomb joint: ``|τ| ≤ cohesion − σ friction``, ``σ ≤ tensile_strength``, and it may crush and close.
 
     Parameters
     ----------
@@ -90,6 +112,13 @@ class JointMaterial:
         Distance by which the contact points are moved in from the joint ends [m].
     fracture_energy_1, fracture_energy_2
         Fracture energies in opening and in shear [J/m²]; None is perfectly plastic.
+    compressive_strength, cap_shear
+        f_m [Pa] and C_ss of the cap on pressures, ``σ² + cap_shear τ² ≤ compressive_strength²`` (Lourenço & Rots 1997,
+        eq. 19, with C_nn = 1, C_n = 0); None is a joint that never crushes.
+    compressive_fracture_energy
+        Energy of crushing beyond the strength [J/m²]; None is perfectly plastic.
+    closure
+        How the normal stiffness grows with pressure; None is constant.
     law
         A law of one's own (`runningbond.joints.Law`); None is Coulomb's, softening where there is a fracture energy.
     name
@@ -108,6 +137,10 @@ class JointMaterial:
     inset: NotNegative = 0.0
     fracture_energy_1: NotNegative | None = None
     fracture_energy_2: NotNegative | None = None
+    compressive_strength: Positive | None = None
+    compressive_fracture_energy: Positive | None = None
+    cap_shear: NotNegative = 9.0
+    closure: Closure | None = None
     law: object = None
     name: str = "joint"
 
@@ -124,8 +157,21 @@ class JointMaterial:
         if self.fracture_energy_1 is None and self.fracture_energy_2 is not None:
             what = "is missing; what a joint loses in slip it loses in opening as well"
             raise SceneError("joint.fracture_energy_1", what)
+        if self.compressive_strength is None and self.compressive_fracture_energy is not None:
+            what = "is missing; a joint that crushes needs a strength"
+            raise SceneError("joint.compressive_strength", what)
+        self._check_closure()
         if self.law is not None and not hasattr(self.law, "kernel"):
             raise SceneError("joint.law", "must be a law of joints, a runningbond.joints.Law in Python", self.law)
+
+    def _check_closure(self) -> None:
+        if self.closure is None:
+            return
+        if not isinstance(self.elasticity, Stiffness):
+            raise SceneError("joint.normal_stiffness", "is missing; closure needs the stiffness without pressure")
+        if self.closure.stiffest < self.elasticity.normal:
+            what = f"must be at least normal_stiffness = {self.elasticity.normal:g}"
+            raise SceneError("joint.closure.stiffest", what, self.closure.stiffest)
 
     @property
     def tension(self) -> float:

@@ -50,6 +50,7 @@ OF_MATERIALS = {
     "compressive_strength": Plausible(1e4, 1e10, "Pa", PRESSURES),
     "fracture_energy_1": ENERGY,
     "fracture_energy_2": ENERGY,
+    "compressive_fracture_energy": ENERGY,
 }
 OF_MORTAR = {
     "young": Plausible(1e6, 1e13, "Pa", PRESSURES),
