@@ -14,6 +14,7 @@ from runningbond.dynamics import (
     joint_shares,
     tie_rows,
 )
+from runningbond.dynamics.rig import Rig
 from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.joints.law import KernelLaw
 from runningbond.joints.wall_law import kernel_law
@@ -89,6 +90,7 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
         late=rigid[scene.late_pins.block, 1],
         carried=carried,
         contacts=contacts,
+        rig=None if contacts is None else Rig.of(scene, rigid),
     )
 
 

@@ -97,7 +97,7 @@ _EVERY_MODEL = (
     ),
     Model(
         *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, SOFTENING, "history"),
-        parameters=IN_STEPS,
+        parameters=(*IN_STEPS, "displacements"),
         observer=_MOTION_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
         interruptible=True,

@@ -14,10 +14,11 @@ import numpy as np
 from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
+from runningbond.results.reactions import AT_REST, WORKS
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, settle
-from .lead import Lead, Way
+from .lead import BEAM, Lead, Way
 from .run import Observer, Run, Unstable
 from .state import State
 
@@ -125,7 +126,7 @@ def _spread(lead: Lead, answers: list[float]) -> float:
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
     """Forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
     run = lead.run
-    force, motion = np.column_stack(run.forces(way.best))[point_order], run.system.motion_of_blocks(way.motion)
+    force, motion = run.at_joints(way.best)[2:4].T[point_order], run.system.motion_of_blocks(way.motion)
     if motion.any():
         outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion))
     return replace(outcome, force=force)
@@ -133,10 +134,19 @@ def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Out
 
 def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Way) -> Outcome:
     """Curve, reactions and works of a way; its states rest, but for those of a motion, whose inertia is left out."""
-    loads = [force if way.moves else 0.0 for _, force in way.rows]
-    path = Supports(scene, points, run.system.owner).path(way.points, way.ties, loads, np.array(way.works))
-    path["path"][:, -1] = not way.moves
-    return replace(outcome, curve=way.curve, **path)
+    supports, works, beam = Supports(scene, points, run.system.owner), np.array(way.works), np.array(way.beam)
+    columns = (*supports.columns, *WORKS, AT_REST)
+    if run.system.contacts is not None:
+        held = np.array(way.points)[:, supports.block]
+        held[:, :, 2] -= supports.about[:, 0] * held[:, :, 1] - supports.about[:, 1] * held[:, :, 0]
+        path = np.column_stack([-held.reshape(len(held), -1), works, np.zeros(len(held))])
+    else:
+        loads = [force if way.moves else 0.0 for _, force in way.rows]
+        path = supports.path(way.points, way.ties, loads, works)["path"]
+        path[:, -1] = not way.moves
+    if len(beam):
+        path, columns = np.column_stack([path[:, :-1], beam, path[:, -1]]), (*columns[:-1], *BEAM, AT_REST)
+    return replace(outcome, curve=way.curve, path=path, path_columns=columns)
 
 
 def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], tolerance: float) -> Outcome:
@@ -146,7 +156,7 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     other = -float(outcome.curve[:, 1].min())
     if len(lead.goals) > 1 and other > 0:
         what += f"; the other way it takes {number(other)}"
-    what += "; small displacements"
+    what += f"; {'small' if lead.run.system.contacts is None else 'finite'} displacements"
     at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"
     if way.verdict == "undecided" or len(answers) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
