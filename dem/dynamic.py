@@ -22,7 +22,6 @@ from runningbond.scene import Array, Scene, SceneError
 from .finite_system import finite_system
 from .rigid_system import contact_points, rigid_system
 
-
 MOVING = 0.2
 """Local damping α of what moves far: less than at rest, for it drags."""
 

@@ -74,9 +74,11 @@ class RigidContacts:
         if self._points:
             pairs, share = contacts.pairs, (self._rule.nodes[:, None] + 1) / 2
             along, values = values.reshape(5, self._points, -1), np.zeros((5, len(contacts)))
-            for end, (part, point) in enumerate(((1 - share, 0), (share, -1))):
-                values[:, pairs[:, end]] = along[:, point]
-                np.add.at(values[2:4], (slice(None), pairs[:, end]), (part * along[2:4]).sum(axis=1) - along[2:4, point])
+            for end, part in enumerate((1 - share, share)):
+                for row in (0, 1, 4):
+                    values[row, pairs[:, end]] = along[row, -end]
+                for row in (2, 3):
+                    values[row] += np.bincount(pairs[:, end], (part * along[row]).sum(axis=0), len(contacts))
         at = position_of(contacts.key, self._key_of_point)
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
         return np.where(at >= 0, values[:, at], lost[:, None])

@@ -141,6 +141,10 @@ class DeformableContacts:
         """A key of each contact and its number, two ``(n,)``: contacts are points."""
         return contacts.points()
 
+    def at_joints(self, contacts: Contacts, values: Array) -> Array:
+        """As of `ContactSearch`."""
+        raise NotImplementedError
+
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
         """A number of the corner or node that rests and the side it rests on, for each contact."""
         geometry = self.geometry(contacts)

@@ -16,6 +16,9 @@ from .rigid_sides import Placed, RigidSides, gather_sides
 FASTEST_OPENING = math.sqrt(5)
 """Most by which an opening changes, in ways of the corner (`sharp_opening`)."""
 
+LEAST_OVERLAP = 1e-6
+"""Least overlap of two sides for which their contact has a stiffness, in lengths of the shorter one."""
+
 
 @dataclass(frozen=True, eq=False)
 class Contacts:
@@ -56,8 +59,7 @@ class Contacts:
         return np.asarray(self.ends[:, :2].astype(np.int64) @ [2**32, 1] * 2 + (self.inwards > 0))
 
     def points(self, number: int = 0) -> tuple[Indices, Indices]:
-        """A key of each end, or of a number of points along each pair (`joints.along`), and the end that it is or −1.
-        """
+        """A key of each end, or of a number of points along each pair (`along`), and the end that it is or −1."""
         if not number:
             return self.key, np.arange(len(self))
         low, high = self.pairs.T
@@ -96,7 +98,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     turned = spin[owner[e]] - spin[owner[f]]
     tilt = np.mod(tilt + turned + np.pi, 2 * np.pi) - np.pi - turned
     joint = outline.joint_of(e, f)
-    area = _area(outline, e, f, joint)
+    area = _area(outline, e, f, joint, motion)
     low = np.column_stack([after[e], f, e, after[f], e, f])
     high = np.column_stack([e, after[f], after[e], f, e, f])
     n = len(e)
@@ -151,14 +153,19 @@ def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indice
     return e[facing], f[facing]
 
 
-def _area(outline: Outline, e: Indices, f: Indices, joint: Indices) -> Array:
-    """Area of each end of facing sides, ``(n,)`` [m²]: half the joint's that they made on the undeformed wall.
+def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Array) -> Array:
+    """Area of each end of facing sides after a motion ``(3 nb,)``, ``(n,)`` [m²].
 
-    Sides that meet later are given half the shorter one as a joint, which is what running bond gives them from the
-    start. The area sets a penalty stiffness, on which a dry wall's resistance hardly depends.
+    Half the joint's that they made on the undeformed wall. Sides that meet later have half of what they overlap now,
+    at least `LEAST_OVERLAP`: as one block slides from the first onto the second, the second one's share grows.
     """
     length, joints = outline.length, outline.joints.length
-    later = np.minimum(length[e], length[f]) / 2
+    corners, after = outline.corners(motion), outline.blocks.successor
+    along = (corners[after[f]] - corners[f]) / length[f, None]
+    first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
+    overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)
+    shorter = np.minimum(length[e], length[f])
+    later = np.clip(overlap, LEAST_OVERLAP * shorter, shorter)
     shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
     return shared * outline.thickness / 2
 

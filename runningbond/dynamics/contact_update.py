@@ -73,7 +73,8 @@ class ContactUpdate:
         on, still = turned >= 0, same >= 0
         area, glued = contacts.area.copy(), np.zeros(len(contacts), dtype=bool)
         area[on] = before.area[turned[on]]
-        area[still] = before.area[same[still]]
+        lasting = still & (contacts.joint >= 0)
+        area[lasting] = before.area[same[lasting]]
         glued[still] = before.glued[same[still]]
 
         state.contacts = replace(contacts, area=area, glued=glued)
@@ -116,4 +117,3 @@ def contacts_of(state: State) -> Contacts:
     if state.contacts is None:
         raise TypeError("finite displacements need a state with contacts: begin with State.at_rest of their system")
     return state.contacts
-

@@ -90,11 +90,11 @@ class Lead:
         dead = self.run.dead_work(state)
         way.rows.append((moved, force))
         finite = self.run.system.contacts is not None
-        way.points.append(
-            self.run.resultants(state, force) if finite else np.column_stack(self.run.forces(state))
-        )
+        way.points.append(self.run.resultants(state, force) if finite else np.column_stack(self.run.forces(state)))
         if not self.settles and self.scene.beam is not None:
-            _, uplift, rotation = self.run.system.motion_of_blocks(state.motion - self.start.motion)[self.scene.beam.block]
+            _, uplift, rotation = self.run.system.motion_of_blocks(state.motion - self.start.motion)[
+                self.scene.beam.block
+            ]
             way.beam.append((rotation, uplift, self.run.ledger(state).friction))
         way.ties.append(self.run.system.ties.force(state.motion, state.stretch))
         way.works.append((dead, state.external - dead))

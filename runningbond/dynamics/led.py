@@ -22,8 +22,9 @@ from .lead import BEAM, Lead, Way
 from .run import Observer, Run, Unstable
 from .state import State
 
-STEPS, UNHURRIED = 20_000, 20
-"""Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest.
+STEPS, UNHURRIED, FAR = 20_000, 20, 2
+"""Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
+at small displacements, and at finite ones, whose ways are longer.
 """
 
 LAST = 0.1
@@ -80,8 +81,10 @@ def collapse_of_led(
         return replace(outcome, message="interrupted: the way so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    # What a support hardly moves does hardly any work.
-    lost = run.unaccounted(last, LITTLE * run.system.carried.work)
+    # Of the way alone, for its rest is balanced. What a support hardly moves does hardly any work, nor does a way that
+    # ends where it began.
+    most = max(float(np.abs(way.works).sum(axis=1).max()), LITTLE * run.system.carried.work)
+    lost = abs(run.ledger(last).residual - run.ledger(state).residual) / most if most else 0.0
     outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -101,7 +104,8 @@ def _speeds(lead: Lead) -> list[float]:
     if rate := _rate(lead.scene):
         return [2 * rate, rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
-    steps = max(STEPS, UNHURRIED * lead.start.steps)
+    unhurried = UNHURRIED if lead.run.system.contacts is None else FAR
+    steps = max(STEPS, unhurried * lead.start.steps)
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
 

@@ -50,7 +50,7 @@ def turn_rig(rig: tuple[NDArray[np.uint64], Array, Array, Array], motion: Array,
     freedom, arm, force, _ = rig
     x, y, spin = motion[freedom[0]], motion[freedom[1]], motion[freedom[2]]
     live[freedom[2]] = -live[freedom[0]] * (arm[0] * math.sin(spin) + arm[1] * math.cos(spin))
-    return y * force[0] - x * force[1]
+    return float(y * force[0] - x * force[1])
 
 
 def is_finite(displacements: str, model: str, scene: Scene) -> bool:

@@ -167,7 +167,9 @@ class Run:
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             coefficients = (piece, self.dt, self.local, self._viscosity, load, live, speed)
-            taken, stable, multipliers, work = step(*coefficients, *self._arrays, ties, self._rig, arrays, self._work, watch)
+            taken, stable, multipliers, work = step(
+                *coefficients, *self._arrays, ties, self._rig, arrays, self._work, watch
+            )
             total += multipliers
             if self._rig:
                 state.turned += float(self._rig[3][0])
@@ -187,14 +189,14 @@ class Run:
         state.velocity[self.system.late] = 0.0
         return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
 
-    def unaccounted(self, state: State, least: float = 0.0) -> float:
-        """Share of the work of the loads, or of a least one [J], that the energy ledger misses.
+    def unaccounted(self, state: State) -> float:
+        """Share of the work of the loads that the energy ledger misses.
 
         Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
         """
         ledger = self.ledger(state)
         dead = self.dead_work(state)
-        work = max(abs(dead) + abs(ledger.external - dead), least)
+        work = abs(dead) + abs(ledger.external - dead)
         return abs(ledger.residual) / work if work else 0.0
 
     def dead_work(self, state: State) -> float:
