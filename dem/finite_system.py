@@ -84,7 +84,7 @@ def _frequency_squared(geometry: RigidSides, law: KernelLaw, mass: Array) -> flo
     for block, other in ((a, b), (b, a)):
         arm = contact[:, :2] - centroid[block]
         part = joint_shares(mass[3 * np.column_stack([block, other])], 0.5)[:, 0]
-        for direction, stiffness in ((n, law.normal_stiffness), (t, law.shear_stiffness)):
+        for direction, stiffness in ((n, law.stiffest), (t, law.shear_stiffness)):
             row = np.column_stack([direction, arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]])
             np.add.at(own, block, (part * stiffness * geometry.area)[:, None, None] * row[:, :, None] * row[:, None, :])
     movable = np.isfinite(mass[::3])
