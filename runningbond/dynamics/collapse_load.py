@@ -131,7 +131,7 @@ def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Crit
         return ""
     opening, _, _, _ = run.tractions(state)
     springs = law.stiffest * area
-    overlap = float((-opening).max(initial=0.0))
+    overlap = float((-law.seated(opening, state.history)).max(initial=0.0))
     stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * area).max(initial=0.0)))
     smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
     return stiffness_note(overlap, float(np.min(criteria.collapse)), scene.block_size, stiffest, smallest)

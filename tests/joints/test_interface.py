@@ -151,10 +151,10 @@ def test_on_a_proportional_path_any_step_is_exact(material: JointMaterial, ratio
 @pytest.mark.parametrize(
     ("start", "rate", "corner"),
     [
-        pytest.param((0.9, np.sqrt(0.19 / 9)), (1e-4, 8e-4), False, id="face"),
+        pytest.param((0.9, np.sqrt(0.19 / 9)), (1e-5, 8e-5), False, id="face"),
         pytest.param((0.6, 0.8 / 3), (3e-4, -2e-4), False, id="face, sliding back"),
         pytest.param(None, (2e-4, 3e-3), True, id="corner"),
-        pytest.param(None, (5e-4, 6e-3), True, id="corner, farther"),
+        pytest.param(None, (2.5e-4, 6e-3), True, id="corner, farther"),
     ],
 )
 @pytest.mark.parametrize("material", [SOFT, MATERIALS["closing"]], ids=["soft", "closing"])
