@@ -63,7 +63,7 @@ def strength_at(crushed: float, cap: Cap) -> float:
     if crushed < peak:
         x = crushed / peak
         return strength / 3.0 * (1.0 + 2.0 * math.sqrt(x * (2.0 - x)))
-    return strength * max(RUIN, math.exp((peak - crushed) * rate))
+    return strength if crushed * rate == 0.0 else strength * max(RUIN, math.exp((peak - crushed) * rate))
 
 
 @kernel

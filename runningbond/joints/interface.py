@@ -95,6 +95,7 @@ def interface_kernel(
             most = max(0.0, room - friction * n)
             held = max(-most, min(most, trial))
             slid = (trial - held) * flexibility
+            limit, still = math.inf, 0.0
             if crushes:
                 limit = strength_at(crushed[i], cap)
                 still = min(abs(trial), max(0.0, room - friction * elastic))
@@ -120,15 +121,17 @@ def interface_kernel(
                     spent[i] += work
                     crushed[i] = kappa
                     seat[i] += p * mu
-                elif viscosity != 0.0:
-                    # Neither does viscosity press or shear beyond the cap.
-                    n = max(n, -max(pressure, math.sqrt(limit * limit - cap_shear * still * still)))
-                    within = max(0.0, limit * limit - min(0.0, n) ** 2)
-                    if cap_shear > 0.0:
-                        most = min(max(0.0, room - friction * n), max(still, math.sqrt(within / cap_shear)))
-                    held = max(-most, min(most, trial))
-                    slid = (trial - held) * flexibility
+                    limit = math.inf
             t = max(-most, min(most, held + viscosity * k_t * change_t))
+            if crushes and min(0.0, n) ** 2 + cap_shear * t * t > limit * limit:
+                # Neither does viscosity press or shear beyond the cap.
+                n = max(n, -max(pressure, math.sqrt(limit * limit - cap_shear * still * still)))
+                if cap_shear > 0.0:
+                    within = max(0.0, limit * limit - min(0.0, n) ** 2) / cap_shear
+                    most = min(max(0.0, room - friction * n), max(still, math.sqrt(within)))
+                held = max(-most, min(most, trial))
+                slid = (trial - held) * flexibility
+                t = max(-most, min(most, held + viscosity * k_t * change_t))
             plastic_slip[i] += slid
             slipped[i] += abs(slid - flowed)
             spent[i] += held * slid

@@ -119,13 +119,8 @@ class KernelLaw:
 
     def stored(self, opening: Array, normal: Array, tangential: Array, history: Array) -> Array:
         """Energy that points of some jumps and tractions would give back, ``(np,)`` [J/m²]."""
-        return self.law.stored(self, self.seated(opening, history), normal, tangential)
-
-    def seated(self, opening: Array, history: Array) -> Array:
-        """Openings ``(np,)`` [m] counted from where the points close, which crushing moves."""
-        if PLASTIC_CLOSURE not in self.law.history:
-            return opening
-        return np.asarray(opening + history[self.law.row(PLASTIC_CLOSURE)])
+        seat = history[self.law.row(PLASTIC_CLOSURE)] if PLASTIC_CLOSURE in self.law.history else 0.0
+        return self.law.stored(self, opening + seat, normal, tangential)
 
     @property
     def parameters(self) -> Parameters:
