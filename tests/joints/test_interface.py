@@ -245,16 +245,15 @@ def test_tractions_are_within_the_cap_and_the_cone(
 
 
 @given(corners=corners, name=st.sampled_from(sorted(MATERIALS)))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=12, deadline=None)
 def test_no_path_gains_energy(corners: list[tuple[float, float]], name: str) -> None:
     """∫ σ dδ + τ ds − Ψ never falls, and is what the point says it spent as steps shrink; closed loops among them."""
     found = law(MATERIALS[name])
-    opening, slip = legs(*corners, (0.0, 0.0), steps=3000)
+    opening, slip = legs(*corners, (0.0, 0.0), steps=2000)
     normal, tangential, histories = follow(found, opening, slip)
     seat = histories[SEAT]
-    stored = np.array(
-        [found.stored(opening[[k]], normal[[k]], tangential[[k]], histories[:, [k]])[0] for k in range(len(opening))]
-    )
+    points = kernel_law([MATERIALS[name]], np.zeros(len(opening), dtype=np.int64))
+    stored = points.stored(opening, normal, tangential, histories)
     assert (stored >= 0).all()
     done = (normal[1:] + normal[:-1]) / 2 * np.diff(opening) + (tangential[1:] + tangential[:-1]) / 2 * np.diff(slip)
     lost = np.concatenate([[0.0], np.cumsum(done) - stored[1:]])
