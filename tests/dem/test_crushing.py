@@ -28,7 +28,7 @@ def block(**joint: object) -> Scene:
 
 @pytest.mark.parametrize("points", [2, 3, 5, 9])
 def test_a_block_topples_about_its_stress_block(points: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """M = N (l − x) / 2 with x = N / (t f_c): at its points, to the bracket; as they become more, of the whole joint."""
+    """M = N (l − x) / 2 with x = N / (t f_c): that of its points, to the bracket; with more of them, the joint's."""
     monkeypatch.setattr(sys.modules[wall_rule.__module__], "BETWEEN", points)
     share = 0.2
     outcome = dem_dynamic(block(compressive_strength=WEIGHT / share, cap_shear=0.0), 5e-3)

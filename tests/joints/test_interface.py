@@ -254,7 +254,7 @@ def test_no_path_gains_energy(corners: list[tuple[float, float]], name: str) -> 
     seat = histories[SEAT]
     points = kernel_law([MATERIALS[name]], np.zeros(len(opening), dtype=np.int64))
     stored = points.stored(opening, normal, tangential, histories)
-    assert (stored >= 0).all()
+    assert (stored >= -1e-9).all()
     done = (normal[1:] + normal[:-1]) / 2 * np.diff(opening) + (tangential[1:] + tangential[:-1]) / 2 * np.diff(slip)
     lost = np.concatenate([[0.0], np.cumsum(done) - stored[1:]])
     passing = 5 * (4e11 * np.abs(np.diff(opening)).max() ** 2 + K_T * np.abs(np.diff(slip)).max() ** 2)
