@@ -11,6 +11,7 @@ from runningbond.contacts.rigid_sides import RigidSides, gather_sides, scatter_s
 from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface, block_frequency_squared, joint_shares
 from runningbond.dynamics.rig import check_finite
+from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
 from runningbond.scene import Array, Indices, Scene
 
@@ -36,9 +37,9 @@ class RigidContacts:
 
     def __init__(self, scene: Scene) -> None:
         self.outline, self._materials = Outline.of(scene), ContactMaterials(scene)
-        self._rule = self._materials.rule
+        self._rule = wall_rule(scene)
         self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
-        self._mass, self._wall_points = held_masses(scene), contact_points(scene)
+        self._scene, self._mass = scene, held_masses(scene)
         undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
         self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 
@@ -53,13 +54,13 @@ class RigidContacts:
         gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
         if not self._points:
             law = self._materials.law(contacts)
-            bound = _frequency_squared(ends, law.normal_stiffness, law.shear_stiffness, self._mass)
+            bound = _frequency_squared(ends, law.stiffest, law.shear_stiffness, self._mass)
             return Interface(law, contacts.area, gather_sides, scatter_sides, ends, bound)
         pairs = contacts.pairs
         law = self._materials.law(contacts, pairs, self._points)
         normal, shear = np.zeros((2, len(contacts)))
         # The points' consistent stiffness is not more than that of their ends alone.
-        for of_ends, of_points in ((normal, law.normal_stiffness), (shear, law.shear_stiffness)):
+        for of_ends, of_points in ((normal, law.stiffest), (shear, law.shear_stiffness)):
             of_ends[pairs] = of_points[: len(pairs), None]
         bound = _frequency_squared(ends, normal, shear, self._mass)
         geometry, area = along(ends, pairs, contacts.area, self._rule)
@@ -70,32 +71,29 @@ class RigidContacts:
         return contacts.points(self._points)
 
     def at_joints(self, contacts: Contacts, values: Array) -> Array:
-        """As of `ContactSearch`, at `contact_points`: forces of all points along a joint go to its ends."""
-        if self._points:
-            pairs, share = contacts.pairs, (self._rule.nodes[:, None] + 1) / 2
-            along, values = values.reshape(5, self._points, -1), np.zeros((5, len(contacts)))
-            for end, part in enumerate((1 - share, share)):
-                for row in (0, 1, 4):
-                    values[row, pairs[:, end]] = along[row, -end]
-                for row in (2, 3):
-                    values[row] += np.bincount(pairs[:, end], (part * along[row]).sum(axis=0), len(contacts))
-        at = position_of(contacts.key, self._key_of_point)
+        """As of `ContactSearch`, at `contact_points`."""
+        at = position_of(self.points(contacts)[0], self._key_of_point)
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
         return np.where(at >= 0, values[:, at], lost[:, None])
 
     @cached_property
     def _key_of_point(self) -> Indices:
-        """Key of the end at each of `contact_points` on the undeformed wall."""
-        ends, joints, points = self.undeformed.chosen(self.undeformed.glued), self.outline.joints, self._wall_points
-        geometry = ends.geometry(self.outline)
-        gather_sides(ends.motion, geometry, *np.zeros((2, len(ends))))
-        tangent, key = joints.ends[:, 1] - joints.ends[:, 0], np.zeros(len(points), dtype=np.int64)
-        rows = [
-            np.lexsort(((at * tangent[joint]).sum(axis=1), joint))
-            for at, joint in ((points.position, points.joint), (geometry.contact[:, :2], ends.joint))
-        ]
-        key[rows[0]] = ends.key[rows[1]]
-        return key
+        """Key of the contact's point at each of `contact_points` on the undeformed wall."""
+        contacts, points = self.undeformed, contact_points(self._scene)
+        key, _ = self.points(contacts)
+        ends = contacts.geometry(self.outline)
+        gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
+        at, joint = ends.contact[:, :2], contacts.joint
+        if self._points:
+            pairs, share = contacts.pairs, (self._rule.nodes[:, None, None] + 1) / 2
+            at = ((1 - share) * at[pairs[:, 0]] + share * at[pairs[:, 1]]).reshape(-1, 2)
+            joint = np.tile(joint[pairs[:, 0]], self._points)
+        tangent = self.outline.joints.ends[:, 1] - self.outline.joints.ends[:, 0]
+        here = np.flatnonzero(joint >= 0)
+        along = ((at * tangent[joint]).sum(axis=1)[here], (points.position * tangent[points.joint]).sum(axis=1))
+        found = np.zeros(len(points), dtype=np.int64)
+        found[np.lexsort((along[1], points.joint))] = key[here][np.lexsort((along[0], joint[here]))]
+        return found
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
         """A number of the corner that rests and the side it rests on, for each contact."""

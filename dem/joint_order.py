@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runningbond.joints import JointPoints, wall_points
+from runningbond.joints import JointPoints, lobatto, wall_points, wall_rule
+from runningbond.joints.along import Along, along
 from runningbond.scene import Array, Indices, Scene
 
 from .rigid_kernels import RigidJoints
@@ -23,13 +24,15 @@ class JointOrder:
     """Blocks, joints and their contact points in the order of the kernels."""
 
     block: Indices  # (nb,) place of each block
-    points: JointPoints  # two points a joint: all joints' first ones, then all second ones
+    points: JointPoints  # all joints' first points, then all second ones, and so on
     runs: RigidJoints
+    between: Along | None  # where there are more than a joint's two ends: how these have the points between them
 
 
 def joint_order(scene: Scene) -> JointOrder:
     """Number a scene's blocks and joints."""
-    points = wall_points(scene)
+    rule = wall_rule(scene)
+    points = wall_points(scene, lobatto())
     half = np.hypot(*(points.position[1::2] - points.position[::2]).T) / 2
     place = np.argsort(scene.column_by_column)
     normal = points.normal[::2]
@@ -45,7 +48,12 @@ def joint_order(scene: Scene) -> JointOrder:
     first, second = ((of[begin] - begin).astype(np.uint64) for of in (a, b))
     shape = np.column_stack([shape, points.area[::2]])[order][begin]
     runs = RigidJoints(np.append(begin, len(order)).astype(np.uint64), first, second, shape)
-    return JointOrder(place, points.part(np.concatenate([2 * order, 2 * order + 1])), runs)
+    ends, n = points.part(np.concatenate([2 * order, 2 * order + 1])), len(order)
+    if len(rule.nodes) == 2:
+        return JointOrder(place, ends, runs, None)
+    between, _ = along(tuple(runs), np.arange(2 * n).reshape(2, n).T, ends.area, rule)
+    rows = len(rule.nodes) * order + np.arange(len(rule.nodes))[:, None]
+    return JointOrder(place, wall_points(scene, rule).part(rows.ravel()), runs, between)
 
 
 def _arms(scene: Scene, normal: Array) -> Array:

@@ -16,6 +16,7 @@ from runningbond.dynamics import (
 )
 from runningbond.dynamics.rig import Rig
 from runningbond.joints import JointPoints, wall_points, wall_strength
+from runningbond.joints.along import gather_along, scatter_along
 from runningbond.joints.law import KernelLaw
 from runningbond.joints.wall_law import kernel_law
 from runningbond.limit.kinematics import (
@@ -35,7 +36,7 @@ from .rigid_kernels import gather_rigid, scatter_rigid
 
 
 def contact_points(scene: Scene) -> JointPoints:
-    """Two contact points a joint in the order of the kernels: all joints' first ones, then all second ones."""
+    """Contact points in the order of the kernels: all joints' first ones, then all second ones, and so on."""
     return joint_order(scene).points
 
 
@@ -52,6 +53,9 @@ def rigid_system(scene: Scene) -> BlockSystem:
     law = kernel_law(scene.joint_materials, scene.material_of_joint[points.joint])
     bound = largest_frequency_squared(scene, points, law)
     interface = Interface(law, points.area, gather_rigid, scatter_rigid, order.runs, bound)
+    if order.between is not None:
+        kernels = gather_along(gather_rigid), scatter_along(scatter_rigid)
+        interface = Interface(law, points.area, *kernels, order.between, bound)
     return system_on(scene, interface, order.block[:, None] + len(scene.blocks) * np.arange(3))
 
 
@@ -132,7 +136,7 @@ def _own_frequencies(scene: Scene, points: JointPoints, law: KernelLaw, share: f
     jump = jump_operator(points, scene.blocks.centroid)
     part = joint_shares(held_masses(scene)[::3][points.block], share)
     own = np.zeros((n, 3, 3))
-    sides = ((jump.opening, law.normal_stiffness), (jump.slip, law.shear_stiffness))
+    sides = ((jump.opening, law.stiffest), (jump.slip, law.shear_stiffness))
     for operator, stiffness in ((operator, k * points.area) for operator, k in sides):
         rows = operator.tocoo()
         values = np.zeros((len(points), 2, 3))

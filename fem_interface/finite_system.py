@@ -205,7 +205,7 @@ def _blocks_on(
     gather_deformable(motion, geometry, *np.zeros((2, len(contacts))))
     turned, contact = geometry.placed.blocks, geometry.contact
     n = contact[:, 2:4]
-    directions = ((n, law.normal_stiffness), (np.column_stack([-n[:, 1], n[:, 0]]), law.shear_stiffness))
+    directions = ((n, law.stiffest), (np.column_stack([-n[:, 1], n[:, 0]]), law.shear_stiffness))
     split = [wall.split(values) for values in (scaled.mass, wall.stiffness, scaled.viscosity)]
     mass = scaled.mass[wall.rigid[:, 0]]
     facets = geometry.touched[:, :2]

@@ -166,7 +166,7 @@ def _kinds(wall: ModalWall, exponent: float) -> list[_Kind]:
     block = joint.points.block[:ne]
     inertia = wall.scene.inertial_density * wall.scene.thickness * wall.scene.blocks.area
     part = joint_shares(np.where(wall.scene.fixed, np.inf, inertia)[block], exponent)
-    normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne])
+    normal, shear = wall_stiffness(wall.scene, joint.points.joint[:ne], closed=True)
     springs = joint.points.area.reshape(n, ne) * np.stack([normal, shear])[:, None]  # (2, n, ne)
 
     # Both sides of all elements, side by side: their local nodes, and all that their stiffness depends on.

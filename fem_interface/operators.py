@@ -25,7 +25,7 @@ from skfem.helpers import dot, grad
 from skfem.models.elasticity import linear_elasticity, plane_stress
 
 from meshing import WallMesh
-from runningbond.joints import JointPoints, Rule, lobatto, wall_inset
+from runningbond.joints import JointPoints, Rule, wall_inset, wall_rule
 from runningbond.limit.kinematics import Jump
 from runningbond.scene import Array, Indices, Mask, Scene, SceneError
 
@@ -139,7 +139,7 @@ def joint_elements(
     scene
         The scene.
     rule
-        Quadrature rule; two Lobatto points where none is given.
+        Quadrature rule; that of `wall_rule` where none is given.
     points
         What the rule is laid on: each joint element, or each joint whole, whose points are then those of rigid
         blocks.
@@ -151,7 +151,7 @@ def joint_elements(
     """
     if points not in ("elements", "joints"):
         raise ValueError(f'points = {points!r}: must be "elements" or "joints"')
-    rule = rule or lobatto()
+    rule = rule or wall_rule(scene)
     inset = wall_inset(scene)
     element, local, share = (_on_elements if points == "elements" else _on_joints)(mesh, scene, rule, inset)
     a0, a1, b1, b0 = mesh.interfaces[element].T

@@ -7,7 +7,7 @@ import numpy as np
 
 from .compare.model import Model
 from .compare.models import find_model, run_model
-from .joints import wall_points
+from .joints import listed_points, wall_points
 from .path_states import PathState, collected
 from .pictures.captions import to_png, to_svg
 from .pictures.flat import draw_mechanism, figure_of
@@ -89,14 +89,15 @@ class Result:
 
     @cached_property
     def joints(self) -> Table:
-        """Joint points, two a joint, in the sense of its tangent.
+        """Joint points, two a joint, or those that forces are known at along one that crushes or closes.
 
         ``joint``, blocks ``a`` and ``b``, ``x``, ``y`` [m], ``area`` [m²], ``normal_force`` and ``shear_force`` [N],
         tension positive, and ``opening`` and ``slip`` [m] of the mechanism. Not a number is what the model does not
         say: forces on other points than these, of finer meshes, are in ``outcome.force``.
         """
         scene = self.wall.scene
-        points, force = wall_points(scene), self.outcome.force
+        force = self.outcome.force
+        points = listed_points(scene, len(force)) or wall_points(scene)
         if len(force) != len(points):
             force = np.full((len(points), 2), np.nan)
         opening, slip = rigid_jumps(scene.blocks, points, self._mechanism())

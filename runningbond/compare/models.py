@@ -22,7 +22,11 @@ DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
-ELASTIC = SOFTENING | {"block.young", "block.poisson"}
+CRUSHING = SOFTENING | {
+    *("joint.compressive_strength", "joint.compressive_fracture_energy", "joint.cap_shear", "joint.peak_closure"),
+    "joint.closure",
+}
+ELASTIC = CRUSHING | {"block.young", "block.poisson"}
 
 EXTRAS = frozenset(
     {
@@ -96,7 +100,7 @@ _EVERY_MODEL = (
         marker="v",
     ),
     Model(
-        *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, SOFTENING, "history"),
+        *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, CRUSHING, "history"),
         parameters=(*IN_STEPS, "displacements"),
         observer=_MOTION_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),

@@ -4,16 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.joints import joint_stiffness, lobatto
+from runningbond.joints import joint_stiffness
 from runningbond.joints.law import KernelLaw
-from runningbond.joints.points import Rule
 from runningbond.joints.wall_law import kernel_law
 from runningbond.scene import Indices, JointMaterial, Scene, SceneError, table_of
 
 from .search import Contacts
-
-POINTS = 5
-"""Lobatto points along a contact where a joint crushes or closes, which answers to the pressures all along."""
 
 
 def dry(material: JointMaterial) -> JointMaterial:
@@ -52,12 +48,6 @@ class ContactMaterials:
         own, self._of_joint = scene.joint_materials, scene.material_of_joint
         self._broken = tuple(map(dry, own))
         self._all = (*(each if each.cohesion > 0 else dry(each) for each in own), *self._broken)
-
-    @property
-    def rule(self) -> Rule:
-        """Points along a pair of facing sides, the ends among them."""
-        crush = any(each.closure is not None or each.compressive_strength is not None for each in self._all)
-        return lobatto(POINTS if crush else 2)
 
     def number(self, contacts: Contacts) -> Indices:
         """Number of the material of each end, ``(n,)``."""

@@ -129,9 +129,10 @@ def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Crit
     state, law, area = result.rests[0][1] if result.rests else result.fallen, run.interface.law, run.interface.area
     if state is None:
         return ""
-    normal, _ = run.forces(state)
-    springs = law.normal_stiffness * area
-    overlap = float((-normal / springs).max(initial=0.0))
+    opening, _, normal, _ = run.tractions(state)
+    springs = law.stiffest * area
+    # What is crushed is no overlap, and what has closed overlaps by less than without growth of its stiffness.
+    overlap = float(np.minimum(-opening, -normal / law.normal_stiffness).max(initial=0.0))
     stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * area).max(initial=0.0)))
     smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
     return stiffness_note(overlap, float(np.min(criteria.collapse)), scene.block_size, stiffest, smallest)

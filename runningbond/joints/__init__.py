@@ -6,7 +6,16 @@ from .point_law import PointLaw, PointResponse
 from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw
 from .stiffness import joint_stiffness, stiffness_note
-from .wall_points import static_law, wall_cones, wall_inset, wall_points, wall_stiffness, wall_strength
+from .wall_points import (
+    listed_points,
+    static_law,
+    wall_cones,
+    wall_inset,
+    wall_points,
+    wall_rule,
+    wall_stiffness,
+    wall_strength,
+)
 
 __all__ = [
     "JointPoints",
@@ -20,6 +29,7 @@ __all__ = [
     "gauss",
     "joint_points",
     "joint_stiffness",
+    "listed_points",
     "lobatto",
     "point_strength",
     "static_law",
@@ -27,6 +37,7 @@ __all__ = [
     "wall_cones",
     "wall_inset",
     "wall_points",
+    "wall_rule",
     "wall_stiffness",
     "wall_strength",
 ]

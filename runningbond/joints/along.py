@@ -63,11 +63,11 @@ def along(ends: Any, pairs: Indices, area: Array, rule: Rule) -> tuple[Along, Ar
 def to_points(ends: Array, pairs: NDArray[np.uint64], share: Array, points: Array) -> None:
     """Write jumps of points ``(m n,)`` between those of ends ``(ne,)``."""
     n = pairs.shape[0]
-    for p in range(share.size):
-        second = share[p]
-        first = 1.0 - second
-        for j in range(n):
-            points[p * n + j] = first * ends[pairs[j, 0]] + second * ends[pairs[j, 1]]
+    for j in range(n):
+        first = ends[pairs[j, 0]]
+        change = ends[pairs[j, 1]] - first
+        for p in range(share.size):
+            points[p * n + j] = first + share[p] * change
 
 
 @kernel
@@ -75,13 +75,14 @@ def to_ends(points: Array, pairs: NDArray[np.uint64], share: Array, weight: Arra
     """Write tractions of ends ``(ne,)`` that do the work of those of points ``(m n,)``."""
     n = pairs.shape[0]
     ends[:] = 0.0
-    for p in range(share.size):
-        second = weight[p] * share[p]
-        first = weight[p] - second
-        for j in range(n):
-            traction = points[p * n + j]
-            ends[pairs[j, 0]] += scale[j, 0] * first * traction
-            ends[pairs[j, 1]] += scale[j, 1] * second * traction
+    for j in range(n):
+        whole, second = 0.0, 0.0
+        for p in range(share.size):
+            traction = weight[p] * points[p * n + j]
+            whole += traction
+            second += share[p] * traction
+        ends[pairs[j, 0]] += scale[j, 0] * (whole - second)
+        ends[pairs[j, 1]] += scale[j, 1] * second
 
 
 @cache

@@ -22,6 +22,9 @@ the last step [m]."""
 FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
 """Their numbers."""
 
+PLASTIC_CLOSURE = "plastic closure"
+"""Row, in laws of joints that crush, of how far a point has been crushed [m]: there it closes again."""
+
 Parameters: TypeAlias = tuple[NDArray[np.uint64], Array]
 
 
@@ -44,7 +47,8 @@ class Law:
         Names of the rows of the history, `COMMON_ROWS` first. At finite displacements, where a contact is carried
         from one side of a block to the next, a law needs a row ``"plastic slip"`` [m].
     stored
-        ``stored(points, opening, normal, tangential)``: energy that points would give back, ``(np,)`` [J/m²].
+        ``stored(points, opening, normal, tangential)``: energy that points would give back, ``(np,)`` [J/m²]; the
+        opening counts from where they close (`PLASTIC_CLOSURE`).
     damage
         The row that says how far points are broken, from 0 to 1; None for a law that knows no damage.
     cone
@@ -52,6 +56,8 @@ class Law:
     response
         ``response(strength, normal_stiffness, shear_stiffness)``: the law with a tangent, a `PointLaw` or a subclass;
         models that solve for rest refuse a law that has none.
+    stiffest
+        Number of the constant that is the largest normal stiffness [Pa/m], by which time steps go.
     """
 
     name: str
@@ -62,6 +68,7 @@ class Law:
     damage: str | None = None
     cone: Callable[[JointMaterial], tuple[float, float, float]] = field(default=truncated_cone, compare=False)
     response: Callable[[PointStrength, Array, Array], PointLaw] | None = field(default=None, compare=False)
+    stiffest: int = 0
 
     def __post_init__(self) -> None:
         if self.history[:4] != COMMON_ROWS:
@@ -110,10 +117,10 @@ class KernelLaw:
         """Rows of the history."""
         return len(self.law.history)
 
-    @property
-    def stored(self) -> Callable[["KernelLaw", Array, Array, Array], Array]:
-        """The law's stored energy."""
-        return self.law.stored
+    def stored(self, opening: Array, normal: Array, tangential: Array, history: Array) -> Array:
+        """Energy that points of some jumps and tractions would give back, ``(np,)`` [J/m²]."""
+        seat = history[self.law.row(PLASTIC_CLOSURE)] if PLASTIC_CLOSURE in self.law.history else 0.0
+        return self.law.stored(self, opening + seat, normal, tangential)
 
     @property
     def parameters(self) -> Parameters:
@@ -129,6 +136,11 @@ class KernelLaw:
     def normal_stiffness(self) -> Array:
         """k_n of each point, ``(np,)`` [Pa/m]."""
         return self.of_points(0)
+
+    @property
+    def stiffest(self) -> Array:
+        """Largest normal stiffness of each point, ``(np,)`` [Pa/m]."""
+        return self.of_points(self.law.stiffest)
 
     @property
     def shear_stiffness(self) -> Array:

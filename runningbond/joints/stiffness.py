@@ -39,6 +39,11 @@ def joint_stiffness(material: JointMaterial) -> Stiffness:
     raise SceneError(f"{table}.mortar", f"is missing; this model needs it, or {other}")
 
 
+def stiffest(material: JointMaterial) -> float:
+    """Largest normal stiffness per unit area [Pa/m], that of a joint that has closed."""
+    return joint_stiffness(material).normal if material.closure is None else material.closure.stiffest
+
+
 def stiffness_note(overlap: float, collapse: float, size: float, stiffness: float, force_unit: float) -> str:
     """What an outcome's message is to say of stiffnesses that its numbers suffer from; empty for others.
 

@@ -7,31 +7,33 @@ import numpy as np
 from runningbond.scene import Indices, JointMaterial, SceneError
 
 from .coulomb import COULOMB
+from .interface import INTERFACE
 from .law import KernelLaw, Law
 from .softening import SOFTENING
 
 
 def law_of(material: JointMaterial) -> Law:
-    """Law of a material: its own, or Coulomb's, which softens where there is a fracture energy."""
+    """Law of a material: its own, or Coulomb's, which softens where there is a fracture energy; or it may crush."""
     if isinstance(material.law, Law):
         return material.law
     if material.law is not None:
         raise SceneError("joint.law", "must be a runningbond.joints.Law", material.law)
+    if material.closure is not None or material.compressive_strength is not None:
+        return INTERFACE
     return COULOMB if material.fracture_energy_1 is None else SOFTENING
 
 
 def common_law(materials: Sequence[JointMaterial]) -> Law:
     """The one law of materials that joints of one wall are of; a `SceneError` for laws that do not go together.
 
-    Plastic joints may stand beside softening ones.
+    Plastic joints may stand beside softening ones, and both beside those that crush or close.
     """
     laws = {law.name: law for law in map(law_of, materials)}
-    if laws.keys() == {COULOMB.name, SOFTENING.name}:
-        return SOFTENING
-    if len(laws) > 1:
+    nested = [law.name for law in (COULOMB, SOFTENING, INTERFACE) if law.name in laws]
+    if len(laws) > 1 and len(nested) < len(laws):
         names = " and ".join(f'"{name}"' for name in laws)
         raise SceneError("joint.law", f"the joints of a wall have one law, and these are of {names}")
-    return next(iter(laws.values()))
+    return laws[nested[-1]] if nested else next(iter(laws.values()))
 
 
 def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelLaw:

@@ -2,18 +2,33 @@
 
 import numpy as np
 
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene, SceneError, table_of
 
 from .law import Law
 from .mohr_coulomb import PointStrength, truncated_cone
 from .point_law import PointLaw
-from .points import JointPoints, Rule, joint_points
-from .stiffness import joint_stiffness
+from .points import JointPoints, Rule, joint_points, lobatto
+from .stiffness import joint_stiffness, stiffest
+
+BETWEEN = 5
+"""Points of a joint along which pressures are spread."""
 
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
     """Lay a quadrature rule on every joint of a scene, its ends moved in by the joint's inset."""
     return joint_points(scene.joints, scene.thickness, rule, wall_inset(scene))
+
+
+def wall_rule(scene: Scene) -> Rule:
+    """Points that the law of a scene's joints is evaluated at: the ends, and between them what crushes or closes."""
+    spread = any(each.compressive_strength or each.closure for each in scene.joint_materials)
+    return lobatto(BETWEEN if spread else 2)
+
+
+def listed_points(scene: Scene, count: int) -> JointPoints | None:
+    """The points on a scene's joints that so many forces are of: their ends, or those of `wall_rule`, or others."""
+    rules = (rule for rule in (lobatto(), wall_rule(scene)) if count == len(rule.nodes) * len(scene.joints))
+    return next((wall_points(scene, rule) for rule in rules), None)
 
 
 def wall_inset(scene: Scene) -> Array:
@@ -35,9 +50,13 @@ def wall_cones(scene: Scene, joint: Indices) -> tuple[Array, Array, Array]:
     return friction, tension, shear
 
 
-def wall_stiffness(scene: Scene, joint: Indices) -> tuple[Array, Array]:
-    """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m], as of `joint_stiffness`."""
-    of_material = np.array([(each.normal, each.shear) for each in map(joint_stiffness, scene.joint_materials)])
+def wall_stiffness(scene: Scene, joint: Indices, *, closed: bool = False) -> tuple[Array, Array]:
+    """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m], as of `joint_stiffness`.
+
+    Of joints that are `closed` it is the largest that they come to.
+    """
+    both = [(joint_stiffness(each), stiffest(each)) for each in scene.joint_materials]
+    of_material = np.array([(largest if closed else each.normal, each.shear) for each, largest in both])
     normal, shear = of_material[scene.material_of_joint[joint]].T
     return normal, shear
 
@@ -47,6 +66,11 @@ def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Arra
 
     A law without a tangent is refused by a `SceneError`.
     """
+    for material in scene.joint_materials:
+        for key in ("compressive_strength", "closure"):
+            if getattr(material, key) is not None:
+                what = "is not taken by dem-static, which knows neither crushing nor closure; dem-dynamic and fem do"
+                raise SceneError(f"{table_of(material)}.{key}", what)
     if all(material.law is None for material in scene.joint_materials):
         return PointLaw(strength, normal, shear)
     from .wall_law import common_law

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runningbond.joints import wall_points
+from runningbond.joints import listed_points, wall_points
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.results import MechanismCheck, Outcome, check_mechanism
 from runningbond.results.mechanism import rigid_jumps
@@ -16,15 +16,16 @@ from .joint_state import joint_states, states_of_mechanism
 def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
     """The mechanism of an outcome, its fastest corner moving by one metre; None where it has none.
 
-    Tractions are those under the load of the mechanism, or zero where the outcome lists none for the two points
-    of each joint that rigid blocks have.
+    Tractions are those under the load of the mechanism, or zero where the outcome lists none for the ends of joints.
     """
     if not has_mechanism(scene, outcome):
         return None
     points = wall_points(scene)
     opening, slip = rigid_jumps(scene.blocks, points, outcome.motion)
-    listed = len(outcome.force) == len(points)
-    traction = outcome.force / points.area[:, None] if listed else np.zeros((len(points), 2))
+    listed, traction = listed_points(scene, len(outcome.force)), np.zeros((len(points), 2))
+    if listed is not None and len(points):
+        of_joint = (outcome.force / listed.area[:, None]).reshape(len(scene.joints), -1, 2)
+        traction = of_joint[:, [0, -1]].reshape(-1, 2)
     state = states_of_mechanism(scene, points, opening, slip)
     multiplier = outcome.multiplier if outcome.multiplier is not None else outcome.upper or 0.0
     return Frame(multiplier, outcome.motion, opening, slip, traction[:, 0], traction[:, 1], state)

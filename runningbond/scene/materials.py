@@ -116,7 +116,10 @@ class JointMaterial:
         f_m [Pa] and C_ss of the cap on pressures, ``σ² + cap_shear τ² ≤ compressive_strength²`` (Lourenço & Rots 1997,
         eq. 19, with C_nn = 1, C_n = 0); None is a joint that never crushes.
     compressive_fracture_energy
-        Energy of crushing beyond the strength [J/m²]; None is perfectly plastic.
+        Energy of crushing, all that is not elastic [J/m²]; None is perfectly plastic.
+    peak_closure
+        Plastic closure [m] at which a joint that begins to crush at a third of its strength has come to it (Lourenço &
+        Rots 1997, κ_p); 0 is elastic up to the strength.
     closure
         How the normal stiffness grows with pressure; None is constant.
     law
@@ -140,6 +143,7 @@ class JointMaterial:
     compressive_strength: Positive | None = None
     compressive_fracture_energy: Positive | None = None
     cap_shear: NotNegative = 9.0
+    peak_closure: NotNegative = 0.0
     closure: Closure | None = None
     law: object = None
     name: str = "joint"
@@ -157,12 +161,24 @@ class JointMaterial:
         if self.fracture_energy_1 is None and self.fracture_energy_2 is not None:
             what = "is missing; what a joint loses in slip it loses in opening as well"
             raise SceneError("joint.fracture_energy_1", what)
-        if self.compressive_strength is None and self.compressive_fracture_energy is not None:
-            what = "is missing; a joint that crushes needs a strength"
-            raise SceneError("joint.compressive_strength", what)
+        self._check_crushing()
         self._check_closure()
         if self.law is not None and not hasattr(self.law, "kernel"):
             raise SceneError("joint.law", "must be a law of joints, a runningbond.joints.Law in Python", self.law)
+
+    def _check_crushing(self) -> None:
+        energy = self.compressive_fracture_energy
+        if self.compressive_strength is None and (energy is not None or self.peak_closure):
+            what = "is missing; a joint that crushes needs a strength"
+            raise SceneError("joint.compressive_strength", what)
+        if energy is not None and energy <= self.energy_to_peak:
+            what = f"must be above {self.energy_to_peak:.6g}, which is spent on the way to the peak"
+            raise SceneError("joint.compressive_fracture_energy", what, energy)
+
+    @property
+    def energy_to_peak(self) -> float:
+        """Energy of crushing up to `peak_closure` [J/m²]."""
+        return (1 / 3 + math.pi / 6) * (self.compressive_strength or 0.0) * self.peak_closure
 
     def _check_closure(self) -> None:
         if self.closure is None:

@@ -14,6 +14,60 @@ from .test_scene import drawing
 
 POINT = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1]}
 FREE = {"wall__length": None, "wall__height": None}
+DIRECT = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9}
+CLOSURE = {"growth": 1e4, "stiffest": 1e11}
+CRUSHING: list[tuple[dict[str, Any], str]] = [
+    ({"joint__compressive_strength": 0}, "joint.compressive_strength = 0: must be a number above 0"),
+    ({"joint__compressive_strength": -1e7}, "joint.compressive_strength = -10000000.0: must be a number above 0"),
+    ({"joint__compressive_strength": "10 MPa"}, "joint.compressive_strength = '10 MPa': must be a number above 0"),
+    ({"joint__compressive_strength": float("inf")}, "joint.compressive_strength = inf: must be a number above 0"),
+    ({"joint__compresive_strength": 1e7}, 'did you mean "compressive_strength"?'),
+    ({"joint__compressive_fracture_energy": 5e3}, "joint.compressive_strength: is missing; a joint that crushes"),
+    ({"joint__peak_closure": 9e-5}, "joint.compressive_strength: is missing; a joint that crushes"),
+    (
+        {"joint__compressive_strength": 1e7, "joint__compressive_fracture_energy": 0},
+        "joint.compressive_fracture_energy = 0: must be a number above 0",
+    ),
+    (
+        {"joint__compressive_strength": 1e7, "joint__compressive_fracture_energy": [5e3]},
+        "joint.compressive_fracture_energy = [5000.0]: must be a number",
+    ),
+    (
+        {"joint__compressive_strength": 1e7, "joint__compressive_fracture_energy": 800, "joint__peak_closure": 1e-4},
+        "joint.compressive_fracture_energy = 800: must be above 856.932, which is spent on the way to the peak",
+    ),
+    ({"joint__compressive_strength": 1e7, "joint__cap_shear": -9}, "joint.cap_shear = -9: must be a number at least 0"),
+    ({"joint__compressive_strength": 1e7, "joint__cap_shear": True}, "joint.cap_shear = True: must be a number"),
+    (
+        {"joint__compressive_strength": 1e7, "joint__peak_closure": -1e-5},
+        "joint.peak_closure = -1e-05: must be a number at least 0",
+    ),
+    ({"joint__closure": CLOSURE}, "joint.normal_stiffness: is missing; closure needs the stiffness without pressure"),
+    (
+        {"joint__closure": CLOSURE, "joint__mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}},
+        "joint.normal_stiffness: is missing; closure needs the stiffness without pressure",
+    ),
+    ({**DIRECT, "joint__closure": 1e4}, "joint.closure = 10000.0: must be a table"),
+    ({**DIRECT, "joint__closure": {"growth": 1e4}}, "joint.closure.stiffest: is missing"),
+    ({**DIRECT, "joint__closure": {"stiffest": 1e11}}, "joint.closure.growth: is missing"),
+    ({**DIRECT, "joint__closure": {**CLOSURE, "growth": 0}}, "joint.closure.growth = 0: must be a number above 0"),
+    (
+        {**DIRECT, "joint__closure": {**CLOSURE, "stiffest": 1e9}},
+        "joint.closure.stiffest = 1000000000.0: must be at least normal_stiffness = 1e+10",
+    ),
+    (
+        {**DIRECT, "joint__closure": {**CLOSURE, "stifest": 1e9}},
+        'joint.closure.stifest = 1000000000.0: is not a key of [joint.closure]; did you mean "stiffest"?',
+    ),
+    (
+        {"joints": {"soft": {"friction": 0.5, "compressive_strength": -1}}},
+        "joints.soft.compressive_strength = -1: must be a number above 0",
+    ),
+    (
+        {"inner_joint": {"friction": 0.5, "compressive_fracture_energy": 1.0}},
+        "inner_joint.compressive_strength: is missing; a joint that crushes needs a strength",
+    ),
+]
 
 
 @pytest.mark.parametrize(
@@ -34,6 +88,7 @@ FREE = {"wall__length": None, "wall__height": None}
             "joint.friction = 1e-09: must be 0, for joints without friction, or such that tan φ ≥ 1e-06",
         ),
         ({"joint__fracture_energy_2": 5.0}, "joint.fracture_energy_1: is missing"),
+        *CRUSHING,
         ({"joint": {"friction_angle": 1e-9}}, "joint.friction_angle = 1e-09: must be 0"),
         (
             {"load__live": {"kind": "point", "at": [0.72, 0.72], "force": [1e-9, -1.0]}},

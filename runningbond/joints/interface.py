@@ -1,0 +1,148 @@
+"""Joint points that may open, slide, crush and close: `softening` in tension and shear, with a cap and a closure.
+
+The joint sits where it was crushed to: with δ_p its plastic closure, what `softening` reads of the opening is read of
+δ + δ_p. Pressure is that of `closure`, shear Coulomb's without dilatancy, both within the cap of `crushing`. A
+material that neither crushes nor closes has the tractions of `softening`.
+"""
+
+import math
+
+import numpy as np
+
+from runningbond.scene import Array, JointMaterial
+
+from .closure import closure_curve, pressure_at, stiffness_at, stored_at
+from .compiled import kernel
+from .coulomb import PLASTIC_SLIP
+from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
+from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
+from .softening import DAMAGE, SLIPPED, softening_constants
+from .softening import HISTORY as SOFTENING_HISTORY
+
+HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, "crushed")
+"""Beside the rows of softening points: plastic closure δ_p and κ of the cap, both [m]."""
+
+SEAT, CRUSHED = len(HISTORY) - 2, len(HISTORY) - 1
+
+CURVE = 9
+"""Number of the first constant of the closure's curve."""
+
+STIFFEST = CURVE + 4
+
+
+def interface_constants(material: JointMaterial) -> tuple[float, ...]:
+    """Constants of `interface_kernel`: of softening, closure and crushing, and 1 where the last is sudden."""
+    curve = closure_curve(material)
+    return *softening_constants(material), *curve, *crushing_cap(material), float(breaks_suddenly(material, curve))
+
+
+def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
+    """Energy of points that unload to where they sit in opening and along their curve in closure, ``(np,)`` [J/m²]."""
+    curve = tuple(points.of_points(CURVE + k) for k in range(5))
+    closed = stored_at.py_func(np.maximum(0.0, -normal), curve)
+    opened = np.maximum(0.0, normal) * np.maximum(0.0, opening) / 2
+    return np.asarray(closed + opened + tangential**2 / (2 * points.shear_stiffness))
+
+
+@kernel
+def interface_kernel(
+    opening: Array,
+    slip: Array,
+    parameters: Parameters,
+    history: Array,
+    viscosity: float,
+    normal: Array,
+    tangential: Array,
+) -> None:
+    """Tractions of joint points from their jumps; see `coulomb_kernel` for the arguments.
+
+    Viscosity goes with the present stiffness, and does not act on what is being crushed.
+    """
+    segments, constants = parameters
+    spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
+    opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
+    damage, slipped, seat, crushed = history[DAMAGE], history[SLIPPED], history[SEAT], history[CRUSHED]
+    for segment in range(constants.shape[0]):
+        of = constants[segment]
+        k_t, tension, shear, friction, flexibility = of[1], of[2], of[3], of[4], of[5]
+        first, last, per_slip = of[6], of[7], of[8]
+        curve = (of[9], of[10], of[11], of[12], of[13])
+        cap = (of[14], of[15], of[16], of[17])
+        crushes, cap_shear, sudden = of[14] < math.inf, of[15], of[18] > 0.0
+        for i in range(segments[segment], segments[np.uint64(segment + 1)]):
+            change_n, change_t = opening[i] - opening_before[i], slip[i] - slip_before[i]
+            jump_n = opening[i] + seat[i]
+            before = damage[i]
+            torn = min(1.0, max(0.0, (jump_n - first) / (last - first)))
+            sheared = min(1.0, slipped[i] * per_slip)
+            after = max(before, min(1.0, math.sqrt(torn * torn + sheared * sheared)))
+            sound = 1.0 - after
+            trial = k_t * (slip[i] - plastic_slip[i])
+            room = sound * (shear + friction * tension)
+            viscous, pressure, closure = 0.0, 0.0, max(0.0, -jump_n)
+            if jump_n > 0.0:
+                onset = first + before * (last - first)
+                secant_before = (1.0 - before) * tension / onset if tension > 0.0 else 0.0
+                secant = sound * tension / (first + after * (last - first)) if tension > 0.0 else 0.0
+                spent[i] += 0.5 * (secant_before - secant) * jump_n * min(jump_n, onset)
+                elastic = secant * jump_n
+            else:
+                pressure = pressure_at(closure, curve)
+                elastic = -pressure
+                viscous = viscosity * stiffness_at(pressure, curve) * change_n
+            flowed = 0.0  # slip of the cap
+            n = min(elastic + viscous, sound * tension)
+            most = max(0.0, room - friction * n)
+            held = max(-most, min(most, trial))
+            slid = (trial - held) * flexibility
+            limit, still = math.inf, 0.0
+            if crushes:
+                limit = strength_at(crushed[i], cap)
+                still = min(abs(trial), max(0.0, room - friction * elastic))
+                if pressure * pressure + cap_shear * still * still > limit * limit:
+                    pull = max(0.0, elastic)
+                    beyond = (pressure, closure, abs(trial))
+                    p, t, mu = return_to_cap(beyond, crushed[i], k_t, (room, friction, pull), curve, cap)
+                    n = elastic = pull - p
+                    held = math.copysign(t, trial)
+                    most = t
+                    slid = (trial - held) * flexibility
+                    flowed = cap_shear * mu * held
+                    kappa = crushed[i] + mu * math.sqrt(p * p + cap_shear * t * t)
+                    work = work_until(kappa, cap) - work_until(crushed[i], cap) - flowed * held
+                    if sudden:
+                        # All that is put in and not stored: more than the cap spends, in a step where it snaps.
+                        p_before = pressure_at(max(0.0, -opening_before[i] - seat[i]), curve)
+                        t_before = k_t * (slip_before[i] - plastic_slip[i])
+                        put_in = 0.5 * ((t_before + held) * change_t - (p_before + p) * change_n)
+                        released = stored_at(p_before, curve) - stored_at(p, curve)
+                        released += 0.5 * (t_before * t_before - t * t) * flexibility
+                        work = max(0.0, put_in + released) - held * slid
+                    spent[i] += work
+                    crushed[i] = kappa
+                    seat[i] += p * mu
+                    limit = math.inf
+            t = max(-most, min(most, held + viscosity * k_t * change_t))
+            if crushes and min(0.0, n) ** 2 + cap_shear * t * t > limit * limit:
+                # Neither does viscosity press or shear beyond the cap.
+                n = max(n, -max(pressure, math.sqrt(limit * limit - cap_shear * still * still)))
+                if cap_shear > 0.0:
+                    within = max(0.0, limit * limit - min(0.0, n) ** 2) / cap_shear
+                    most = min(max(0.0, room - friction * n), max(still, math.sqrt(within)))
+                held = max(-most, min(most, trial))
+                slid = (trial - held) * flexibility
+                t = max(-most, min(most, held + viscosity * k_t * change_t))
+            plastic_slip[i] += slid
+            slipped[i] += abs(slid - flowed)
+            spent[i] += held * slid
+            damped[i] += (n - elastic) * change_n + (t - held) * change_t
+            damage[i] = after
+            opening_before[i] = opening[i]
+            slip_before[i] = slip[i]
+            normal[i] = n
+            tangential[i] = t
+
+
+INTERFACE = Law(
+    "interface", interface_constants, interface_kernel, HISTORY, stored_when_seated, damage="damage", stiffest=STIFFEST
+)
