@@ -76,6 +76,17 @@ class RigidContacts:
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
         return np.where(at >= 0, values[:, at], lost[:, None])
 
+    def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
+        """As of `ContactSearch`."""
+        ends = contacts.geometry(self.outline)
+        gather_sides(motion, ends, *np.zeros((2, len(contacts))))
+        if self._points:
+            pairs, share = contacts.pairs, (self._rule.nodes[:, None] + 1) / 2
+            along, force = force.reshape(2, self._points, -1), np.zeros((2, len(contacts)))
+            for end, part in enumerate((1 - share, share)):
+                np.add.at(force.T, pairs[:, end], (part * along).sum(axis=1).T)
+        return contacts.resultants(self.outline, ends.contact, force)
+
     @cached_property
     def _key_of_point(self) -> Indices:
         """Key of the contact's point at each of `contact_points` on the undeformed wall."""

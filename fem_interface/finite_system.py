@@ -153,6 +153,13 @@ class DeformableContacts:
         part = np.where(np.arange(5)[:, None] // 2 == 1, share, 1.0)
         return np.where(at >= 0, values[:, at] * part, lost[:, None])
 
+    def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
+        """As of `ContactSearch`."""
+        geometry = self.geometry(contacts)
+        gather_deformable(motion, geometry, *np.zeros((2, len(contacts))))
+        contact = geometry.contact
+        return contacts.resultants(self.outline, contact[:, :4], force * [np.ones(len(contacts)), contact[:, 6]])
+
     @cached_property
     def _joint_points(self) -> tuple[Indices, Array]:
         """Key of the contact of the same joint nearest to each joint point, and the point's part of its area."""

@@ -83,6 +83,24 @@ class Contacts:
             np.zeros((len(self), 4)),
         )
 
+    def resultants(self, outline: Outline, contact: Array, force: Array) -> Array:
+        """Resultants on each block, moments about the origin, ``(nb, 3)`` [N, N, N m].
+
+        Parameters
+        ----------
+        contact : (n, 4) float
+            Point [m] and normal of each end in space.
+        force : (2, n) float
+            Its normal and tangential force [N].
+        """
+        (x, y, nx, ny), (pull, shear) = contact.T, force
+        fx, fy = pull * nx - shear * ny, pull * ny + shear * nx
+        b, a = outline.blocks.owner[self.ends[:, 4:].astype(np.int64)].T
+        total = np.zeros((len(outline.blocks), 3))
+        for block, sense in ((a, 1.0), (b, -1.0)):
+            np.add.at(total, block, sense * np.column_stack([fx, fy, x * fy - y * fx]))
+        return total
+
 
 def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     """Find every end of facing sides one of whose two is nearer than a margin [m] after a motion ``(3 nb,)``.

@@ -17,6 +17,9 @@ SPEED_FACTOR = 2
 STEPS_AHEAD = 16
 """Steps of the fastest body within which sides count as near at least."""
 
+HELD = 1.1
+"""Margin in openings of joints that are not broken yet."""
+
 MOST_STEPS = 1000
 """Steps between two looks at how far the bodies have moved."""
 
@@ -65,7 +68,10 @@ class ContactUpdate:
         # struck one may be deeper, and is not to be lost sight of before it is thrown back.
         fast = STEPS_AHEAD * self._travel(state.velocity) * dt
         deep = -2 * opening.min(initial=0.0)
-        contacts = search.find(state.motion, max(search.outline.margin, fast, deep))
+        # Nor is a joint that is not broken yet, however far it has opened.
+        whole = (interface.law.tension > 0) & (interface.law.damage(history) < 1)
+        drawn = HELD * opening[whole].max(initial=0.0)
+        contacts = search.find(state.motion, max(search.outline.margin, fast, deep, drawn))
         # The same end of the same two sides; or, for a corner that has turned on, the same corner on the same side,
         # which goes on with the area that it had: another stiffness would jolt it.
         turned = position_of(rested, search.resting(contacts, state.motion))
@@ -73,8 +79,9 @@ class ContactUpdate:
         on, still = turned >= 0, same >= 0
         area, glued = contacts.area.copy(), np.zeros(len(contacts), dtype=bool)
         area[on & ~still] = before.area[turned[on & ~still]]
-        lasting = still & (contacts.joint >= 0)
-        area[lasting] = before.area[same[lasting]]
+        # Sides that met later bear by more as they come to overlap by more, and go on with it.
+        kept_area = before.area[same[still]]
+        area[still] = np.where(contacts.joint[still] >= 0, kept_area, np.maximum(area[still], kept_area))
         glued[still] = before.glued[same[still]]
 
         state.contacts = replace(contacts, area=area, glued=glued)

@@ -252,20 +252,16 @@ class Run:
         return values if search is None else search.at_joints(contacts_of(state), values)
 
     def resultants(self, state: State, multiplier: float) -> Array:
-        """Resultants of contacts and loads on each body, moments about the origin, ``(n, 3)`` [N, N, N m]."""
-        system = self.system
-        _, _, *tractions = self.tractions(state)
-        live = system.live.copy()
-        moment = turn_rig(self._rig, state.motion, live) if self._rig else 0.0
-        force = system.dead + multiplier * live
-        self.interface.scatter(*tractions, self._arrays[0], force)
-        total, search = force[system.rigid], system.contacts
+        """Resultants of contacts and loads on each body of a rig, moments about the origin, ``(n, 3)`` [N, N, N m]."""
+        system, live, search = self.system, self.system.live.copy(), self.system.contacts
         if search is None or system.rig is None:
             raise TypeError("resultants are those of a rig at finite displacements")
-        total[(system.rigid[:, 0] == system.rig.freedom[0]), 2] += moment
+        moment = turn_rig(self._rig, state.motion, live)
+        total = (system.dead + multiplier * live)[system.rigid]
+        total[system.rigid[:, 0] == system.rig.freedom[0], 2] += moment
         at = search.outline.blocks.centroid + state.motion[system.rigid][:, :2]
         total[:, 2] += at[:, 0] * total[:, 1] - at[:, 1] * total[:, 0]
-        return np.asarray(total)
+        return np.asarray(total + search.resultants(contacts_of(state), state.motion, np.array(self.forces(state))))
 
     def ledger(self, state: State) -> Ledger:
         """Account for the work of the loads so far."""

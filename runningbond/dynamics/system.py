@@ -99,6 +99,12 @@ class ContactSearch(Protocol):
         That is openings and slips [m], normal and tangential forces [N], and damage.
         """
 
+    def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
+        """Forces on each body and their moments about the origin after a motion ``(nd,)``, ``(n, 3)`` [N, N, N m].
+
+        They are those of the points' normal and tangential forces ``(2, np)`` [N].
+        """
+
 
 @dataclass(frozen=True, eq=False)
 class BlockSystem:

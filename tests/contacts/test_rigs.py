@@ -117,6 +117,7 @@ def test_five_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str,
     changes: dict[str, Any] = {f"joint__{name}": value for name, value in joint.items()}
     outcome = finite(rig(**changes, beam__drive={"displacement": [1e-5, 0], "at": 0.6}))
     force, length, height = float(outcome.curve[-1, 1]), 0.4, 0.6
+    assert column(outcome, "ground vertical [N]") == pytest.approx(2e4, rel=1e-3)
     exact = 2 * force / (STIFFNESS * 0.2 * length) + force * height**2 / (STIFFNESS * 0.2 * length**3 / arm)
     assert outcome.curve[-1, 0] == pytest.approx(exact, rel=5e-3)
 

@@ -357,10 +357,10 @@ def test_finite_displacements_refuse_what_they_do_not_know(pushover: Any, extra:
 
 
 @pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
-def test_finite_displacements_refuse_joints_of_several_materials(pushover: Any) -> None:
-    joints = {"lime": {"friction": 0.7, "mortar": MORTAR}}
+def test_finite_displacements_refuse_joints_of_several_insets(pushover: Any) -> None:
+    joints = {"lime": {"friction": 0.7, "mortar": MORTAR, "inset": 0.01}}
     assign = [{"joint": "lime", "box": [[0, 0], [1, 0.01]]}]
-    with pytest.raises(SceneError, match="joints: finite displacements need one material"):
+    with pytest.raises(SceneError, match="joints.lime.inset = 0.01: finite displacements need one inset"):
         pushover(block(joints=joints, assign=assign), 0.01)
 
 

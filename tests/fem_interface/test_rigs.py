@@ -1,0 +1,118 @@
+"""Walls of deformable blocks that a rig leads through finite displacements, against rigid ones and exact solutions."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+import dem.finite_system
+from fem_interface.finite_system import finite_system
+from fem_interface.model import fem
+from fem_interface.node_outline import node_outline
+from runningbond.compare import run_model
+from runningbond.dynamics import Carried, Run, State
+from runningbond.scene import Scene, SceneError
+from tests.contacts.test_rigs import GLUE, column, force_at, rig
+
+STONE = {"density": 1000.0, "young": 1e10, "poisson": 0.2}
+
+
+def stone(courses: int = 1, length: float = 0.4, height: float = 0.6, **changes: Any) -> Scene:
+    """`rig` of stone."""
+    return rig(courses, length, height, block=STONE, **changes)
+
+
+@pytest.mark.parametrize("line", ["moving", "fixed"])
+def test_a_rocking_block_takes_what_its_force_allows(line: str) -> None:
+    """As a rigid one does (`tests.contacts.test_rigs`), but for what it gives way itself: at small drifts only."""
+    b, at, n, d = 0.2, 0.6, 2e4, 0.04
+    outcome = fem(
+        stone(beam__force_line=line, beam__drive={"displacement": [0.05, 0], "at": at}), displacements="finite"
+    )
+    theta = brentq(lambda x: at * math.sin(x) + b * (1 - math.cos(x)) - d, 0.0, 0.5)
+    lever = b * math.cos(theta) - 0.65 * math.sin(theta) if line == "moving" else b
+    exact = n * lever / (at * math.cos(theta) + b * math.sin(theta))
+    assert force_at(outcome, d) == pytest.approx(exact, rel=5e-3)
+    assert "finite displacements" in outcome.message
+    vertical = column(outcome, "ground vertical [N]")
+    assert vertical[len(vertical) // 2 :] == pytest.approx(n, rel=0.02)
+
+
+def test_blocks_with_three_modes_are_rigid_ones() -> None:
+    """A wall of several materials whose blocks split: the forces at its joints too, to 1e-3 of the largest."""
+    weak = {"friction": 0.4, "normal_stiffness": 2e9, "shear_stiffness": 1e9}
+    scene = stone(
+        3,
+        0.2,
+        0.3,
+        wall__courses=[[1, 1], [0.5, 1, 0.5], [1, 1]],
+        inner_joint=GLUE,
+        joints={"weak": weak},
+        assign=[{"joint": "weak", "between": ["ground", "*"]}],
+        beam__drive={"displacement": [0.004, 0], "at": 0.3},
+    )
+    ours = fem(scene, displacements="finite", modes=3)
+    other = run_model("dem-dynamic", scene, displacements="finite")
+    for d in (5e-4, 1e-3, 3e-3):
+        assert force_at(ours, d) == pytest.approx(force_at(other, d), rel=0.01)
+    assert ours.path_columns == other.path_columns
+
+
+def test_small_drifts_are_those_of_small_displacements() -> None:
+    scene = stone(2, 0.4, 0.4, beam__drive={"displacement": [2e-5, 0], "at": 0.4}, joint__friction=0.6)
+    far, near = fem(scene, displacements="finite"), fem(scene)
+    assert force_at(far, 1.9e-5) == pytest.approx(force_at(near, 1.9e-5), rel=0.01)
+    assert far.force.sum(axis=0) == pytest.approx(near.force.sum(axis=0), rel=0.01)
+
+
+def test_a_block_that_splits_spends_its_fracture_energy() -> None:
+    """G_I times the area to 1e-6, node by node, through searches for contacts."""
+    blocks = node_outline(stone(inner_joint=GLUE), 2, 3)
+    system = finite_system(blocks)
+    motion = np.zeros_like(system.mass)
+    motion[system.rigid[1, 0]] = 1.0
+    held = replace(system, mass=np.full_like(system.mass, np.inf), carried=Carried(motion), dead=0 * system.dead)
+    run = Run(held)
+    state = State.at_rest(held)
+    for _ in range(100):
+        run.carry(state, 0.0095 / (20_000 * run.dt), 200)
+    assert run.ledger(state).friction == pytest.approx(GLUE["fracture_energy_1"] * 0.6 * 0.2, rel=1e-6)
+    rigid = dem.finite_system.finite_system(blocks.scene).contacts
+    assert rigid is not None
+    assert system.contacts is not None
+    ours, ends = system.contacts.undeformed, rigid.undeformed
+    assert len(ours) > len(ends)
+    assert set(ours.joint) == set(ends.joint)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ({"displacements": "large"}, "model fem: displacements = .large.: must be one of"),
+        ({"cracks": "blocks"}, "model fem: cracks = .blocks.: is not taken at finite displacements"),
+        ({"points": "joints"}, "model fem: points"),
+        ({"loads": "inner"}, "model fem: loads"),
+        ({"energies": "printed"}, "model fem: energies"),
+    ],
+)
+def test_what_is_not_taken_is_refused(parameters: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        run_model("fem", stone(), **{"displacements": "finite", **parameters})
+
+
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"beam__drive": {"force": [1, 0]}}, "model fem: displacements"),
+        ({"load__dead": [{"kind": "moment", "block": 0, "moment": 5.0}]}, "load.dead"),
+        ({"load__dead": [{"kind": "point", "at": [0.4, 0.3], "force": [-5.0, 0.0]}]}, "load.dead"),
+        ({"joint__cohesion": 1e4}, "joint.cohesion"),
+        ({"inner_joint": GLUE | {"inset": 0.01}}, "inner_joint.inset"),
+    ],
+)
+def test_scenes_that_are_not_followed_so_far_are_refused(changes: dict[str, Any], key: str) -> None:
+    with pytest.raises(SceneError, match=key):
+        run_model("fem", stone(**changes), displacements="finite")
