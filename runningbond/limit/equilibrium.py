@@ -18,6 +18,7 @@ from runningbond.joints import JointPoints, PointStrength, wall_points, wall_str
 from runningbond.results import fastest_corner_by_one
 from runningbond.scene import Array, Scene
 
+from .crushing import Crushing, crushing
 from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator, tie_operator
 from .settlement import largest_displacement, reaction_unit
 
@@ -47,6 +48,8 @@ class Equilibrium:
     scale : (nd,) float
         Factor of each equation: blocks count by their own weight, or a small one's balance would be lost in
         the solver's tolerance beside a large one, and moments by their own size.
+    crushing
+        Joints of finite compressive strength, where they are taken into account (`with_crushing`).
     """
 
     scene: Scene
@@ -62,6 +65,7 @@ class Equilibrium:
     force_unit: float
     live_unit: float
     scale: Array
+    crushing: Crushing | None = None
 
     @property
     def freedoms(self) -> int:
@@ -98,6 +102,16 @@ class Equilibrium:
     def elongation(self, multipliers: Array) -> Array:
         """Elongation rates of ties, ``(nt,)``, from multipliers of equations ``(nd,)``."""
         return np.asarray(self.tie.T @ multipliers)
+
+    def with_crushing(self) -> "Equilibrium":
+        """The same equations, joints of finite compressive strength taken as such."""
+        return replace(self, crushing=crushing(self.scene, self.force_unit))
+
+    def crushed_jumps(self, multipliers: Array) -> Array:
+        """Openings of the ends and slips of joints that crush, ``(3, nc)``, from multipliers of equations ``(nd,)``."""
+        first = 2 * self.crushing.joint
+        opening = self.opening.T @ multipliers
+        return np.array([opening[first], opening[first + 1], (self.slip.T @ multipliers)[first]])
 
     def in_forces_of(self, unit: float) -> "Equilibrium":
         """The same equations, forces measured in so many of what counts as 1 here."""
