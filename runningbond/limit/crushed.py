@@ -7,6 +7,8 @@ and the program solved again, until the two are as close as asked for (Dantzig &
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.optimize import linprog
@@ -17,19 +19,28 @@ from runningbond.scene import Array, Indices
 
 from .crushing import Crushing
 from .equilibrium import Equilibrium
-from .force_program import STATUS, Aim, ForceSet, ForceSolution, coulomb, force_program, solution_of
+from .force_program import STATUS, Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
+from .interior_point import InteriorPoint, interior_point
+from .proved import CLOSE, ROUGH, loaded, tolerance_of
+from .repair import admissible, balanced
 
 ROUNDS = 60
-"""Programs after which the bracket is left as wide as it is."""
+"""Programs after which a bracket is left as wide as it is."""
 
-FINER = 4.0
-"""Ratio of the shares of a joint that the first stress blocks take."""
+FINER, SMALLEST = 16.0, 0.1
+"""Ratio of the shares of a joint that the first stress blocks take, and force units on the smallest of them."""
 
-SMALLEST = 0.02
-"""Force, in force units, on the smallest of the first stress blocks."""
+NEW = 1e-10
+"""Power, relative to that of all joints, which a new resultant must have before those known."""
 
-NEW = 1e-9
-"""Power, relative, that a new resultant must have before those known."""
+ZERO = 1e-3
+"""Multiplier below which the bracket is no longer narrowed relatively."""
+
+SPENT, LISTED = 1e-3, 3
+"""Share of all that joints that crush dissipate, below which a hinge is not counted, and how many a message lists."""
+
+NOTHING = 1e-9
+"""Force, in force units, that is none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,85 +50,183 @@ class Resultants:
     owner: Indices
     forces: Array
 
-    def more(self, owner: Indices, forces: Array) -> "Resultants":
-        """These and others."""
-        return Resultants(np.append(self.owner, owner), np.hstack([self.forces, forces]))
-
     @property
     def size(self) -> Array:
         """Largest force of each, ``(n,)``."""
         return np.asarray(np.abs(self.forces).max(axis=0))
 
+    def nearer(self, joints: Crushing, jumps: Array) -> "Resultants":
+        """These, and those that dissipate more on jumps ``(3, nc)``."""
+        forces = joints.forces(jumps)
+        power, best = (forces * jumps).sum(axis=0), np.zeros(len(joints))
+        np.maximum.at(best, self.owner, (self.forces * jumps[:, self.owner]).sum(axis=0))
+        new = np.flatnonzero(power - best > NEW * power.sum())
+        return Resultants(np.append(self.owner, new), np.hstack([self.forces, forces[:, new]]))
+
 
 def first_resultants(joints: Crushing) -> Resultants:
     """Stress blocks from either end, with and without shear, down to those of small forces."""
     levels = int(np.ceil(np.log(max(joints.strength.max() / SMALLEST, 1.0)) / np.log(FINER)))
-    shares = np.append(FINER ** -np.arange(levels + 1.0), 0.0)
-    forces = joints.blocks(shares)
+    forces = joints.blocks(np.append(FINER ** -np.arange(levels + 1.0), 0.0))
     found = Resultants(np.repeat(np.arange(len(joints)), forces.shape[1] // len(joints)), forces)
-    used = found.size > 1e-3 * SMALLEST
-    return Resultants(found.owner[used], found.forces[:, used])
+    used = found.size > NOTHING
+    return Resultants(found.owner[used], forces[:, used])
 
 
-def _without(system: Equilibrium, joints: Crushing) -> tuple[Equilibrium, ForceSet]:
-    """The system and its forces while joints that crush carry nothing."""
+def without_crushing(system: Equilibrium, joints: Crushing) -> tuple[Equilibrium, ForceSet]:
+    """A system and its forces while joints that crush carry nothing."""
     carries = np.ones(len(system.points))
-    carries[2 * joints.joint] = carries[2 * joints.joint + 1] = 0.0
+    carries[joints.ends] = 0.0
     strength = system.strength
-    others = PointStrength(strength.friction, strength.tension * carries, strength.shear * carries)
-    rays = coulomb(others)
-    return replace(system, strength=others), replace(rays, most=[np.where(carries > 0, np.inf, 0.0)] * 2)
+    strength = PointStrength(strength.friction, strength.tension * carries, strength.shear * carries)
+    rays = replace(coulomb(strength), most=[np.where(carries > 0, np.inf, 0.0)] * 2)
+    return replace(system, strength=strength), rays
 
 
-def inner_program(system: Equilibrium, known: Resultants, aim: Aim = "largest") -> dict:
-    """Arguments of `linprog`: unknowns are the shares of resultants, of none of them, and those of `force_program`."""
+@dataclass(frozen=True, eq=False)
+class InnerProgram:
+    """A `force_program` whose joints that crush carry mixes of known resultants.
+
+    Its unknowns are the forces of those, what is left of each joint, and the unknowns of the program without them.
+    """
+
+    system: Equilibrium
+    joints: Crushing
+    known: Resultants
+
+    @cached_property
+    def others(self) -> tuple[Equilibrium, ForceSet]:
+        """The system and its forces without the joints that crush."""
+        return without_crushing(self.system, self.joints)
+
+    def arguments(self, aim: Aim = "largest") -> dict[str, Any]:
+        """Arguments of `scipy.optimize.linprog`."""
+        system, known, size, n = self.system, self.known, self.known.size, len(self.joints)
+        program = force_program(*self.others, aim)
+        first, second = self.joints.ends[:, known.owner]
+        operators = system.opening[:, first], system.opening[:, second], system.slip[:, first]
+        columns = sum(each * part[None] for each, part in zip(operators, known.forces / size, strict=True))
+        of_joint = csc_array((1 / size, (known.owner, np.arange(len(size)))), shape=(n, len(size)))
+        parts = [[csc_array(columns), None, program["A_eq"]], [of_joint, eye_array(n), None]]
+        bounds = np.tile([0.0, np.inf], (len(size) + n, 1))
+        return {
+            "c": np.append(np.zeros(len(bounds)), program["c"]),
+            "A_eq": csc_array(block_array(parts)),
+            "b_eq": np.append(program["b_eq"], np.ones(n)),
+            "bounds": np.vstack([bounds, program["bounds"]]),
+        }
+
+    def solution(self, status: ProgramStatus, found: Array, multipliers: Array, iterations: int) -> ForceSolution:
+        """Unknowns and multipliers of rows, by what they are; a joint's shear is where its pressure is."""
+        system, known, ends, n = self.system, self.known, self.joints.ends, len(self.joints)
+        multipliers = multipliers[: system.freedoms]
+        rest = found[len(known.owner) + n :]
+        solution = solution_of(*self.others, status, rest, multipliers, iterations)
+        shares = found[: len(known.owner)] / known.size
+        *normal, shear = (np.bincount(known.owner, part * shares, n) for part in known.forces)
+        pressure, tangential = solution.pressure.copy(), solution.tangential.copy()
+        pressure[ends] = system.strength.tension[ends] - normal
+        most = (system.strength.shear + system.strength.friction * pressure)[ends]
+        tangential[ends] = shear * most / np.maximum(most.sum(axis=0), np.finfo(float).tiny)
+        motion = multipliers / (float(system.live @ multipliers) or 1.0)
+        return replace(solution, pressure=pressure, tangential=tangential, motion=motion)
+
+    def vertex(self) -> ForceSolution:
+        """What HiGHS finds."""
+        result = linprog(**self.arguments(), method="highs-ipm")
+        status = STATUS[int(result.status)]
+        if result.x is None or status != "optimal":
+            return nothing(status, int(result.nit))
+        return self.solution(status, np.asarray(result.x), np.asarray(result.eqlin.marginals), int(result.nit))
+
+
+def nothing(status: ProgramStatus, iterations: int = 0) -> ForceSolution:
+    """A solution that is none."""
+    none = np.zeros(0)
+    return ForceSolution(status, np.nan, none, none, none, none, iterations)
+
+
+def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool | None]:
+    """Forces and mechanism of a system with joints that crush, and whether it rests under its dead load.
+
+    Their bracket is as wide as `tolerance_of` says, or as `ROUNDS` leave it.
+    """
+    dead = system.under_dead_load()
+    rests, known = _resting(dead, joints)
+    if not rests:
+        return nothing("numerical" if rests is None else "infeasible"), rests
+    program, point, iterations = _narrowed(system, joints, known)
+    if point.status != "optimal":
+        return nothing(point.status, iterations), True
+    arguments, within = program.arguments(), _rest(InnerProgram(dead, joints, program.known))
+    if within is not None:
+        within = loaded(system, arguments, within)
+    forces, motion = balanced(arguments, point, within), admissible(arguments, point)
+    if forces is None or motion is None:
+        return replace(program.vertex(), iterations=iterations), True
+    return program.solution("optimal", forces, motion, iterations), True
+
+
+def _narrowed(system: Equilibrium, joints: Crushing, known: Resultants) -> tuple[InnerProgram, InteriorPoint, int]:
+    """The last of a row of programs that know more and more resultants, its interior point, and all iterations."""
+    closest, iterations = tolerance_of(system), 0
+    for _ in range(ROUNDS):
+        program = InnerProgram(system, joints, known)
+        point = interior_point(program.arguments(), closest / 1e3)
+        iterations += point.iterations
+        if point.status != "optimal":
+            break
+        found = program.solution("optimal", point.forces, point.motion, iterations)
+        known = known.nearer(joints, system.crushed_jumps(found.motion))
+        width = system.kinematic_multiplier(found.motion) - found.multiplier
+        if len(known.owner) == len(program.known.owner) or width <= closest / 2 * max(abs(found.multiplier), ZERO):
+            break
+    return program, point, iterations
+
+
+def _rest(program: InnerProgram) -> Array | None:
+    """Forces that balance the dead load strictly within all bounds, unknowns of the program; None if not found."""
+    arguments = program.arguments("zero")
+    point = interior_point(arguments, ROUGH)
+    return balanced(arguments, point, None) if point.status == "optimal" else None
+
+
+def _resting(dead: Equilibrium, joints: Crushing) -> tuple[bool | None, Resultants]:
+    """Whether forces balance the dead load, and resultants that do; None if that cannot be told.
+
+    Where the first resultants do not, it is the largest multiple of the dead load that decides.
+    """
+    known = first_resultants(joints)
+    multiple = replace(dead, live=dead.dead, dead=np.zeros_like(dead.dead))
+    for _ in range(ROUNDS):
+        if _rest(InnerProgram(dead, joints, known)) is not None:
+            return True, known
+        program = InnerProgram(multiple, joints, known)
+        point = interior_point(arguments := program.arguments(), CLOSE / 1e3)
+        if point.status != "optimal":
+            return (True if point.status == "unbounded" else None), known
+        found = program.solution("optimal", point.forces, point.motion, 0)
+        motion = admissible(arguments, point)
+        if motion is not None and multiple.kinematic_multiplier(motion[: dead.freedoms]) < 1 - CLOSE:
+            return False, known
+        more = known.nearer(joints, dead.crushed_jumps(found.motion))
+        if len(more.owner) == len(known.owner):
+            break
+        known = more
+    return None, known
+
+
+def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
+    """What joints that crush spend in a mechanism, and where those that spend most turn."""
     joints = system.crushing
-    program = force_program(*_without(system, joints), aim)
-    first = 2 * joints.joint[known.owner]
-    n1, n2, v = known.forces / known.size
-    columns = system.opening[:, first] * n1[None] + system.opening[:, first + 1] * n2[None]
-    columns = csc_array(columns + system.slip[:, first] * v[None])
-    rows = (known.owner, np.arange(len(known.owner)))
-    shares = csc_array((1 / known.size, rows), shape=(len(joints), len(known.owner)))
-    matrix = block_array([[columns, None, program["A_eq"]], [shares, eye_array(len(joints)), None]], format="csc")
-    n = len(known.owner) + len(joints)
-    bounds = np.vstack([np.tile([0.0, np.inf], (n, 1)), program["bounds"]])
-    right = np.append(program["b_eq"], np.ones(len(joints)))
-    return {"c": np.append(np.zeros(n), program["c"]), "A_eq": matrix, "b_eq": right, "bounds": bounds}
-
-
-def inner_solution(system, known, status, found, marginals, iterations) -> ForceSolution:
-    joints, n = system.crushing, len(known.owner)
-    others, rays = _without(system, joints)
-    solution = solution_of(
-        others, rays, status, found[n + len(joints) :], marginals[: system.freedoms], iterations
-    )
-    n1, n2, v = (
-        np.bincount(known.owner, part * found[:n] / known.size, len(joints)) for part in known.forces
-    )
-    pressure, tangential = solution.pressure.copy(), solution.tangential.copy()
-    first, second = 2 * joints.joint, 2 * joints.joint + 1
-    pressure[first], pressure[second] = system.strength.tension[first] - n1, system.strength.tension[second] - n2
-    most = system.strength.shear + system.strength.friction * pressure
-    share = most[first] / np.maximum(most[first] + most[second], np.finfo(float).tiny)
-    tangential[first], tangential[second] = share * v, (1 - share) * v
-    return replace(solution, pressure=pressure, tangential=tangential)
-
-
-def solve_inner(system: Equilibrium, known: Resultants, aim: Aim = "largest") -> ForceSolution:
-    result = linprog(**inner_program(system, known, aim), method="highs-ds" if aim == "zero" else "highs-ipm")
-    status = STATUS[int(result.status)]
-    if result.x is None or status != "optimal":
-        none = np.zeros(0)
-        return ForceSolution(status, np.nan, none, none, none, none, int(result.nit))
-    return inner_solution(system, known, status, result.x, result.eqlin.marginals, int(result.nit))
-
-
-def closer(system: Equilibrium, known: Resultants, motion: Array) -> Resultants:
-    jumps = system.crushed_jumps(motion)
-    forces = system.crushing.forces(jumps)
-    power = (forces * jumps).sum(axis=0)
-    best = np.zeros(len(power))
-    np.maximum.at(best, known.owner, (known.forces * jumps[:, known.owner]).sum(axis=0))
-    new = np.flatnonzero(power - best > NEW * max(power.sum(), 1e-300)/len(power))
-    return known.more(new, forces[:, new])
+    assert joints is not None
+    jumps = system.crushed_jumps(forces.motion)
+    spent = joints.dissipation(jumps)
+    first, second, _ = jumps
+    turns = np.flatnonzero((first * second < 0) & (spent > SPENT * spent.sum()))
+    most = turns[np.argsort(-spent[turns], kind="stable")][:LISTED]
+    run = np.diff(system.points.position[joints.ends[:, most]], axis=0)[0]
+    at = system.points.position[joints.ends[0, most]] + (first[most] / (first - second)[most])[:, None] * run
+    places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in at)
+    hinges = f"; {len(turns)} turn about points inside them, foremost {places}" if len(most) else ""
+    return f"{len(joints)} joints crush, plastically, within σ² + C_ss τ² ≤ f_m²{hinges}"

@@ -6,15 +6,16 @@ set. Where its ends open by α₁ and α₂ and it slips by β, α running linea
 
     H(α₁, α₂, β) = A ∫₀¹ h(α₁ + (α₂ − α₁) ξ, β) dξ,    h(α, β) = max {α σ + β τ : (σ, τ) ∈ K},
 
-the power that the joint dissipates at most; its gradient are the forces N₁ = A ∫ σ (1 − ξ), N₂ = A ∫ σ ξ at the ends and
-V = A ∫ τ of the field that does so. The boundary of K is, for τ ≥ 0 and by the ratio α / β of its normals from ∞ to −∞,
+the power that the joint dissipates at most; its gradient are the forces N₁ = A ∫ σ (1 − ξ), N₂ = A ∫ σ ξ at the ends
+and V = A ∫ τ of the field that does so. The boundary of K is, for τ ≥ 0 and by the ratio α / β of its normals, falling,
 
     T, the corner of the cut-off;  an arc;  B₁ and B₂, the ends of the cone's edge;  the other arc,
 
-some of them missing; on corners tractions are constant, and on arcs integrals of σ = f_m tanh u, u = arsinh(√C_ss α / β).
+some of them missing; corners have constant tractions, and arcs σ = f_m tanh u with sinh u = √C_ss α / β.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -56,9 +57,10 @@ class Crushing:
     def __len__(self) -> int:
         return len(self.joint)
 
-    def part(self, chosen: Indices) -> "Crushing":
-        """Some of the joints, or some of them several times."""
-        return Crushing(**{each.name: getattr(self, each.name)[..., chosen] for each in fields(self)})
+    @property
+    def ends(self) -> Indices:
+        """Points at the first and at the second ends of the joints, ``(2, nc)``."""
+        return np.array([2 * self.joint, 2 * self.joint + 1])
 
     def forces(self, jumps: Array) -> Array:
         """Forces N₁, N₂ and V ``(3, nc)`` that dissipate most on jumps α₁, α₂ and β, ``(3, nc)``."""
@@ -69,7 +71,7 @@ class Crushing:
         edges = [low + span, *np.clip(beta * self.ratio, low, low + span), low]
         total = np.zeros((3, len(self)))
         corners = iter(zip(self.sigma, self.tau, strict=True))
-        for piece, (end, start) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+        for piece, (end, start) in enumerate(pairwise(edges)):
             width, middle = (end - start) / span, ((end + start) / 2 - low) / span
             if piece in (1, 4):
                 total += self._arc(start, width, (start - low) / span, span, beta)

@@ -107,11 +107,28 @@ class Equilibrium:
         """The same equations, joints of finite compressive strength taken as such."""
         return replace(self, crushing=crushing(self.scene, self.force_unit))
 
-    def crushed_jumps(self, multipliers: Array) -> Array:
+    def crushed_jumps(self, motion: Array) -> Array:
         """Openings of the ends and slips of joints that crush, ``(3, nc)``, from multipliers of equations ``(nd,)``."""
-        first = 2 * self.crushing.joint
-        opening = self.opening.T @ multipliers
-        return np.array([opening[first], opening[first + 1], (self.slip.T @ multipliers)[first]])
+        if self.crushing is None:
+            return np.zeros((3, 0))
+        ends = self.crushing.ends
+        return np.array([*(self.opening.T @ motion)[ends], (self.slip.T @ motion)[ends[0]]])
+
+    def dissipation(self, motion: Array) -> Array:
+        """Largest power of admissible forces on a mechanism ``(nd,)``, by points, of joints that crush at the first.
+
+        Other points have to open as their flow rule says.
+        """
+        found = self.strength.dissipation(self.opening.T @ motion, self.slip.T @ motion)
+        if self.crushing is not None:
+            found[self.crushing.ends[1]] = 0.0
+            found[self.crushing.ends[0]] = self.crushing.dissipation(self.crushed_jumps(motion))
+        return found
+
+    def kinematic_multiplier(self, motion: Array) -> float:
+        """Multiplier at which a mechanism's loads do the work that its joints and ties dissipate, in scaled units."""
+        dissipated = self.dissipation(motion).sum() + self.tie_yield @ self.elongation(motion).clip(min=0.0)
+        return float((dissipated - self.dead @ motion) / (self.live @ motion))
 
     def in_forces_of(self, unit: float) -> "Equilibrium":
         """The same equations, forces measured in so many of what counts as 1 here."""
