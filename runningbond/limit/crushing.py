@@ -67,8 +67,9 @@ class Crushing:
         first, second, slip = jumps
         scale = np.abs(jumps).max(axis=0) + np.finfo(float).tiny
         low, beta = np.minimum(first, second), np.maximum(np.abs(slip), TINY * scale)
-        span = np.maximum(np.abs(second - first), TINY * scale)
-        edges = [low + span, *np.clip(beta * self.ratio, low, low + span), low]
+        high = low + np.maximum(np.abs(second - first), TINY * scale)
+        span = high - low
+        edges = [high, *np.clip(beta * self.ratio, low, high), low]
         total = np.zeros((3, len(self)))
         corners = iter(zip(self.sigma, self.tau, strict=True))
         for piece, (end, start) in enumerate(pairwise(edges)):
