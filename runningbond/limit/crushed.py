@@ -39,6 +39,9 @@ ZERO = 1e-3
 SPENT, LISTED = 1e-3, 3
 """Share of all that joints that crush dissipate, below which a hinge is not counted, and how many a message lists."""
 
+IDLE = 1e-5
+"""Force of a resultant, relative to the largest, without which balance is first looked for."""
+
 NOTHING = 1e-9
 """Force, in force units, that is none."""
 
@@ -158,28 +161,60 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
     program, point, iterations = _narrowed(system, joints, known)
     if point.status != "optimal":
         return nothing(point.status, iterations), True
-    arguments, within = program.arguments(), _rest(InnerProgram(dead, joints, program.known))
-    if within is not None:
-        within = loaded(system, arguments, within)
-    forces, motion = balanced(arguments, point, within), admissible(arguments, point)
-    if forces is None or motion is None:
-        return replace(program.vertex(), iterations=iterations), True
-    return program.solution("optimal", forces, motion, iterations), True
+    found = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
+    if found is None or _width(system, found) > tolerance_of(system):
+        vertex = program.vertex()
+        if vertex.status == "optimal":
+            found = vertex if found is None else _best(system, found, vertex)
+    return (nothing("numerical") if found is None else replace(found, iterations=iterations)), True
+
+
+def _width(system: Equilibrium, found: ForceSolution) -> float:
+    """Relative width of the bracket of forces and a mechanism."""
+    bounds = found.multiplier, system.kinematic_multiplier(found.motion)
+    return float(abs(bounds[1] - bounds[0]) / max(*np.abs(bounds), ZERO))
+
+
+def _best(system: Equilibrium, one: ForceSolution, other: ForceSolution) -> ForceSolution:
+    """The forces of the larger multiplier, and the mechanism of the smaller one."""
+    forces = max(one, other, key=lambda each: each.multiplier)
+    return replace(forces, motion=min(one.motion, other.motion, key=system.kinematic_multiplier))
+
+
+def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None) -> ForceSolution | None:
+    """Exact forces and an exact mechanism from approximate ones; None if one of them was not found.
+
+    Resultants of which there is next to nothing are better left alone, if it can be done without them.
+    """
+    arguments, n = program.arguments(), len(program.known.owner)
+    within = None if resting is None else loaded(program.system, arguments, resting)
+    idle = np.arange(len(point.forces)) < n
+    idle &= point.forces < IDLE * point.forces[:n].max()
+    without = replace(
+        point, forces=np.where(idle, 0.0, point.forces), compliance=np.where(idle, IDLE, 1.0) * point.compliance
+    )
+    tried = [balanced(arguments, each, within) for each in (without, point)]
+    forces = max((each for each in tried if each is not None), key=lambda each: float(each[-1]), default=None)
+    motion = admissible(arguments, point)
+    if forces is None or motion is None or program.system.live @ motion[: program.system.freedoms] <= 0:
+        return None
+    return program.solution("optimal", forces, motion, 0)
 
 
 def _narrowed(system: Equilibrium, joints: Crushing, known: Resultants) -> tuple[InnerProgram, InteriorPoint, int]:
     """The last of a row of programs that know more and more resultants, its interior point, and all iterations."""
-    closest, iterations = tolerance_of(system), 0
+    closest, iterations, width = tolerance_of(system), 0, 1.0
     for _ in range(ROUNDS):
         program = InnerProgram(system, joints, known)
-        point = interior_point(program.arguments(), closest / 1e3)
+        accuracy = min(max(width, closest) / 1e3, ROUGH)
+        point = interior_point(program.arguments(), accuracy)
         iterations += point.iterations
         if point.status != "optimal":
             break
         found = program.solution("optimal", point.forces, point.motion, iterations)
         known = known.nearer(joints, system.crushed_jumps(found.motion))
-        width = system.kinematic_multiplier(found.motion) - found.multiplier
-        if len(known.owner) == len(program.known.owner) or width <= closest / 2 * max(abs(found.multiplier), ZERO):
+        width = _width(system, found)
+        if width <= closest / 2 and accuracy <= closest / 1e3:
             break
     return program, point, iterations
 
@@ -228,5 +263,5 @@ def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
     run = np.diff(system.points.position[joints.ends[:, most]], axis=0)[0]
     at = system.points.position[joints.ends[0, most]] + (first[most] / (first - second)[most])[:, None] * run
     places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in at)
-    hinges = f"; {len(turns)} turn about points inside them, foremost {places}" if len(most) else ""
-    return f"{len(joints)} joints crush, plastically, within σ² + C_ss τ² ≤ f_m²{hinges}"
+    hinges = f"; turning about points inside them: {len(turns)}, foremost about {places}" if len(most) else ""
+    return f"joints with a compressive strength: {len(joints)}, plastic within σ² + C_ss τ² ≤ f_m²{hinges}"

@@ -104,8 +104,12 @@ class Equilibrium:
         return np.asarray(self.tie.T @ multipliers)
 
     def with_crushing(self) -> "Equilibrium":
-        """The same equations, joints of finite compressive strength taken as such."""
-        return replace(self, crushing=crushing(self.scene, self.force_unit))
+        """The same equations, joints that crush taken as such; without weight, forces are in the strongest of them."""
+        joints = crushing(self.scene, self.force_unit)
+        if joints is None or self.dead.any():
+            return replace(self, crushing=joints)
+        system = self.in_forces_of(float(joints.strength.max()))
+        return replace(system, crushing=crushing(self.scene, system.force_unit))
 
     def crushed_jumps(self, motion: Array) -> Array:
         """Openings of the ends and slips of joints that crush, ``(3, nc)``, from multipliers of equations ``(nd,)``."""

@@ -149,3 +149,106 @@ def test_a_dry_joint_whose_cap_knows_no_shear_is_a_stress_block(share: float) ->
     assert np.abs(blocks[2]).max() == pytest.approx(0.6 * share)
     n1, n2, v = one.forces(np.array([[-share], [1 - share], [1e-12]]))[:, 0]
     assert [-n1 - n2, (n2 - n1) / 2, v] == pytest.approx([share, share / 2 * (1 - share), 0.6 * share], abs=1e-11)
+
+
+# --- walls by hand -------------------------------------------------------------------------------------------
+
+
+def built(blocks: list[Array], crushing: JointMaterial, live: Any = None, grounds: list[Array] | None = None) -> Scene:
+    """Blocks on a flat base, or between grounds."""
+    load = Load(live=(live or Lateral(),)) if grounds is None else Load((0.0, 0.0), (live,))
+    return build_scene(
+        *("by hand", blocks), thickness=THICKNESS, block=BlockMaterial(DENSITY), joint=crushing, load=load,
+        **({} if grounds is None else {"grounds": grounds}),
+    )  # fmt: skip
+
+
+def collapse(scene: Scene) -> float:
+    """λ of a scene whose bracket is narrow."""
+    outcome = limit(scene)
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.multiplier == outcome.lower
+    assert outcome.upper - outcome.lower <= NARROW * abs(outcome.upper)
+    return outcome.lower
+
+
+@pytest.mark.parametrize("share", [0.9, 0.3, 0.01, 1e-4, 1e-7, 1e-11])
+@pytest.mark.parametrize("height", [1.0, 2.5])
+def test_the_toe_of_a_block_on_crushing_ground(share: float, height: float) -> None:
+    """N crushes that share of the base: pushed at its top V H = N (l/2 − N / (2 t f_c)), about a point at N / (t f_c)."""
+    weight = DENSITY * 9.81 * THICKNESS * height
+    material = JointMaterial(5.0, compressive_strength=weight / (share * THICKNESS), cap_shear=0.0)
+    scene = built([rectangle(0, 0, 1, height)], material, PointLoad((0.0, height), (1.0, 0.0)))
+    assert collapse(scene) == pytest.approx(weight * (1 - share) / (2 * height), rel=NARROW)
+    outcome = limit(scene)
+    if share > 1e-3:
+        assert f"inside them: 1, foremost about ({1 - share:.3g}"[:-1] in outcome.message
+    corner = outcome.motion[0] @ [[1, 0], [0, 1], [height / 2, 1 / 2]]  # of the toe: down, and not sideways
+    assert -corner[1] == pytest.approx(share / (1 - share) * (corner[1] + outcome.motion[0] @ [0, 0, -1]), abs=1e-3)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.01])
+def test_a_block_of_little_friction_slides_all_the_same(share: float) -> None:
+    """V = N tan φ, whether its ground crushes or not."""
+    weight = DENSITY * 9.81 * THICKNESS
+    material = JointMaterial(0.1, compressive_strength=weight / (share * THICKNESS), cap_shear=0.0)
+    assert collapse(built([rectangle(0, 0, 1, 1)], material)) == pytest.approx(0.1, rel=NARROW)
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.1, 0.3, 0.45])
+@pytest.mark.parametrize("shear", [0.0, 9.0])
+def test_an_eccentric_column_bears_the_pressure_on_twice_its_way_to_the_edge(eccentricity: float, shear: float) -> None:
+    """P = t f_c (l − 2 e); weightless, on ground."""
+    material = JointMaterial(0.6, compressive_strength=1e6, cap_shear=shear)
+    live = PointLoad((0.5 + eccentricity, 2.0), (0.0, -1.0))
+    scene = built([rectangle(0, 0, 1, 2)], material, live, [rectangle(0, -1, 1, 1)])
+    assert collapse(scene) == pytest.approx(THICKNESS * 1e6 * (1 - 2 * eccentricity), rel=NARROW)
+
+
+@pytest.mark.parametrize("strength", [2e5, 1e6])
+def test_a_stack_crushes_at_its_foot(strength: float) -> None:
+    """n blocks b × h: λ = (b − n W / (t f_c)) / (n h)."""
+    n, height = 4, 0.5
+    material = JointMaterial(2.0, compressive_strength=strength, cap_shear=0.0)
+    scene = built([rectangle(0, k * height, 1, height) for k in range(n)], material)
+    crushed = n * DENSITY * 9.81 * height / strength
+    assert collapse(scene) == pytest.approx((1 - crushed) / (n * height), rel=NARROW)
+
+
+@pytest.mark.parametrize(("factor", "status"), [(0.5, "infeasible"), (0.999, "infeasible"), (1.001, "collapse")])
+@pytest.mark.parametrize("shear", [0.0, 9.0])
+def test_a_column_too_heavy_for_its_foot_does_not_stand(factor: float, status: str, shear: float) -> None:
+    strength = 2 * DENSITY * 9.81 * factor
+    material = JointMaterial(0.6, compressive_strength=strength, cap_shear=shear)
+    assert limit(built([rectangle(0, 0, 1, 1), rectangle(0, 1, 1, 1)], material)).status == status
+
+
+def strut(material: JointMaterial) -> Scene:
+    """Two weightless blocks 1 × 0.2 end to end between abutments, pressed down where they meet."""
+    blocks = [rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2)]
+    return built(
+        blocks, material, PointLoad((1.0, 0.2), (0.0, -1.0)), [rectangle(-1, -1, 1, 3), rectangle(2, -1, 1, 3)]
+    )
+
+
+def test_a_strut_between_abutments_that_crush_is_a_plastic_arch() -> None:
+    """P = t f_c h² / L: thrust t f_c h / 2 with the arm h / 2 over the span's half; without crushing it locks."""
+    exact = THICKNESS * 1e6 * 0.2**2 / 2
+    assert collapse(strut(JointMaterial(3.0, compressive_strength=1e6, cap_shear=0.0))) == pytest.approx(exact, rel=1e-6)
+    assert limit(strut(JointMaterial(3.0))).status == "unbounded"
+
+
+def test_joints_of_one_material_may_crush_beside_others_that_do_not() -> None:
+    """The strut's abutments crush, its middle does not: T (h − T / (2 t f_c)) is largest at T = t f_c h."""
+    whole = strut(JointMaterial(3.0, compressive_strength=1e6, cap_shear=0.0))
+    middle = [bool((whole.joints.block[j] < 2).all()) for j in range(len(whole.joints))]
+    scene = replace(
+        whole,
+        joint_materials=(whole.joint, JointMaterial(3.0, name="strong")),
+        material_of_joint=np.array(middle, dtype=np.int64),
+    )
+    assert collapse(scene) == pytest.approx(THICKNESS * 1e6 * 0.2**2, rel=NARROW)
+    state = limit_state(equilibrium(scene).with_crushing().under_live_load())
+    assert max(value for name, value in state.measures.items() if name not in ("gap", "complementarity")) < 1e-9
