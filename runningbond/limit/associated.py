@@ -14,7 +14,7 @@ from runningbond.joints import PointStrength
 from runningbond.results import Outcome, Status, collapse_state
 from runningbond.scene import Array, Scene
 
-from .crushed import crushed, crushing_note, without_crushing
+from .crushed import beyond_note, crushed, crushing_note, without_crushing
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .moving_support import JAMMED, support_verdict
@@ -280,7 +280,7 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
         *(scene.title, "limit", "undecided"),
         dofs=system.freedoms - system.has_support,
         steps=state.forces.iterations,
-        message=remarks(scene, message),
+        message=remarks(scene, message + beyond_note(system)),
     )
     outcome = _bracketed(outcome, state, tolerance) if status == "collapse" else replace(outcome, status=status)
     return replace(outcome, seconds=time.perf_counter() - start)

@@ -6,6 +6,7 @@ multiplier from above; where that function takes its value is a resultant that t
 and the program solved again, until the two are as close as asked for (Dantzig & Wolfe 1960).
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -17,7 +18,7 @@ from scipy.sparse import block_array, csc_array, eye_array
 from runningbond.joints import PointStrength
 from runningbond.scene import Array, Indices
 
-from .crushing import Crushing
+from .crushing import STRONGEST, Crushing, may_crush
 from .equilibrium import Equilibrium
 from .force_program import STATUS, Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
 from .interior_point import InteriorPoint, interior_point
@@ -193,9 +194,12 @@ def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None
     without = replace(
         point, forces=np.where(idle, 0.0, point.forces), compliance=np.where(idle, IDLE, 1.0) * point.compliance
     )
-    tried = [balanced(arguments, each, within) for each in (without, point)]
+    tried: list[Array | None] = []
+    motion = None
+    with suppress(RuntimeError):  # so few resultants may be in use that their metric is singular
+        motion = admissible(arguments, point)
+        tried = [balanced(arguments, each, within) for each in (point, without)]
     forces = max((each for each in tried if each is not None), key=lambda each: float(each[-1]), default=None)
-    motion = admissible(arguments, point)
     if forces is None or motion is None or program.system.live @ motion[: program.system.freedoms] <= 0:
         return None
     return program.solution("optimal", forces, motion, 0)
@@ -265,3 +269,10 @@ def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
     places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in at)
     hinges = f"; turning about points inside them: {len(turns)}, foremost about {places}" if len(most) else ""
     return f"joints with a compressive strength: {len(joints)}, plastic within σ² + C_ss τ² ≤ f_m²{hinges}"
+
+
+def beyond_note(system: Equilibrium) -> str:
+    """What is to be said of joints too strong to be taken as ones that crush."""
+    left_out = len(may_crush(system.scene)) - (0 if system.crushing is None else len(system.crushing))
+    limit = f"a compressive strength beyond {STRONGEST:g} times the largest load on a block"
+    return f"; {left_out} with {limit} are taken not to crush" if left_out else ""

@@ -28,6 +28,9 @@ SHORT = 0.1
 TINY = 1e-14
 """Differences of α, and slips, relative to the largest jump, that count as none."""
 
+STRONGEST = 1e9
+"""Strength of a joint, in force units, beyond which it never crushes: the others would be lost beside it."""
+
 NODES, WEIGHTS = ((part + shift) / 2 for part, shift in zip(np.polynomial.legendre.leggauss(8), (1, 0), strict=True))
 
 
@@ -121,14 +124,21 @@ class Crushing:
         return np.moveaxis(np.array(found), 0, 2).reshape(3, -1)
 
 
-def crushing(scene: Scene, force_unit: float) -> Crushing | None:
-    """The joints of a scene that crush; None if there are none."""
-    materials = [scene.joint_materials[k] for k in scene.material_of_joint]
-    joint = np.flatnonzero([material.compressive_strength is not None for material in materials])
+def may_crush(scene: Scene) -> Indices:
+    """Joints of a scene that have a compressive strength."""
+    has = np.array([material.compressive_strength is not None for material in scene.joint_materials])
+    return np.flatnonzero(has[scene.material_of_joint])
+
+
+def crushing(scene: Scene, force_unit: float, strongest: float = STRONGEST) -> Crushing | None:
+    """The joints of a scene that crush, those beyond the strongest left out; None if there are none."""
+    materials, joint = [scene.joint_materials[k] for k in scene.material_of_joint], may_crush(scene)
+    strength = np.array([materials[k].compressive_strength for k in joint], dtype=float)
+    area = scene.joints.length[joint] * scene.thickness / force_unit
+    crushes = strength * area <= strongest
+    joint, strength, area = joint[crushes], strength[crushes], area[crushes]
     if not len(joint):
         return None
-    area = scene.joints.length[joint] * scene.thickness / force_unit
-    strength = np.array([materials[k].compressive_strength for k in joint], dtype=float)
     shear = np.array([materials[k].cap_shear for k in joint])
     ratio, sigma, tau = _boundary(*wall_cones(scene, joint), strength, shear)
     return Crushing(joint, strength * area, shear, ratio, sigma * area, tau * area)

@@ -105,9 +105,11 @@ class Equilibrium:
 
     def with_crushing(self) -> "Equilibrium":
         """The same equations, joints that crush taken as such; without weight, forces are in the strongest of them."""
-        joints = crushing(self.scene, self.force_unit)
-        if joints is None or self.dead.any():
-            return replace(self, crushing=joints)
+        if self.dead.any():
+            return replace(self, crushing=crushing(self.scene, self.force_unit))
+        joints = crushing(self.scene, self.force_unit, np.inf)
+        if joints is None:
+            return self
         system = self.in_forces_of(float(joints.strength.max()))
         return replace(system, crushing=crushing(self.scene, system.force_unit))
 
