@@ -20,6 +20,7 @@ from runningbond.limit import equilibrium, limit, limit_state
 from runningbond.limit.crushed import InnerProgram, first_resultants
 from runningbond.limit.crushing import Crushing, _boundary
 from runningbond.limit.kinematics import dead_load, live_load, movable_freedoms
+from runningbond.limit.proved import is_large
 from runningbond.results import save_outcome
 from runningbond.scene import (
     Array,
@@ -57,8 +58,9 @@ def joint(name: str, n: int = 1) -> Crushing:
     """Joints of a material, of unit area."""
     material = MATERIALS[name]
     strength, shear = np.full(n, material.compressive_strength), np.full(n, material.cap_shear)
-    cone = [material.friction, material.tension, material.cohesion - material.friction * material.tension]
-    return Crushing(np.arange(n), strength, shear, *_boundary(*np.tile(cone, (n, 1)).T, strength, shear))
+    least = material.cohesion - material.friction * material.tension
+    slope, tension, held = (np.full(n, part) for part in (material.friction, material.tension, least))
+    return Crushing(np.arange(n), strength, shear, *_boundary(slope, tension, held, strength, shear))
 
 
 def jumps(seed: int, n: int) -> Array:
@@ -209,7 +211,7 @@ def test_an_eccentric_column_bears_the_pressure_on_twice_its_way_to_the_edge(ecc
 @pytest.mark.parametrize("strength", [2e5, 1e6])
 def test_a_stack_crushes_at_its_foot(strength: float) -> None:
     """n blocks b × h: λ = (b − n W / (t f_c)) / (n h)."""
-    n, height = 4, 0.5
+    n, height = 3, 0.5
     material = JointMaterial(2.0, compressive_strength=strength, cap_shear=0.0)
     scene = built([rectangle(0, k * height, 1, height) for k in range(n)], material)
     crushed = n * DENSITY * 9.81 * height / strength
@@ -331,7 +333,7 @@ def test_the_inner_polyhedron_grows_to_the_set() -> None:
 # --- what must not change ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("name", "strength"), [("panel-01", 1e6), ("wall-w1", 5e10)])
+@pytest.mark.parametrize(("name", "strength"), [("panel-01", 1e6), ("wall-w1", 3e10)])
 def test_a_strength_without_end_changes_nothing(name: str, strength: float) -> None:
     """To 1e-6; one far beyond all forces is left out, and that is said."""
     scene = published_scene(name)
@@ -392,7 +394,7 @@ WALLS: dict[str, dict[str, Any]] = {
     "sinking": {"load__live": SINKS},
     "pinned corners": {"support__kind": "pinned-corners", "joint__cohesion": 1e4},
     "inset": {"joint__inset": 0.01, "joint__cap_shear": 0.0},
-    "capped all round": {"joint__cohesion": 3e4, "joint__tensile_strength": 1e4, "inner_joint": {"friction": 0.7}},
+    "capped all round": {"joint__cohesion": 3e4, "joint__tensile_strength": 1e4, "wall__height": 0.24},
 }
 
 
@@ -452,10 +454,12 @@ def test_true_friction_leaves_the_strength_out_and_says_so() -> None:
     outcome, without = (run_model("limit-nonassociated", scene.with_joint(compressive_strength=f)) for f in (2e4, None))
     assert "not taken into account: joint.compressive_strength" in outcome.message
     assert outcome.lower == without.lower
-    assert limit(scene).lower < 0.9 * outcome.lower
+    assert outcome.lower is not None
+    assert collapse(scene) < 0.9 * outcome.lower
 
 
 def test_a_large_wall_is_bracketed_by_the_repaired_interior_point() -> None:
-    """276 blocks that slide, whatever crushes."""
-    scene = panel(wall__length=2.88, wall__height=1.32, joint__compressive_strength=5e5)
+    """204 blocks that slide, whatever crushes."""
+    scene = panel(wall__length=2.16, wall__height=1.32, joint__compressive_strength=5e5)
+    assert is_large(equilibrium(scene))
     assert collapse(scene) == pytest.approx(0.6, rel=NARROW)
