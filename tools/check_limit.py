@@ -23,9 +23,9 @@ import numpy as np
 MOST = 1e-6
 """Most that a measure may be, relative to the largest force, motion or multiplier."""
 
-WIDEST, WIDEST_OF_LARGE, LARGE = 1e-6, 1e-4, 1500
-"""Largest relative width of a bracket of the associated bounds, of walls of fewer blocks than so many and of larger
-ones; each end is checked by itself."""
+WIDEST, WIDEST_OF_LARGE, LARGE, LARGE_THAT_CRUSHES = 1e-6, 1e-4, 1500, 200
+"""Largest relative width of a bracket of the associated bounds, of walls of fewer blocks than so many, or than so many
+whose joints crush, and of larger ones; each end is checked by itself."""
 
 GAUSS = [(part + shift) / 2 for part, shift in zip(np.polynomial.legendre.leggauss(6), (1, 0), strict=True)]
 """Nodes and weights on [0, 1]."""
@@ -403,7 +403,7 @@ class Result:
             spent += ties.yield_force @ self.longer.clip(min=0.0)
         else:
             spent = self.normal @ self.opening + self.tangential @ self.slip + self.pull @ self.longer
-        widest = WIDEST if free.sum() < LARGE else WIDEST_OF_LARGE
+        widest = WIDEST if free.sum() < (LARGE_THAT_CRUSHES if self.crushing else LARGE) else WIDEST_OF_LARGE
         lower, upper, here = self.record["lower"], self.record["upper"], self.multiplier
         proved = here if not self.dilatant else lower if self.settles else upper
         found = {

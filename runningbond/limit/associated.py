@@ -262,8 +262,8 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     ----------
     scene, tolerance
         The scene, and the relative width of the bracket asked for; a vertex closes it to about 1e-9,
-        the repaired interior point of a large wall, or of one whose joints crush, to 1e-6, and of a very large one to
-        1e-4.
+        the repaired interior point of a large wall, and facets of joints that crush, to 1e-6, of a very large wall, or
+        a large one whose joints crush, to 1e-4.
 
     Returns
     -------

@@ -22,7 +22,7 @@ from .crushing import STRONGEST, Crushing, may_crush
 from .equilibrium import Equilibrium
 from .force_program import STATUS, Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
 from .interior_point import InteriorPoint, interior_point
-from .proved import CLOSE, ROUGH, loaded, tolerance_of
+from .proved import CLOSE, ROUGH, WIDE, is_large, loaded
 from .repair import admissible, balanced
 
 ROUNDS = 60
@@ -150,10 +150,15 @@ def nothing(status: ProgramStatus, iterations: int = 0) -> ForceSolution:
     return ForceSolution(status, np.nan, none, none, none, none, iterations)
 
 
+def closest(system: Equilibrium) -> float:
+    """Relative width of the bracket that is aimed at; of a large wall programs take too long for more."""
+    return WIDE if is_large(system) else CLOSE
+
+
 def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool | None]:
     """Forces and mechanism of a system with joints that crush, and whether it rests under its dead load.
 
-    Their bracket is as wide as `tolerance_of` says, or as `ROUNDS` leave it.
+    Their bracket is as wide as `closest` says, or as `ROUNDS` leave it.
     """
     dead = system.under_dead_load()
     rests, known = _resting(dead, joints)
@@ -163,7 +168,7 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
     if point.status != "optimal":
         return nothing(point.status, iterations), True
     found = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
-    if found is None or _width(system, found) > tolerance_of(system):
+    if found is None or _width(system, found) > closest(system):
         vertex = program.vertex()
         if vertex.status == "optimal":
             found = vertex if found is None else _best(system, found, vertex)
@@ -207,10 +212,10 @@ def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None
 
 def _narrowed(system: Equilibrium, joints: Crushing, known: Resultants) -> tuple[InnerProgram, InteriorPoint, int]:
     """The last of a row of programs that know more and more resultants, its interior point, and all iterations."""
-    closest, iterations, width = tolerance_of(system), 0, 1.0
+    aim, iterations, width = closest(system), 0, 1.0
     for _ in range(ROUNDS):
         program = InnerProgram(system, joints, known)
-        accuracy = min(max(width, closest) / 1e3, ROUGH)
+        accuracy = min(max(width, aim) / 1e3, ROUGH)
         point = interior_point(program.arguments(), accuracy)
         iterations += point.iterations
         if point.status != "optimal":
@@ -218,7 +223,7 @@ def _narrowed(system: Equilibrium, joints: Crushing, known: Resultants) -> tuple
         found = program.solution("optimal", point.forces, point.motion, iterations)
         known = known.nearer(joints, system.crushed_jumps(found.motion))
         width = _width(system, found)
-        if width <= closest / 2 and accuracy <= closest / 1e3:
+        if width <= aim / 2 and accuracy <= aim / 1e3:
             break
     return program, point, iterations
 
