@@ -20,6 +20,7 @@ from .model import Cost, Model
 
 DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
+CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
 CRUSHING = SOFTENING | {
@@ -73,7 +74,7 @@ _EVERY_MODEL = (
         line=(0, (6, 4)),
     ),
     Model(
-        *("limit", "limit analysis of the blocks", limit, STRENGTH, "bound"),
+        *("limit", "limit analysis of the blocks", limit, CRUSHING, "bound"),
         takes=EXTRAS,
         cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
         colour="#0b559f",
