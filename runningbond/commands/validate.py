@@ -42,20 +42,21 @@ def validate(
     from runningbond.laboratory.folder import SHIPPED, read_folder
     from runningbond.laboratory.ladder import find_rungs
     from runningbond.laboratory.page import score_sheet, write_laboratory
-    from runningbond.laboratory.predictions import predict
+    from runningbond.laboratory.predictions import predict, scenes_of
     from runningbond.laboratory.summary import as_json, summary_sheet, totals, verdicts
 
     rungs = find_rungs(models)
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
     walls = [wall for folder in ((data,) if data else SHIPPED) for wall in read_folder(folder)]
+    scenes = scenes_of(walls, rungs)
     make_folder(out)
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
     total = len(walls) * len(rungs)
     try:
         with progress_bar("predicting", total) as advance:
             predictions, campaign = predict(
-                walls, rungs, out, jobs=jobs, fresh=fresh, progress=lambda cell: advance(", ".join(cell))
+                walls, rungs, scenes, out, jobs=jobs, fresh=fresh, progress=lambda cell: advance(", ".join(cell))
             )
     except Interrupted as stopped:
         print(f"Interrupted: {stopped.campaign.kept} of {total} cases are kept in {out}.", file=sys.stderr)

@@ -24,6 +24,10 @@ LEAST_ERROR, LEAST_SECONDS = 0.004, 5e-3
 """Ends of the chart's axes, at which smaller numbers are drawn."""
 
 
+SEEN = 1.6
+"""Loads without a curve that are larger, relative to the test's, are left to the table."""
+
+
 def card(predictions: Sequence[Prediction]) -> Figure:
     """One wall: measured and predicted curves, and the motion of its predicted end beside the drawn cracks."""
     wall = predictions[0].wall
@@ -56,7 +60,7 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
         look = {"color": each.rung.model.colour, "label": each.rung.name, "lw": 1.2}
         if not len(each.curve):
             style = {"rocking": ":", "sliding": "--"}.get(each.rung.name, "-.")
-            if each.rung.name != "by-hand" and each.strength < 3 * (wall.peak or each.strength):
+            if each.rung.name != "by-hand" and each.strength < SEEN * (wall.peak or each.strength):
                 axes.axhline(each.strength / 1e3, ls=style, **look | {"lw": 0.9})  # type: ignore[arg-type]
             continue
         x, y = each.curve.T
@@ -116,6 +120,15 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
 
 def _level(axes: Axes, error: float, text: str, width: float = 0.9) -> None:
     axes.axhline(error, color="0.35", lw=width, ls="--", zorder=0)
+    side = "top" if width > 1 else "bottom"
     axes.annotate(
-        text, (0.99, error), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=8, color="0.3"
+        text,
+        (0.99, error),
+        (0, 2 if side == "bottom" else -2),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        ha="right",
+        va=side,
+        fontsize=8,
+        color="0.3",
     )

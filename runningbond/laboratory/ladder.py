@@ -38,9 +38,9 @@ def by_hand(scene: Scene) -> dict[str, float]:
     beam = scene.beam
     if beam is None or beam.drive is None:
         raise SceneError("beam.drive", "is missing; the formulas are of walls that are pushed at a beam")
-    (left, bottom), (right, top) = scene.blocks.extent(scene.wall)
+    (left, bottom), (right, _) = scene.blocks.extent(scene.wall)
     length, pressed = right - left, -beam.force[1]
-    height = top - bottom if beam.drive.at is None else beam.drive.at
+    height = scene.blocks.centroid[beam.block, 1] - bottom if beam.drive.at is None else beam.drive.at
     # A beam that does not turn bends the wall doubly: it presses on one corner of its top.
     lever = length / (2 * height) if beam.condition == "free" else length / height
     joint = scene.joint_materials[0]

@@ -24,10 +24,10 @@ OVER_COST = (
     "Error against experiment over cost: a point a wall, large the median of a model, and what is worked out by hand."
 )
 LEGEND = (
-    "ΔV is the predicted strength over the measured one, less 1; of a wall pushed to both sides they are means of both. "
+    "ΔV is the predicted strength over the measured one, less 1; of a wall pushed to and fro they are means of both. "
     "*Stiffness* is the ratio of secants at 0.3 of the strength, *at peak* and *at 0.8* of displacements there and "
     "where it has fallen to 0.8 of it. *Cycles* is the mean ratio of peaks of cycles, *energy* that of the dissipated "
-    "work, *residual* that of the largest displacement left without force. Modes: rocking with toe crushing R/TC, steps along a "
+    "work, *residual* that of the largest displacement without force. Modes: rocking with toe crushing R/TC, a stepped "
     "diagonal F, sliding SL; a prediction is right where the report names it. A dash is a number that does not exist. "
     "No parameter is fitted to a test."
 )
@@ -119,8 +119,10 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
 
 def _rig(wall: MeasuredWall, one: Prediction) -> str:
     """Size and loads in words."""
-    (left, bottom), (right, top) = one.scene.blocks.extent(one.scene.wall)
     beam = one.scene.beam
+    own = one.scene.wall.copy()
+    own[[] if beam is None else beam.block] = False
+    (left, bottom), (right, top) = one.scene.blocks.extent(own)
     pressed = -beam.force[1] if beam else vertical_load(wall)
     where = "from a scene of its own" if wall.scene_file else f"from line {wall.row.line} of {wall.row.path.name}"
     kind = "pushed to and fro" if wall.is_cyclic else "pushed to one side"

@@ -1,6 +1,6 @@
 """Predictions of walls: every rung on every wall, in parallel and kept, and the scores of each."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -78,7 +78,8 @@ class Prediction:
         """Its largest force [N]."""
         if not self.is_answer or self.outcome is None:
             return None
-        return self.marks.strength if self.marks else self.outcome.multiplier
+        found = self.marks.strength if self.marks else self.outcome.multiplier
+        return None if found is None else float(found)
 
     @property
     def error(self) -> float | None:
@@ -141,20 +142,25 @@ class Prediction:
         return float(np.mean(over)) if over else None
 
 
+def scenes_of(walls: Sequence[MeasuredWall], rungs: Sequence[Rung]) -> dict[Cell, Scene]:
+    """The scene of every wall for every rung; `SceneError` where one cannot be made."""
+    return {(wall.name, rung.name): scene_of(wall, rung.features) for wall in walls for rung in rungs}
+
+
 def predict(
     walls: Sequence[MeasuredWall],
     rungs: Sequence[Rung],
+    scenes: Mapping[Cell, Scene],
     folder: Path,
     *,
     jobs: int = -1,
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> tuple[list[Prediction], Campaign]:
-    """Predict walls with rungs; what a folder holds of the same scenes, code and settings is taken from there.
+    """Predict walls with rungs, on their scenes; what a folder holds of the same scenes, code and settings is taken from there.
 
     Parameters and errors as of `runningbond.compare.run_campaign`.
     """
-    scenes = {(wall.name, rung.name): scene_of(wall, rung.features) for wall in walls for rung in rungs}
     tasks = [
         Task(wall.name, scenes[wall.name, rung.name], rung.model, TOLERANCE) for rung in rungs[::-1] for wall in walls
     ]

@@ -91,7 +91,7 @@ def swing(curve: Array, force: float) -> float | None:
             start = (side, x0 + (x1 - x0) * (side * force - y0) / (y1 - y0))
         if start is not None and -start[0] * y1 >= force:
             x = x0 + (x1 - x0) * (-start[0] * force - y0) / (y1 - y0)
-            return abs(x - start[1])
+            return float(abs(x - start[1]))
     return None
 
 

@@ -32,7 +32,7 @@ class Total:
     stiffness, drift
         Largest factor by which a stiffness, and a displacement at the loss, is off; None where none is known.
     beaten
-        Walls on which it is nearer to tests than the better of the two formulas worked out by hand.
+        Walls on which it is nearer than the better of the two formulas worked out by hand.
     seconds
         Median time of the processor.
     is_by_hand
@@ -165,11 +165,11 @@ def verdicts(sums: Sequence[Total]) -> list[str]:
         if models:
             least = min(models, key=lambda each: each.median or 0.0)
             lines.append(
-                f"Walls with {kind} joints: median |ΔV| {percent(least.median)} by `{least.model}` at best; its worst is "
-                f"{percent(least.worst)}; {percent(least.modes)} of its modes are right."
+                f"Walls with {kind} joints: median |ΔV| {percent(least.median)} by `{least.model}` at best, "
+                f"{percent(least.worst)} at worst; {percent(least.modes)} of its modes are right."
             )
         lines += [
-            f"`{each.model}` has not earned its cost on walls with {kind} joints: it is nearer to tests than the better "
+            f"`{each.model}` has not earned its cost on walls with {kind} joints: it is nearer than the better "
             f"of the two formulas on {each.beaten} of {each.answers} of them."
             for each in models
             if 2 * each.beaten <= each.answers
