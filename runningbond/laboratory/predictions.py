@@ -157,7 +157,7 @@ def predict(
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> tuple[list[Prediction], Campaign]:
-    """Predict walls with rungs, on their scenes; what a folder holds of the same scenes, code and settings is taken from there.
+    """Predict walls with rungs, on their scenes; what a folder holds of the same computation is taken from there.
 
     Parameters and errors as of `runningbond.compare.run_campaign`.
     """
