@@ -1,8 +1,9 @@
 """The page of the laboratory: error against experiment over cost, scores, a card a wall, and sources."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
+from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -10,7 +11,7 @@ from runningbond.compare.figures import bare
 from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
 from runningbond.results import write_atomically
-from runningbond.scene import table_of
+from runningbond.scene import BlockMaterial, JointMaterial, table_of
 from runningbond.studies.page import Block, Picture, write_page
 
 from .cards import card, error_over_cost
@@ -115,27 +116,28 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
     told = [f"Published in {wall.reference}. {_rig(wall, own[0])}"]
     if not wall.is_scored:
         told.append("Shown, not scored: it took more than rocking or friction allow; its beam was not as free as said.")
-    said = [
-        [each.rung.name, f"{each.outcome.seconds if each.outcome else 0:.2g}", each.row()["message"]] for each in own
-    ]
-    messages = Sheet("What the models say", ("model", "CPU s", "message"), said)
+    said = [[each.rung.name, each.row()["message"]] for each in own]
+    messages = Sheet("What the models say", ("model", "message"), said)
     return [f"## {wall.name}", *told, picture, _parameters(own[-1]), messages]
 
 
 def _parameters(one: Prediction) -> Sheet:
     """All that the dearest model is handed of materials, under the names of the scene file."""
-    scene, rows = one.scene, list[list[str]]()
-    for material in (*scene.block_materials, *scene.joint_materials):
-        for entry in fields(material):
-            value = getattr(material, entry.name)
-            parts = fields(value) if is_dataclass(value) else ()
-            if parts:
-                rows += [
-                    [f"{table_of(material)}.{entry.name}.{x.name}", f"{getattr(value, x.name):.5g}"] for x in parts
-                ]
-            elif isinstance(value, float) and value != entry.default:
-                rows.append([f"{table_of(material)}.{entry.name}", f"{value:.5g}"])
+    materials: list[BlockMaterial | JointMaterial] = [*one.scene.block_materials, *one.scene.joint_materials]
+    rows = [
+        [f"{table_of(material)}.{key}", f"{value:.5g}"] for material in materials for key, value in _numbers(material)
+    ]
     return Sheet(f"Materials, as {one.rung.name} is handed them, in SI units", ("key", "value"), rows)
+
+
+def _numbers(part: Any) -> Iterator[tuple[str, float]]:
+    """Numbers of a material that are not their defaults, and of what stands in it, by their keys."""
+    for entry in fields(part):
+        value = getattr(part, entry.name)
+        if is_dataclass(value):
+            yield from ((f"{entry.name}.{key}", number) for key, number in _numbers(value))
+        elif isinstance(value, float) and value != entry.default:
+            yield entry.name, value
 
 
 def _rig(wall: MeasuredWall, one: Prediction) -> str:
