@@ -41,7 +41,7 @@ def validate(
     """
     from runningbond.laboratory.folder import SHIPPED, read_folder
     from runningbond.laboratory.ladder import find_rungs
-    from runningbond.laboratory.page import score_sheet, write_laboratory
+    from runningbond.laboratory.page import error_sheet, score_sheet, write_laboratory
     from runningbond.laboratory.predictions import predict, scenes_of
     from runningbond.laboratory.summary import as_json, summary_sheet, totals, verdicts
 
@@ -66,7 +66,7 @@ def validate(
         content = {"walls": [each.row() for each in predictions], "summary": as_json(sums)}
         print(to_json.dumps(content, allow_nan=False))
     else:
-        for sheet in (score_sheet(predictions), summary_sheet(sums)):
+        for sheet in (score_sheet(predictions), error_sheet(predictions), summary_sheet(sums)):
             print_table(sheet)
         print("\n".join(verdicts(sums)))
         print(f"{total} cases, {len(campaign.reused)} of them already in {out}; written: {written[0]}, {written[1]}")

@@ -40,7 +40,8 @@ def write_laboratory(predictions: Sequence[Prediction], folder: Path) -> list[Pa
     """Draw and write the page into a folder; the files that were written."""
     sums = totals(predictions)
     blocks: list[Block] = ["# The laboratory: measured walls, predicted blind", *verdicts(sums)]
-    blocks += [LEGEND, summary_sheet(sums), _chart(predictions, folder), score_sheet(predictions)]
+    blocks += [LEGEND, summary_sheet(sums), _chart(predictions, folder), error_sheet(predictions)]
+    blocks.append(score_sheet(predictions))
     blocks.append(
         Sheet("Models", ("model", "what it is"), [[rung.name, rung.model.title] for rung in _rungs(predictions)])
     )
@@ -70,6 +71,17 @@ def _picture(figure: Figure, path: Path, caption: str) -> Picture:
         bare(axes)
     write_atomically(path, to_png(figure, 150))
     return Picture(path, caption)
+
+
+def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
+    """ΔV, a row a wall and a column a model."""
+    rungs, rows = _rungs(predictions), list[list[str]]()
+    for wall in _walls(predictions):
+        errors = {each.rung.name: percent(each.error, "+") for each in predictions if each.wall is wall}
+        name = wall.name if wall.is_scored else f"{wall.name} (not scored)"
+        peak = "–" if wall.peak is None else f"{wall.peak / 1e3:.1f}"
+        rows.append([name, peak, *(errors.get(rung.name, "–") for rung in rungs)])
+    return Sheet("ΔV", ("wall", "measured [kN]", *(rung.name for rung in rungs)), rows)
 
 
 def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
