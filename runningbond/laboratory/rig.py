@@ -8,7 +8,7 @@ from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.file import read_description
 
 from .measured import MeasuredWall
-from .stones import SHARE, SPLITTING_ENERGY, UNIT_WEIGHT, Stone, find_stone
+from .stones import SHARE, SHEAR_ENERGIES, SPLITTING_ENERGY, UNIT_WEIGHT, Stone, find_stone
 
 GRAVITY = 9.81
 LOAD_IN_NAME = re.compile(r"^[^\W\d_]+\d*[._ -](\d+)(?!\d)")
@@ -115,6 +115,7 @@ def _crack(stone: Stone, width: float, *, deformable: bool) -> dict[str, Any]:
         "cohesion": stone.cohesion,
         "tensile_strength": stone.tensile,
         "fracture_energy_1": SPLITTING_ENERGY,
+        "fracture_energy_2": SHEAR_ENERGIES * SPLITTING_ENERGY,
         "normal_stiffness": normal,
         "shear_stiffness": normal / (2 * (1 + SHARE)),
     }

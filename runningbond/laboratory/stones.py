@@ -26,6 +26,9 @@ SPLITTING_ENERGY = 100.0
 """Fracture energy in opening of stone [J/m²], for all walls: 0.1 N/mm. Not measured here. Published ones of sandstone
 and granite are about 0.05 to 0.25 N/mm, Vasconcelos, Lourenço, Alves & Pamplona (2008) among them; from memory."""
 
+SHEAR_ENERGIES = 10.0
+"""Fracture energy in shear over that in opening, where no source gives it; usual for interface elements."""
+
 
 @dataclass(frozen=True)
 class Stone:
@@ -133,6 +136,7 @@ def sources() -> Sheet:
             ],
             [name, "cohesion of blocks [MPa]", f"{stone.cohesion / 1e6:.1f}", "√(f_c f_t) / 2, of cores and f_t"],
             [name, "G_I of blocks [N/mm]", f"{SPLITTING_ENERGY / 1e3:g}", "default for stone, not measured here"],
+            [name, "G_II of blocks", f"{SHEAR_ENERGIES:g} G_I", "usual, not measured"],
             [name, "unit weight [kN/m³]", f"{UNIT_WEIGHT / 1e3:g}", "Ntot less the number in the name"],
         ]
     return Sheet("What the models read, and where it comes from", ("stone", "what", "value", "source"), rows)
