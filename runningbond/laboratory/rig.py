@@ -49,7 +49,7 @@ def scene_of(wall: MeasuredWall, features: Features) -> Scene:
         tables.pop("inner_joint", None)
     joint = tables.get("joint", {})
     if not features.crushes:
-        for key in ("compressive_strength", "compressive_fracture_energy", "cap_shear"):
+        for key in ("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure"):
             joint.pop(key, None)
     if not features.closes:
         joint.pop("closure", None)
