@@ -14,12 +14,16 @@ import numpy as np
 from runningbond.contacts.outline import Outline
 from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
+from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Scene, SceneError
 
 from .finite_system import finite_system
 from .rigid_system import contact_points, rigid_system
+
+MOVING = 0.2
+"""Local damping α of what moves far: less than at rest, for it drags."""
 
 
 def dem_dynamic(
@@ -29,9 +33,10 @@ def dem_dynamic(
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
+    displacements: Displacements = "small",
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its rigid blocks, at small displacements.
+    """Collapse of a scene by the motion of its rigid blocks.
 
     Parameters
     ----------
@@ -39,6 +44,9 @@ def dem_dynamic(
         The scene; its joints need a stiffness, on which the collapse load hardly depends.
     tolerance, collapse, first_step, budget, observe
         As in `collapse_by_steps`.
+    displacements
+        Whether a wall that is led by its beam is followed through finite displacements: blocks turn, slide off their
+        neighbours and come to rest on others, and softening joints break (`finite_system`).
 
     Returns
     -------
@@ -46,11 +54,12 @@ def dem_dynamic(
         As of `collapse_by_steps`.
     """
     start = time.perf_counter()
+    finite = is_finite(displacements, "dem-dynamic", scene)
     points = contact_points(scene)
     outcome = collapse_by_steps(
         scene,
         "dem-dynamic",
-        Run(rigid_system(scene)),
+        Run(finite_system(scene), local=MOVING) if finite else Run(rigid_system(scene)),
         tolerance,
         points=points,
         point_order=np.argsort(points.joint, kind="stable"),
@@ -63,7 +72,7 @@ def dem_dynamic(
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local: float = 0.2) -> Array:
+def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local: float = MOVING) -> Array:
     """Pushover curve of a dry scene at finite displacements, past its peak.
 
     Blocks turn, slide off their neighbours and come to rest on others. The live load's power is kept constant, and
@@ -90,6 +99,8 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
     SceneError
         For a scene that is not of this kind.
     """
+    if scene.extras:
+        raise SceneError(scene.extras[0], "is not taken at finite displacements")
     run = Run(finite_system(scene), local=local)
     outline = Outline.of(scene)
     block, at, direction = scene.control_point

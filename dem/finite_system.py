@@ -1,18 +1,21 @@
 """Rigid blocks at finite displacements, whose contacts are found anew as they move."""
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
+from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
 from runningbond.contacts.rigid_sides import RigidSides, gather_sides, scatter_sides
-from runningbond.contacts.search import Contacts, find_contacts, resting
+from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface, block_frequency_squared, joint_shares
-from runningbond.joints.law import KernelLaw
-from runningbond.joints.wall_law import kernel_law
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.dynamics.rig import check_finite
+from runningbond.joints import wall_rule
+from runningbond.joints.along import along, gather_along, scatter_along
+from runningbond.scene import Array, Indices, Scene
 
-from .rigid_system import held_masses, system_on
+from .rigid_system import contact_points, held_masses, system_on
 
 
 def finite_system(scene: Scene) -> BlockSystem:
@@ -21,45 +24,76 @@ def finite_system(scene: Scene) -> BlockSystem:
     Raises
     ------
     SceneError
-        If the scene gives its joints no stiffness, or pins corners, or glues its joints: a joint that has slid
-        away from where it was glued has a cohesion that only a law with damage can speak of.
+        As of `check_finite`, `ContactMaterials` and `Outline.of`.
     """
-    if scene.extras:
-        raise SceneError(scene.extras[0], "is not taken at finite displacements")
-    if len(scene.pins):
-        raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
-    if scene.joint.cohesion > 0:
-        raise SceneError("joint.cohesion", "finite displacements need dry joints", scene.joint.cohesion)
-    if len(scene.joint_materials) > 1 and scene.inner_joint is None:
-        raise SceneError("joints", "finite displacements need one material for all joints")
-    if scene.inner_joint is not None:
-        raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
+    check_finite(scene)
     contacts = RigidContacts(scene)
     rigid = np.arange(3 * len(scene.blocks)).reshape(-1, 3)
     return system_on(scene, contacts.interface_on(contacts.undeformed), rigid, contacts)
 
 
 class RigidContacts:
-    """Contacts of a scene's rigid blocks, between dry joints; see `runningbond.dynamics.ContactSearch`."""
+    """Contacts of a scene's rigid blocks; see `runningbond.dynamics.ContactSearch`."""
 
     def __init__(self, scene: Scene) -> None:
-        self.outline = Outline.of(scene)
-        # What a joint spends on its fracture does not matter to dry contacts.
-        self._joint = replace(scene.joint, fracture_energy_1=None, fracture_energy_2=None)
-        self._mass = held_masses(scene)
-        self.undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
+        self.outline, self._materials = Outline.of(scene), ContactMaterials(scene)
+        self._rule = wall_rule(scene)
+        self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
+        self._scene, self._mass = scene, held_masses(scene)
+        undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
+        self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 
     def find(self, motion: Array, margin: float) -> Contacts:
-        """Contacts nearer than a margin [m] after a motion ``(3 nb,)``."""
-        return find_contacts(self.outline, motion, margin)
+        """Contacts nearer than a margin [m] after a motion ``(3 nb,)``, material by material."""
+        contacts = find_contacts(self.outline, motion, margin)
+        return contacts.chosen(np.argsort(self._materials.number(contacts), kind="stable"))
 
     def interface_on(self, contacts: Contacts, system: BlockSystem | None = None) -> Interface:
         """The interface of the blocks on contacts."""
-        law = kernel_law((self._joint,), np.zeros(len(contacts), dtype=np.int64))
-        geometry = contacts.geometry(self.outline)
-        gather_sides(contacts.motion, geometry, *np.zeros((2, len(contacts))))
-        bound = _frequency_squared(geometry, law, self._mass)
-        return Interface(law, contacts.area, gather_sides, scatter_sides, geometry, bound)
+        ends = contacts.geometry(self.outline)
+        gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
+        if not self._points:
+            law = self._materials.law(contacts)
+            bound = _frequency_squared(ends, law.stiffest, law.shear_stiffness, self._mass)
+            return Interface(law, contacts.area, gather_sides, scatter_sides, ends, bound)
+        pairs = contacts.pairs
+        law = self._materials.law(contacts, pairs, self._points)
+        normal, shear = np.zeros((2, len(contacts)))
+        # The points' consistent stiffness is not more than that of their ends alone.
+        for of_ends, of_points in ((normal, law.stiffest), (shear, law.shear_stiffness)):
+            of_ends[pairs] = of_points[: len(pairs), None]
+        bound = _frequency_squared(ends, normal, shear, self._mass)
+        geometry, area = along(ends, pairs, contacts.area, self._rule)
+        return Interface(law, area, gather_along(gather_sides), scatter_along(scatter_sides), geometry, bound)
+
+    def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
+        """A key of each point of the interface on contacts, and the end that it is or −1, two ``(np,)``."""
+        return contacts.points(self._points)
+
+    def at_joints(self, contacts: Contacts, values: Array) -> Array:
+        """As of `ContactSearch`, at `contact_points`."""
+        at = position_of(self.points(contacts)[0], self._key_of_point)
+        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
+        return np.where(at >= 0, values[:, at], lost[:, None])
+
+    @cached_property
+    def _key_of_point(self) -> Indices:
+        """Key of the contact's point at each of `contact_points` on the undeformed wall."""
+        contacts, points = self.undeformed, contact_points(self._scene)
+        key, _ = self.points(contacts)
+        ends = contacts.geometry(self.outline)
+        gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
+        at, joint = ends.contact[:, :2], contacts.joint
+        if self._points:
+            pairs, share = contacts.pairs, (self._rule.nodes[:, None, None] + 1) / 2
+            at = ((1 - share) * at[pairs[:, 0]] + share * at[pairs[:, 1]]).reshape(-1, 2)
+            joint = np.tile(joint[pairs[:, 0]], self._points)
+        tangent = self.outline.joints.ends[:, 1] - self.outline.joints.ends[:, 0]
+        here = np.flatnonzero(joint >= 0)
+        along = ((at * tangent[joint]).sum(axis=1)[here], (points.position * tangent[points.joint]).sum(axis=1))
+        found = np.zeros(len(points), dtype=np.int64)
+        found[np.lexsort((along[1], points.joint))] = key[here][np.lexsort((along[0], joint[here]))]
+        return found
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
         """A number of the corner that rests and the side it rests on, for each contact."""
@@ -71,10 +105,11 @@ class RigidContacts:
         return 0.0
 
 
-def _frequency_squared(geometry: RigidSides, law: KernelLaw, mass: Array) -> float:
+def _frequency_squared(geometry: RigidSides, normal: Array, shear: Array, mass: Array) -> float:
     """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
 
-    The sides are as `gather_sides` placed them, the masses modal ones ``(3 nb,)``.
+    The sides are as `gather_sides` placed them, their ends have stiffnesses ``(n,)`` [Pa/m], and the masses are modal
+    ones ``(3 nb,)``.
     """
     centroid, contact = geometry.placed.blocks[:, 2:], geometry.contact
     n = contact[:, 2:]
@@ -84,7 +119,7 @@ def _frequency_squared(geometry: RigidSides, law: KernelLaw, mass: Array) -> flo
     for block, other in ((a, b), (b, a)):
         arm = contact[:, :2] - centroid[block]
         part = joint_shares(mass[3 * np.column_stack([block, other])], 0.5)[:, 0]
-        for direction, stiffness in ((n, law.stiffest), (t, law.shear_stiffness)):
+        for direction, stiffness in ((n, normal), (t, shear)):
             row = np.column_stack([direction, arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]])
             np.add.at(own, block, (part * stiffness * geometry.area)[:, None, None] * row[:, :, None] * row[:, None, :])
     movable = np.isfinite(mass[::3])

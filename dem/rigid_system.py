@@ -14,6 +14,7 @@ from runningbond.dynamics import (
     joint_shares,
     tie_rows,
 )
+from runningbond.dynamics.rig import Rig
 from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.joints.along import gather_along, scatter_along
 from runningbond.joints.law import KernelLaw
@@ -93,6 +94,7 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
         late=rigid[scene.late_pins.block, 1],
         carried=carried,
         contacts=contacts,
+        rig=None if contacts is None else Rig.of(scene, rigid),
     )
 
 

@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from runningbond.contacts.search import Contacts, facing_sides, find_contacts, overlaps, resting
+from runningbond.contacts.search import Contacts, facing_sides, find_contacts, resting
 from runningbond.dynamics import (
     BlockSystem,
     Interface,
@@ -51,8 +51,7 @@ class DeformableContacts:
         self.blocks, self.outline = blocks, blocks.outline
         self._thickness = blocks.scene.thickness
         undeformed = self.find(np.zeros(len(blocks.wall.mass)), self.outline.margin)
-        e, f = undeformed.ends[:, 4:].astype(np.int64).T
-        self.undeformed = replace(undeformed, glued=overlaps(self.outline, e, f) > 0)
+        self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 
     def find(self, motion: Array, margin: float) -> Contacts:
         """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then nodes inside them."""
@@ -72,6 +71,7 @@ class DeformableContacts:
             np.concatenate([ends.inwards, inner.inwards]),
             np.concatenate([ends.tilt, inner.tilt]),
             np.concatenate([area, inner.area]),
+            np.concatenate([ends.joint, inner.joint]),
             np.concatenate([ends.glued, inner.glued]),
         )
 
@@ -103,7 +103,8 @@ class DeformableContacts:
         rows = (len(outline.radius) + node, on, of_a[pair], after[on], e[pair], f[pair])
         area = self._thickness * (length_of[node] + length_of[node - 1]) / 2
         still = np.zeros(len(node))
-        return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, still > 0)
+        joint = outline.joint_of(e, f)[pair]
+        return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, joint, still > 0)
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
         """The arrays that `gather_deformable` and `scatter_deformable` share, with buffers of their own."""
@@ -135,6 +136,14 @@ class DeformableContacts:
         law, geometry = contact_law(self.blocks.scene.joint, contacts), self.geometry(contacts)
         bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
         return Interface(law, contacts.area, gather_deformable, scatter_deformable, geometry, bound)
+
+    def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
+        """A key of each contact and its number, two ``(n,)``: contacts are points."""
+        return contacts.points()
+
+    def at_joints(self, contacts: Contacts, values: Array) -> Array:
+        """As of `ContactSearch`."""
+        raise NotImplementedError
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
         """A number of the corner or node that rests and the side it rests on, for each contact."""

@@ -102,7 +102,7 @@ _EVERY_MODEL = (
     ),
     Model(
         *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, CRUSHING, "history"),
-        parameters=IN_STEPS,
+        parameters=(*IN_STEPS, "displacements"),
         observer=_MOTION_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
         interruptible=True,

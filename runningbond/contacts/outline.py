@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from runningbond.scene import Array, Blocks, Indices, Mask, Scene, SceneError
+from runningbond.scene import Array, Blocks, Indices, Joints, Mask, Scene, SceneError
 
 from .rigid_sides import Corners, Placed, place_outline
 
@@ -32,6 +32,9 @@ class Outline:
     exterior: Array  # (nv,) angle by which the outline turns at the corner [rad]
     thickness: float  # out-of-plane thickness [m]
     held: Mask  # (nb,) blocks between which nothing can happen
+    # (nj,) number of the two sides of each joint of the undeformed wall, ascending (`side_pair`), and (nj,) its joint
+    joined: tuple[Indices, Indices]
+    joints: Joints  # those joints
 
     @classmethod
     def of(cls, scene: Scene) -> "Outline":
@@ -61,7 +64,9 @@ class Outline:
         if (straight < 0).any():
             raise SceneError("joint.inset", "must be less than half the shortest side of a block", scene.joint.inset)
         centre = start + inset[:, None] * run - radius[:, None] * normal - blocks.centroid[blocks.owner]
-        return cls(blocks, radius, centre, normal, length, straight, exterior, scene.thickness, scene.fixed)
+        joined = _joined_sides(blocks, normal, length, scene.joints)
+        corners = (radius, centre, normal, length, straight, exterior)
+        return cls(blocks, *corners, scene.thickness, scene.fixed, joined, scene.joints)
 
     @property
     def margin(self) -> float:
@@ -73,6 +78,14 @@ class Outline:
         """Distance of the farthest corner of each block from its centroid, ``(nb,)`` [m]."""
         blocks = self.blocks
         return np.maximum.reduceat(np.hypot(*(blocks.vertices - blocks.centroid[blocks.owner]).T), blocks.first[:-1])
+
+    def joint_of(self, e: Indices, f: Indices) -> Indices:
+        """Joint that sides made on the undeformed wall, −1 where they made none, ``(n,)``."""
+        key, joint = self.joined
+        if not len(key):
+            return np.full(len(e), -1)
+        at = np.minimum(np.searchsorted(key, sought := side_pair(e, f)), len(key) - 1)
+        return np.where(key[at] == sought, joint[at], -1)
 
     @property
     def corner_arrays(self) -> Corners:
@@ -96,3 +109,24 @@ class Outline:
         cosine, sine, x, y = self.placed(motion).blocks[block].T
         arm = at - self.blocks.centroid[block]
         return np.column_stack([x + cosine * arm[:, 0] - sine * arm[:, 1], y + sine * arm[:, 0] + cosine * arm[:, 1]])
+
+
+def side_pair(e: Indices, f: Indices) -> Indices:
+    """Number of a pair of sides ``(n,)``, whichever comes first."""
+    return np.minimum(e, f) * 2**32 + np.maximum(e, f)
+
+
+def _joined_sides(blocks: Blocks, normal: Array, length: Array, joints: Joints) -> tuple[Indices, Indices]:
+    """Pairs of sides that joints lie between, ascending, and the joints: of each block the side nearest its middle."""
+    start, along = blocks.vertices, np.column_stack([-normal[:, 1], normal[:, 0]])
+
+    def side(block: int, middle: Array) -> int:
+        own = slice(blocks.first[block], blocks.first[block + 1])
+        way = np.clip(((middle - start[own]) * along[own]).sum(axis=1), 0.0, length[own])
+        apart = start[own] + way[:, None] * along[own] - middle
+        return int(own.start + np.hypot(*apart.T).argmin())
+
+    sides = [[side(b, m) for b in pair] for pair, m in zip(joints.block, joints.ends.mean(axis=1), strict=True)]
+    key = side_pair(*np.reshape(sides, (-1, 2)).T.astype(np.int64))
+    order = np.argsort(key)
+    return key[order], order

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -9,11 +10,14 @@ from numpy.typing import NDArray
 
 from runningbond.scene import Array, Indices, Mask
 
-from .outline import FLAT, Outline
+from .outline import FLAT, Outline, side_pair
 from .rigid_sides import Placed, RigidSides, gather_sides
 
 FASTEST_OPENING = math.sqrt(5)
 """Most by which an opening changes, in ways of the corner (`sharp_opening`)."""
+
+LEAST_OVERLAP = 1e-6
+"""Least overlap of two sides for which their contact has a stiffness, in lengths of the shorter one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +31,8 @@ class Contacts:
     inwards: Array  # (n,) 1 where inwards is along the tangent of a's side, −1 where it is against it
     tilt: Array  # (n,) tilt of side against side, less the turns of the blocks [rad]
     area: Array  # (n,) area [m²] the end stands for
-    # (n,) whether the end is of a joint of the undeformed wall and has not been lost since; none is when first found
+    joint: Indices  # (n,) joint that the two sides made on the undeformed wall; −1 for sides that met later
+    # (n,) whether the end is of such a joint and has not been lost since; none is when first found
     glued: Mask
 
     def __len__(self) -> int:
@@ -36,13 +41,33 @@ class Contacts:
     def chosen(self, rows: Mask | Indices) -> "Contacts":
         """Some of these."""
         return replace(
-            self, **{name: getattr(self, name)[rows] for name in ("ends", "inwards", "tilt", "area", "glued")}
+            self, **{name: getattr(self, name)[rows] for name in ("ends", "inwards", "tilt", "area", "joint", "glued")}
         )
+
+    @cached_property
+    def pairs(self) -> Indices:
+        """The two ends of each pair of facing sides, the low one first; twice the same where there is but one."""
+        sides = side_pair(*self.ends[:, 4:].astype(np.int64).T)
+        _, first, pair = np.unique(sides, return_index=True, return_inverse=True)
+        ends, row = np.full((len(first), 2), -1), np.arange(len(self))
+        ends[pair, np.where(self.inwards > 0, 0, 1)] = row
+        return np.where(ends < 0, ends[:, ::-1], ends)[np.argsort(first)]
 
     @property
     def key(self) -> Indices:
         """Number by which an end is recognised from one search to the next, ``(n,)``."""
         return np.asarray(self.ends[:, :2].astype(np.int64) @ [2**32, 1] * 2 + (self.inwards > 0))
+
+    def points(self, number: int = 0) -> tuple[Indices, Indices]:
+        """A key of each end, or of a number of points along each pair (`along`), and the end that it is or −1."""
+        if not number:
+            return self.key, np.arange(len(self))
+        low, high = self.pairs.T
+        alone, inner = low == high, np.arange(number)[:, None]
+        key, end = 64 * self.key[low] + inner, np.full((number, len(low)), -1)
+        key[-1] = np.where(alone, key[-1], 64 * self.key[high])
+        end[0], end[-1] = low, np.where(alone, -1, high)
+        return key.ravel(), end.ravel()
 
     def geometry(self, outline: Outline) -> RigidSides:
         """The arrays that `gather_sides` and `scatter_sides` share, with buffers of their own."""
@@ -60,7 +85,7 @@ class Contacts:
 
 
 def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
-    """Find every end of facing sides that is nearer than a margin [m] after a motion ``(3 nb,)``.
+    """Find every end of facing sides one of whose two is nearer than a margin [m] after a motion ``(3 nb,)``.
 
     None of those left out touches before some block has moved by half the margin.
     """
@@ -72,7 +97,8 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     tilt = swing[e] + np.pi - swing[f]
     turned = spin[owner[e]] - spin[owner[f]]
     tilt = np.mod(tilt + turned + np.pi, 2 * np.pi) - np.pi - turned
-    area = _area(outline, e, f)
+    joint = outline.joint_of(e, f)
+    area = _area(outline, e, f, joint, motion)
     low = np.column_stack([after[e], f, e, after[f], e, f])
     high = np.column_stack([e, after[f], after[e], f, e, f])
     n = len(e)
@@ -83,9 +109,11 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
         np.repeat([1.0, -1.0], n),
         np.tile(tilt, 2),
         np.tile(area, 2),
+        np.tile(joint, 2),
         np.zeros(2 * n, dtype=bool),
     )
-    near = np.abs(jumps(outline, both, motion)[0]) < FASTEST_OPENING * margin
+    close = np.abs(jumps(outline, both, motion)[0]) < FASTEST_OPENING * margin
+    near = np.tile(close[:n] | close[n:], 2)
     # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
     # rests with both, each of which stands for its own area.
     corner, _ = resting(outline, both, motion)
@@ -125,25 +153,27 @@ def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indice
     return e[facing], f[facing]
 
 
-def _area(outline: Outline, e: Indices, f: Indices) -> Array:
-    """Area of each end of facing sides, ``(n,)`` [m²]: half the joint's that they made on the undeformed wall.
+def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Array) -> Array:
+    """Area of each end of facing sides after a motion ``(3 nb,)``, ``(n,)`` [m²].
 
-    Sides that meet later are given half the shorter one as a joint, which is what running bond gives them from the
-    start. The area sets a penalty stiffness, on which a dry wall's resistance hardly depends.
+    Half the joint's that they made on the undeformed wall. Sides that meet later have half of what they overlap now,
+    at least `LEAST_OVERLAP`: as one block slides from the first onto the second, the second one's share grows.
     """
-    length, overlap = outline.length, overlaps(outline, e, f)
-    shared: Array = np.where(overlap > 0, overlap, np.minimum(length[e], length[f]) / 2)
+    length, joints = outline.length, outline.joints.length
+    corners, after = outline.corners(motion), outline.blocks.successor
+    along = (corners[after[f]] - corners[f]) / length[f, None]
+    first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
+    overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)
+    shorter = np.minimum(length[e], length[f])
+    later = np.clip(overlap, LEAST_OVERLAP * shorter, shorter)
+    shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
     return shared * outline.thickness / 2
 
 
-def overlaps(outline: Outline, e: Indices, f: Indices) -> Array:
-    """Length of the joint that facing sides made on the undeformed wall, ``(n,)`` [m]; zero where they made none."""
-    blocks = outline.blocks
-    start, stop = blocks.vertices, blocks.vertices[blocks.successor]
-    length = outline.length
-    along = (stop - start)[f] / length[f, None]
-    first, last = (np.einsum("ij,ij->i", point[e] - start[f], along) for point in (stop, start))
-    gap = np.abs([np.einsum("ij,ij->i", point[e] - start[f], outline.normal[f]) for point in (start, stop)])
-    overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)
-    joined = (gap.max(axis=0) <= blocks.tolerance) & (overlap > blocks.tolerance)
-    return np.where(joined, overlap, 0.0)
+def position_of(keys: Indices, sought: Indices) -> Indices:
+    """Position in `keys` of each key sought, −1 where it is not among them."""
+    if not len(keys):
+        return np.full(len(sought), -1)
+    order = np.argsort(keys)
+    at = order[np.minimum(np.searchsorted(keys, sought, sorter=order), len(keys) - 1)]
+    return np.where(keys[at] == sought, at, -1)

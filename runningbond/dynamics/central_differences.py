@@ -17,6 +17,7 @@ import numpy as np
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
+from .rig import turn_rig
 from .system import Kernel
 from .ties import pull
 
@@ -121,8 +122,12 @@ def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied: bool = False) -> Any:
+def stepper(
+    gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied: bool = False, rigged: bool = False
+) -> Any:
     """Compile the loop of a model: at a constant load, or at a prescribed speed besides; `tied` where it has ties.
+
+    Where it is `rigged`, the live load turns with the beam (`rig`), is written to, and acts on nothing else.
 
     Returns
     -------
@@ -149,6 +154,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied
         modes: Modes,
         restraint: tuple[Indices, Array],
         ties: Any,
+        rig: Any,
         state: StateArrays,
         work: Work,
         watch: Watch,
@@ -158,7 +164,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied
         freedom, basis = restraint
         moved, opening, slip, normal, tangential = work
         already, given, most = watch
-        response, total, worked, multiplier, before = 0.0, 0.0, 0.0, 0.0, 0.0
+        response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         if driven:
             for i in range(live.size):
                 response += live[i] * mobility[i] * live[i]
@@ -179,6 +185,12 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied
                 scatter(normal, tangential, geometry, force)
             if tied:
                 pull(ties, motion, force)
+            if rigged:
+                moment = turn_rig(rig, motion, live)
+                force[rig[0][2]] += moment
+                response = 0.0
+                for k in range(3):
+                    response += live[rig[0][k]] ** 2 * mobility[rig[0][k]]
             if carried:
                 pressed = 0.0
                 for i in range(live.size):
@@ -209,6 +221,10 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied
                 multiplier += returned
                 total += multiplier
                 worked += 0.5 * multiplier * dt * (before + speed)
+            if rigged:
+                turned = moment * dt * velocity[rig[0][2]]
+                worked += turned
+                rig[3][0] += turned
             due = (already + taken + 1) % LOOK == 0 and given < np.inf
             if due and not _is_stable(given + worked, load, modes, state, most):
                 return taken + 1, False, total, worked

@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.contacts.search import Contacts
+from runningbond.contacts.search import Contacts, position_of
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array
 
 from .state import PLASTIC_SLIP, State, history_free_of_shear
 from .system import BlockSystem, ContactSearch, Interface
@@ -58,9 +58,8 @@ class ContactUpdate:
         rested = search.resting(before, state.motion)
         opening, slip = interface.jumps(state.motion)
         plastic_slip = interface.law.law.row(PLASTIC_SLIP)
-        shear = slip - history[plastic_slip]
-        state.friction += float(before.area @ history[FRICTION_WORK])
-        state.absorbed += float(before.area @ history[DAMPED_WORK])
+        state.friction += float(interface.area @ history[FRICTION_WORK])
+        state.absorbed += float(interface.area @ history[DAMPED_WORK])
 
         # What flies moves by many a step's way before the next look, and may be as deep in a block by then; what has
         # struck one may be deeper, and is not to be lost sight of before it is thrown back.
@@ -69,19 +68,27 @@ class ContactUpdate:
         contacts = search.find(state.motion, max(search.outline.margin, fast, deep))
         # The same end of the same two sides; or, for a corner that has turned on, the same corner on the same side,
         # which goes on with the area that it had: another stiffness would jolt it.
-        turned = _where(rested, search.resting(contacts, state.motion))
-        same = _where(before.key, contacts.key)
+        turned = position_of(rested, search.resting(contacts, state.motion))
+        same = position_of(before.key, contacts.key)
         on, still = turned >= 0, same >= 0
         area, glued = contacts.area.copy(), np.zeros(len(contacts), dtype=bool)
         area[on] = before.area[turned[on]]
-        area[still] = before.area[same[still]]
+        lasting = still & (contacts.joint >= 0)
+        area[lasting] = before.area[same[lasting]]
         glued[still] = before.glued[same[still]]
 
         state.contacts = replace(contacts, area=area, glued=glued)
         renewed = self.interface_on(state.contacts)
         state.history = history_free_of_shear(renewed, state.motion)
-        state.history[plastic_slip, on] -= shear[turned[on]]
-        state.history[:, still] = history[:, same[still]]
+        # Points go on with all that they have been through; those of a corner that has turned on slip as it does now.
+        (keys, ends), (new_keys, new_ends) = search.points(before), search.points(state.contacts)
+        kept, new = position_of(keys, new_keys), state.history[plastic_slip].copy()
+        origin = np.where((new_ends >= 0) & (kept < 0), np.append(turned, -1)[new_ends], -1)
+        corner = position_of(ends, origin)
+        moved = np.flatnonzero((origin >= 0) & (corner >= 0))
+        state.history[4:, moved] = history[4:, corner[moved]]
+        state.history[plastic_slip, moved] += new[moved] - slip[corner[moved]]
+        state.history[:, kept >= 0] = history[:, kept[kept >= 0]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
         return renewed
 
@@ -110,12 +117,3 @@ def contacts_of(state: State) -> Contacts:
     if state.contacts is None:
         raise TypeError("finite displacements need a state with contacts: begin with State.at_rest of their system")
     return state.contacts
-
-
-def _where(keys: Indices, sought: Indices) -> Indices:
-    """Position in `keys` of each key sought, −1 where it is not among them."""
-    if not len(keys):
-        return np.full(len(sought), -1)
-    order = np.argsort(keys)
-    at = order[np.minimum(np.searchsorted(keys, sought, sorter=order), len(keys) - 1)]
-    return np.where(keys[at] == sought, at, -1)

@@ -26,6 +26,10 @@ STAGES = 20
 """Rests on the way of a settlement."""
 
 
+BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]")
+"""What else is known of each row of a beam's way."""
+
+
 @dataclass
 class Way:
     """What was seen on a way that was gone through once, from a state at rest."""
@@ -34,9 +38,11 @@ class Way:
     motion: Array  # (nd,) how the wall moved where it had come farthest
     moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[tuple[float, float]] = field(default_factory=list)  # displacement [m] and force
-    points: list[Array] = field(default_factory=list)  # (np, 2) forces of the joint points [N] in each
+    # (np, 2) forces of the joint points [N] in each; at finite displacements resultants on the bodies, `Run.resultants`
+    points: list[Array] = field(default_factory=list)
     ties: list[Array] = field(default_factory=list)  # (nt,) forces of the ties [N] in each
     works: list[tuple[float, float]] = field(default_factory=list)  # of the dead load and of what leads [J]
+    beam: list[tuple[float, float, float]] = field(default_factory=list)  # `BEAM` of one that is driven
     verdict: Verdict = "stable"
 
     @property
@@ -81,9 +87,15 @@ class Lead:
 
     def note(self, way: Way, state: State, moved: float, force: float) -> None:
         """Add a row of a state to a way."""
-        dead = float(self.run.system.dead @ state.motion)
+        dead = self.run.dead_work(state)
         way.rows.append((moved, force))
-        way.points.append(np.column_stack(self.run.forces(state)))
+        finite = self.run.system.contacts is not None
+        way.points.append(self.run.resultants(state, force) if finite else np.column_stack(self.run.forces(state)))
+        if not self.settles and self.scene.beam is not None:
+            _, uplift, rotation = self.run.system.motion_of_blocks(state.motion - self.start.motion)[
+                self.scene.beam.block
+            ]
+            way.beam.append((rotation, uplift, self.run.ledger(state).friction))
         way.ties.append(self.run.system.ties.force(state.motion, state.stretch))
         way.works.append((dead, state.external - dead))
 
@@ -107,10 +119,10 @@ class Lead:
             steps = max(1, round(abs(goal - at) / (speed * run.dt * pace.sum())))
             top = (goal - at) / (run.dt * steps * pace.sum())
             for k, part in enumerate(pace.tolist()):
-                before = float(run.system.live @ state.velocity)
+                before = run.driven_speed(state)
                 force = run.drive(state, top * part, steps, given=given)
                 force -= (top * part - before) / (mobility * steps * run.dt)  # what the driven body's own inertia takes
-                moved = float(run.system.live @ (state.motion - self.start.motion))
+                moved = run.driven(state) - run.driven(self.start)
                 if force > most:
                     most, way.best = force, state.copy()
                 self.note(way, state, moved, force)

@@ -14,15 +14,17 @@ import numpy as np
 from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
+from runningbond.results.reactions import AT_REST, WORKS
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, settle
-from .lead import Lead, Way
+from .lead import BEAM, Lead, Way
 from .run import Observer, Run, Unstable
 from .state import State
 
-STEPS, UNHURRIED = 20_000, 20
-"""Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest.
+STEPS, UNHURRIED, FAR = 20_000, 20, 2
+"""Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
+at small displacements, and at finite ones, whose ways are longer.
 """
 
 LAST = 0.1
@@ -79,8 +81,10 @@ def collapse_of_led(
         return replace(outcome, message="interrupted: the way so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    # What a support hardly moves does hardly any work.
-    lost = run.unaccounted(last, LITTLE * run.system.carried.work)
+    # Of the way alone, for its rest is balanced. What a support hardly moves does hardly any work, nor does a way that
+    # ends where it began.
+    most = max(float(np.abs(way.works).sum(axis=1).max()), LITTLE * run.system.carried.work)
+    lost = abs(run.ledger(last).residual - run.ledger(state).residual) / most if most else 0.0
     outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -100,7 +104,8 @@ def _speeds(lead: Lead) -> list[float]:
     if rate := _rate(lead.scene):
         return [2 * rate, rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
-    steps = max(STEPS, UNHURRIED * lead.start.steps)
+    unhurried = UNHURRIED if lead.run.system.contacts is None else FAR
+    steps = max(STEPS, unhurried * lead.start.steps)
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
 
@@ -125,7 +130,7 @@ def _spread(lead: Lead, answers: list[float]) -> float:
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
     """Forces at the answer and motion: of a settlement the whole shape, of a drive how the wall moves."""
     run = lead.run
-    force, motion = np.column_stack(run.forces(way.best))[point_order], run.system.motion_of_blocks(way.motion)
+    force, motion = run.at_joints(way.best)[2:4].T[point_order], run.system.motion_of_blocks(way.motion)
     if motion.any():
         outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion))
     return replace(outcome, force=force)
@@ -133,10 +138,19 @@ def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Out
 
 def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Way) -> Outcome:
     """Curve, reactions and works of a way; its states rest, but for those of a motion, whose inertia is left out."""
-    loads = [force if way.moves else 0.0 for _, force in way.rows]
-    path = Supports(scene, points, run.system.owner).path(way.points, way.ties, loads, np.array(way.works))
-    path["path"][:, -1] = not way.moves
-    return replace(outcome, curve=way.curve, **path)
+    supports, works, beam = Supports(scene, points, run.system.owner), np.array(way.works), np.array(way.beam)
+    columns = (*supports.columns, *WORKS, AT_REST)
+    if run.system.contacts is not None:
+        held = np.array(way.points)[:, supports.block]
+        held[:, :, 2] -= supports.about[:, 0] * held[:, :, 1] - supports.about[:, 1] * held[:, :, 0]
+        path = np.column_stack([-held.reshape(len(held), -1), works, np.zeros(len(held))])
+    else:
+        loads = [force if way.moves else 0.0 for _, force in way.rows]
+        path = supports.path(way.points, way.ties, loads, works)["path"]
+        path[:, -1] = not way.moves
+    if len(beam):
+        path, columns = np.column_stack([path[:, :-1], beam, path[:, -1]]), (*columns[:-1], *BEAM, AT_REST)
+    return replace(outcome, curve=way.curve, path=path, path_columns=columns)
 
 
 def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], tolerance: float) -> Outcome:
@@ -146,7 +160,7 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     other = -float(outcome.curve[:, 1].min())
     if len(lead.goals) > 1 and other > 0:
         what += f"; the other way it takes {number(other)}"
-    what += "; small displacements"
+    what += f"; {'small' if lead.run.system.contacts is None else 'finite'} displacements"
     at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"
     if way.verdict == "undecided" or len(answers) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")

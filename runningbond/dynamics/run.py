@@ -13,6 +13,7 @@ from runningbond.scene import Array
 
 from .central_differences import CONTROLS, Control, stepper
 from .contact_update import ContactUpdate, contacts_of
+from .rig import turn_rig
 from .state import State
 from .system import BlockSystem, Interface
 from .ties import YIELD
@@ -83,6 +84,7 @@ class Run:
     ) -> None:
         self.system, self.local, self.viscous = system, local, viscous
         self._given_step, self._tied = dt, len(system.ties) > 0
+        self._rig = () if system.rig is None else tuple(system.rig)
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -97,7 +99,7 @@ class Run:
         self.dt = self._given_step or self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._step = {control: stepper(*kernels, control, self._tied) for control in CONTROLS}
+        self._step = {control: stepper(*kernels, control, self._tied, bool(self._rig)) for control in CONTROLS}
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
@@ -157,14 +159,21 @@ class Run:
         """Take steps under a constant load and a control; what `stepper` sums up."""
         total, system = 0.0, self.system
         live = system.carried.motion if control == "carried" else system.live
+        if self._rig:
+            live = live.copy()  # it turns with the beam
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
             step, ties = self._step[control], (*system.ties, state.stretch) if self._tied else ()
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             coefficients = (piece, self.dt, self.local, self._viscosity, load, live, speed)
-            taken, stable, multipliers, work = step(*coefficients, *self._arrays, ties, arrays, self._work, watch)
+            taken, stable, multipliers, work = step(
+                *coefficients, *self._arrays, ties, self._rig, arrays, self._work, watch
+            )
             total += multipliers
+            if self._rig:
+                state.turned += float(self._rig[3][0])
+                self._rig[3][0] = 0.0
             state.external += float(load.dot(state.motion)) - before + work
             state.steps += taken
             state.time += taken * self.dt
@@ -180,15 +189,31 @@ class Run:
         state.velocity[self.system.late] = 0.0
         return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
 
-    def unaccounted(self, state: State, least: float = 0.0) -> float:
-        """Share of the work of the loads, or of a least one [J], that the energy ledger misses.
+    def unaccounted(self, state: State) -> float:
+        """Share of the work of the loads that the energy ledger misses.
 
         Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
         """
         ledger = self.ledger(state)
-        dead = float(self.system.dead @ state.motion)
-        work = max(abs(dead) + abs(ledger.external - dead), least)
+        dead = self.dead_work(state)
+        work = abs(dead) + abs(ledger.external - dead)
         return abs(ledger.residual) / work if work else 0.0
+
+    def dead_work(self, state: State) -> float:
+        """Work of the dead load [J]."""
+        return float(self.system.dead @ state.motion) + state.turned
+
+    def driven(self, state: State) -> float:
+        """Displacement of what is driven, along the live load at λ = 1, times that [J]."""
+        rig, live = self.system.rig, self.system.live
+        return float(live @ state.motion) if rig is None else live[rig.freedom[0]] * rig.displacement(state.motion)
+
+    def driven_speed(self, state: State) -> float:
+        """Rate of `driven` [W]."""
+        live = self.system.live
+        if self.system.rig is not None:
+            turn_rig(tuple(self.system.rig), state.motion, live := live.copy())
+        return float(live @ state.velocity)
 
     def given(self, state: State) -> float:
         """Energy [J] of a state that its loads did not supply: of ties' preloads, or of being set in motion by hand."""
@@ -212,6 +237,32 @@ class Run:
         # At rest: the viscosity, of no account then, would need the rate of a step that is not taken.
         law.kernel(opening, slip, law.parameters, state.history.copy(), 0.0, normal, tangential)
         return opening, slip, normal, tangential
+
+    def at_joints(self, state: State) -> Array:
+        """Opening and slip [m], normal and tangential force [N] and damage of the joints' points, ``(5, n)``.
+
+        At finite displacements they are points of the undeformed wall's joints, and what has met since is left out.
+        """
+        jumps, tractions = np.split(np.array(self.tractions(state)), 2)
+        damage = self.interface.law.damage(state.history)
+        values, search = np.vstack([jumps, self.interface.area * tractions, damage]), self.system.contacts
+        return values if search is None else search.at_joints(contacts_of(state), values)
+
+    def resultants(self, state: State, multiplier: float) -> Array:
+        """Resultants of contacts and loads on each body, moments about the origin, ``(n, 3)`` [N, N, N m]."""
+        system = self.system
+        _, _, *tractions = self.tractions(state)
+        live = system.live.copy()
+        moment = turn_rig(self._rig, state.motion, live) if self._rig else 0.0
+        force = system.dead + multiplier * live
+        self.interface.scatter(*tractions, self._arrays[0], force)
+        total, search = force[system.rigid], system.contacts
+        if search is None or system.rig is None:
+            raise TypeError("resultants are those of a rig at finite displacements")
+        total[(system.rigid[:, 0] == system.rig.freedom[0]), 2] += moment
+        at = search.outline.blocks.centroid + state.motion[system.rigid][:, :2]
+        total[:, 2] += at[:, 0] * total[:, 1] - at[:, 1] * total[:, 0]
+        return np.asarray(total)
 
     def ledger(self, state: State) -> Ledger:
         """Account for the work of the loads so far."""

@@ -27,6 +27,7 @@ class State:
     # the contacts that the history is of, a column each; None at small displacements, which know but one set
     contacts: Contacts | None = None
     external: float = 0.0  # work of the loads [J]
+    turned: float = 0.0  # work of the moment of a beam's dead force whose line is fixed [J], which is part of it
     steps: int = 0  # steps taken
     time: float = 0.0  # time since the start [s]
     # (1,) largest energy that was supplied at any look at it [J]

@@ -19,6 +19,7 @@ from runningbond.joints import PointStrength
 from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
 
+from .rig import Rig
 from .ties import NO_TIE_ROWS, TieRows
 
 Kernel: TypeAlias = Callable[..., Any]
@@ -89,6 +90,15 @@ class ContactSearch(Protocol):
     def deformation(self, motion: Array) -> float:
         """At most how far a point of a body is from where a rigid one would have it [m]."""
 
+    def points(self, contacts: Contacts) -> "tuple[Indices, Indices]":
+        """A key of each point of the interface on contacts, and the end that it is or −1, two ``(np,)``."""
+
+    def at_joints(self, contacts: Contacts, values: Array) -> Array:
+        """What is at the undeformed wall's joint points, ``(5, n)``, from what is at contacts' points ``(5, np)``.
+
+        That is openings and slips [m], normal and tangential forces [N], and damage.
+        """
+
 
 @dataclass(frozen=True, eq=False)
 class BlockSystem:
@@ -110,6 +120,7 @@ class BlockSystem:
     late: Indices = field(default_factory=lambda: np.zeros(0, dtype=np.int64))  # modes held once the dead load is on
     carried: Carried = NOTHING_CARRIED  # supports that move
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
+    rig: Rig | None = None  # what drives its beam at finite displacements
     # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
     block_motion: csr_array | None = None
     source: object = None  # what it was set up from, for observers: the wall in modal coordinates where blocks deform

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 Condition: TypeAlias = Literal["free", "level", "fixed-height"]
 CONDITIONS: tuple[str, ...] = get_args(Condition)
 
+ForceLine: TypeAlias = Literal["moving", "fixed"]
+FORCE_LINES: tuple[str, ...] = get_args(ForceLine)
+
 
 @dataclass(frozen=True)
 class Drive:
@@ -75,6 +78,9 @@ class Beam:
         is on.
     force
         Dead force at its centre [N].
+    force_line
+        Whether, at finite displacements, that force moves with the centre or keeps its line: a jack that stays where
+        it is, and under which the beam rolls, has a ``"fixed"`` one.
     drive
         How it is driven; None where it is not.
     joint
@@ -90,11 +96,15 @@ class Beam:
     drive: Drive | None = None
     joint: str | None = None
     block: int | None = None
+    force_line: ForceLine = "moving"
 
     def __post_init__(self) -> None:
         check_numbers(self, "beam")
         one_of("beam.condition", self.condition, CONDITIONS)
+        one_of("beam.force_line", self.force_line, FORCE_LINES)
         object.__setattr__(self, "force", vector("beam.force", self.force))
+        if self.force_line == "fixed" and not any(self.force):
+            raise SceneError("beam.force", "is missing; force_line says where it acts", list(self.force))
 
     def outline(self, blocks: Blocks) -> Array:
         """Its rectangle ``(4, 2)`` [m] on the highest level of a wall, as long as the sides that lie there."""
@@ -160,6 +170,7 @@ def read_beam(table: Table, joint_names: Sequence[str]) -> Beam:
         force=table.vector("force") if "force" in table else (0.0, 0.0),
         drive=_read_drive(drive) if drive else None,
         joint=table.choice("joint", joint_names) if "joint" in table else None,
+        force_line=cast(ForceLine, table.choice("force_line", FORCE_LINES, "moving")),
     )
     table.finish()
     return beam

@@ -1,0 +1,60 @@
+"""What contacts are made of: their joint's material while they are glued, its dry version afterwards."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from runningbond.joints import joint_stiffness
+from runningbond.joints.law import KernelLaw
+from runningbond.joints.wall_law import kernel_law
+from runningbond.scene import Indices, JointMaterial, Scene, SceneError, table_of
+
+from .search import Contacts
+
+
+def dry(material: JointMaterial) -> JointMaterial:
+    """A material that is broken: without cohesion and tension, of the same friction, stiffness and crushing."""
+    return replace(material, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=None, fracture_energy_2=None)
+
+
+class ContactMaterials:
+    """Materials of the contacts of a scene.
+
+    The ends of sides that made a joint are of its material until they have been lost sight of, and of its dry version
+    afterwards. Sides that meet later are of the dry version of the default material.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+
+    Raises
+    ------
+    SceneError
+        For a material without stiffness; for one that is glued for ever: a joint that has slid away from where it was
+        glued has a cohesion that only a law with damage can speak of; and for insets that differ.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        for material in scene.joint_materials:
+            table = table_of(material)
+            joint_stiffness(material)
+            if material.cohesion > 0 and (material.fracture_energy_1 is None or material.fracture_energy_2 is None):
+                what = "finite displacements need dry joints, or both fracture energies, with which they break"
+                raise SceneError(f"{table}.cohesion", what, material.cohesion)
+            if material.inset != scene.joint.inset:
+                what = f"finite displacements need one inset, and joint.inset is {scene.joint.inset:g}"
+                raise SceneError(f"{table}.inset", what, material.inset)
+        own, self._of_joint = scene.joint_materials, scene.material_of_joint
+        self._broken = tuple(map(dry, own))
+        self._all = (*(each if each.cohesion > 0 else dry(each) for each in own), *self._broken)
+
+    def number(self, contacts: Contacts) -> Indices:
+        """Number of the material of each end, ``(n,)``."""
+        joint = np.append(self._of_joint, 0)[contacts.joint]
+        return np.where(contacts.glued, joint, joint + len(self._broken))
+
+    def law(self, contacts: Contacts, pairs: Indices | None = None, points: int = 1) -> KernelLaw:
+        """Law of the ends, or of a number of points along ``pairs`` ``(n, 2)`` of them (`joints.along`)."""
+        number = self.number(contacts)
+        return kernel_law(self._all, number if pairs is None else np.tile(number[pairs[:, 0]], points))

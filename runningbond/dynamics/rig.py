@@ -1,0 +1,77 @@
+"""What a test rig does at finite displacements: it prescribes the way of a point of the beam, and presses on it.
+
+The point driven is at p from the beam's centroid. With the beam's rotation θ it goes by
+u_x + p_x (cos θ − 1) − p_y sin θ, and pushes with a moment −(p_x sin θ + p_y cos θ) per unit of horizontal force.
+A dead force F whose line is fixed turns the beam about its centroid, which has gone by u, with −(u_x F_y − u_y F_x).
+"""
+
+import math
+from typing import Literal, NamedTuple, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runningbond.joints.compiled import kernel
+from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.scene.ranges import one_of
+
+Displacements: TypeAlias = Literal["small", "finite"]
+"""Whether equilibrium is that of the undeformed wall, or of the wall as it has moved."""
+
+
+class Rig(NamedTuple):
+    """A beam that is driven."""
+
+    freedom: NDArray[np.uint64]  # (3,) where in the motion its translations and its rotation stand
+    arm: Array  # (2,) from its centroid to the point driven [m]
+    force: Array  # (2,) dead force whose line is fixed [N]
+    work: Array  # (1,) written by the steps: work of that force's moment [J]
+
+    @classmethod
+    def of(cls, scene: Scene, rigid: Indices) -> "Rig | None":
+        """The rig of a scene whose beam is led, from where the rigid motions of its blocks stand ``(nb, 3)``."""
+        beam = scene.beam
+        if beam is None or beam.block is None or not _is_driven(scene):
+            return None
+        _, at, _ = scene.load.live[0].control(scene)
+        force = np.array(beam.force) * (beam.force_line == "fixed")
+        arm = at - scene.blocks.centroid[beam.block]
+        return cls(rigid[beam.block].astype(np.uint64), arm, force, np.zeros(1))
+
+    def displacement(self, motion: Array) -> float:
+        """Horizontal displacement of the point driven [m]."""
+        x, _, spin = motion[self.freedom]
+        return float(x + self.arm[0] * (math.cos(spin) - 1) - self.arm[1] * math.sin(spin))
+
+
+@kernel
+def turn_rig(rig: tuple[NDArray[np.uint64], Array, Array, Array], motion: Array, live: Array) -> float:
+    """Write the live load where the beam is now, and return the moment of a dead force whose line is fixed."""
+    freedom, arm, force, _ = rig
+    x, y, spin = motion[freedom[0]], motion[freedom[1]], motion[freedom[2]]
+    live[freedom[2]] = -live[freedom[0]] * (arm[0] * math.sin(spin) + arm[1] * math.cos(spin))
+    return float(y * force[0] - x * force[1])
+
+
+def is_finite(displacements: str, model: str, scene: Scene) -> bool:
+    """Whether displacements are finite; a `SceneError` for unknown ones, and for a scene that is not taken through."""
+    key = f"model {model}: displacements"
+    finite = one_of(key, displacements, get_args(Displacements)) == "finite"
+    if finite and not _is_driven(scene):
+        what = 'must be "small" for this scene; finite ones are followed where beam.drive.displacement leads a wall'
+        raise SceneError(key, what, displacements)
+    return finite
+
+
+def check_finite(scene: Scene) -> None:
+    """Refuse, by a `SceneError`, what models do not know of at finite displacements."""
+    for key in scene.extras:
+        if not (_is_driven(scene) and key.startswith("beam")):
+            raise SceneError(key, "is not taken at finite displacements")
+    beam = scene.beam.block if scene.beam else None
+    if (scene.pins.block != beam).any():
+        raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
+
+
+def _is_driven(scene: Scene) -> bool:
+    return bool(scene.beam and scene.beam.drive and scene.beam.drive.path)

@@ -1,0 +1,272 @@
+"""Walls that a rig leads through finite displacements, against exact solutions."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from dem.dynamic import dem_dynamic, finite_pushover
+from dem.finite_system import finite_system
+from runningbond.compare import run_model
+from runningbond.dynamics import Carried, Run, State
+from runningbond.dynamics.contact_update import contacts_of
+from runningbond.results import Outcome
+from runningbond.scene import Array, Scene, SceneError, scene_from_dict
+
+STIFFNESS = 1e10
+WALL = {"block_width": 0.4, "block_height": 0.6, "thickness": 0.2}
+
+
+def rig(courses: int = 1, length: float = 0.4, height: float = 0.6, **changes: Any) -> Scene:
+    """Blocks as long as the wall, one on another, under a beam of 0.1 m and 20 kN that is pushed at the blocks' top."""
+    block = height / courses
+    tables: dict[str, Any] = {
+        "wall": {"block_width": length, "block_height": block, "thickness": 0.2, "courses": [[1]] * courses},
+        "block": {"density": 1000.0},
+        "joint": {"friction": 0.9, "normal_stiffness": STIFFNESS, "shear_stiffness": STIFFNESS},
+        "support": {"kind": "base"},
+        "load": {"gravity": 0.0},
+        "beam": {"height": 0.1, "force": [0, -2e4], "drive": {"displacement": [0.03, 0], "at": height}},
+    }
+    for name, value in changes.items():
+        *path, key = name.split("__")
+        table = tables
+        for step in path:
+            table = table.setdefault(step, {})
+        table[key] = value
+    return scene_from_dict(tables)
+
+
+def finite(scene: Scene, tolerance: float = 0.01) -> Outcome:
+    outcome = dem_dynamic(scene, tolerance, displacements="finite")
+    assert "finite displacements" in outcome.message, outcome.message
+    return outcome
+
+
+def column(outcome: Outcome, name: str) -> Array:
+    return np.asarray(outcome.path[:, outcome.path_columns.index(name)])
+
+
+def force_at(outcome: Outcome, displacement: float) -> float:
+    return float(np.interp(displacement, *outcome.curve.T))
+
+
+@pytest.mark.parametrize(("line", "at"), [("moving", 0.6), ("fixed", 0.6), ("fixed", 0.9)])
+def test_a_rocking_block_takes_what_its_force_allows(line: str, at: float) -> None:
+    """It turns by θ about its toe, at half its length b from the middle, until the driven point has gone by d.
+
+    d = at sin θ + b (1 − cos θ); a force N that moves along has the lever of its centre, one that stays has b, and
+    the drive that of its point above the toe, at cos θ + b sin θ: exact at any rotation; the joints' stiffness makes
+    blocks turn about points inside by N / (2 k thickness b) at most, here by 1e-5 of b.
+    """
+    b, top, n = 0.2, 0.65, 2e4
+    outcome = finite(rig(beam__force_line=line, beam__drive={"displacement": [0.05, 0], "at": at}))
+    for d in (0.02, 0.035, 0.05):
+        theta = brentq(lambda x, d=d: at * math.sin(x) + b * (1 - math.cos(x)) - d, 0.0, 0.5)
+        lever = b * math.cos(theta) - top * math.sin(theta) if line == "moving" else b
+        exact = n * lever / (at * math.cos(theta) + b * math.sin(theta))
+        assert force_at(outcome, d) == pytest.approx(exact, rel=2e-3)
+        assert np.interp(d, outcome.curve[:, 0], column(outcome, "beam rotation [rad]")) == pytest.approx(
+            -theta, rel=5e-3
+        )
+
+
+def test_a_block_between_level_plates_takes_twice_as_much() -> None:
+    """Its force goes from corner to corner: V = N x / y with their distances x = l cos θ − h sin θ and y."""
+    length, height, n = 0.3, 0.6, 2e4
+    outcome = finite(rig(length=length, height=height, beam__condition="level"))
+    for d in (0.015, 0.03):
+        theta = brentq(lambda x, d=d: height * math.sin(x) + length * (1 - math.cos(x)) - d, 0.0, 0.5)
+        x = length * math.cos(theta) - height * math.sin(theta)
+        exact = n * x / (height * math.cos(theta) + length * math.sin(theta))
+        assert force_at(outcome, d) == pytest.approx(exact, rel=2e-3)
+        uplift, overlap = height * math.cos(theta) + length * math.sin(theta) - height, 2 * n / (STIFFNESS * 0.03)
+        assert np.interp(d, outcome.curve[:, 0], column(outcome, "beam uplift [m]")) == pytest.approx(
+            uplift, abs=overlap
+        )
+    assert not column(outcome, "beam rotation [rad]").any()
+    horizontal, vertical = column(outcome, "ground horizontal [N]"), column(outcome, "ground vertical [N]")
+    late = slice(len(vertical) // 2, None)
+    assert vertical[late] == pytest.approx(n, rel=2e-2)
+    assert horizontal[late] == pytest.approx(-outcome.curve[late, 1], abs=2e-2 * n)
+
+
+def test_small_drifts_are_those_of_small_displacements() -> None:
+    """A wall of three courses to 0.1 mm: V to 1e-3, joint forces, reactions and works to 5e-3 of the largest."""
+    changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "joint__friction": 0.6}
+    scene = rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [1e-4, 0], "at": 0.3})
+    far, near = finite(scene), dem_dynamic(scene)
+    for d in (2e-5, 5e-5, 1e-4):
+        assert force_at(far, d) == pytest.approx(force_at(near, d), rel=1e-3)
+    assert far.path_columns == near.path_columns
+    assert far.force == pytest.approx(near.force, abs=5e-3 * np.abs(near.force).max())
+    for name, scale in (
+        ("ground vertical [N]", 2e4),
+        ("ground horizontal [N]", 2e4),
+        ("work of the live load [J]", 0.1),
+    ):
+        assert column(far, name)[-1] == pytest.approx(column(near, name)[-1], abs=5e-3 * scale)
+
+
+@pytest.mark.parametrize(("joint", "arm"), [({}, 4), ({"compressive_strength": 1e12}, 12)])
+def test_five_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str, float], arm: int) -> None:
+    """A block on springs, before it lifts off: d = 2 V / (k A) + V h² / (k t L³ / 12), L³ / 4 with but its ends."""
+    changes: dict[str, Any] = {f"joint__{name}": value for name, value in joint.items()}
+    outcome = finite(rig(**changes, beam__drive={"displacement": [1e-5, 0], "at": 0.6}))
+    force, length, height = float(outcome.curve[-1, 1]), 0.4, 0.6
+    exact = 2 * force / (STIFFNESS * 0.2 * length) + force * height**2 / (STIFFNESS * 0.2 * length**3 / arm)
+    assert outcome.curve[-1, 0] == pytest.approx(exact, rel=5e-3)
+
+
+def test_pushed_the_other_way_a_wall_does_the_same() -> None:
+    changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "inner_joint": GLUE}
+    outcomes = [
+        finite(rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [sign * 0.01, 0], "at": 0.3}))
+        for sign in (1, -1)
+    ]
+    right, left = outcomes
+    assert left.curve == pytest.approx(right.curve, abs=1e-2 * right.curve[:, 1].max())
+    assert column(left, "beam rotation [rad]")[-1] == pytest.approx(-column(right, "beam rotation [rad]")[-1], rel=1e-2)
+
+
+def test_the_loop_of_a_block_that_rocks_closes() -> None:
+    """There and back, and the other way: the same force each time, and no more work than 2 % of what went in."""
+    outcome = finite(rig(beam__drive={"displacement": [[0.0, 0.01, -0.01, 0.0]], "at": 0.6}))
+    moved, force = outcome.curve.T
+    there, back = np.argmax(moved), np.argmin(moved)
+    for d in (0.003, 0.007):
+        out = np.interp(d, moved[: there + 1], force[: there + 1])
+        again = np.interp(-d, moved[there : back + 1][::-1], force[there : back + 1][::-1])
+        assert np.interp(d, moved[there : back + 1][::-1], force[there : back + 1][::-1]) == pytest.approx(
+            out, rel=1e-2
+        )
+        assert again == pytest.approx(-out, rel=1e-2)
+    work = column(outcome, "work of the live load [J]")
+    assert abs(work[-1]) < 0.02 * work.max()
+    assert abs(moved[-1]) < 1e-6
+
+
+GLUE = {
+    "friction": 0.7,
+    "cohesion": 3e5,
+    "tensile_strength": 2e5,
+    "fracture_energy_1": 500.0,
+    "fracture_energy_2": 5000.0,
+    "normal_stiffness": 1e11,
+    "shear_stiffness": 1e11,
+}
+
+
+def split(displacement: float, **joint: Any) -> tuple[Run, State, float]:
+    """A block whose right half is drawn away from its left one, both held; and the largest force [N]."""
+    scene = rig(**{f"joint__{name}": value for name, value in joint.items()}, inner_joint=GLUE)
+    system = finite_system(scene)
+    motion = np.zeros_like(system.mass)
+    motion[3] = 1.0
+    held = replace(system, mass=np.full_like(system.mass, np.inf), carried=Carried(motion), dead=0 * system.dead)
+    run, most = Run(held), 0.0
+    state, steps = State.at_rest(held), 20_000
+    for _ in range(100):
+        most = max(most, -run.carry(state, displacement / (steps * run.dt), steps // 100))
+    return run, state, most
+
+
+@pytest.mark.parametrize("joint", [{}, {"compressive_strength": 1e12}])
+def test_a_block_that_splits_spends_its_fracture_energy_and_is_dry_afterwards(joint: dict[str, Any]) -> None:
+    """G_I times the area to 1e-6, through searches for contacts that hand the damage on; the most is f_t A."""
+    area = 0.6 * 0.2
+    run, state, most = split(0.0095, **joint)  # of the 2 G_I / f_t = 5 mm it needs
+    search = run.system.contacts
+    assert search is not None
+    assert contacts_of(state) is not search.undeformed
+    assert run.ledger(state).friction == pytest.approx(GLUE["fracture_energy_1"] * area, rel=1e-6)
+    assert state.external == pytest.approx(GLUE["fracture_energy_1"] * area, rel=1e-3)
+    assert most == pytest.approx(GLUE["tensile_strength"] * area, rel=0.03)
+
+    back = 0.0095 + 1e-5
+    for _ in range(100):
+        run.carry(state, -back / (20_000 * run.dt), 200)
+    assert -run.forces(state)[0].sum() == pytest.approx(GLUE["normal_stiffness"] * 1e-5 * area, rel=0.02)
+    assert run.ledger(state).friction == pytest.approx(GLUE["fracture_energy_1"] * area, rel=1e-6)
+
+
+def test_a_joint_of_another_material_slides_by_its_own_friction_and_breaks() -> None:
+    """The base alone is weak: V = c A + μ N at most and μ N afterwards, and it spends G_II A besides friction."""
+    weak = {
+        "friction": 0.3,
+        "cohesion": 5e4,
+        "fracture_energy_1": 20.0,
+        "fracture_energy_2": 20.0,
+        "normal_stiffness": STIFFNESS,
+        "shear_stiffness": STIFFNESS,
+    }
+    scene = rig(
+        length=0.6,
+        height=0.2,
+        joints={"weak": weak},
+        assign=[{"joint": "weak", "between": ["ground", "*"]}],
+        beam__drive={"displacement": [0.01, 0], "at": 0.2},
+    )
+    outcome = finite(scene)
+    n, area = 2e4, 0.12
+    assert outcome.curve[:, 1].max() == pytest.approx(weak["cohesion"] * area + 0.3 * n, rel=0.03)
+    assert force_at(outcome, 0.008) == pytest.approx(0.3 * n, rel=2e-3)
+    spent = column(outcome, "work spent in joints [J]")
+    end = int(np.searchsorted(outcome.curve[:, 0], 0.008))
+    slip = outcome.curve[end, 0] - 2 * 0.3 * n / (STIFFNESS * area)
+    assert spent[end] == pytest.approx(0.3 * n * slip + weak["fracture_energy_2"] * area, rel=5e-3)
+
+
+def test_what_leaves_its_joint_slides_on_the_default_material() -> None:
+    """A block that is taken from its own half of the ground to a neighbour's top keeps to the default friction."""
+    changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]]}
+    scene = rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [0.03, 0], "at": 0.3}, joint__friction=0.3)
+    assert finite(scene).curve[-1, 1] == pytest.approx(0.3 * 2e4, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("changes", "displacements", "message"),
+    [
+        ({}, "big", 'model dem-dynamic: displacements = .big.: must be one of "small", "finite"'),
+        ({}, "finit", 'did you mean "finite"'),
+        ({}, 2, "must be one of"),
+        ({"beam__drive": {"force": [1, 0]}}, "finite", 'displacements = .finite.: must be "small" for this scene'),
+        ({"tie": [{"from": [0, 0.1], "to": [3, 0.1], "area": 1e-4, "young": 2e11, "yield": 1e4}]}, "finite", "^tie"),
+        ({"joint__cohesion": 1e4}, "finite", "joint.cohesion = 10000"),
+        ({"joint__cohesion": 1e4, "joint__fracture_energy_1": 10.0}, "finite", "joint.cohesion"),
+        ({"inner_joint": {k: v for k, v in GLUE.items() if "energy" not in k}}, "finite", "inner_joint.cohesion"),
+        ({"inner_joint": GLUE | {"inset": 0.01}}, "finite", "inner_joint.inset = 0.01: finite displacements need one"),
+        ({"joint__inset": 0.01, "inner_joint": GLUE}, "finite", "inner_joint.inset = 0"),
+        ({"joint": {"friction": 0.6}}, "finite", "joint.mortar"),
+        ({"wall": {**WALL, "courses": [[1, 1]]}, "support__kind": "corners"}, "finite", "support.kind"),
+    ],
+)
+def test_what_is_not_followed_so_far_is_refused(changes: dict[str, Any], displacements: Any, message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        run_model("dem-dynamic", rig(**changes), displacements=displacements)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            {"beam__force_line": "fix"},
+            'beam.force_line = .fix.: must be one of "moving", "fixed"; did you mean "fixed"',
+        ),
+        ({"beam__force_line": True}, "beam.force_line = True"),
+        ({"beam__force_line": ["fixed"]}, "beam.force_line"),
+        ({"beam__force_line": "fixed", "beam__force": [0, 0]}, "beam.force = .*: is missing"),
+        ({"beam__forceline": "fixed"}, 'did you mean "force_line"'),
+    ],
+)
+def test_lines_that_are_none_are_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match=message):
+        rig(**changes)
+
+
+def test_a_pushover_takes_no_rig() -> None:
+    with pytest.raises(SceneError, match="beam"):
+        finite_pushover(rig(), 0.01)
