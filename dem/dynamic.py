@@ -15,15 +15,13 @@ from runningbond.contacts.outline import Outline
 from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
+from runningbond.dynamics.run import MOVING
 from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
 from .finite_system import finite_system
 from .rigid_system import contact_points, rigid_system
-
-MOVING = 0.2
-"""Local damping α of what moves far: less than at rest, for it drags."""
 
 
 def dem_dynamic(

@@ -8,11 +8,13 @@ its inertia by its strain.
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 
-from runningbond.contacts.search import Contacts, facing_sides, find_contacts, resting
+from runningbond.contacts.materials import ContactMaterials
+from runningbond.contacts.search import Contacts, facing_sides, find_contacts, position_of, resting
 from runningbond.dynamics import (
     BlockSystem,
     Interface,
@@ -20,10 +22,10 @@ from runningbond.dynamics import (
     joint_shares,
     stable_step,
 )
+from runningbond.dynamics.rig import Rig
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.law import KernelLaw
-from runningbond.joints.wall_law import kernel_law
-from runningbond.scene import Array, Indices, JointMaterial
+from runningbond.scene import Array, Indices
 
 from .deformable_sides import DeformableSides, PlacedNodes, gather_deformable, scatter_deformable
 from .mass_scaling import CLOSE, ScaledModes, scaled_modes
@@ -35,7 +37,8 @@ def finite_system(blocks: NodeOutline, *, damping: float = DAMPING, mass_scaling
     """Set up the deformable blocks of a wall to move far; see `system_of` for the arguments."""
     contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, damping, mass_scaling=mass_scaling)
     interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
-    return replace(block_system(blocks.wall, scaled, interface), contacts=contacts)
+    rig = Rig.of(blocks.scene, blocks.wall.rigid)
+    return replace(block_system(blocks.wall, scaled, interface), contacts=contacts, rig=rig)
 
 
 class DeformableContacts:
@@ -48,7 +51,7 @@ class DeformableContacts:
     """
 
     def __init__(self, blocks: NodeOutline) -> None:
-        self.blocks, self.outline = blocks, blocks.outline
+        self.blocks, self.outline, self._materials = blocks, blocks.outline, ContactMaterials(blocks.scene)
         self._thickness = blocks.scene.thickness
         undeformed = self.find(np.zeros(len(blocks.wall.mass)), self.outline.margin)
         self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
@@ -64,7 +67,7 @@ class DeformableContacts:
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
         area = np.minimum(ends.area, self._thickness * self.blocks.nodes.length[facet] / 2)
         inner = self._inner(rigid, margin)
-        return Contacts(
+        contacts = Contacts(
             ends.motion,
             margin,
             np.concatenate([ends.ends, inner.ends]),
@@ -74,6 +77,7 @@ class DeformableContacts:
             np.concatenate([ends.joint, inner.joint]),
             np.concatenate([ends.glued, inner.glued]),
         )
+        return contacts.chosen(np.argsort(self._materials.number(contacts), kind="stable"))
 
     def _inner(self, rigid: Array, margin: float) -> Contacts:
         """Nodes inside one of two facing sides that are near the other: of block b's, unless that one is held."""
@@ -133,7 +137,7 @@ class DeformableContacts:
 
     def interface(self, contacts: Contacts, scaled: ScaledModes | BlockSystem, guess: float) -> Interface:
         """The interface on contacts of blocks with some masses and viscosities, whose ω² [1/s²] is near a guess."""
-        law, geometry = contact_law(self.blocks.scene.joint, contacts), self.geometry(contacts)
+        law, geometry = self._materials.law(contacts), self.geometry(contacts)
         bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
         return Interface(law, contacts.area, gather_deformable, scatter_deformable, geometry, bound)
 
@@ -142,8 +146,26 @@ class DeformableContacts:
         return contacts.points()
 
     def at_joints(self, contacts: Contacts, values: Array) -> Array:
-        """As of `ContactSearch`."""
-        raise NotImplementedError
+        """As of `ContactSearch`, at joint elements' points: each has its part of the nearest contact's force."""
+        key, share = self._joint_points
+        at = position_of(contacts.key, key)
+        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0])
+        part = np.where(np.arange(5)[:, None] // 2 == 1, share, 1.0)
+        return np.where(at >= 0, values[:, at] * part, lost[:, None])
+
+    @cached_property
+    def _joint_points(self) -> tuple[Indices, Array]:
+        """Key of the contact of the same joint nearest to each joint point, and the point's part of its area."""
+        contacts, points = self.undeformed, self.blocks.wall.elements.points
+        geometry = self.geometry(contacts)
+        gather_deformable(np.zeros(len(self.blocks.wall.mass)), geometry, *np.zeros((2, len(contacts))))
+        nearest = np.zeros(len(points), dtype=np.int64)
+        for joint in np.unique(points.joint):
+            here, own = np.flatnonzero(points.joint == joint), np.flatnonzero(contacts.joint == joint)
+            apart = points.position[here, None] - geometry.contact[own, :2]
+            nearest[here] = own[np.hypot(apart[..., 0], apart[..., 1]).argmin(axis=1)]
+        area = np.bincount(nearest, points.area, len(contacts))
+        return contacts.key[nearest], points.area / area[nearest]
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
         """A number of the corner or node that rests and the side it rests on, for each contact."""
@@ -160,14 +182,6 @@ class DeformableContacts:
         pairs = zip(self.blocks.tables, self.blocks.wall.split(motion), strict=True)
         far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for (_, table), Q in pairs]
         return float(np.sqrt(2) * max(far, default=0.0))
-
-
-def contact_law(joint: JointMaterial, contacts: Contacts) -> KernelLaw:
-    """Law of contacts: that of their joint where they are glued, and of its dry material elsewhere."""
-    dry = replace(joint, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=None, fracture_energy_2=None)
-    if joint.cohesion == 0:
-        return kernel_law((dry,), np.zeros(len(contacts), dtype=np.int64))
-    return kernel_law((dry, joint), contacts.glued.astype(np.int64))
 
 
 Blocks: TypeAlias = tuple[Array, Array, Array, Array]

@@ -12,10 +12,12 @@ import numpy as np
 
 from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
+from runningbond.dynamics.rig import Displacements, is_finite
+from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
 from runningbond.limit.associated import is_self_locking
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Scene, SceneError
 
 from .cracks import Cracks
 from .finite_system import finite_system
@@ -41,12 +43,13 @@ def fem(
     loads: Loads = "consistent",
     mass_scaling: bool = True,
     energies: Energies = "given",
+    displacements: Displacements = "small",
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its deformable blocks, at small displacements.
+    """Collapse of a scene by the motion of its deformable blocks.
 
     Parameters
     ----------
@@ -68,6 +71,10 @@ def fem(
         Make deformable modes heavy enough not to limit the time step.
     energies
         Where the joints' fracture energies come from; without any, joints are perfectly plastic.
+    displacements
+        Whether a wall that is led by its beam is followed through finite displacements, as `dem.dynamic.dem_dynamic`
+        follows it. Contacts are then at nodes, `rule`, `points`, `loads` and `energies` are not taken, and blocks
+        crack on their axes.
     tolerance, collapse, first_step, budget, observe
         As in `collapse_by_steps`.
 
@@ -78,13 +85,21 @@ def fem(
         `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
-    wall = modal_wall(scene, cells, modes, rule, points, cracks)
-    system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
-    factor = largest_scaling(wall, system.mass)
+    if is_finite(displacements, "fem", scene):
+        taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
+        for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
+            if value != only:
+                raise SceneError(f"model fem: {name}", "is not taken at finite displacements; leave it out", value)
+        blocks = node_outline(scene, cells, modes)
+        wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
+    else:
+        wall = modal_wall(scene, cells, modes, rule, points, cracks)
+        run = Run(system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies))
+    factor = largest_scaling(wall, run.system.mass)
     outcome = collapse_by_steps(
         scene,
         "fem",
-        Run(system),
+        run,
         tolerance,
         points=wall.elements.points,
         point_order=wall.elements.listing,
@@ -105,7 +120,7 @@ def fem_pushover(
     cells: int = 1,
     modes: ModeCount | None = None,
     speed: float = 5e-4,
-    local: float = 0.2,
+    local: float = MOVING,
 ) -> Array:
     """Pushover curve of a scene's deformable blocks at finite displacements, past its peak.
 
@@ -135,6 +150,8 @@ def fem_pushover(
     SceneError
         For a scene that is not of this kind.
     """
+    if scene.extras:
+        raise SceneError(scene.extras[0], "is not taken at finite displacements")
     blocks = node_outline(scene, cells, modes)
     run = Run(finite_system(blocks), local=local)
     held, at, direction = scene.control_point

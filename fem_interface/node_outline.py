@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
+from runningbond.dynamics.rig import check_finite
 from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
@@ -81,21 +83,14 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     Raises
     ------
     SceneError
-        If the scene pins corners, pushes at a point, has blocks that crack, or glues its joints for ever.
+        As of `check_finite`, `ContactMaterials` and `Outline.of`, and for a scene that pushes at a point of a block.
     """
-    joint = scene.joint
-    if scene.extras:
-        raise SceneError(scene.extras[0], "is not taken at finite displacements")
-    if len(scene.pins):
-        raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
-    if not (scene.live_forces.on_mass_alone and scene.dead_forces.on_mass_alone):
-        raise SceneError("load.live", "finite displacements need a load on the blocks' mass")
-    if len(scene.joint_materials) > 1 and scene.inner_joint is None:
-        raise SceneError("joints", "finite displacements need one material for all joints")
-    if scene.inner_joint is not None:
-        raise SceneError("inner_joint", "finite displacements need blocks that do not crack")
-    if joint.cohesion > 0 and (joint.fracture_energy_1 is None or joint.fracture_energy_2 is None):
-        raise SceneError("joint", "finite displacements need dry joints, or fracture energies with which they break")
+    check_finite(scene)
+    ContactMaterials(scene)
+    beam = None if scene.beam is None else scene.beam.block
+    for key, forces in (("load.live", scene.live_forces), ("load.dead", scene.dead_forces)):
+        if forces.moment.any() or (forces.block != beam).any():
+            raise SceneError(key, "finite displacements need loads on the blocks' mass, or on a beam")
     wall, outline = modal_wall(scene, cells, modes), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])

@@ -115,7 +115,7 @@ _EVERY_MODEL = (
     ),
     Model(
         *("fem", "deformable blocks in motion", partial(_late, "fem_interface.model", "fem"), ELASTIC, "history"),
-        parameters=(*IN_STEPS, *OF_BLOCKS),
+        parameters=(*IN_STEPS, *OF_BLOCKS, "displacements"),
         observer=_MOTION_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
         interruptible=True,

@@ -183,7 +183,7 @@ def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force:
     corners, _, _, ends, _, _, area, placed, contact = geometry
     freedom, turned = corners.freedom, placed.blocks
     for k in range(normal.size):
-        if normal[k] == 0.0:
+        if normal[k] == 0.0 and tangential[k] == 0.0:
             continue
         v, w = ends[k, 0], ends[k, 1]
         x, y, nx, ny = contact[k, 0], contact[k, 1], contact[k, 2], contact[k, 3]

@@ -72,7 +72,7 @@ class ContactUpdate:
         same = position_of(before.key, contacts.key)
         on, still = turned >= 0, same >= 0
         area, glued = contacts.area.copy(), np.zeros(len(contacts), dtype=bool)
-        area[on] = before.area[turned[on]]
+        area[on & ~still] = before.area[turned[on & ~still]]
         lasting = still & (contacts.joint >= 0)
         area[lasting] = before.area[same[lasting]]
         glued[still] = before.glued[same[still]]

@@ -22,6 +22,9 @@ from .time_step import stable_step
 LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
 
+MOVING = 0.2
+"""Local damping α of what moves far: less than at rest, for it drags."""
+
 Observer: TypeAlias = Callable[["Run", State, float], None]
 """Looks at a run, its state and the multiplier, now and then, and changes none of them."""
 
