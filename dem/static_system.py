@@ -23,6 +23,9 @@ from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Indices, Scene
 
 from .band import Band, band
+from .dissection import dissection
+import os
+DISS = bool(os.environ.get('DISS'))
 from .tied_law import TiedLaw, elongation, tie_ends
 
 
@@ -117,11 +120,14 @@ class StaticSystem:
             For a tangent that is singular to the last bit.
         """
         jump, live = self._jump, self.equilibrium.live
-        own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[: len(jump)]), jump).ravel()
         border = np.concatenate([live, np.zeros(self.unknowns - 1 - len(live))])
         loads = [right[:-1], border] if len(tangent) == len(jump) else [right[:-1], border, self._tie_ends]
         # The border of λ is eliminated by hand: q = a + λ b.
-        a, b, *ends = self._band.solve(np.concatenate([own, self._constant]), np.column_stack(loads)).T
+        if DISS:
+            a, b, *ends = self._dissection.solve(tangent[: len(jump)], np.column_stack(loads)).T
+        else:
+            own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[: len(jump)]), jump).ravel()
+            a, b, *ends = self._band.solve(np.concatenate([own, self._constant]), np.column_stack(loads)).T
         if ends:
             a, b = self._tied(tangent[len(jump) :, 0, 0], np.array([a, b]), np.array(ends))
         multiplier = right[-1] if control.multiplier else (right[-1] - border @ a) / (border @ b)
@@ -198,6 +204,18 @@ class StaticSystem:
             column = np.argmax(own[entries.row] == entries.col[:, None], axis=1)
             jump[entries.row, k, column] = entries.data
         return jump
+
+    @cached_property
+    def _dissection(self):
+        nd, own, scene = self.freedoms, self._freedoms_of_points, self.equilibrium.scene
+        pins, ends = self.equilibrium.reaction.tocoo(), self._freedoms_of_ends
+        row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), np.repeat(ends, 3, axis=1).ravel()])
+        column = np.concatenate([np.tile(own, 6).ravel(), np.tile(ends, 3).ravel()])
+        row, column = np.concatenate([row, pins.row, nd + pins.col]), np.concatenate([column, nd + pins.col, pins.row])
+        home = np.repeat(np.arange(nd//3), 3)
+        held = np.empty(pins.shape[1],int)
+        held[pins.col] = home[pins.row]
+        return dissection(row, column, np.concatenate([home, held]), scene.blocks.centroid[~scene.fixed], self._jump, self._constant)
 
     @cached_property
     def _band(self) -> Band:
