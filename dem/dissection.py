@@ -24,7 +24,7 @@ class Dissection:
 
     fronts: Fronts
     place: Indices  # (n,) place of each unknown in the order of elimination
-    front: Indices  # (n_terms,) front that each term is added in, the number of fronts for terms that are none
+    front: Indices  # (np, 2) fronts that the two blocks at each point are eliminated in, their number for a held block
     jump: Array  # (np, 2, 6) jumps of the points per freedom, whose tangents are the first 36 np terms
     terms: Array  # (n_terms,) of which the store has the factors
     tangent: Array  # (np, 2, 2) likewise; not a number where the store has none
@@ -39,13 +39,11 @@ class Dissection:
             For a matrix of which a front is singular to the last bit.
         """
         other = np.flatnonzero((tangent != self.tangent).any(axis=(1, 2)))
-        changed = np.zeros(len(self.fronts.above) + 1, dtype=np.bool_)
-        if np.isnan(self.tangent).any():
-            changed[:] = True
-        n, jump = 36 * len(tangent), self.jump[other]
-        changed[self.front[:n].reshape(-1, 36)[other]] = True
+        changed = np.full(len(self.fronts.above) + 1, bool(np.isnan(self.tangent[:1]).any()))
+        changed[self.front[other]] = True
+        jump = self.jump[other]
         own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[other]), jump)
-        self.terms[:n].reshape(-1, 36)[other] = own.reshape(-1, 36)
+        self.terms[: 36 * len(tangent)].reshape(-1, 36)[other] = own.reshape(-1, 36)
         self.tangent = np.full_like(tangent, np.nan)  # should a front be singular
         factorise(self.fronts, changed, self.terms, self.store)
         self.tangent = tangent
@@ -73,20 +71,20 @@ def dissection(
     constant : (n_constant,) float
         The other terms.
     """
-    there = (row >= 0) & (column >= 0)
+    there = np.flatnonzero((row >= 0) & (column >= 0))
     pairs = home[row[there]], home[column[there]]
-    graph = csr_array((np.ones(len(pairs[0])), pairs), shape=(len(position), len(position)))
+    graph = csr_array((np.ones(len(there)), pairs), shape=(len(position), len(position)))
     parts, above = _parts(graph, position)
     rank = np.empty(len(position), dtype=np.int64)
     rank[np.concatenate(parts)] = np.arange(len(position))
-    place = np.argsort(np.lexsort((np.arange(len(home)), rank[home])))
-    size = np.bincount(rank[home], minlength=len(position))
-    first = np.append(0, np.cumsum(size))  # of each block, in its rank
+    place = np.argsort(np.argsort(rank[home], kind="stable"))
+    first = np.append(0, np.cumsum(np.bincount(rank[home])))  # unknown of each block, by its rank
     own = first[np.append(0, np.cumsum([len(part) for part in parts]))]
-
-    left = [np.concatenate([np.arange(first[b], first[b + 1]) for b in blocks] or [[]]) for blocks in _left(graph, parts, above, rank)]
-    begin = np.append(0, np.cumsum([len(one) for one in left]))
-    joined = np.concatenate(left).astype(np.int64)
+    left = [[k for b in blocks for k in range(first[b], first[b + 1])] for blocks in _left(graph, parts, above, rank)]
+    begin, joined = (
+        np.append(0, np.cumsum([len(one) for one in left])),
+        np.array([k for one in left for k in one], dtype=np.int64),
+    )
     number = np.repeat(np.arange(len(parts)), np.diff(begin))
     s, u, n = np.diff(own), np.diff(begin), len(home)
 
@@ -95,21 +93,22 @@ def dissection(
         after = np.searchsorted(number * n + joined, front * n + unknown) - begin[front] + s[front]
         return np.where(unknown < own[front + 1], unknown - own[front], after)
 
-    store = np.append(0, np.cumsum(s * s + 2 * s * u + u * u))
+    at = np.append(0, np.cumsum((s + u) ** 2))
     front = np.full(len(row), len(parts))
     r, c = place[row[there]], place[column[there]]
-    f = np.searchsorted(own, np.minimum(r, c), side="right") - 1
-    front[there] = f
+    front[there] = f = np.searchsorted(own, np.minimum(r, c), side="right") - 1
     i, j = local(f, r), local(f, c)
-    across = s[f] ** 2 + i * u[f] + j - s[f]
-    down = s[f] ** 2 + s[f] * u[f] + (i - s[f]) * s[f] + j
-    address = np.zeros(len(row), dtype=np.int64)
-    address[there] = store[f] + np.where(i >= s[f], down, np.where(j >= s[f], across, i * s[f] + j))
-    order = np.argsort(front, kind="stable")[: np.count_nonzero(there)]
-    term = np.searchsorted(front[order], np.arange(len(parts) + 1))
-    fronts = Fronts(own, begin, joined, local(above[number], joined), above, store, term, order, address[order])
-    terms = np.append(np.zeros(36 * len(jump)), constant)
-    return Dissection(fronts, place, front, jump, terms, np.full((len(jump), 2, 2), np.nan), np.empty(store[-1]))
+    across, down = s[f] ** 2 + i * u[f] + j - s[f], s[f] * (u[f] + i) + j
+    address = at[f] + np.where(i >= s[f], down, np.where(j >= s[f], across, i * s[f] + j))
+    order = np.argsort(f, kind="stable")
+    term = np.searchsorted(f[order], np.arange(len(parts) + 1))
+    below = np.argsort(above, kind="stable")
+    first_below = np.searchsorted(above[below], np.arange(len(parts) + 1))
+    place_above = local(above[number], joined)
+    fronts = Fronts(own, begin, joined, place_above, above, first_below, below, at, term, there[order], address[order])
+    terms, tangent = np.append(np.zeros(36 * len(jump)), constant), np.full((len(jump), 2, 2), np.nan)
+    sides = front[: 36 * len(jump)].reshape(-1, 36)[:, [0, 21]]
+    return Dissection(fronts, place, sides, jump, terms, tangent, np.empty(at[-1]))
 
 
 def _parts(graph: csr_array, position: Array) -> tuple[list[Indices], Indices]:
