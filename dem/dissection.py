@@ -6,6 +6,7 @@ slip or stick: only fronts that hold one of these, and those above, are factoris
 """
 
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -27,8 +28,9 @@ class Dissection:
     front: Indices  # (np, 2) fronts that the two blocks at each point are eliminated in, their number for a held block
     jump: Array  # (np, 2, 6) jumps of the points per freedom, whose tangents are the first 36 np terms
     terms: Array  # (n_terms,) of which the store has the factors
-    tangent: Array  # (np, 2, 2) likewise; not a number where the store has none
+    tangent: Array  # (np, 2, 2) likewise
     store: Array
+    is_new: bool = True  # whether the store has no factors yet
 
     def solve(self, tangent: Array, right: Array) -> Array:
         """Solve with tangents ``(np, 2, 2)`` of the joint points for some right-hand sides ``(n, k)``.
@@ -39,14 +41,14 @@ class Dissection:
             For a matrix of which a front is singular to the last bit.
         """
         other = np.flatnonzero((tangent != self.tangent).any(axis=(1, 2)))
-        changed = np.full(len(self.fronts.above) + 1, bool(np.isnan(self.tangent[:1]).any()))
+        changed = np.full(len(self.fronts.above) + 1, self.is_new)
         changed[self.front[other]] = True
         jump = self.jump[other]
         own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[other]), jump)
         self.terms[: 36 * len(tangent)].reshape(-1, 36)[other] = own.reshape(-1, 36)
-        self.tangent = np.full_like(tangent, np.nan)  # should a front be singular
+        self.tangent, self.is_new = tangent, True  # should a front be singular
         factorise(self.fronts, changed, self.terms, self.store)
-        self.tangent = tangent
+        self.is_new = False
         x = np.empty(right.shape[::-1])
         x[:, self.place] = right.T
         substitute(self.fronts, self.store, x)
@@ -81,10 +83,8 @@ def dissection(
     first = np.append(0, np.cumsum(np.bincount(rank[home])))  # unknown of each block, by its rank
     own = first[np.append(0, np.cumsum([len(part) for part in parts]))]
     left = [[k for b in blocks for k in range(first[b], first[b + 1])] for blocks in _left(graph, parts, above, rank)]
-    begin, joined = (
-        np.append(0, np.cumsum([len(one) for one in left])),
-        np.array([k for one in left for k in one], dtype=np.int64),
-    )
+    begin = np.append(0, np.cumsum([len(unknowns) for unknowns in left]))
+    joined = np.fromiter(chain.from_iterable(left), np.int64)
     number = np.repeat(np.arange(len(parts)), np.diff(begin))
     s, u, n = np.diff(own), np.diff(begin), len(home)
 

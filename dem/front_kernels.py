@@ -47,20 +47,17 @@ def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> None
         for k in range(term[f], term[f + 1]):
             store[address[k]] += terms[order[k]]
         for b in below[first[f] : first[f + 1]]:
-            of_b = slice(begin[b], begin[b + 1])
-            _add_own(store[at[b + 1] - place[of_b].size ** 2 : at[b + 1]], place[of_b], s, u, store[at[f] : last])
+            theirs = place[begin[b] : begin[b + 1]]
+            _add_own(store[at[b + 1] - theirs.size**2 : at[b + 1]], theirs, s, u, store[at[f] : last])
         inverse = np.ascontiguousarray(np.linalg.inv(store[at[f] : middle].reshape((s, s))))
         store[at[f] : middle] = inverse.ravel()
         if u > 0:
-            right = store[middle:low].reshape((s, u)) * -1.0
-            right = np.dot(inverse, right)
+            right = np.dot(inverse, -store[middle:low].reshape((s, u)))
             store[middle:low] = right.ravel()
             np.dot(store[low:last].reshape((u, s)), right, store[last : at[f + 1]].reshape((u, u)))
             for b in below[first[f] : first[f + 1]]:
-                of_b = slice(begin[b], begin[b + 1])
-                _add_left(
-                    store[at[b + 1] - place[of_b].size ** 2 : at[b + 1]], place[of_b], s, u, store[last : at[f + 1]]
-                )
+                theirs = place[begin[b] : begin[b + 1]]
+                _add_left(store[at[b + 1] - theirs.size**2 : at[b + 1]], theirs, s, u, store[last : at[f + 1]])
 
 
 @kernel
