@@ -91,7 +91,7 @@ def dissection(
     def local(front: Indices, unknown: Indices) -> Indices:
         """Place of unknowns in fronts."""
         after = np.searchsorted(number * n + joined, front * n + unknown) - begin[front] + s[front]
-        return np.where(unknown < own[front + 1], unknown - own[front], after)
+        return np.asarray(np.where(unknown < own[front + 1], unknown - own[front], after))
 
     at = np.append(0, np.cumsum((s + u) ** 2))
     front = np.full(len(row), len(parts))

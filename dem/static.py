@@ -96,29 +96,29 @@ def dem_static(
     outcome = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
     far = collapse * scene.lowest_block / system.length_unit
     nothing = np.zeros(len(system.law.normal_stiffness))
-    # Bands are too narrow for a second thread to gain anything.
-    with threadpool_limits(limits=1, user_api="blas"):
-        try:
+    # Bands and fronts are too narrow for a second thread to gain anything.
+    try:
+        with threadpool_limits(limits=1, user_api="blas"):
             rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
-        except KeyboardInterrupt:
-            return replace(outcome, message=f"no answer: {INTERRUPTED} before it came to rest under its dead load")
-        if rest.verdict != "rest":
-            outcome = _fallen(replace(outcome, steps=rest.solves), system)
-        else:
-            if len(scene.late_pins):
-                system, late = with_late_pins(system, rest.x)
-                rest = replace(rest, x=late)
-            path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-            observe(path, path.rests[0])
-            if scene.is_led:
-                outcome = lead_along(outcome, path, tolerance, first_step)
+            if rest.verdict != "rest":
+                outcome = _fallen(replace(outcome, steps=rest.solves), system)
             else:
-                undecided = _climb(path, first_step, tolerance, past)
-                for state in path.past:
-                    observe(path, state)
-                outcome = _judge(outcome, path, undecided)
-            message = "; ".join(part for part in (outcome.message, _window(path)) if part)
-            outcome = replace(outcome, message=message, steps=budget - path.budget)
+                if len(scene.late_pins):
+                    system, late = with_late_pins(system, rest.x)
+                    rest = replace(rest, x=late)
+                path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
+                observe(path, path.rests[0])
+                if scene.is_led:
+                    outcome = lead_along(outcome, path, tolerance, first_step)
+                else:
+                    undecided = _climb(path, first_step, tolerance, past)
+                    for state in path.past:
+                        observe(path, state)
+                    outcome = _judge(outcome, path, undecided)
+                message = "; ".join(part for part in (outcome.message, _window(path)) if part)
+                outcome = replace(outcome, message=message, steps=budget - path.budget)
+    except KeyboardInterrupt:
+        outcome = replace(outcome, message=f"no answer: {INTERRUPTED}")
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
