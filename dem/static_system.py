@@ -29,7 +29,7 @@ from .tied_law import TiedLaw, elongation, tie_ends
 if TYPE_CHECKING:
     from .dissection import Dissection
 
-MANY = 400
+MANY = 800
 """Movable blocks from which on systems are dissected: on fewer, bands are as fast, and need no kernels."""
 
 

@@ -118,7 +118,7 @@ def test_walls_collapse_at_the_load_that_bands_find(scene: Scene, monkeypatch: p
 
 
 def test_walls_of_many_blocks_are_dissected() -> None:
-    tables = content(joint__mortar=MORTAR, wall__length=5.76, wall__height=1.2)
+    tables = content(joint__mortar=MORTAR, wall__length=5.76, wall__height=2.4)
     assert isinstance(static_system(scene_from_dict(tables))._factors, Dissection)
-    tables["wall"]["height"] = 0.6
+    tables["wall"]["height"] = 1.2
     assert not isinstance(static_system(scene_from_dict(tables))._factors, Dissection)
