@@ -95,6 +95,7 @@ _EVERY_MODEL = (
         parameters=(*IN_STEPS, "past"),
         observer=_STATIC_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "StaticProgress"),
+        interruptible=True,
         cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
         takes=EXTRAS,
         colour="#7c3aed",
