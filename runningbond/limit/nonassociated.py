@@ -9,13 +9,13 @@ import time
 from dataclasses import replace
 
 from runningbond.results import Outcome, collapse_state
-from runningbond.scene import Scene
+from runningbond.scene import Array, Scene
 
 from .associated import LimitState, judge, limit_state, spends_cut_strength
 from .canonical import canonical_order
 from .certificates import Certificate, certified_loads, certify
 from .equilibrium import Equilibrium, equilibrium
-from .force_program import coulomb, solve_forces
+from .force_program import ForceSolution, coulomb, solve_forces
 from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
 from .remarks import remarks
 from .search import STARTS, Search, search
@@ -77,14 +77,11 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
     proved = _proved_again(cut, certificates)
     if not proved:
         return _uncertified(outcome, result, cut, state.forces.multiplier if bounded else None)
-    lowest = proved[0]
     loads = certified_loads(proved, cut.load, falling=cut.has_support)
-    lower, upper = loads[0][0], loads[-1][1]
-    if cut.has_support and upper <= NOTHING and may_leave(cut):
+    if cut.has_support and loads[-1][1] <= NOTHING and may_leave(cut):
         return _bridged(outcome, cut)
-    least, multiplier = lowest.least, cut.load(lowest.least.multiplier)
-    # The others were proved on rounded equations.
-    lower, upper = (min(lower, multiplier), multiplier) if cut.has_support else (multiplier, max(upper, multiplier))
+    lowest, highest = proved[0], max(proved, key=lambda each: each.most.multiplier)
+    least, multiplier, far = lowest.least, cut.load(lowest.least.multiplier), cut.load(highest.most.multiplier)
     message = _message(loads, result, tolerance, falling=cut.has_support)
     if cut.has_support:
         message = f"{message}; {reaction_note(cut.scene, multiplier)}"
@@ -93,30 +90,48 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         outcome,
         status="collapse",
         multiplier=multiplier,
-        lower=lower,
-        upper=upper,
+        lower=min(multiplier, far),
+        upper=max(multiplier, far),
         message=message,
-        motion=cut.motion(lowest.motion),
-        force=force,
-        pull=cut.force_unit * least.tie,
-        held=-cut.force_unit * least.reaction,
+        **_arrays(cut, lowest.motion, least),
+        **{f"far_{name}": array for name, array in _arrays(cut, highest.motion, highest.most).items()},
         **collapse_state(cut.scene, cut.points, force, cut.force_unit * least.tie, multiplier),
     )
 
 
+def _arrays(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Array]:
+    """Mechanism and forces of a certificate, as an outcome has them."""
+    return {
+        "motion": system.motion(motion),
+        "force": system.point_forces(forces.pressure, forces.tangential),
+        "pull": system.force_unit * forces.tie,
+        "held": -system.force_unit * forces.reaction,
+    }
+
+
 def _proved_again(system: Equilibrium, certificates: list[Certificate]) -> list[Certificate]:
-    """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations."""
-    remaining = sorted(certificates, key=lambda each: each.least.multiplier)
-    while remaining:
-        first = certify(system, remaining[0].motion)
-        if first is None:
-            del remaining[0]
-            continue
-        largest = certify(system, max(remaining, key=lambda each: each.most.multiplier).motion)
-        if largest is not None and largest.least.multiplier < first.least.multiplier:
-            first, largest = largest, first
-        return [first, *remaining[1:], *([largest] if largest is not None else [])]
-    return []
+    """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations.
+
+    What cannot be proved there is left out.
+    """
+    proved: list[Certificate] = []
+    for end in (lambda each: -each.least.multiplier, lambda each: each.most.multiplier):
+        remaining = sorted(certificates, key=end)
+        while remaining and (not proved or end(remaining[-1]) > end(proved[0])):
+            again = certify(system, remaining[-1].motion)
+            certificates = [each for each in certificates if each is not remaining[-1]]
+            del remaining[-1]
+            if again is not None:
+                proved.append(again)
+                break
+    if not proved:
+        return []
+    inside = [
+        each
+        for each in certificates
+        if proved[0].least.multiplier <= each.least.multiplier and each.most.multiplier <= proved[-1].most.multiplier
+    ]
+    return sorted([*proved, *inside], key=lambda each: each.least.multiplier)
 
 
 def _message(loads: list[tuple[float, float]], result: Search, tolerance: float, *, falling: bool) -> str:

@@ -19,6 +19,9 @@ NO_FORCE = 1e-7
 """Force, in force units, that counts as none, and distance from the limit that counts as at it."""
 
 
+MOST_PIVOTS = 800
+"""Corners after which loads that drive a mechanism are given up, or taken as they are."""
+
 Corners: TypeAlias = "Sequence[highspy.HighsBasis | None]"
 """Corners from which the models of `Programs` start; None is nothing."""
 
@@ -64,7 +67,7 @@ class Programs:
 
     def extreme(self, forces: ForceSet, sense: float = 1.0, method: int = PRIMAL) -> ForceSolution:
         """Forces of a set of two rays a point at the least load, or with a `sense` of −1 at the most."""
-        return self._solved(self._driven, forces, sense=sense, method=method)
+        return self._solved(self._driven, forces, sense=sense, method=method, pivots=MOST_PIVOTS)
 
     def corner(
         self, forces: ForceSet, weights: Array, multiplier: float | None = None, pivots: int | None = None

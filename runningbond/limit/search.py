@@ -87,12 +87,12 @@ Observer = Callable[[Search], None]
 
 def programs_allowed(system: Equilibrium) -> int:
     """Programs after which no further start is made: fewer where each costs more."""
-    return 20 + 200_000 // max(1, len(system.points))
+    return 20 + 150_000 // max(1, len(system.points))
 
 
 def dry_allowed(system: Equilibrium) -> int:
     """Starts in a row that bring nothing lower, after which the search ends: fewer where each costs more."""
-    return min(max(12, 12_000 // max(1, len(system.points))), 60)
+    return min(max(6, 12_000 // max(1, len(system.points))), 60)
 
 
 @dataclass(eq=False)
