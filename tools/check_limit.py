@@ -214,7 +214,9 @@ class Result:
         self.dilatant = record["model"] == "limit"
         self.settles = any(load.part == "Settlement" for load in loads.live)
         self.multiplier = record[("lower" if self.settles else "upper") if far else "multiplier"]
-        force, pull, held, self.motion = (arrays[f"{'far_' if far else ''}{n}"] for n in ("force", "pull", "held", "motion"))
+        force, pull, held, self.motion = (
+            arrays[f"{'far_' if far else ''}{n}"] for n in ("force", "pull", "held", "motion")
+        )
         (self.normal, self.tangential), self.pull, self.held = force.T, pull.ravel(), held.ravel()
         self.pressure = wall.tension - self.normal
         self.shear = wall.cohesion - wall.friction * wall.tension

@@ -16,22 +16,35 @@ from .canonical import canonical_order
 from .certificates import Certificate, certified_loads, certify
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
+from .large import is_large, search_large
 from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
 from .remarks import remarks
-from .search import STARTS, Search, search
+from .search import STARTS, Observer, Search, search
 
 LISTED = 4
 """Intervals of certified loads, apart from each other, that a message lists; of more it tells the number."""
 
 
-def limit_nonassociated(scene: Scene, tolerance: float = 0.01, *, starts: int = STARTS) -> Outcome:
+def limit_nonassociated(
+    scene: Scene,
+    tolerance: float = 0.01,
+    *,
+    starts: int = STARTS,
+    workers: int = 1,
+    observe: Observer = lambda found: None,
+) -> Outcome:
     """Limit analysis of a scene with true Coulomb friction.
 
     Parameters
     ----------
     scene, tolerance
         The scene, and the relative width of the interval asked for. A wider one is reported as it is, for the load
-        itself is not unique. The search ends with the first certificate that is this close to the associated bound.
+        itself is not unique.
+    starts, workers
+        Most starts of the search, and how many are made at a time, which changes nothing of what is found. Fewer are
+        made where none of the last ones brought a smaller load, and of very large walls one alone.
+    observe
+        Is shown what the search has found, from time to time.
 
     Returns
     -------
@@ -58,19 +71,30 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01, *, starts: int = 
     dofs = system.freedoms - system.has_support
     outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=dofs, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        outcome = _collapse(outcome, system, state, tolerance, starts)
+        outcome = _collapse(outcome, system, state, tolerance, starts, workers, observe)
     else:
         outcome = replace(outcome, status=status)
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
 
 
-def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float, starts: int) -> Outcome:
+def _collapse(
+    outcome: Outcome,
+    system: Equilibrium,
+    state: LimitState,
+    tolerance: float,
+    starts: int,
+    workers: int,
+    observe: Observer,
+) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
     cut = state.system
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
     ordered = order.applied(cut)
-    result = search(ordered, solve_forces(ordered, coulomb(ordered.strength)), starts)
+    if is_large(ordered):
+        result = search_large(ordered, observe)
+    else:
+        result = search(ordered, solve_forces(ordered, coulomb(ordered.strength)), starts, workers, observe)
     outcome = replace(outcome, steps=1 + result.programs)
     certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
     certificates = [each for each in certificates if not spends_cut_strength(system, cut, each.motion, dilatancy=0.0)]
@@ -147,8 +171,9 @@ def _message(loads: list[tuple[float, float]], result: Search, tolerance: float,
     elif upper - lower > tolerance * abs(upper):
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
     extreme = "largest" if falling else "lowest"
+    dry = f", the last {result.dry} of them in vain" if result.dry else ""
     stopped = ", interrupted" if result.interrupted else ""
-    return f"{message}; {extreme} of {len(result.certificates)} certificates from {_effort(result)}{stopped}"
+    return f"{message}; {extreme} of {len(result.certificates)} certificates from {_effort(result)}{dry}{stopped}"
 
 
 def _effort(result: Search) -> str:

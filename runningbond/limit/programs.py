@@ -76,9 +76,7 @@ class Programs:
 
         Balanced under a load or, of none, from the last load on under any.
         """
-        return self._solved(
-            self._driven, forces, weights=weights, multiplier=multiplier, method=PRIMAL, pivots=pivots
-        )
+        return self._solved(self._driven, forces, weights=weights, multiplier=multiplier, method=PRIMAL, pivots=pivots)
 
     def mechanism(self, forces: ForceSolution, weights: Array) -> Array | None:
         """An extreme mechanism ``(nd,)`` that forces drive, f_live · q = 1; None where there is none.

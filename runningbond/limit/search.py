@@ -111,8 +111,8 @@ class Start:
 
     def run(self, programs: Programs) -> None:
         """Look for certificates, and write down what is found as it is found."""
-        programs.go_to(self.corners)
         solved = programs.solved
+        programs.go_to(self.corners)
         descent, rng = Descent(programs, self.known), np.random.default_rng([0, self.number + 1])
         try:
             for certificate in self._sequence(descent):
@@ -196,7 +196,7 @@ def search(
 
 
 def _run(batch: Sequence[Start], crew: Sequence[Programs]) -> None:
-    if len(crew) == 1:
+    if min(len(crew), len(batch)) == 1:
         for start in batch:
             start.run(crew[0])
         return
@@ -242,7 +242,7 @@ def first_sequence(descent: Descent, pressure: Array, found: Search) -> Iterator
             in_a_row = in_a_row + 1 if certificate is not None else 0
             if in_a_row == CERTIFIED_IN_A_ROW:
                 return
-        pressure = _averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
+        pressure = averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
     found.growing = growing
 
 
@@ -259,7 +259,7 @@ def short_sequence(descent: Descent, pressure: Array, weight: float | None) -> I
                 if certificate is not None:
                     yield certificate
             return
-        pressure = _averaged(pressure, program.pressure, weight or (k + 1.0) ** -0.5)
+        pressure = averaged(pressure, program.pressure, weight or (k + 1.0) ** -0.5)
 
 
 def certified(descent: Descent, motion: Array) -> Certificate | None:
@@ -273,5 +273,6 @@ def certified(descent: Descent, motion: Array) -> Certificate | None:
     return Certificate(motion, least, most) if most.status == "optimal" else None
 
 
-def _averaged(pressure: Array, new: Array, weight: float) -> Array:
+def averaged(pressure: Array, new: Array, weight: float) -> Array:
+    """Pressures ``(np,)`` for the next program, from those before and those found."""
     return (1 - weight) * pressure + weight * new

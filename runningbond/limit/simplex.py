@@ -16,6 +16,16 @@ from .force_program import ProgramStatus
 DUAL, PRIMAL = 1, 4
 """HiGHS's numbers of the simplex methods."""
 
+OPTIONS: dict[str, bool | int | float | str] = {
+    "output_flag": False,
+    "threads": 1,
+    "parallel": "off",
+    "presolve": "off",
+    "solver": "simplex",
+    "simplex_scale_strategy": 0,  # `Equilibrium` has scaled the equations; scaled again, infeasibility stays unseen
+    "primal_simplex_bound_perturbation_multiplier": 0.0,  # or corners on the way are not within bounds
+}
+
 _STATUS: dict[highspy.HighsModelStatus, ProgramStatus] = {
     highspy.HighsModelStatus.kOptimal: "optimal",
     highspy.HighsModelStatus.kIterationLimit: "budget",
@@ -39,8 +49,7 @@ class Simplex:
         program.a_matrix_.start_, program.a_matrix_.index_ = matrix.indptr, matrix.indices
         program.a_matrix_.value_ = matrix.data
         self._highs = highspy.Highs()
-        options = {"output_flag": False, "threads": 1, "parallel": "off", "presolve": "off", "solver": "simplex"} | {"simplex_scale_strategy": 0}
-        for name, value in (options | {"primal_simplex_bound_perturbation_multiplier": 0.0}).items():
+        for name, value in OPTIONS.items():
             self._highs.setOptionValue(name, value)
         self._highs.passModel(program)
 
@@ -69,7 +78,10 @@ class Simplex:
         highs.changeColsCost(self._size, self._every, cost)
         highs.run()
         status = _STATUS.get(highs.getModelStatus(), "numerical")
-        if status == "budget" and highs.getInfo().primal_solution_status != highspy.SolutionStatus.kSolutionStatusFeasible:
+        if (
+            status == "budget"
+            and highs.getInfo().primal_solution_status != highspy.SolutionStatus.kSolutionStatusFeasible
+        ):
             status = "numerical"
         if status not in ("optimal", "budget"):
             return status, np.zeros(0), np.zeros(0)
