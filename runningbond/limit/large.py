@@ -2,7 +2,8 @@
 
 From corner to corner a program of more than some thousand points takes longer than afresh, and the simplex method may
 never see that there are no forces. What only brings pressures up to date is solved by Clarabel to a rough tolerance;
-then HiGHS finds corners, whose mechanisms move few points, and Clarabel sees in a moment whether forces drive them. Nothing is searched further: neither other starts nor a descent.
+then HiGHS finds corners, whose mechanisms move few points, and Clarabel sees in a moment whether forces drive them.
+Nothing is searched further: neither other starts nor a descent.
 """
 
 from dataclasses import replace

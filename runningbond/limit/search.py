@@ -91,8 +91,11 @@ def programs_allowed(system: Equilibrium) -> int:
 
 
 def dry_allowed(system: Equilibrium) -> int:
-    """Starts in a row that bring nothing lower, after which the search ends: fewer where each costs more."""
-    return min(max(6, 12_000 // max(1, len(system.points))), 60)
+    """Starts in a row that bring nothing lower, after which the search ends.
+
+    Fewer where each costs more, and where there is little to find.
+    """
+    return min(max(6, 12_000 // max(1, len(system.points))), max(8, system.freedoms), 60)
 
 
 @dataclass(eq=False)
