@@ -95,7 +95,7 @@ def dry_allowed(system: Equilibrium) -> int:
 
     Fewer where each costs more, and where there is little to find.
     """
-    return min(max(6, 12_000 // max(1, len(system.points))), max(8, system.freedoms), 60)
+    return min(max(6, 12_000 // max(1, len(system.points))), max(8, 2 * system.freedoms), 100)
 
 
 @dataclass(eq=False)
@@ -138,8 +138,9 @@ class Start:
     def _pressure(self, descent: Descent) -> Array:
         """Pressures ``(np,)`` to start from.
 
-        Those of the associated solution, of the dead load, and of random forces that balance random loads; where those
-        are more than so many corners away, random multiples of the associated ones.
+        Those of the associated solution, of the dead load, random ones in every second round, and in the others those
+        of random forces that balance random loads; where these are more than `PIVOTS` corners away, random multiples of
+        the associated ones.
         """
         system, bounded = descent.system, self.associated.status == "optimal"
         if self.number <= 2:
@@ -149,13 +150,13 @@ class Start:
         top = self.associated.multiplier if bounded else 1.0
         share = rng.random() if self.number > 3 else 0.0
         weights = random_weights(len(system.points), rng)
+        if self.number // ROUND % 2 == 0:
+            return weights * (self.associated.pressure.mean() if bounded else 1.0)
         load = share * top if top > 0 else (1 + share) * top
         state = descent.programs.corner(coulomb(system.strength), weights, load, PIVOTS)
         if state.status == "optimal":
             return state.pressure
-        if self.associated.status != "optimal":
-            return weights
-        return self.associated.pressure * np.exp(rng.normal(size=len(system.points)))
+        return self.associated.pressure * np.exp(rng.normal(size=len(weights))) if bounded else weights
 
 
 def search(
