@@ -77,9 +77,14 @@ class Search:
     interrupted: bool = False
 
     @property
+    def best(self) -> Certificate | None:
+        """The lowest certificate."""
+        return min(self.certificates, key=lambda each: each.least.multiplier, default=None)
+
+    @property
     def lowest(self) -> float:
-        """Multiplier of the lowest certificate; infinite without one."""
-        return min((each.least.multiplier for each in self.certificates), default=np.inf)
+        """Its multiplier; infinite without one."""
+        return np.inf if self.best is None else self.best.least.multiplier
 
 
 Observer = Callable[[Search], None]
@@ -102,12 +107,12 @@ def dry_allowed(system: Equilibrium) -> int:
 class Start:
     """One start of a search, numbered from 0, from which it goes down as far as it gets.
 
-    `lowest` is the lowest multiplier certified before its round, `known` what its mechanisms have led to.
+    `best` is the lowest certificate before its round, `known` what mechanisms have led to.
     """
 
     number: int
     associated: ForceSolution
-    lowest: float
+    best: Certificate | None
     known: dict[bytes, ForceSolution | None]
     corners: Corners = (None, None, None)
     found: Search = field(default_factory=Search)
@@ -122,9 +127,9 @@ class Start:
                 known = self.found.certificates
                 known.append(certificate)
                 known += descent.below(certificate.motion, certificate.least, rng)
-            if is_lower(self.found.lowest, self.lowest):
-                best = min(self.found.certificates, key=lambda each: each.least.multiplier)
-                self.found.certificates += descent.around(best, rng)
+            if self.best is None or is_lower(self.found.lowest, self.best.least.multiplier):
+                best = self.found.best
+                self.found.certificates += [] if best is None else descent.around(best, rng)
         finally:
             self.found.programs += programs.solved - solved
 
@@ -138,9 +143,9 @@ class Start:
     def _pressure(self, descent: Descent) -> Array:
         """Pressures ``(np,)`` to start from.
 
-        Those of the associated solution, of the dead load, random ones in every second round, and in the others those
-        of random forces that balance random loads; where these are more than `PIVOTS` corners away, random multiples of
-        the associated ones.
+        Those of the associated solution, of the dead load, and then by rounds: those of random forces that balance
+        random loads, or, where these are more than `PIVOTS` corners away, random multiples of the associated ones;
+        random multiples of the lowest certificate's; random ones.
         """
         system, bounded = descent.system, self.associated.status == "optimal"
         if self.number <= 2:
@@ -150,7 +155,9 @@ class Start:
         top = self.associated.multiplier if bounded else 1.0
         share = rng.random() if self.number > 3 else 0.0
         weights = random_weights(len(system.points), rng)
-        if self.number // ROUND % 2 == 0:
+        if self.number // ROUND % 3 == 2 and self.best is not None:
+            return self.best.least.pressure * np.exp(rng.normal(size=len(weights)))
+        if self.number // ROUND % 3 == 0:
             return weights * (self.associated.pressure.mean() if bounded else 1.0)
         load = share * top if top > 0 else (1 + share) * top
         state = descent.programs.corner(coulomb(system.strength), weights, load, PIVOTS)
@@ -176,7 +183,7 @@ def search(
     corners: Corners = (None, None, None)
     while found.starts < starts:
         numbers = range(found.starts, min(starts, found.starts + ROUND) if found.starts else 1)
-        batch = [Start(number, associated, found.lowest, dict(known), corners) for number in numbers]
+        batch = [Start(number, associated, found.best, dict(known), corners) for number in numbers]
         try:
             _run(batch, crew)
         except KeyboardInterrupt:
