@@ -23,7 +23,7 @@ from .force_program import (
     solve_forces,
 )
 from .interior_point import interior_point
-from .search import CERTIFIED_IN_A_ROW, Observer, Search, averaged
+from .search import Observer, Search, averaged
 
 POINTS = 4500
 """Joint points, six or so a block, from which a wall is large."""
@@ -36,6 +36,10 @@ SETTLING = 4
 
 MOST = 40
 """Programs in all."""
+
+
+IN_A_ROW = 2
+"""Certificates in a row that end the sequence."""
 
 
 def is_large(system: Equilibrium) -> bool:
@@ -65,7 +69,7 @@ def search_large(system: Equilibrium, observe: Observer) -> Search:
                 certificate = _driven(system, program.motion, found)
                 found.certificates += [] if certificate is None else [certificate]
                 in_a_row = 0 if certificate is None else in_a_row + 1
-                if in_a_row == CERTIFIED_IN_A_ROW:
+                if in_a_row == IN_A_ROW:
                     break
             observe(found)
             pressure = averaged(pressure, program.pressure, (k + 1.0) ** -0.5)

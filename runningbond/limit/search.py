@@ -29,7 +29,7 @@ from .simplex import PRIMAL
 PROGRAM_BUDGET = 40
 """Programs of the first start's sequence after which it ends without a certificate."""
 
-CERTIFIED_IN_A_ROW = 2
+CERTIFIED_IN_A_ROW = 3
 """Certificates in a row that end the first start's sequence."""
 
 SHORT = 16
@@ -238,7 +238,7 @@ def _merge(found: Search, start: Search) -> None:
 
 
 def first_sequence(descent: Descent, pressure: Array, found: Search) -> Iterator[Certificate]:
-    """Run the sequence from a first pressure ``(np,)``, certifying every second program, and note how it ended."""
+    """Run the sequence from a first pressure ``(np,)``, certifying every program, and note how it ended."""
     in_a_row, multiplier, growing = 0, -np.inf, True
     for k in range(PROGRAM_BUDGET):
         program = descent.programs.frozen(pressure)
@@ -246,13 +246,12 @@ def first_sequence(descent: Descent, pressure: Array, found: Search) -> Iterator
             found.frictionless = program.status == "unbounded"
             return
         growing, multiplier = growing and program.multiplier > multiplier, program.multiplier
-        if k % 2:
-            certificate = certified(descent, program.motion)
-            if certificate is not None:
-                yield certificate
-            in_a_row = in_a_row + 1 if certificate is not None else 0
-            if in_a_row == CERTIFIED_IN_A_ROW:
-                return
+        certificate = certified(descent, program.motion)
+        if certificate is not None:
+            yield certificate
+        in_a_row = in_a_row + 1 if certificate is not None else 0
+        if in_a_row == CERTIFIED_IN_A_ROW:
+            return
         pressure = averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
     found.growing = growing
 

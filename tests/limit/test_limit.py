@@ -511,7 +511,9 @@ def test_joints_that_are_as_good_as_glued_do_not_drown_the_others(cohesion: floa
     strongest = equilibrium(weaker).strength.strongest
     assert 100 < strongest < GLUED < 100 * strongest
     assert limit(scene).multiplier == pytest.approx(limit(weaker).multiplier, rel=1e-8)
-    assert limit_nonassociated(scene, starts=4).lower == pytest.approx(0.01, rel=1e-6)  # b / h of the half block at the end
+    assert limit_nonassociated(scene, starts=4).lower == pytest.approx(
+        0.01, rel=1e-6
+    )  # b / h of the half block at the end
 
 
 def test_joints_so_strong_that_only_a_load_a_million_times_the_weight_breaks_them_are_not_cut() -> None:
