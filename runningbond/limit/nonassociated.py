@@ -7,12 +7,13 @@ found (`search`); nobody knows how to prove that there is none below.
 
 import time
 from dataclasses import replace
+from typing import Any
 
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene
 
 from .associated import LimitState, judge, limit_state, spends_cut_strength
-from .canonical import canonical_order
+from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
@@ -91,14 +92,12 @@ def _collapse(
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
     ordered = order.applied(cut)
-    if is_large(ordered):
-        result = search_large(ordered, observe)
-    else:
-        result = search(ordered, solve_forces(ordered, coulomb(ordered.strength)), starts, workers, observe)
+    associated = None if is_large(ordered) else solve_forces(ordered, coulomb(ordered.strength))
+    result = (
+        search_large(ordered, observe) if associated is None else search(ordered, associated, starts, workers, observe)
+    )
+    proved = _proved_again(system, cut, order, result)
     outcome = replace(outcome, steps=1 + result.programs)
-    certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
-    certificates = [each for each in certificates if not spends_cut_strength(system, cut, each.motion, dilatancy=0.0)]
-    proved = _proved_again(cut, certificates)
     if not proved:
         return _uncertified(outcome, result, cut, state.forces.multiplier if bounded else None)
     loads = certified_loads(proved, cut.load, falling=cut.has_support)
@@ -123,7 +122,7 @@ def _collapse(
     )
 
 
-def _arrays(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Array]:
+def _arrays(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Any]:
     """Mechanism and forces of a certificate, as an outcome has them."""
     return {
         "motion": system.motion(motion),
@@ -133,13 +132,15 @@ def _arrays(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[s
     }
 
 
-def _proved_again(system: Equilibrium, certificates: list[Certificate]) -> list[Certificate]:
+def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: Search) -> list[Certificate]:
     """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations.
 
-    What cannot be proved there is left out.
+    What cannot be proved there is left out, and mechanisms that spend of strengths which `full` has more of.
     """
+    certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
+    certificates = [each for each in certificates if not spends_cut_strength(full, system, each.motion, dilatancy=0.0)]
     proved: list[Certificate] = []
-    for end in (lambda each: -each.least.multiplier, lambda each: each.most.multiplier):
+    for end in (_depth, _height):
         remaining = sorted(certificates, key=end)
         while remaining and (not proved or end(remaining[-1]) > end(proved[0])):
             again = certify(system, remaining[-1].motion)
@@ -156,6 +157,14 @@ def _proved_again(system: Equilibrium, certificates: list[Certificate]) -> list[
         if proved[0].least.multiplier <= each.least.multiplier and each.most.multiplier <= proved[-1].most.multiplier
     ]
     return sorted([*proved, *inside], key=lambda each: each.least.multiplier)
+
+
+def _depth(certificate: Certificate) -> float:
+    return -certificate.least.multiplier
+
+
+def _height(certificate: Certificate) -> float:
+    return certificate.most.multiplier
 
 
 def _message(loads: list[tuple[float, float]], result: Search, tolerance: float, *, falling: bool) -> str:

@@ -22,6 +22,8 @@ OPTIONS: dict[str, bool | int | float | str] = {
     "parallel": "off",
     "presolve": "off",
     "solver": "simplex",
+    "primal_feasibility_tolerance": 1e-9,  # forces of a small block on a huge one are no larger than HiGHS's 1e-7
+    "dual_feasibility_tolerance": 1e-9,
     "simplex_scale_strategy": 0,  # `Equilibrium` has scaled the equations; scaled again, infeasibility stays unseen
     "primal_simplex_bound_perturbation_multiplier": 0.0,  # or corners on the way are not within bounds
 }
@@ -48,7 +50,7 @@ class Simplex:
         program.a_matrix_.format_ = highspy.MatrixFormat.kColwise
         program.a_matrix_.start_, program.a_matrix_.index_ = matrix.indptr, matrix.indices
         program.a_matrix_.value_ = matrix.data
-        self._highs = highspy.Highs()
+        self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
         for name, value in OPTIONS.items():
             self._highs.setOptionValue(name, value)
         self._highs.passModel(program)
