@@ -22,11 +22,12 @@ OPTIONS: dict[str, bool | int | float | str] = {
     "parallel": "off",
     "presolve": "off",
     "solver": "simplex",
-    "primal_feasibility_tolerance": 1e-9,  # forces of a small block on a huge one are no larger than HiGHS's 1e-7
-    "dual_feasibility_tolerance": 1e-9,
     "simplex_scale_strategy": 0,  # `Equilibrium` has scaled the equations; scaled again, infeasibility stays unseen
     "primal_simplex_bound_perturbation_multiplier": 0.0,  # or corners on the way are not within bounds
 }
+
+WIDE, FINE = 1e4, 1e-9
+"""Largest coefficient above which HiGHS's tolerance, else 1e-7, is finer: forces of a small block on a huge one."""
 
 _STATUS: dict[highspy.HighsModelStatus, ProgramStatus] = {
     highspy.HighsModelStatus.kOptimal: "optimal",
@@ -53,6 +54,9 @@ class Simplex:
         self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
         for name, value in OPTIONS.items():
             self._highs.setOptionValue(name, value)
+        if np.abs(matrix.data).max(initial=0.0) > WIDE:
+            self._highs.setOptionValue("primal_feasibility_tolerance", FINE)
+            self._highs.setOptionValue("dual_feasibility_tolerance", FINE)
         self._highs.passModel(program)
 
     @property
