@@ -84,7 +84,8 @@ _EVERY_MODEL = (
         *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
         kind="certificate",
         takes=EXTRAS,
-        parameters=("starts",),
+        parameters=("starts", "workers"),
+        progress=partial(_late, "runningbond.compare.progress", "SearchProgress"),
         interruptible=True,
         cost=Cost(0.22, 1.87, 1.48),
         colour="#c2410c",
@@ -175,7 +176,7 @@ def run_model(
     tolerance
         Relative width of the bracket asked for.
     observe
-        Looks at the states that the model passes through, if it has an observer; others are not observed.
+        Looks at the states that the model passes through, if it has an observer or tells its progress.
     parameters
         Settings of that model, by their names.
 
@@ -197,7 +198,7 @@ def run_model(
             own = ", ".join(model.parameters) or "none"
             raise SceneError(f"model {model.name}: {name}", f"is no parameter of it; it has {own}", value)
     model.check(scene)
-    if observe is not None and model.observer is not None:
+    if observe is not None and (model.observer or model.progress):
         parameters["observe"] = observe
     try:
         outcome = model.solve(scene, tolerance, **parameters)
