@@ -1,6 +1,6 @@
 """`dem-static` on large running-bond walls: nested dissection beside bands, in one run, and λ of `limit`.
 
-    python -m benchmarks.static_large [BLOCKS …]
+    python benchmarks/static_large.py [BLOCKS …]
 
 Processor seconds, medians of runs made in turn; bands are run up to `BANDS_UP_TO` blocks. Where friction leaves more
 than one collapse load the two differ by more than their brackets, by rounding alone, and so does the number of linear
@@ -12,7 +12,8 @@ import sys
 import time
 from unittest.mock import patch
 
-from benchmarks.limit_large import SIZES, wall
+from limit_large import SIZES, wall
+
 from dem.static import dem_static
 from runningbond.limit import limit
 from runningbond.results import Outcome

@@ -100,7 +100,13 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
         "joint": joint,
         "support": {"kind": "base"},
         "load": {"gravity": GRAVITY},
-        "beam": {"height": beam, "condition": "free", "force": [0, -pressed], "force_line": "fixed", "drive": drive | {"at": at}},
+        "beam": {
+            "height": beam,
+            "condition": "free",
+            "force": [0, -pressed],
+            "force_line": "fixed",
+            "drive": drive | {"at": at},
+        },
     }
     if features.splits:
         tables["inner_joint"] = _crack(stone, width, deformable=features.deformable)
