@@ -93,7 +93,7 @@ def by_rates(material: JointMaterial, start: Array, rate: tuple[float, float], *
     return np.asarray(done.y[:, -1])
 
 
-@pytest.mark.parametrize("name", set(MATERIALS) - {"sudden"})
+@pytest.mark.parametrize("name", sorted(set(MATERIALS) - {"sudden"}))
 @pytest.mark.parametrize("steps", [1, 7, 200])
 def test_pressed_together_the_cap_is_followed_point_by_point(name: str, steps: int) -> None:
     """−σ = σ_c(κ) where c(σ_c) + κ is the closure, to 1e-10, in steps of any length; what is spent is ∫ σ_c dκ."""
