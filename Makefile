@@ -7,7 +7,7 @@ ready := .venv/.ready
 bin := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: compare study stability test test-long bench clean help
+.PHONY: compare study stability validate test test-long bench clean help
 
 compare: $(ready) ## run every model on every published wall and tabulate, in comparison/
 	$(bin)/runningbond compare --out comparison $(ARGS)
@@ -17,6 +17,9 @@ study: $(ready) ## measure every model's error against its cost, in study/
 
 stability: $(ready) ## drive every method over its edge, and tell where each may be trusted, in stability/
 	$(bin)/runningbond stability --out stability $(ARGS)
+
+validate: $(ready) ## predict walls that were broken in laboratories, and score the predictions, in laboratory/
+	$(bin)/runningbond validate --out laboratory $(ARGS)
 
 test: $(ready) ## style, types, and the tests that take seconds
 	$(bin)/ruff check

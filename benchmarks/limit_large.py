@@ -1,6 +1,6 @@
 """Associated limit analysis of large running-bond walls: interior point and repair beside HiGHS, in one run.
 
-    python -m benchmarks.limit_large [BLOCKS …]
+    python benchmarks/limit_large.py [BLOCKS …]
 
 Processor seconds, medians of runs made in turn; HiGHS is asked up to `HIGHS_UP_TO` blocks.
 """

@@ -112,7 +112,12 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
     runs: list[Run] = []
     answers: list[float] = []
     for k in range(RUNS):
-        run = _run(path, lead, 0.5**k)
+        path.past = []
+        try:
+            run = _run(path, lead, 0.5**k)
+        except KeyboardInterrupt:
+            so_far = Run([path.rests[0], *path.past])
+            return replace(_arrays(outcome, lead, so_far), message="no answer: interrupted, this is the way so far")
         if runs and run.stopped and not run.fell:  # out of budget
             break
         runs.append(run)

@@ -16,6 +16,7 @@ A beam or supports that are moved by displacements take the wall along, step by 
 """
 
 import time
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
@@ -47,6 +48,9 @@ BUDGET = 20_000
 
 PAST = 500
 """Linear systems that are spent past the largest load."""
+
+INTERRUPTED = "interrupted"
+"""Why a wall is undecided after Ctrl-C."""
 
 
 def dem_static(
@@ -85,33 +89,36 @@ def dem_static(
         `lower` is the largest load in equilibrium, `upper` the smallest under which the wall fell. `curve` has the
         states at rest, past the largest load under prescribed displacements; `force` is of `lower`. Of a wall that is
         led `curve` has its whole way and `force` is of the answer, and `lower` and `upper` are the answers in the last
-        steps and in those twice as long.
+        steps and in those twice as long. Ctrl-C ends it with the result so far.
     """
     start = time.perf_counter()
     system = static_system(scene)
     outcome = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
     far = collapse * scene.lowest_block / system.length_unit
     nothing = np.zeros(len(system.law.normal_stiffness))
-    # Bands are too narrow for a second thread to gain anything.
-    with threadpool_limits(limits=1, user_api="blas"):
-        rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
-        if rest.verdict != "rest":
-            outcome = _fallen(replace(outcome, steps=rest.solves), system)
-        else:
-            if len(scene.late_pins):
-                system, late = with_late_pins(system, rest.x)
-                rest = replace(rest, x=late)
-            path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-            observe(path, path.rests[0])
-            if scene.is_led:
-                outcome = lead_along(outcome, path, tolerance, first_step)
+    # Bands and fronts are too narrow for a second thread to gain anything.
+    try:
+        with threadpool_limits(limits=1, user_api="blas"):
+            rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)
+            if rest.verdict != "rest":
+                outcome = _fallen(replace(outcome, steps=rest.solves), system)
             else:
-                undecided = _climb(path, first_step, tolerance, past)
-                for state in path.past:
-                    observe(path, state)
-                outcome = _judge(outcome, path, undecided)
-            message = "; ".join(part for part in (outcome.message, _window(path)) if part)
-            outcome = replace(outcome, message=message, steps=budget - path.budget)
+                if len(scene.late_pins):
+                    system, late = with_late_pins(system, rest.x)
+                    rest = replace(rest, x=late)
+                path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
+                observe(path, path.rests[0])
+                if scene.is_led:
+                    outcome = lead_along(outcome, path, tolerance, first_step)
+                else:
+                    undecided = _climb(path, first_step, tolerance, past)
+                    for state in path.past:
+                        observe(path, state)
+                    outcome = _judge(outcome, path, undecided)
+                message = "; ".join(part for part in (outcome.message, _window(path)) if part)
+                outcome = replace(outcome, message=message, steps=budget - path.budget)
+    except KeyboardInterrupt:
+        outcome = replace(outcome, message=f"no answer: {INTERRUPTED}")
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
@@ -127,6 +134,18 @@ def _window(path: LoadPath) -> str:
 
 def _climb(path: LoadPath, first_step: float, tolerance: float, past: int) -> str:
     """Load a wall until it has fallen, close enough to the last load at rest, and follow it; why it is undecided."""
+    try:
+        undecided = _bracket(path, first_step, tolerance)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    if past and not undecided:
+        with suppress(KeyboardInterrupt):  # the bracket is found, and stands
+            _look_closer(path, tolerance, past)
+    return undecided
+
+
+def _bracket(path: LoadPath, first_step: float, tolerance: float) -> str:
+    """Load a wall until it has fallen, close enough to the last load at rest; why it is undecided."""
     step = first_step
     while path.upper is None or path.upper - path.lower > tolerance * max(path.upper, NOISE):
         held = path.push(path.lower + step if path.upper is None else (path.lower + path.upper) / 2)
@@ -135,13 +154,16 @@ def _climb(path: LoadPath, first_step: float, tolerance: float, past: int) -> st
         step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
         if path.upper is None and path.lower > LARGEST_LOAD * first_step:
             return "it bore every load tried"
-    if past:
-        path.follow(past)
-        # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
-        closer = (1 + tolerance / 4) * _peak(path).multiplier
-        if closer < path.upper and path.push(closer, past).verdict == "rest":
-            path.follow(past)
     return ""
+
+
+def _look_closer(path: LoadPath, tolerance: float, past: int) -> None:
+    """Follow a wall past its bracket, and look whether the bracket's upper half bears anything."""
+    path.follow(past)
+    # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
+    closer = (1 + tolerance / 4) * _peak(path).multiplier
+    if path.upper is not None and closer < path.upper and path.push(closer, past).verdict == "rest":
+        path.follow(past)
 
 
 def _peak(path: LoadPath) -> StaticState:
@@ -180,7 +202,7 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
             "friction remembers, other load steps may differ by more than the bracket"
         )
         return replace(result, status="collapse", multiplier=result.lower, message=message)
-    if path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
+    if undecided != INTERRUPTED and path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
         message = f"self-locking: {undecided}, and joint forces balance any multiple of it"
         return replace(result, status="unbounded", lower=None, message=message)
     return replace(result, message=f"no answer: {undecided}")

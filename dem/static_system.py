@@ -11,6 +11,7 @@ of the blocks; then λ is given, and nothing is a live load.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import qr
@@ -24,6 +25,12 @@ from runningbond.scene import Array, Indices, Scene
 
 from .band import Band, band
 from .tied_law import TiedLaw, elongation, tie_ends
+
+if TYPE_CHECKING:
+    from .dissection import Dissection
+
+MANY = 800
+"""Movable blocks from which on systems are dissected: on fewer, bands are as fast, and need no kernels."""
 
 
 @dataclass(frozen=True)
@@ -88,16 +95,16 @@ class StaticSystem:
         """Residual of all equations, ``(n,)``."""
         system, nd = self.equilibrium, self.freedoms
         q, reaction, multiplier = x[:nd], x[nd:-1], x[-1]
-        force = system.opening @ response.normal + system.slip @ response.tangential
-        force += system.reaction @ reaction - system.dead - multiplier * system.live
+        force = self._opened @ response.normal + self._slid @ response.tangential
+        force += self._reactions @ reaction - system.dead - multiplier * system.live
         last = multiplier if control.multiplier else system.live @ q
         return np.concatenate([force, self._held @ q - self.held, [last - control.value]])
 
     def viscous(self, motion: Array) -> Array:
         """Forces ``(nd,)`` of dashpots in proportion to the elastic stiffness of every joint point."""
-        system, law, q = self.equilibrium, self.law, motion[: self.freedoms]
+        law, q = self.law, motion[: self.freedoms]
         normal, tangential = law.normal_stiffness * (self.opening @ q), law.shear_stiffness * (self.slip @ q)
-        return np.asarray(system.opening @ normal + system.slip @ tangential)
+        return np.asarray(self._opened @ normal + self._slid @ tangential)
 
     def solve(self, tangent: Array, control: Control, right: Array) -> Array:
         """Solve the tangent equations.
@@ -116,19 +123,22 @@ class StaticSystem:
         numpy.linalg.LinAlgError
             For a tangent that is singular to the last bit.
         """
-        jump, live = self._jump, self.equilibrium.live
-        own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[: len(jump)]), jump).ravel()
+        points, live = len(self._jump), self.equilibrium.live
         border = np.concatenate([live, np.zeros(self.unknowns - 1 - len(live))])
-        loads = [right[:-1], border] if len(tangent) == len(jump) else [right[:-1], border, self._tie_ends]
+        given = control.multiplier and right[-1] == 0
+        loads = [right[:-1], *([] if given else [border]), *([self._tie_ends] if len(tangent) > points else [])]
         # The border of λ is eliminated by hand: q = a + λ b.
-        a, b, *ends = self._band.solve(np.concatenate([own, self._constant]), np.column_stack(loads)).T
-        if ends:
-            a, b = self._tied(tangent[len(jump) :, 0, 0], np.array([a, b]), np.array(ends))
+        solved = self._factors.solve(tangent[:points], np.column_stack(loads)).T
+        if len(tangent) > points:
+            solved = self._tied(tangent[points:, 0, 0], *np.split(solved, [1 if given else 2]))
+        if given:
+            return np.append(solved[0], 0.0)
+        a, b = solved
         multiplier = right[-1] if control.multiplier else (right[-1] - border @ a) / (border @ b)
         return np.append(a + multiplier * b, multiplier)
 
     def _tied(self, tangent: Array, solved: Array, ends: Array) -> Array:
-        """Solutions ``(2, n - 1)`` with ties of a tangent ``(nt,)`` from those with springs in their place.
+        """Solutions ``(k, n - 1)`` with ties of a tangent ``(nt,)`` from those with springs in their place.
 
         Ties couple what lies far apart, and a band would be as wide. Each of a tie's ends is a spring to the ground in
         the band, as stiff as the tie: where the tied wall has a regular tangent, so has that one. In the springs' stead
@@ -145,6 +155,19 @@ class StaticSystem:
         tangent = np.zeros((len(self.law.normal_stiffness), 2, 2))
         tangent[:, 0, 0], tangent[:, 1, 1] = self.law.normal_stiffness, self.law.shear_stiffness
         return tangent
+
+    @cached_property
+    def _opened(self) -> csr_array:
+        """Forces on the freedoms of unit normal forces, ``(nd, np)``; of tangential ones, and of reactions."""
+        return csr_array(self.equilibrium.opening)
+
+    @cached_property
+    def _slid(self) -> csr_array:
+        return csr_array(self.equilibrium.slip)
+
+    @cached_property
+    def _reactions(self) -> csr_array:
+        return csr_array(self.equilibrium.reaction)
 
     @cached_property
     def _held(self) -> csr_array:
@@ -200,17 +223,20 @@ class StaticSystem:
         return jump
 
     @cached_property
-    def _band(self) -> Band:
+    def _factors(self) -> "Band | Dissection":
         """Where the entries of the tangent go: the joint points' 6 × 6 tangents, the springs at ties' ends, C twice."""
         nd, own, scene = self.freedoms, self._freedoms_of_points, self.equilibrium.scene
         pins, ends = self.equilibrium.reaction.tocoo(), self._freedoms_of_ends
         row = np.concatenate([np.repeat(own, 6, axis=1).ravel(), np.repeat(ends, 3, axis=1).ravel()])
         column = np.concatenate([np.tile(own, 6).ravel(), np.tile(ends, 3).ravel()])
         row, column = np.concatenate([row, pins.row, nd + pins.col]), np.concatenate([column, nd + pins.col, pins.row])
-        home = np.repeat(scene.blocks.centroid[~scene.fixed], 3, axis=0)
-        held = np.empty((pins.shape[1], 2))
-        held[pins.col] = home[pins.row]
-        return band(row, column, np.concatenate([home, held]), 0.1 * scene.lowest_block)
+        position, home = scene.blocks.centroid[~scene.fixed], np.arange(nd + pins.shape[1]) // 3
+        home[nd + pins.col] = pins.row // 3
+        if len(position) >= MANY:
+            from .dissection import dissection  # and what compiles its kernels
+
+            return dissection(row, column, home, position, self._jump, self._constant)
+        return band(row, column, position[home], 0.1 * scene.lowest_block, self._jump, self._constant)
 
 
 def _independent(pins: csc_array) -> csc_array:

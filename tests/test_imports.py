@@ -27,7 +27,8 @@ BELOW_PICTURES = METHODS | {"dem", "fem_interface", "homog"}
 MAY_IMPORT["runningbond.pictures"] = BELOW_PICTURES
 MAY_IMPORT["runningbond.compare"] = BELOW_PICTURES | {"runningbond.pictures"}
 MAY_IMPORT["runningbond.studies"] = MAY_IMPORT["runningbond.compare"] | {"runningbond.compare"}
-MAY_IMPORT["runningbond.commands"] = MAY_IMPORT["runningbond.studies"] | {"runningbond.studies"}
+MAY_IMPORT["runningbond.laboratory"] = MAY_IMPORT["runningbond.studies"] | {"runningbond.studies"}
+MAY_IMPORT["runningbond.commands"] = MAY_IMPORT["runningbond.laboratory"] | {"runningbond.laboratory"}
 """Each room, and those that it may import: the ones that stand before it."""
 
 HEAVY = {"gmsh", "pyvista", "vtk"}
@@ -145,5 +146,5 @@ def test_the_distribution_is_made_of_exactly_these_packages() -> None:
 
 
 def test_what_can_change_a_number_is_in_the_fingerprint() -> None:
-    showing = {f"runningbond.{room}" for room in ("pictures", "compare", "studies", "commands")}
+    showing = {f"runningbond.{room}" for room in ("pictures", "compare", "studies", "laboratory", "commands")}
     assert set(COMPUTING_ROOMS) == set(MAY_IMPORT) - showing

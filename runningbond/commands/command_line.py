@@ -21,6 +21,7 @@ from .run import run
 from .show import show
 from .studies import stability, study
 from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions
+from .validate import validate
 
 app = App(
     name="runningbond",
@@ -29,7 +30,7 @@ app = App(
     result_action="return_value",
     suppress_keyboard_interrupt=False,
 )
-for each in (run, show, advise, compare, stability, study, mesh, render):
+for each in (run, show, advise, compare, stability, study, validate, mesh, render):
     app.command(each)
 
 

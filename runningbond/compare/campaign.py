@@ -82,7 +82,21 @@ def run_campaign(
     largest_first = sorted(scenes, key=lambda name: -len(scenes[name].blocks))
     # Dear models stand last in the registry; started first, they do not leave one process working alone.
     tasks = [Task(name, scenes[name], model, tolerance) for model in reversed(chosen) for name in largest_first]
+    return run_tasks(tasks, folder=folder, jobs=jobs, cluster=cluster, fresh=fresh, progress=progress)
+
+
+def run_tasks(
+    tasks: Sequence[Task],
+    *,
+    folder: Path,
+    jobs: int = -1,
+    cluster: str | None = None,
+    fresh: bool = False,
+    progress: Callable[[Cell], None] = lambda cell: None,
+) -> Campaign:
+    """Run tasks, each cell one, in their order; parameters and errors as of `run_campaign`."""
     campaign = Campaign()
+    scenes = {task.cell: task.scene for task in tasks}
     try:
         with warnings.catch_warnings(), closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
             # `Interrupted` says what is left undone.
@@ -94,7 +108,7 @@ def run_campaign(
                 elif answer.reused:
                     campaign.reused.add(cell)
                 elif outcome.status != "failed":  # which is tried again the next time, perhaps by better code
-                    save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell[0]])
+                    save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell])
                 if outcome is not None:
                     campaign.outcomes[cell] = outcome
                 progress(cell)

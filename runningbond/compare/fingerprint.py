@@ -32,6 +32,8 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
         own = _own_code(model.solve)
         loads = (*scene.load.live, *scene.load.dead) if own else ()  # of which it may read whatever it likes
         digest.update(own + b"".join(_own_code(type(load)) for load in loads))
+        if settings := getattr(model.solve, "keywords", None):  # with which it was made of another's
+            digest.update(repr(sorted(settings.items())).encode())
         model = model.name
     digest.update(f"{model} {tolerance!r} ".encode())
     for value in (scene, scene.dead_forces, scene.live_forces, scene.control_point):

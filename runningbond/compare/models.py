@@ -20,6 +20,7 @@ from .model import Cost, Model
 
 DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
+CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
 CRUSHING = SOFTENING | {
@@ -73,7 +74,7 @@ _EVERY_MODEL = (
         line=(0, (6, 4)),
     ),
     Model(
-        *("limit", "limit analysis of the blocks", limit, STRENGTH, "bound"),
+        *("limit", "limit analysis of the blocks", limit, CRUSHING, "bound"),
         takes=EXTRAS,
         cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
         colour="#0b559f",
@@ -83,7 +84,8 @@ _EVERY_MODEL = (
         *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
         kind="certificate",
         takes=EXTRAS,
-        parameters=("starts",),
+        parameters=("starts", "workers"),
+        progress=partial(_late, "runningbond.compare.progress", "SearchProgress"),
         interruptible=True,
         cost=Cost(0.22, 1.87, 1.48),
         colour="#c2410c",
@@ -94,6 +96,7 @@ _EVERY_MODEL = (
         parameters=(*IN_STEPS, "past"),
         observer=_STATIC_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "StaticProgress"),
+        interruptible=True,
         cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
         takes=EXTRAS,
         colour="#7c3aed",
@@ -173,7 +176,7 @@ def run_model(
     tolerance
         Relative width of the bracket asked for.
     observe
-        Looks at the states that the model passes through, if it has an observer; others are not observed.
+        Looks at the states that the model passes through, if it has an observer or tells its progress.
     parameters
         Settings of that model, by their names.
 
@@ -195,7 +198,7 @@ def run_model(
             own = ", ".join(model.parameters) or "none"
             raise SceneError(f"model {model.name}: {name}", f"is no parameter of it; it has {own}", value)
     model.check(scene)
-    if observe is not None and model.observer is not None:
+    if observe is not None and (model.observer or model.progress):
         parameters["observe"] = observe
     try:
         outcome = model.solve(scene, tolerance, **parameters)

@@ -9,6 +9,7 @@ from dem.static import BUDGET as STATIC_BUDGET
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
 from runningbond.dynamics.collapse_load import BUDGET
+from runningbond.limit.search import Search
 from runningbond.results.outcome import number
 
 
@@ -65,6 +66,22 @@ class MotionProgress:
         spent, speed = self._looks * Criteria.interval / BUDGET, 1e3 * run.system.farthest(state.velocity)
         held = f"λ {number(self._load)}, {spent:.1%} of its budget, {speed:.2g} mm/s"
         return held if self._lower is None else f"{held}; {_bracket(self._lower, self._upper)}"
+
+
+class SearchProgress:
+    """Looks at a search for certificates on its way."""
+
+    def __init__(self) -> None:
+        self._said = "looks for a first certificate"
+
+    def __call__(self, found: Search) -> None:
+        """Look at what was found."""
+        certified = f"{len(found.certificates)} certificates, the last {found.dry} starts in vain"
+        self._said = f"{found.starts} starts, {found.programs} linear programs, {certified}"
+
+    def line(self) -> str:
+        """How far it has come."""
+        return self._said
 
 
 def _bracket(lower: float, upper: float | None) -> str:

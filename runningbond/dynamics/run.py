@@ -272,7 +272,7 @@ class Run:
             external=state.external,
             kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum()),
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
-            joint=float(area @ law.stored(opening, normal, tangential, state.history)),
+            joint=float(area @ law.energy(opening, normal, tangential, state.history)),
             friction=float(area @ state.history[FRICTION_WORK]) + state.friction,
             damped=float(state.damped[moving].sum() + area @ state.history[DAMPED_WORK]) + state.absorbed,
             ties=ties.stored(ties.force(state.motion, state.stretch)) + float(ties.constants[:, YIELD] @ state.stretch),

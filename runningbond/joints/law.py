@@ -117,7 +117,12 @@ class KernelLaw:
         """Rows of the history."""
         return len(self.law.history)
 
-    def stored(self, opening: Array, normal: Array, tangential: Array, history: Array) -> Array:
+    @property
+    def stored(self) -> Callable[["KernelLaw", Array, Array, Array], Array]:
+        """The law's stored energy."""
+        return self.law.stored
+
+    def energy(self, opening: Array, normal: Array, tangential: Array, history: Array) -> Array:
         """Energy that points of some jumps and tractions would give back, ``(np,)`` [J/m²]."""
         seat = history[self.law.row(PLASTIC_CLOSURE)] if PLASTIC_CLOSURE in self.law.history else 0.0
         return self.law.stored(self, opening + seat, normal, tangential)

@@ -14,6 +14,7 @@ from runningbond.joints import PointStrength
 from runningbond.results import Outcome, Status, collapse_state
 from runningbond.scene import Array, Scene
 
+from .crushed import beyond_note, crushed, crushing_note, without_crushing
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .moving_support import JAMMED, support_verdict
@@ -62,18 +63,15 @@ class LimitState:
     @property
     def kinematic_multiplier(self) -> float:
         """Multiplier at which the mechanism's loads do the work that its joints dissipate, in scaled units."""
-        system, motion = self.system, self.forces.motion
-        dissipated = system.strength.dissipation(*self.jumps).sum()
-        dissipated += system.tie_yield @ system.elongation(motion).clip(min=0.0)
-        return float((dissipated - system.dead @ motion) / (system.live @ motion))
+        return self.system.kinematic_multiplier(self.forces.motion)
 
     @property
     def sound(self) -> bool:
         """Whether forces and mechanism prove each other right.
 
-        What they prove is as wide as the interior point of a large wall leaves it.
+        What they prove is as wide as the interior point of a large wall, or the facets of joints that crush, leave it.
         """
-        width = max(SOUND, tolerance_of(self.system))
+        width = max(SOUND, tolerance_of(self.system)) if self.system.crushing is None else np.inf
         return all(value <= (width if name in WIDTHS else SOUND) for name, value in self.measures.items())
 
     @property
@@ -98,14 +96,20 @@ class LimitState:
         parts = (forces.pressure, tangential, forces.tie, system.dead)
         largest = max(abs(multiplier), *(np.abs(part).max(initial=0.0) for part in parts)) or 1.0
         fastest = np.abs(motion).max(initial=0.0)
-        short = strength.dissipation(opening, slip) - (normal * opening + tangential * slip)
+        spent = normal * opening + tangential * slip
         longer = system.elongation(motion)
         held_back = system.tie_yield * longer.clip(min=0.0) - forces.tie * longer
+        closing = strength.friction * np.abs(slip) - opening
+        if system.crushing is not None:
+            first, second = system.crushing.ends
+            spent[first] += spent[second]
+            spent[second] = closing[first] = closing[second] = 0.0
+        short = system.dissipation(motion) - spent
         power = np.abs(system.live @ motion) * max(1.0, abs(multiplier))
         measures = {
             "residual": np.abs(unbalanced).max() / largest,
             "violation": max(outside.max(initial=0.0), beyond.max(initial=0.0)) / largest,
-            "penetration": (strength.friction * np.abs(slip) - opening).max(initial=0.0) / (fastest or np.inf),
+            "penetration": closing.max(initial=0.0) / (fastest or np.inf),
             "gap": abs(self.kinematic_multiplier - multiplier) / max(1.0, abs(multiplier)),
             "complementarity": np.abs(np.append(short, held_back)).max(initial=0.0) / power,
         }
@@ -119,6 +123,9 @@ def limit_state(system: Equilibrium) -> LimitState:
     stronger joints all the more, and its mechanism does not break them. Where it would, forces are so large that they
     are measured in that strength.
     """
+    if system.crushing is not None:
+        forces, rests = crushed(system, system.crushing)
+        return LimitState(system, forces, rests=rests)
     weaker = _cut(system)
     if weaker is system:
         return _solved(system)
@@ -210,6 +217,9 @@ def _balances_any_multiple(system: Equilibrium) -> bool:
     Those of ties may not, for they are bounded.
     """
     dry = system.without_strength(system.live)
+    if system.crushing is not None:
+        others, rays = without_crushing(dry, system.crushing)
+        return solve_forces(others, rays, "zero").status == "optimal"
     if is_large(system) and resting_forces(dry) is not None:
         return True
     return solve_forces(dry, coulomb(dry.strength), "zero").status == "optimal"
@@ -222,7 +232,9 @@ def judge(state: LimitState) -> tuple[Status, str]:
     load that no forces balance, or forces that lock.
     """
     system, program = state.system, state.forces.status
-    stands = stands_under_dead_load(system.under_dead_load()) if state.rests is None else state.rests
+    stands = state.rests
+    if stands is None and system.crushing is None:
+        stands = stands_under_dead_load(system.under_dead_load())
     if stands is None:
         return "failed", "the solver cannot tell whether the wall stands under its dead load"
     if not stands:
@@ -232,7 +244,8 @@ def judge(state: LimitState) -> tuple[Status, str]:
             return "failed", f"forces and mechanism disagree: {state.measures}"
         if system.has_support:
             return support_verdict(system, system.load(state.forces.multiplier))
-        return "collapse", "static and kinematic bound, associated joints; true friction may collapse earlier"
+        message = "static and kinematic bound, associated joints; true friction may collapse earlier"
+        return "collapse", message if system.crushing is None else f"{message}; {crushing_note(system, state.forces)}"
     if program == "budget":
         return "undecided", "the linear program ran out of iterations"
     if state.locks or _balances_any_multiple(system):
@@ -249,7 +262,8 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     ----------
     scene, tolerance
         The scene, and the relative width of the bracket asked for; a vertex closes it to about 1e-9,
-        the repaired interior point of a large wall to 1e-6, and of a very large one to 1e-4.
+        the repaired interior point of a large wall, and facets of joints that crush, to 1e-6, of a very large wall, or
+        a large one whose joints crush, to 1e-4.
 
     Returns
     -------
@@ -259,14 +273,14 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
         from the forces; one below zero has to be driven along its motion.
     """
     start = time.perf_counter()
-    system = equilibrium(scene).under_live_load()
+    system = equilibrium(scene).with_crushing().under_live_load()
     state = limit_state(system)
     status, message = judge(state)
     outcome = Outcome(
         *(scene.title, "limit", "undecided"),
         dofs=system.freedoms - system.has_support,
         steps=state.forces.iterations,
-        message=remarks(scene, message),
+        message=remarks(scene, message + beyond_note(system)),
     )
     outcome = _bracketed(outcome, state, tolerance) if status == "collapse" else replace(outcome, status=status)
     return replace(outcome, seconds=time.perf_counter() - start)

@@ -18,6 +18,7 @@ from runningbond.joints import JointPoints, PointStrength, wall_points, wall_str
 from runningbond.results import fastest_corner_by_one
 from runningbond.scene import Array, Scene
 
+from .crushing import Crushing, crushing
 from .kinematics import dead_load, jump_operator, live_load, movable_freedoms, pin_operator, tie_operator
 from .settlement import largest_displacement, reaction_unit
 
@@ -47,6 +48,8 @@ class Equilibrium:
     scale : (nd,) float
         Factor of each equation: blocks count by their own weight, or a small one's balance would be lost in
         the solver's tolerance beside a large one, and moments by their own size.
+    crushing
+        Joints of finite compressive strength, where they are taken into account (`with_crushing`).
     """
 
     scene: Scene
@@ -62,6 +65,7 @@ class Equilibrium:
     force_unit: float
     live_unit: float
     scale: Array
+    crushing: Crushing | None = None
 
     @property
     def freedoms(self) -> int:
@@ -98,6 +102,39 @@ class Equilibrium:
     def elongation(self, multipliers: Array) -> Array:
         """Elongation rates of ties, ``(nt,)``, from multipliers of equations ``(nd,)``."""
         return np.asarray(self.tie.T @ multipliers)
+
+    def with_crushing(self) -> "Equilibrium":
+        """The same equations, joints that crush taken as such; without weight, forces are in the strongest of them."""
+        if self.dead.any():
+            return replace(self, crushing=crushing(self.scene, self.force_unit))
+        joints = crushing(self.scene, self.force_unit, np.inf)
+        if joints is None:
+            return self
+        system = self.in_forces_of(float(joints.strength.max()))
+        return replace(system, crushing=crushing(self.scene, system.force_unit))
+
+    def crushed_jumps(self, motion: Array) -> Array:
+        """Openings of the ends and slips of joints that crush, ``(3, nc)``, from multipliers of equations ``(nd,)``."""
+        if self.crushing is None:
+            return np.zeros((3, 0))
+        ends = self.crushing.ends
+        return np.array([*(self.opening.T @ motion)[ends], (self.slip.T @ motion)[ends[0]]])
+
+    def dissipation(self, motion: Array) -> Array:
+        """Largest power of admissible forces on a mechanism ``(nd,)``, by points, of joints that crush at the first.
+
+        Other points have to open as their flow rule says.
+        """
+        found = self.strength.dissipation(self.opening.T @ motion, self.slip.T @ motion)
+        if self.crushing is not None:
+            found[self.crushing.ends[1]] = 0.0
+            found[self.crushing.ends[0]] = self.crushing.dissipation(self.crushed_jumps(motion))
+        return found
+
+    def kinematic_multiplier(self, motion: Array) -> float:
+        """Multiplier at which a mechanism's loads do the work that its joints and ties dissipate, in scaled units."""
+        dissipated = self.dissipation(motion).sum() + self.tie_yield @ self.elongation(motion).clip(min=0.0)
+        return float((dissipated - self.dead @ motion) / (self.live @ motion))
 
     def in_forces_of(self, unit: float) -> "Equilibrium":
         """The same equations, forces measured in so many of what counts as 1 here."""

@@ -7,31 +7,45 @@ found (`search`); nobody knows how to prove that there is none below.
 
 import time
 from dataclasses import replace
+from typing import Any
 
 from runningbond.results import Outcome, collapse_state
-from runningbond.scene import Scene
+from runningbond.scene import Array, Scene
 
 from .associated import LimitState, judge, limit_state, spends_cut_strength
-from .canonical import canonical_order
+from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify
 from .equilibrium import Equilibrium, equilibrium
-from .force_program import coulomb, solve_forces
+from .force_program import ForceSolution, coulomb, solve_forces
+from .large import is_large, search_large
 from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
 from .remarks import remarks
-from .search import STARTS, Search, search
+from .search import STARTS, Observer, Search, search
 
 LISTED = 4
 """Intervals of certified loads, apart from each other, that a message lists; of more it tells the number."""
 
 
-def limit_nonassociated(scene: Scene, tolerance: float = 0.01, *, starts: int = STARTS) -> Outcome:
+def limit_nonassociated(
+    scene: Scene,
+    tolerance: float = 0.01,
+    *,
+    starts: int = STARTS,
+    workers: int = 1,
+    observe: Observer = lambda found: None,
+) -> Outcome:
     """Limit analysis of a scene with true Coulomb friction.
 
     Parameters
     ----------
     scene, tolerance
         The scene, and the relative width of the interval asked for. A wider one is reported as it is, for the load
-        itself is not unique. The search ends with the first certificate that is this close to the associated bound.
+        itself is not unique.
+    starts, workers
+        Most starts of the search, and how many are made at a time, which changes nothing of what is found. Fewer are
+        made where none of the last ones brought a smaller load, and of very large walls one alone.
+    observe
+        Is shown what the search has found, from time to time.
 
     Returns
     -------
@@ -58,33 +72,39 @@ def limit_nonassociated(scene: Scene, tolerance: float = 0.01, *, starts: int = 
     dofs = system.freedoms - system.has_support
     outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=dofs, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        outcome = _collapse(outcome, system, state, tolerance, starts)
+        outcome = _collapse(outcome, system, state, tolerance, starts, workers, observe)
     else:
         outcome = replace(outcome, status=status)
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
 
 
-def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, tolerance: float, starts: int) -> Outcome:
+def _collapse(
+    outcome: Outcome,
+    system: Equilibrium,
+    state: LimitState,
+    tolerance: float,
+    starts: int,
+    workers: int,
+    observe: Observer,
+) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
     cut = state.system
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
     ordered = order.applied(cut)
-    result = search(ordered, solve_forces(ordered, coulomb(ordered.strength)), starts)
+    associated = None if is_large(ordered) else solve_forces(ordered, coulomb(ordered.strength))
+    result = (
+        search_large(ordered, observe) if associated is None else search(ordered, associated, starts, workers, observe)
+    )
+    proved = _proved_again(system, cut, order, result)
     outcome = replace(outcome, steps=1 + result.programs)
-    certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
-    certificates = [each for each in certificates if not spends_cut_strength(system, cut, each.motion, dilatancy=0.0)]
-    proved = _proved_again(cut, certificates)
     if not proved:
         return _uncertified(outcome, result, cut, state.forces.multiplier if bounded else None)
-    lowest = proved[0]
     loads = certified_loads(proved, cut.load, falling=cut.has_support)
-    lower, upper = loads[0][0], loads[-1][1]
-    if cut.has_support and upper <= NOTHING and may_leave(cut):
+    if cut.has_support and loads[-1][1] <= NOTHING and may_leave(cut):
         return _bridged(outcome, cut)
-    least, multiplier = lowest.least, cut.load(lowest.least.multiplier)
-    # The others were proved on rounded equations.
-    lower, upper = (min(lower, multiplier), multiplier) if cut.has_support else (multiplier, max(upper, multiplier))
+    lowest, highest = proved[0], max(proved, key=lambda each: each.most.multiplier)
+    least, multiplier, far = lowest.least, cut.load(lowest.least.multiplier), cut.load(highest.most.multiplier)
     message = _message(loads, result, tolerance, falling=cut.has_support)
     if cut.has_support:
         message = f"{message}; {reaction_note(cut.scene, multiplier)}"
@@ -93,30 +113,58 @@ def _collapse(outcome: Outcome, system: Equilibrium, state: LimitState, toleranc
         outcome,
         status="collapse",
         multiplier=multiplier,
-        lower=lower,
-        upper=upper,
+        lower=min(multiplier, far),
+        upper=max(multiplier, far),
         message=message,
-        motion=cut.motion(lowest.motion),
-        force=force,
-        pull=cut.force_unit * least.tie,
-        held=-cut.force_unit * least.reaction,
+        **_arrays(cut, lowest.motion, least),
+        **{f"far_{name}": array for name, array in _arrays(cut, highest.motion, highest.most).items()},
         **collapse_state(cut.scene, cut.points, force, cut.force_unit * least.tie, multiplier),
     )
 
 
-def _proved_again(system: Equilibrium, certificates: list[Certificate]) -> list[Certificate]:
-    """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations."""
-    remaining = sorted(certificates, key=lambda each: each.least.multiplier)
-    while remaining:
-        first = certify(system, remaining[0].motion)
-        if first is None:
-            del remaining[0]
-            continue
-        largest = certify(system, max(remaining, key=lambda each: each.most.multiplier).motion)
-        if largest is not None and largest.least.multiplier < first.least.multiplier:
-            first, largest = largest, first
-        return [first, *remaining[1:], *([largest] if largest is not None else [])]
-    return []
+def _arrays(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Any]:
+    """Mechanism and forces of a certificate, as an outcome has them."""
+    return {
+        "motion": system.motion(motion),
+        "force": system.point_forces(forces.pressure, forces.tangential),
+        "pull": system.force_unit * forces.tie,
+        "held": -system.force_unit * forces.reaction,
+    }
+
+
+def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: Search) -> list[Certificate]:
+    """Certificates by the least load, the first and the one of the largest load proved on the unrounded equations.
+
+    What cannot be proved there is left out, and mechanisms that spend of strengths which `full` has more of.
+    """
+    certificates = [replace(each, motion=order.restored(each.motion)) for each in result.certificates]
+    certificates = [each for each in certificates if not spends_cut_strength(full, system, each.motion, dilatancy=0.0)]
+    proved: list[Certificate] = []
+    for end in (_depth, _height):
+        remaining = sorted(certificates, key=end)
+        while remaining and (not proved or end(remaining[-1]) > end(proved[0])):
+            again = certify(system, remaining[-1].motion)
+            certificates = [each for each in certificates if each is not remaining[-1]]
+            del remaining[-1]
+            if again is not None:
+                proved.append(again)
+                break
+    if not proved:
+        return []
+    inside = [
+        each
+        for each in certificates
+        if proved[0].least.multiplier <= each.least.multiplier and each.most.multiplier <= proved[-1].most.multiplier
+    ]
+    return sorted([*proved, *inside], key=lambda each: each.least.multiplier)
+
+
+def _depth(certificate: Certificate) -> float:
+    return -certificate.least.multiplier
+
+
+def _height(certificate: Certificate) -> float:
+    return certificate.most.multiplier
 
 
 def _message(loads: list[tuple[float, float]], result: Search, tolerance: float, *, falling: bool) -> str:
@@ -132,8 +180,9 @@ def _message(loads: list[tuple[float, float]], result: Search, tolerance: float,
     elif upper - lower > tolerance * abs(upper):
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
     extreme = "largest" if falling else "lowest"
+    dry = f", the last {result.dry} of them in vain" if result.dry else ""
     stopped = ", interrupted" if result.interrupted else ""
-    return f"{message}; {extreme} of {len(result.certificates)} certificates from {_effort(result)}{stopped}"
+    return f"{message}; {extreme} of {len(result.certificates)} certificates from {_effort(result)}{dry}{stopped}"
 
 
 def _effort(result: Search) -> str:

@@ -4,6 +4,7 @@ HiGHS's vertex is exact and, up to some two hundred blocks, found as fast; above
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -51,7 +52,7 @@ def proved(system: Equilibrium, resting: Array | None) -> ForceSolution:
     none = np.zeros(0)
     if point.status in ("infeasible", "unbounded"):
         return ForceSolution(point.status, np.nan, none, none, none, none, point.iterations)
-    within = None if resting is None else _loaded(system, resting)
+    within = None if resting is None else loaded(system, program, resting)
     found, motion = balanced(program, point, within), admissible(program, point)
     if found is None or motion is None or system.live @ motion <= 0:
         return ForceSolution("numerical", np.nan, none, none, none, none, point.iterations)
@@ -64,17 +65,17 @@ def tolerance_of(system: Equilibrium) -> float:
     return CLOSE if system.freedoms < VERY_LARGE else WIDE
 
 
-def _loaded(system: Equilibrium, resting: Array) -> Array:
-    """Forces of the wall at rest as unknowns of the system under its live load.
+def loaded(system: Equilibrium, program: dict[str, Any], resting: Array) -> Array:
+    """Forces of the wall at rest as unknowns of a program of the system under its live load.
 
     What is held later holds nothing yet; what a support bears of them is their multiplier.
     """
     late = system.reaction.shape[1] - len(system.scene.pins)
     forces = np.concatenate([resting[:-1], np.zeros(late), [0.0]])
     if system.has_support:
-        program = force_program(system, coulomb(system.strength))
+        last = system.freedoms - 1
         unbalanced = program["b_eq"] - program["A_eq"] @ forces
-        forces[-1] = unbalanced[-1] / program["A_eq"][-1, -1]
+        forces[-1] = unbalanced[last] / program["A_eq"][last, -1]
     return forces
 
 

@@ -5,31 +5,44 @@ a pressure that is brought up to date between programs: averaged with weights (k
 where fixed weights keep wandering, or with fixed ones, which settle elsewhere. What it settles at depends on the
 pressure that it starts from. From every certificate `descent` goes on to smaller loads. Finding the smallest of all is
 a program with complementarity constraints, for which nothing better than looking is known; no lower bound comes of it.
+
+Starts are made in rounds. Those of a round know what was found before it and nothing of each other, so that what is
+found does not depend on how many are made at a time.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from threading import Event
 
 import numpy as np
 
 from runningbond.scene import Array
 
-from .certificates import Certificate, certify
-from .descent import Descent, is_lower
+from .certificates import Certificate, driving_forces
+from .descent import Descent, is_lower, random_weights
 from .equilibrium import Equilibrium
-from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+from .force_program import ForceSolution, coulomb, solve_forces
+from .programs import Corners, Programs
+from .simplex import PRIMAL
 
 PROGRAM_BUDGET = 40
 """Programs of the first start's sequence after which it ends without a certificate."""
 
-CERTIFIED_IN_A_ROW = 2
+CERTIFIED_IN_A_ROW = 3
 """Certificates in a row that end the first start's sequence."""
 
 SHORT = 16
 """Programs of every other sequence after which it ends without a certificate."""
 
-STARTS = 80
+STARTS = 160
 """Most starts."""
+
+PIVOTS = 400
+"""Corners passed on the way to random forces to start from."""
+
+ROUND = 4
+"""Starts of a round."""
 
 WEIGHTS = (0.6, 1.0, None, 0.3)
 """Fixed weights of a new pressure in the sequences after the first, in turn; None is (k + 1)^(−1/2)."""
@@ -37,7 +50,7 @@ WEIGHTS = (0.6, 1.0, None, 0.3)
 
 @dataclass(eq=False)
 class Search:
-    """What a search found.
+    """What a search has found.
 
     Parameters
     ----------
@@ -45,6 +58,8 @@ class Search:
         Every collapse that was proved.
     starts, programs
         Starts, and linear programs solved.
+    dry
+        Starts in a row, the last ones, that brought nothing lower.
     frictionless
         Whether normal forces alone carry any multiple of the live load.
     growing
@@ -56,116 +71,218 @@ class Search:
     certificates: list[Certificate] = field(default_factory=list)
     starts: int = 0
     programs: int = 0
+    dry: int = 0
     frictionless: bool = False
     growing: bool = False
     interrupted: bool = False
 
+    @property
+    def best(self) -> Certificate | None:
+        """The lowest certificate."""
+        return min(self.certificates, key=lambda each: each.least.multiplier, default=None)
+
+    @property
+    def lowest(self) -> float:
+        """Its multiplier; infinite without one."""
+        return np.inf if self.best is None else self.best.least.multiplier
+
+
+Observer = Callable[[Search], None]
+
 
 def programs_allowed(system: Equilibrium) -> int:
     """Programs after which no further start is made: fewer where each costs more."""
-    return 20 + 200_000 // max(1, len(system.points))
+    return 20 + 150_000 // max(1, len(system.points))
 
 
 def dry_allowed(system: Equilibrium) -> int:
-    """Starts in a row that bring nothing lower, after which the search ends: a small wall has less to find."""
-    return min(max(8, system.freedoms // 2), 40)
+    """Starts in a row that bring nothing lower, after which the search ends.
+
+    Fewer where each costs more, and where there is little to find.
+    """
+    return min(max(6, 12_000 // max(1, len(system.points))), max(8, 2 * system.freedoms), 100)
 
 
-def search(system: Equilibrium, associated: ForceSolution, starts: int = STARTS) -> Search:
-    """Look for certificates from many starts, seeded; a keyboard interrupt keeps those that were found."""
-    found, descent = Search(), Descent(system)
-    lowest, dry = np.inf, 0
-    try:
-        for pressure, weight in _first_pressures(descent, associated, starts):
-            start = (
-                _first_sequence(descent, pressure, found) if not found.starts else _sequence(descent, pressure, weight)
-            )
-            found.starts += 1
-            rng = np.random.default_rng([0, found.starts])
-            for certificate in list(start):
-                found.certificates += [certificate, *descent.below(certificate.motion, certificate.least, rng)]
-            least = min((each.least.multiplier for each in found.certificates), default=np.inf)
-            dry = 0 if is_lower(least, lowest) else dry + 1
-            if not dry:
-                best = min(found.certificates, key=lambda each: each.least.multiplier)
-                found.certificates += descent.around(best, rng)
-                lowest = min(each.least.multiplier for each in found.certificates)
-            found.programs = descent.programs
-            if found.frictionless or dry >= dry_allowed(system) or descent.programs > programs_allowed(system):
-                break
-    except KeyboardInterrupt:
-        if not found.certificates:
-            raise
-        found.interrupted = True
+@dataclass(eq=False)
+class Start:
+    """One start of a search, numbered from 0, from which it goes down as far as it gets.
+
+    `best` is the lowest certificate before its round, `known` what mechanisms have led to.
+    """
+
+    number: int
+    associated: ForceSolution
+    best: Certificate | None
+    known: dict[bytes, ForceSolution | None]
+    corners: Corners = (None, None, None)
+    found: Search = field(default_factory=Search)
+
+    def run(self, programs: Programs) -> None:
+        """Look for certificates, and write down what is found as it is found."""
+        solved = programs.solved
+        programs.go_to(self.corners)
+        descent, rng = Descent(programs, self.known), np.random.default_rng([0, self.number + 1])
+        try:
+            for certificate in self._sequence(descent):
+                known = self.found.certificates
+                known.append(certificate)
+                known += descent.below(certificate.motion, certificate.least, rng)
+            if self.best is None or is_lower(self.found.lowest, self.best.least.multiplier):
+                best = self.found.best
+                self.found.certificates += [] if best is None else descent.around(best, rng)
+        finally:
+            self.found.programs += programs.solved - solved
+
+    def _sequence(self, descent: Descent) -> Iterator[Certificate]:
+        pressure = self._pressure(descent)
+        if self.number == 0:
+            yield from first_sequence(descent, pressure, self.found)
+        else:
+            yield from short_sequence(descent, pressure, WEIGHTS[(self.number - 1) % len(WEIGHTS)])
+
+    def _pressure(self, descent: Descent) -> Array:
+        """Pressures ``(np,)`` to start from.
+
+        Those of the associated solution, of the dead load, and then by rounds: those of random forces that balance
+        random loads, or, where these are more than `PIVOTS` corners away, random multiples of the associated ones;
+        random multiples of the lowest certificate's; random ones.
+        """
+        system, bounded = descent.system, self.associated.status == "optimal"
+        if self.number <= 2:
+            first = self.associated if bounded else solve_forces(system, coulomb(system.strength), "zero")
+            return first.pressure if first.status == "optimal" else np.zeros(len(system.points))
+        rng = np.random.default_rng([1, self.number])
+        top = self.associated.multiplier if bounded else 1.0
+        share = rng.random() if self.number > 3 else 0.0
+        weights = random_weights(len(system.points), rng)
+        if self.number // ROUND % 3 == 2 and self.best is not None:
+            return self.best.least.pressure * np.exp(rng.normal(size=len(weights)))
+        if self.number // ROUND % 3 == 0:
+            return weights * (self.associated.pressure.mean() if bounded else 1.0)
+        load = share * top if top > 0 else (1 + share) * top
+        state = descent.programs.corner(coulomb(system.strength), weights, load, PIVOTS)
+        if state.status == "optimal":
+            return state.pressure
+        return self.associated.pressure * np.exp(rng.normal(size=len(weights))) if bounded else weights
+
+
+def search(
+    system: Equilibrium,
+    associated: ForceSolution,
+    starts: int = STARTS,
+    workers: int = 1,
+    observe: Observer = lambda found: None,
+) -> Search:
+    """Look for certificates from many starts, seeded; a keyboard interrupt keeps those that were found.
+
+    `observe` is shown what was found after every round; starts are made by so many `workers` at a time.
+    """
+    found, stopped = Search(), Event()
+    crew = [Programs(system, stopped) for _ in range(workers)]
+    known: dict[bytes, ForceSolution | None] = {}
+    corners: Corners = (None, None, None)
+    while found.starts < starts:
+        numbers = range(found.starts, min(starts, found.starts + ROUND) if found.starts else 1)
+        batch = [Start(number, associated, found.best, dict(known), corners) for number in numbers]
+        try:
+            _run(batch, crew)
+        except KeyboardInterrupt:
+            stopped.set()
+            found.interrupted = True
+        for start in batch:
+            known |= start.known
+            _merge(found, start.found)
+        corners = crew[0].corners if found.starts == 1 else corners
+        observe(found)
+        if found.interrupted and not found.certificates:
+            raise KeyboardInterrupt
+        if (
+            found.interrupted
+            or found.frictionless
+            or found.dry >= dry_allowed(system)
+            or found.programs > programs_allowed(system)
+        ):
+            break
     return found
 
 
-def _first_pressures(descent: Descent, associated: ForceSolution, starts: int) -> Iterator[tuple[Array, float | None]]:
-    """Pressures ``(np,)`` to start from, and the weight of new ones.
+def _run(batch: Sequence[Start], crew: Sequence[Programs]) -> None:
+    if min(len(crew), len(batch)) == 1:
+        for start in batch:
+            start.run(crew[0])
+        return
+    with ThreadPoolExecutor(len(crew)) as pool:
+        idle = list(crew)
 
-    Those of the associated solution, of the dead load, and of random forces that balance random loads.
-    """
-    system, bounded = descent.system, associated.status == "optimal"
-    dead = None if bounded else solve_forces(system, coulomb(system.strength), "zero")
-    first = associated if dead is None else dead
-    pressure = first.pressure if first.status == "optimal" else np.zeros(len(system.points))
-    yield pressure, None
-    for start in range(1, starts):
-        weight = WEIGHTS[(start - 1) % len(WEIGHTS)]
-        if start <= 2:
-            yield pressure, weight
-            continue
-        rng = np.random.default_rng([1, start])
-        top = associated.multiplier if bounded else 1.0
-        share = rng.random() if start > 3 else 0.0
-        state = descent.random_forces(coulomb(system.strength), rng, share * top if top > 0 else (1 + share) * top)
-        if state is not None:
-            yield state.pressure, weight
+        def run(start: Start) -> None:
+            programs = idle.pop()
+            try:
+                start.run(programs)
+            finally:
+                idle.append(programs)
+
+        try:
+            list(pool.map(run, batch))
+        except KeyboardInterrupt:
+            crew[0].stopped.set()
+            raise
 
 
-def _first_sequence(descent: Descent, pressure: Array, found: Search) -> list[Certificate]:
-    """Run the sequence from a first pressure ``(np,)``, certifying every second program, and note how it ended."""
-    system = descent.system
-    certificates: list[Certificate] = []
+def _merge(found: Search, start: Search) -> None:
+    found.dry = 0 if is_lower(start.lowest, found.lowest) else found.dry + 1
+    found.certificates += start.certificates
+    found.starts += 1
+    found.programs += start.programs
+    found.frictionless |= start.frictionless
+    found.growing |= start.growing
+
+
+def first_sequence(descent: Descent, pressure: Array, found: Search) -> Iterator[Certificate]:
+    """Run the sequence from a first pressure ``(np,)``, certifying every program, and note how it ended."""
     in_a_row, multiplier, growing = 0, -np.inf, True
     for k in range(PROGRAM_BUDGET):
-        descent.programs += 1
-        program = solve_forces(system, frozen_friction(system.strength, pressure))
+        program = descent.programs.frozen(pressure)
         if program.status != "optimal":
             found.frictionless = program.status == "unbounded"
-            return certificates
+            return
         growing, multiplier = growing and program.multiplier > multiplier, program.multiplier
-        if k % 2:
-            descent.programs += 2
-            certificate = certify(system, program.motion)
-            if certificate is not None:
-                certificates.append(certificate)
-            in_a_row = in_a_row + 1 if certificate is not None else 0
-            if in_a_row == CERTIFIED_IN_A_ROW:
-                return certificates
-        pressure = _averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
+        certificate = certified(descent, program.motion)
+        if certificate is not None:
+            yield certificate
+        in_a_row = in_a_row + 1 if certificate is not None else 0
+        if in_a_row == CERTIFIED_IN_A_ROW:
+            return
+        pressure = averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
     found.growing = growing
-    return certificates
 
 
-def _sequence(descent: Descent, pressure: Array, weight: float | None) -> list[Certificate]:
+def short_sequence(descent: Descent, pressure: Array, weight: float | None) -> Iterator[Certificate]:
     """Run a short sequence from a first pressure ``(np,)`` to its first certificate."""
-    system = descent.system
     for k in range(SHORT):
-        descent.programs += 1
-        program = solve_forces(system, frozen_friction(system.strength, pressure))
+        program = descent.programs.frozen(pressure)
         if program.status != "optimal":
-            break
+            return
         known = len(descent.known)
         if descent.least(program.motion) is not None:
-            if len(descent.known) == known:  # it was gone on from before
-                break
-            descent.programs += 2
-            certificate = certify(system, program.motion)
-            return [] if certificate is None else [certificate]
-        pressure = _averaged(pressure, program.pressure, weight or (k + 1.0) ** -0.5)
-    return []
+            if len(descent.known) > known:  # or it was gone on from before
+                certificate = certified(descent, program.motion)
+                if certificate is not None:
+                    yield certificate
+            return
+        pressure = averaged(pressure, program.pressure, weight or (k + 1.0) ** -0.5)
 
 
-def _averaged(pressure: Array, new: Array, weight: float) -> Array:
+def certified(descent: Descent, motion: Array) -> Certificate | None:
+    """The loads that drive a mechanism ``(nd,)``; None where there are none. Of loads without end, the least counts."""
+    forces, least = driving_forces(descent.system, motion), descent.least(motion)
+    if forces is None or least is None:
+        return None
+    most = descent.programs.extreme(forces, -1.0, PRIMAL)
+    if most.status == "unbounded":
+        return Certificate(motion, least, least)
+    return Certificate(motion, least, most) if most.status == "optimal" else None
+
+
+def averaged(pressure: Array, new: Array, weight: float) -> Array:
+    """Pressures ``(np,)`` for the next program, from those before and those found."""
     return (1 - weight) * pressure + weight * new

@@ -43,6 +43,9 @@ class Outcome:
     held : (n, 1) float
         What each held motion of a block is held with, those of `Scene.pins` and then `Scene.late_pins`: a force on the
         block along the pin's direction [N], or a moment [N m]. Empty without them.
+    far_motion, far_force, far_pull, far_held
+        The same four at the other end of an interval of certified loads: at `upper`, or `lower` of a support that
+        moves. Empty for models that certify none.
     curve : (n, 2) float
         Pushover curve: displacement of the control point along the live load [m], and λ. Empty for models
         that follow no path. The control point is where a point load acts, or the wall's highest corner that
@@ -69,6 +72,10 @@ class Outcome:
     force: Array = field(default_factory=lambda: np.zeros((0, 2)))
     pull: Array = field(default_factory=lambda: np.zeros((0, 1)))
     held: Array = field(default_factory=lambda: np.zeros((0, 1)))
+    far_motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    far_force: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    far_pull: Array = field(default_factory=lambda: np.zeros((0, 1)))
+    far_held: Array = field(default_factory=lambda: np.zeros((0, 1)))
     curve: Array = field(default_factory=lambda: np.zeros((0, 2)))
     path: Array = field(default_factory=lambda: np.zeros((0, 0)))
     path_columns: tuple[str, ...] = ()
@@ -102,7 +109,8 @@ class Outcome:
 
 
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")
-ARRAYS = {"motion": 3, "force": 2, "pull": 1, "held": 1, "curve": 2}
+FORCES = {"motion": 3, "force": 2, "pull": 1, "held": 1}
+ARRAYS = {**FORCES, **{f"far_{name}": columns for name, columns in FORCES.items()}, "curve": 2}
 """Array fields and their number of columns."""
 
 

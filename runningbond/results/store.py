@@ -108,7 +108,7 @@ def load_outcome(folder: Path) -> tuple[Outcome, str]:
     """Read an outcome and its key; a StoreError if there is none, or anything of it is missing, damaged or changed."""
     with _trusted(folder) as (record, stored):
         path = ("path", "path_columns") if "path" in stored else ()
-        arrays: dict[str, Any] = {name: stored[name] for name in (*ARRAYS, *path)}
+        arrays: dict[str, Any] = {name: stored[name] for name in (*ARRAYS, *path) if name in stored}
         scalars = {name: value for name, value in record.items() if name not in ("key", "arrays")}
         return Outcome(**scalars, **arrays), str(record["key"])
 

@@ -23,7 +23,12 @@ LIMITS = ("limit", "limit-nonassociated")
 SLACK = 1e-4
 """Load, in weights of the heaviest block, that the criterion of rest cannot see."""
 
-BUDGETS = {"dem-static": {"budget": 300}, "dem-dynamic": {"budget": 10_000}, "fem": {"budget": 10_000}}
+BUDGETS = {
+    "limit-nonassociated": {"starts": 4},
+    "dem-static": {"budget": 300},
+    "dem-dynamic": {"budget": 10_000},
+    "fem": {"budget": 10_000},
+}
 
 
 @pytest.fixture(scope="module")

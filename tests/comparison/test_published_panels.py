@@ -80,7 +80,7 @@ def test_true_friction_on_small_panels(row: int) -> None:
 def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() -> None:
     """Row 6: equilibrium, Coulomb's law and opposition to the slip, at the smallest and the largest load."""
     system = equilibrium(published_scene("panel-06"))
-    certificates = search(system, limit_state(system).forces, 2).certificates
+    certificates = search(system, limit_state(system).forces, 5).certificates
     assert max(c.most.multiplier for c in certificates) * system.live_unit > 0.431
     for certificate in certificates:
         opening, slip = system.opening.T @ certificate.motion, system.slip.T @ certificate.motion
@@ -99,7 +99,7 @@ def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() 
 
 @pytest.mark.parametrize("row", [9, 12])
 def test_true_friction_on_tall_panels_lies_inside_the_certified_interval(row: int) -> None:
-    low, high = {9: (0.423, 0.4265), 12: (0.067, 0.118)}[row]  # of 12 to the associated bound
+    low, high = {9: (0.423, 0.4265), 12: (0.066, 0.118)}[row]  # of 12 to the associated bound
     outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"))
     assert outcome.lower is not None
     assert outcome.upper is not None

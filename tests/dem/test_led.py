@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from dem.pushover import LoadPath, StaticState
+from dem.relaxation import Rest
 from dem.static import dem_static
+from dem.static_system import Control
 from runningbond.compare import MODELS, run_model
 from runningbond.compare.recording import StaticRecorder
 from runningbond.limit.settlement import reaction_unit
@@ -364,3 +366,21 @@ def test_recorded_supports_move_with_the_wall() -> None:
     assert len(recorder.frames) == len(outcome.curve)
     assert recorder.frames[-1].motion[3] == pytest.approx([0.0, -0.01, 0.0])
     assert recorder.frames[-1].motion[1, 1] == pytest.approx(-0.01, rel=1e-3)
+
+
+@pytest.mark.parametrize(("after", "rows"), [(1, 1), (12, 12)])
+def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its states at rest, the dead load's among them."""
+    hold, values = LoadPath.hold, list[float]()
+
+    def stop(path: LoadPath, start: Array, plastic_slip: Array, control: Control) -> Rest:
+        values.append(control.value)
+        if len(values) == after:
+            raise KeyboardInterrupt
+        return hold(path, start, plastic_slip, control)
+
+    monkeypatch.setattr(LoadPath, "hold", stop)
+    outcome = dem_static(under_beam("level", PUSHES[1]))
+    assert (outcome.status, outcome.multiplier) == ("undecided", None)
+    assert "interrupted" in outcome.message
+    assert len(outcome.curve) == len(outcome.path) == rows

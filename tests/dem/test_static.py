@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from dem.pushover import LoadPath, StaticState
 from dem.relaxation import RestVerdict, relax
 from dem.static import dem_static
 from dem.static_system import Control, static_system
@@ -373,6 +374,40 @@ def test_a_budget_that_runs_out_leaves_it_undecided_with_what_was_reached() -> N
     assert outcome.lower is not None
     assert 0 < outcome.lower < 0.6429
     assert outcome.upper is None
+
+
+@pytest.mark.parametrize("after", [0.0, 0.3])
+def test_ctrl_c_leaves_the_loads_borne_so_far(after: float) -> None:
+    def stop(path: LoadPath, state: StaticState) -> None:
+        if state.multiplier >= after:
+            raise KeyboardInterrupt
+
+    outcome = dem_static(ferris("W1", 0.02), observe=stop)
+    assert (outcome.status, outcome.multiplier, outcome.upper) == ("undecided", None, None)
+    assert "interrupted" in outcome.message
+    if after:
+        assert outcome.lower is not None
+        assert after <= outcome.lower < 0.5856
+        assert outcome.curve[:, 1].max() == outcome.lower
+
+
+def test_ctrl_c_under_the_dead_load_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("dem.static.relax", interrupt)
+    outcome = dem_static(ferris("W1"))
+    assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", None, None)
+    assert "interrupted" in outcome.message
+
+
+def test_ctrl_c_past_the_largest_load_leaves_the_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(LoadPath, "follow", interrupt)
+    outcome = dem_static(ferris("W1", 0.02))
+    assert outcome.status == "collapse"
+    lower, upper = bracket(outcome)
+    assert 0.99 * upper <= lower <= 0.5856 <= upper * 1.001
+
+
+def interrupt(*arguments: object) -> None:
+    raise KeyboardInterrupt
 
 
 # --- the algorithm as published ------------------------------------------------------------------------------

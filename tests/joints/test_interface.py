@@ -93,7 +93,7 @@ def by_rates(material: JointMaterial, start: Array, rate: tuple[float, float], *
     return np.asarray(done.y[:, -1])
 
 
-@pytest.mark.parametrize("name", set(MATERIALS) - {"sudden"})
+@pytest.mark.parametrize("name", sorted(set(MATERIALS) - {"sudden"}))
 @pytest.mark.parametrize("steps", [1, 7, 200])
 def test_pressed_together_the_cap_is_followed_point_by_point(name: str, steps: int) -> None:
     """−σ = σ_c(κ) where c(σ_c) + κ is the closure, to 1e-10, in steps of any length; what is spent is ∫ σ_c dκ."""
@@ -200,7 +200,7 @@ def test_closure_is_its_curve_and_stores_the_work_of_closing() -> None:
     work = np.trapezoid([pressure_at(c, curve) for c in fine], fine)
     assert stored[-1] == pytest.approx(work, rel=1e-8)
     last = np.zeros((found.rows, 1))
-    assert found.stored(-closure[-1:], normal[1999:2000], np.zeros(1), last) == pytest.approx(stored[-1:])
+    assert found.energy(-closure[-1:], normal[1999:2000], np.zeros(1), last) == pytest.approx(stored[-1:])
     assert found.stiffest == CLOSING.stiffest
 
 
@@ -253,7 +253,7 @@ def test_no_path_gains_energy(corners: list[tuple[float, float]], name: str) -> 
     normal, tangential, histories = follow(found, opening, slip)
     seat = histories[SEAT]
     points = kernel_law([MATERIALS[name]], np.zeros(len(opening), dtype=np.int64))
-    stored = points.stored(opening, normal, tangential, histories)
+    stored = points.energy(opening, normal, tangential, histories)
     assert (stored >= -1e-9).all()
     done = (normal[1:] + normal[:-1]) / 2 * np.diff(opening) + (tangential[1:] + tangential[:-1]) / 2 * np.diff(slip)
     lost = np.concatenate([[0.0], np.cumsum(done) - stored[1:]])

@@ -433,7 +433,7 @@ def test_the_associated_bound_can_lock_where_true_friction_gives_way() -> None:
         content(**size, joint__cohesion=1e5, support__kind="pinned-corners", load={"gravity": 0.0, "live": live})
     )
     assert limit(scene).status == "unbounded"
-    assert limit_nonassociated(scene).status == "collapse"
+    assert limit_nonassociated(scene, starts=1).status == "collapse"
 
 
 @pytest.mark.parametrize(("length", "force", "friction"), [(0.48, [0, -1], 0.6), (0.24, [-0.7, -1], 1.0)])
@@ -454,7 +454,7 @@ def test_a_wall_that_locks_by_friction_says_what_is_proved_of_it(
     assert not is_self_locking(scene.with_joint(friction=0.0))
     outcome = limit_nonassociated(scene)
     assert outcome.status == "unbounded", outcome.message
-    assert "no collapse certified from 8 starts" in outcome.message
+    assert "no collapse certified from" in outcome.message
     assert "which does not exclude one" in outcome.message
 
 
@@ -467,7 +467,7 @@ def test_no_friction_and_no_strength_hold_nothing_sideways() -> None:
 def test_disjoint_certificates_are_named() -> None:
     """Two mechanisms certified at loads apart from each other prove nothing in between."""
     size = {"wall__block_width": 0.06, "wall__block_height": 0.24, "wall__height": 1.44}
-    outcome = limit_nonassociated(scene_from_dict(content(**size, joint__inset=0.005)))
+    outcome = limit_nonassociated(scene_from_dict(content(**size, joint__inset=0.005)), starts=4)
     assert outcome.status == "collapse"
     if "nothing is proved in between" not in outcome.message:
         assert "every load of the interval" in outcome.message
@@ -511,7 +511,9 @@ def test_joints_that_are_as_good_as_glued_do_not_drown_the_others(cohesion: floa
     strongest = equilibrium(weaker).strength.strongest
     assert 100 < strongest < GLUED < 100 * strongest
     assert limit(scene).multiplier == pytest.approx(limit(weaker).multiplier, rel=1e-8)
-    assert limit_nonassociated(scene).lower == pytest.approx(0.01, rel=1e-6)  # b / h of the half block at the end
+    assert limit_nonassociated(scene, starts=4).lower == pytest.approx(
+        0.01, rel=1e-6
+    )  # b / h of the half block at the end
 
 
 def test_joints_so_strong_that_only_a_load_a_million_times_the_weight_breaks_them_are_not_cut() -> None:

@@ -1,5 +1,9 @@
 """The search for the smallest certified load: what it finds, what it proves, and what it does not depend on."""
 
+from dataclasses import replace
+from pathlib import Path
+from runpy import run_path
+
 import numpy as np
 import pytest
 from scipy.spatial import Voronoi
@@ -7,13 +11,20 @@ from shapely.geometry import Polygon, box
 from shapely.geometry.polygon import orient
 
 from runningbond.compare import published_scene
+from runningbond.compare.progress import SearchProgress
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state
 from runningbond.limit.canonical import canonical_order
-from runningbond.limit.descent import Descent
-from runningbond.limit.search import search
+from runningbond.limit.certificates import driving_forces
+from runningbond.limit.descent import Descent, is_lower
+from runningbond.limit.force_program import frozen_friction, solve_forces
+from runningbond.limit.programs import Programs
+from runningbond.limit.search import Search, search
+from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
 
 SIZE, CELLS = 2.0, 5
+
+check = run_path(str(Path(__file__).parents[2] / "tools" / "check_limit.py"))["check"]
 
 
 def cells(seed: int) -> list[Array]:
@@ -121,14 +132,78 @@ def test_descent_goes_below_the_sequence() -> None:
     assert f"from 1 starts, {(outcome.steps or 0) - 1} linear programs" in outcome.message
 
 
-def test_an_interrupt_keeps_what_was_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_any_load_is_lower_than_none_at_all() -> None:
+    assert is_lower(0.3, np.inf)
+    assert not is_lower(np.inf, np.inf)
+    assert not is_lower(0.3, 0.3 + 1e-8)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_an_interrupt_keeps_what_was_found(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a walk that is broken off, and of all starts of a round; without a certificate there is nothing to keep."""
+
     def interrupted(*arguments: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(Descent, "random_forces", interrupted)
-    outcome = limit_nonassociated(rubble(3))
+    monkeypatch.setattr(Descent, "around", interrupted)
+    outcome = limit_nonassociated(rubble(3), workers=workers)
     assert outcome.status == "collapse"
     assert outcome.message.endswith("interrupted")
-    monkeypatch.setattr("runningbond.limit.search.certify", interrupted)
+    monkeypatch.setattr(Descent, "least", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        limit_nonassociated(rubble(3))
+        limit_nonassociated(rubble(3), workers=workers)
+
+
+def test_what_is_found_does_not_depend_on_how_many_starts_are_made_at_a_time() -> None:
+    scene = rubble(3)
+    one, three = (limit_nonassociated(scene, starts=21, workers=workers) for workers in (1, 3))
+    assert (one.lower, one.upper, one.steps, one.message) == (three.lower, three.upper, three.steps, three.message)
+    assert (one.motion == three.motion).all()
+
+
+def test_a_search_says_how_far_it_has_come() -> None:
+    progress, lines = SearchProgress(), []
+
+    def observe(found: Search) -> None:
+        progress(found)
+        lines.append(progress.line())
+
+    assert progress.line() == "looks for a first certificate"
+    outcome = limit_nonassociated(rubble(3), starts=9, observe=observe)
+    assert [line.split(",")[0] for line in lines] == ["1 starts", "5 starts", "9 starts"]
+    assert lines[-1].startswith(f"9 starts, {(outcome.steps or 0) - 1} linear programs")
+
+
+def test_a_program_that_goes_on_from_a_corner_has_the_optimum_of_one_from_nothing() -> None:
+    """Both ends of the loads on one mechanism, after other programs, beside interior point and crossover."""
+    system = equilibrium(published_scene("wall-w3"))
+    programs, driving = Programs(system), None
+    pressure = limit_state(system).forces.pressure
+    while driving is None:
+        program = programs.frozen(pressure)
+        alone = solve_forces(system, frozen_friction(system.strength, pressure))
+        assert program.multiplier == pytest.approx(alone.multiplier, rel=1e-9)
+        driving = driving_forces(system, program.motion)
+        if driving is not None and programs.extreme(driving).status != "optimal":
+            driving = None
+        pressure = 0.4 * pressure + 0.6 * program.pressure
+    for sense, aim in ((1.0, "smallest"), (-1.0, "largest"), (1.0, "smallest")):
+        alone = solve_forces(system, driving, aim)  # type: ignore[arg-type]
+        assert programs.extreme(driving, sense).multiplier == pytest.approx(alone.multiplier, rel=1e-9)
+        programs.corner(driving, np.ones(len(system.points)), pivots=20)
+
+
+@pytest.mark.parametrize("name", ["wall-w2", "wall-w3"])
+def test_the_lowest_and_the_highest_certificate_are_stored_and_proved_by_the_checker(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With forces of either end at the other's load the checker says that they are wrong."""
+    scene = published_scene(name)
+    outcome = limit_nonassociated(scene, starts=2)
+    save_outcome(outcome, tmp_path / "right", scene=scene)
+    assert check(tmp_path / "right")
+    assert capsys.readouterr().out.count("unbalanced force") == 2
+    save_outcome(replace(outcome, far_force=outcome.force), tmp_path / "wrong", scene=scene)
+    assert not check(tmp_path / "wrong")
+    save_outcome(replace(outcome, far_motion=-outcome.far_motion), tmp_path / "backwards", scene=scene)
+    assert not check(tmp_path / "backwards")

@@ -34,7 +34,7 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
     ),
     (
         {"joint__compressive_strength": 1e7, "joint__compressive_fracture_energy": 800, "joint__peak_closure": 1e-4},
-        "joint.compressive_fracture_energy = 800: must be above 856.932, which is spent on the way to the peak",
+        "joint.compressive_fracture_energy = 800.0: must be above 856.932, which is spent on the way to the peak",
     ),
     ({"joint__compressive_strength": 1e7, "joint__cap_shear": -9}, "joint.cap_shear = -9: must be a number at least 0"),
     ({"joint__compressive_strength": 1e7, "joint__cap_shear": True}, "joint.cap_shear = True: must be a number"),

@@ -1,0 +1,153 @@
+"""Linear systems of one pattern by nested dissection (George 1973), on walls of so many blocks that bands lose.
+
+Blocks are parted by a line of blocks across them, and the parts again, down to a few blocks. Parts are eliminated
+first, then the lines between them, each as a dense front. From one system to the next few joint points open, close,
+slip or stick: only fronts that hold one of these, and those above, are factorised anew.
+"""
+
+from dataclasses import dataclass
+from itertools import chain
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from runningbond.scene import Array, Indices
+
+from .front_kernels import Fronts, factorise, substitute
+
+FEW = 6
+"""Blocks that are not parted any further."""
+
+
+@dataclass(eq=False)
+class Dissection:
+    """A matrix that is the sum of joint points' tangents and of constant terms, and its factors."""
+
+    fronts: Fronts
+    place: Indices  # (n,) place of each unknown in the order of elimination
+    front: Indices  # (np, 2) fronts that the two blocks at each point are eliminated in, their number for a held block
+    jump: Array  # (np, 2, 6) jumps of the points per freedom, whose tangents are the first 36 np terms
+    terms: Array  # (n_terms,) of which the store has the factors
+    tangent: Array  # (np, 2, 2) likewise
+    store: Array
+    is_new: bool = True  # whether the store has no factors yet
+
+    def solve(self, tangent: Array, right: Array) -> Array:
+        """Solve with tangents ``(np, 2, 2)`` of the joint points for some right-hand sides ``(n, k)``.
+
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            For a matrix of which a front is singular to the last bit.
+        """
+        other = np.flatnonzero((tangent != self.tangent).any(axis=(1, 2)))
+        changed = np.full(len(self.fronts.above) + 1, self.is_new)
+        changed[self.front[other]] = True
+        jump = self.jump[other]
+        own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[other]), jump)
+        self.terms[: 36 * len(tangent)].reshape(-1, 36)[other] = own.reshape(-1, 36)
+        self.tangent, self.is_new = tangent, True  # should a front be singular
+        factorise(self.fronts, changed, self.terms, self.store)
+        self.is_new = False
+        x = np.empty(right.shape[::-1])
+        x[:, self.place] = right.T
+        substitute(self.fronts, self.store, x)
+        return np.asarray(x[:, self.place].T)
+
+
+def dissection(
+    row: Indices, column: Indices, home: Indices, position: Array, jump: Array, constant: Array
+) -> Dissection:
+    """Dissect a pattern.
+
+    Parameters
+    ----------
+    row, column : (n_terms,) int
+        Unknowns that each term couples; negative for terms that are left out.
+    home : (n,) int
+        Block of each unknown, which is eliminated with it.
+    position : (nb, 2) float
+        Centroids of the blocks [m].
+    jump : (np, 2, 6) float
+        Jumps of the joint points, whose 6 × 6 tangents are the first terms.
+    constant : (n_constant,) float
+        The other terms.
+    """
+    there = np.flatnonzero((row >= 0) & (column >= 0))
+    pairs = home[row[there]], home[column[there]]
+    graph = csr_array((np.ones(len(there)), pairs), shape=(len(position), len(position)))
+    parts, above = _parts(graph, position)
+    rank = np.empty(len(position), dtype=np.int64)
+    rank[np.concatenate(parts)] = np.arange(len(position))
+    place = np.argsort(np.argsort(rank[home], kind="stable"))
+    first = np.append(0, np.cumsum(np.bincount(rank[home])))  # unknown of each block, by its rank
+    own = first[np.append(0, np.cumsum([len(part) for part in parts]))]
+    left = [[k for b in blocks for k in range(first[b], first[b + 1])] for blocks in _left(graph, parts, above, rank)]
+    begin = np.append(0, np.cumsum([len(unknowns) for unknowns in left]))
+    joined = np.fromiter(chain.from_iterable(left), np.int64)
+    number = np.repeat(np.arange(len(parts)), np.diff(begin))
+    s, u, n = np.diff(own), np.diff(begin), len(home)
+
+    def local(front: Indices, unknown: Indices) -> Indices:
+        """Place of unknowns in fronts."""
+        after = np.searchsorted(number * n + joined, front * n + unknown) - begin[front] + s[front]
+        return np.asarray(np.where(unknown < own[front + 1], unknown - own[front], after))
+
+    at = np.append(0, np.cumsum((s + u) ** 2))
+    front = np.full(len(row), len(parts))
+    r, c = place[row[there]], place[column[there]]
+    front[there] = f = np.searchsorted(own, np.minimum(r, c), side="right") - 1
+    i, j = local(f, r), local(f, c)
+    across, down = s[f] ** 2 + i * u[f] + j - s[f], s[f] * (u[f] + i) + j
+    address = at[f] + np.where(i >= s[f], down, np.where(j >= s[f], across, i * s[f] + j))
+    order = np.argsort(f, kind="stable")
+    term = np.searchsorted(f[order], np.arange(len(parts) + 1))
+    below = np.argsort(above, kind="stable")
+    first_below = np.searchsorted(above[below], np.arange(len(parts) + 1))
+    place_above = local(above[number], joined)
+    fronts = Fronts(own, begin, joined, place_above, above, first_below, below, at, term, there[order], address[order])
+    terms, tangent = np.append(np.zeros(36 * len(jump)), constant), np.full((len(jump), 2, 2), np.nan)
+    sides = front[: 36 * len(jump)].reshape(-1, 36)[:, [0, 21]]
+    return Dissection(fronts, place, sides, jump, terms, tangent, np.empty(at[-1]))
+
+
+def _parts(graph: csr_array, position: Array) -> tuple[list[Indices], Indices]:
+    """Blocks of each front, those below a front before it, and the front above each, −1 for the last ones."""
+    parts: list[Indices] = []
+    above: list[int] = []
+
+    def front(blocks: Indices, below: list[int]) -> list[int]:
+        parts.append(blocks)
+        above.append(-1)
+        for one in below:
+            above[one] = len(parts) - 1
+        return [len(parts) - 1]
+
+    def divide(blocks: Indices) -> list[int]:
+        if len(blocks) <= FEW:
+            return front(blocks, []) if len(blocks) else []
+        halves = []
+        for along in (0, 1):
+            order = blocks[np.lexsort((position[blocks, 1 - along], position[blocks, along]))]
+            first, second = np.split(order, [len(order) // 2])
+            touched = np.isin(second, graph[first].indices)
+            halves.append((first, second[touched], second[~touched]))
+        first, line, second = min(halves, key=lambda parted: len(parted[1]))
+        below = divide(first) + divide(second)
+        return front(line, below) if len(line) else below
+
+    divide(np.arange(len(position)))
+    return parts, np.array(above)
+
+
+def _left(graph: csr_array, parts: list[Indices], above: Indices, rank: Indices) -> list[Indices]:
+    """Ranks of the blocks that each front leaves to those above it, in order."""
+    end = np.cumsum([len(part) for part in parts])
+    below: list[list[Indices]] = [[np.zeros(0, dtype=np.int64)] for _ in parts]
+    left = []
+    for k, part in enumerate(parts):
+        met = np.unique(np.concatenate([rank[graph[part].indices], *below[k]]))
+        left.append(met[met >= end[k]])
+        if above[k] >= 0:
+            below[above[k]].append(left[k])
+    return left

@@ -1,0 +1,73 @@
+"""``runningbond validate``."""
+
+import json as to_json
+import signal
+import sys
+from pathlib import Path
+
+from runningbond.compare.campaign import Interrupted
+from runningbond.results import make_folder
+from runningbond.scene import SceneError
+
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, UNDECIDED, Flag, Json, print_table, progress_bar
+
+
+def validate(
+    *,
+    data: Path | None = None,
+    out: Path = Path("laboratory"),
+    models: str | None = None,
+    jobs: int = -1,
+    fresh: Flag = False,
+    json: Json = False,
+) -> int:
+    """Predict walls that were tested, and score the predictions beside two formulas worked out by hand.
+
+    Results are kept as they come: an interrupted command goes on where it was.
+
+    Parameters
+    ----------
+    data
+        Folder of tested walls, instead of those that are shipped: tests.csv, and NAME.csv, NAME.toml and
+        NAME-cracks.png where there are such.
+    out
+        Folder for results, charts and the page.
+    models
+        Names of models of the laboratory, separated by commas; all of them where none is given.
+    jobs
+        Number of processes; -1 is one a core.
+    fresh
+        Compute again what is already there.
+    """
+    from runningbond.laboratory.folder import SHIPPED, read_folder
+    from runningbond.laboratory.ladder import find_rungs
+    from runningbond.laboratory.page import error_sheet, score_sheet, write_laboratory
+    from runningbond.laboratory.predictions import predict, scenes_of
+    from runningbond.laboratory.summary import as_json, summary_sheet, totals, verdicts
+
+    rungs = find_rungs(models)
+    if jobs == 0 or jobs < -1:
+        raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+    walls = [wall for folder in ((data,) if data else SHIPPED) for wall in read_folder(folder)]
+    scenes = scenes_of(walls, rungs)
+    make_folder(out)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
+    total = len(walls) * len(rungs)
+    try:
+        with progress_bar("predicting", total) as advance:
+            predictions, campaign = predict(
+                walls, rungs, scenes, out, jobs=jobs, fresh=fresh, progress=lambda cell: advance(", ".join(cell))
+            )
+    except Interrupted as stopped:
+        print(f"Interrupted: {stopped.campaign.kept} of {total} cases are kept in {out}.", file=sys.stderr)
+        return BAD_INPUT if isinstance(stopped.__cause__, OSError) else STOPPED
+    written, sums = write_laboratory(predictions, out), totals(predictions)
+    if json:
+        content = {"walls": [each.row() for each in predictions], "summary": as_json(sums)}
+        print(to_json.dumps(content, allow_nan=False))
+    else:
+        for sheet in (score_sheet(predictions), error_sheet(predictions), summary_sheet(sums)):
+            print_table(sheet)
+        print("\n".join(verdicts(sums)))
+        print(f"{total} cases, {len(campaign.reused)} of them already in {out}; written: {written[0]}, {written[1]}")
+    return NO_ANSWER if any(each.status in UNDECIDED for each in predictions) else DONE

@@ -1,0 +1,134 @@
+"""Figures of the laboratory: a card a wall, and the chart of error against experiment over cost."""
+
+from collections.abc import Sequence
+from statistics import median
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from matplotlib.ticker import NullLocator
+
+from runningbond.compare.figures import bare
+from runningbond.pictures.flat import draw_mechanism
+from runningbond.scene import Array
+
+from .predictions import Prediction
+from .scores import cycle_peaks
+from .summary import errors_by_hand, kind_of
+
+PUSHED_LEFT = ("SW.200.1",)
+"""Walls whose cracks were drawn as pushed to the left; they are mirrored beside predictions, which go to the right."""
+
+MEASURED = "0.15"
+LEAST_ERROR, LEAST_SECONDS = 0.004, 5e-3
+"""Ends of the chart's axes, at which smaller numbers are drawn."""
+
+
+SEEN = 1.6
+"""Loads without a curve that are larger, relative to the test's, are left to the table."""
+
+
+def card(predictions: Sequence[Prediction]) -> Figure:
+    """One wall: measured and predicted curves, and the motion of its predicted end beside the drawn cracks."""
+    wall = predictions[0].wall
+    drawn = next((each for each in reversed(predictions) if each.mode and not each.rung.is_by_hand), None)
+    panels = 1 + (drawn is not None) + (wall.cracks is not None)
+    figure = Figure(figsize=(5.6 + 3.6 * (panels - 1), 4.3), layout="constrained")
+    axes = list(figure.subplots(1, panels, width_ratios=[1.6] + [1.0] * (panels - 1), squeeze=False)[0])
+    _curves(axes.pop(0), predictions)
+    if drawn is not None and drawn.outcome is not None:
+        draw_mechanism(axes.pop(0), drawn.scene, drawn.outcome)
+    if wall.cracks is not None:
+        mirrored = wall.name in PUSHED_LEFT
+        axes[0].imshow(imread(wall.cracks)[:, :: -1 if mirrored else 1])
+        axes[0].set_title("cracks, as drawn after the test" + (", mirrored" if mirrored else ""), fontsize=9)
+        axes[0].axis("off")
+    return figure
+
+
+def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
+    """Curves where there are some, and levels of those that know of a load only [mm, kN]."""
+    wall = predictions[0].wall
+    if len(wall.curve):
+        line = 0.6 if wall.is_cyclic else 1.8
+        axes.plot(1e3 * wall.curve[:, 0], wall.curve[:, 1] / 1e3, color=MEASURED, lw=line, label="measured", alpha=0.7)
+    elif wall.peak is not None:
+        axes.axhline(wall.peak / 1e3, color=MEASURED, lw=1.8, label="measured peak")
+    for each in predictions:
+        if each.strength is None:
+            continue
+        look = {"color": each.rung.model.colour, "label": each.rung.name, "lw": 1.2}
+        if not len(each.curve):
+            style = {"rocking": ":", "sliding": "--"}.get(each.rung.name, "-.")
+            if each.rung.name != "by-hand" and each.strength < SEEN * (wall.peak or each.strength):
+                axes.axhline(each.strength / 1e3, ls=style, **look | {"lw": 0.9})  # type: ignore[arg-type]
+            continue
+        x, y = each.curve.T
+        axes.plot(1e3 * x, y / 1e3, **look | {"lw": 0.6} if wall.is_cyclic else look)  # type: ignore[arg-type]
+        if wall.is_cyclic:
+            _envelope(axes, each.curve, wall.path, each.rung.model.colour)
+    if wall.is_cyclic:
+        _envelope(axes, wall.curve, wall.path, MEASURED)
+    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+    axes.set(xlabel="displacement at the actuator [mm]", ylabel="horizontal force [kN]")
+    axes.set_title(f"{wall.name}" + ("" if wall.is_scored else ", shown, not scored"), fontsize=10)
+    axes.legend(frameon=False, fontsize=8, loc="best")
+    bare(axes)
+
+
+def _envelope(axes: Axes, curve: Array, path: tuple[float, ...], colour: str) -> None:
+    """Peaks of the cycles, in the order of their displacements."""
+    ends = sorted(zip(path, cycle_peaks(curve, path), strict=False))
+    axes.plot([1e3 * x for x, _ in ends], [y / 1e3 for _, y in ends], "o-", color=colour, lw=1.4, ms=3)
+
+
+def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:
+    """|ΔV| of every scored wall over the time it took, the median of each model, and the formulas as lines to beat."""
+    scored = [each for each in predictions if each.wall.is_scored and each.error is not None]
+    kinds = list(dict.fromkeys(map(kind_of, scored))) or ["no"]
+    panels = figure.subplots(1, len(kinds), sharey=True, squeeze=False)[0]
+    for axes, kind in zip(panels, kinds, strict=True):
+        _errors(axes, [each for each in scored if kind_of(each) == kind])
+        axes.set(xscale="log", yscale="log", xlabel="CPU seconds", title=f"walls with {kind} joints")
+    panels[0].set_ylabel("|ΔV|, strength against experiment")
+    panels[0].yaxis.set_major_formatter(lambda value, _: f"{100 * value:g} %")
+    panels[0].set_yticks([0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0], minor=False)
+    panels[0].yaxis.set_minor_locator(NullLocator())
+
+
+def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
+    by_rung: dict[str, list[Prediction]] = {}
+    for each in scored:
+        by_rung.setdefault(each.rung.name, []).append(each)
+    for name, own in by_rung.items():
+        errors = [max(abs(each.error or 0.0), LEAST_ERROR) for each in own]
+        model = own[0].rung.model
+        if own[0].rung.is_by_hand:
+            if name != "by-hand":
+                _level(axes, median(errors), f"{name}, by hand")
+            continue
+        seconds = [max(each.outcome.seconds if each.outcome else 0.0, LEAST_SECONDS) for each in own]
+        axes.plot(seconds, errors, model.marker, color=model.colour, ms=4, alpha=0.45, ls="none")
+        axes.plot(
+            median(seconds), median(errors), model.marker, color=model.colour, ms=10, mec="black", ls="none", label=name
+        )
+    if better := errors_by_hand(scored):
+        _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both, wall by wall", width=1.6)
+    if any(not own[0].rung.is_by_hand for own in by_rung.values()):
+        axes.legend(fontsize=8, title="large: median over walls", title_fontsize=8, loc="best")
+
+
+def _level(axes: Axes, error: float, text: str, width: float = 0.9) -> None:
+    axes.axhline(error, color="0.35", lw=width, ls="--", zorder=0)
+    side = "top" if width > 1 else "bottom"
+    axes.annotate(
+        text,
+        (0.99, error),
+        (0, 2 if side == "bottom" else -2),
+        xycoords=("axes fraction", "data"),
+        textcoords="offset points",
+        ha="right",
+        va=side,
+        fontsize=8,
+        color="0.3",
+    )

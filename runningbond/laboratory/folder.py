@@ -1,0 +1,129 @@
+"""Folders of tested walls: one table with a row a wall, and beside it their curves, crack maps and scenes, by name."""
+
+import csv
+import io
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from runningbond.scene import Array, SceneError
+
+from .measured import MeasuredWall
+from .table_row import TableRow
+
+DATA = Path(__file__).parent / "data"
+SHIPPED = (DATA / "dry", DATA / "mortared")
+NAME = "test unit name"
+HEADS = ["displacement_mm", "force_kN"]
+MODES = ("R", "TC", "F", "SL", "S", "DT")
+"""Ends of walls that a table may name: rocking, toe crushing, stepped or other diagonal cracks, sliding."""
+
+
+def read_folder(folder: Path) -> list[MeasuredWall]:
+    """Walls of a folder, in the order of its table.
+
+    The table is the one CSV file that has a column ``Test unit name``; ``NAME.csv`` holds a wall's curve, ``NAME.toml``
+    its scene and ``NAME-cracks.png`` its cracks, each where there is one.
+
+    Raises
+    ------
+    SceneError
+        For what cannot be read: one line with the file, its line and what would be right.
+    """
+    path, lines = _table(folder)
+    heads = lines[0][1]
+    walls: dict[str, MeasuredWall] = {}
+    for number, cells in lines[1:]:
+        row = TableRow.read(path, number, heads, cells)
+        name = row.text(NAME)
+        if not name or name.startswith(".") or set(name) & set('/\\:*?"<>|'):
+            raise SceneError(row.key("Test unit name"), "must be a name, as it may be that of a file", name)
+        if name in walls:
+            raise SceneError(row.key("Test unit name"), "is the second row of that name", name)
+        walls[name] = _wall(folder, name, row)
+    if not walls:
+        raise SceneError(path.name, "holds no wall, only heads")
+    return list(walls.values())
+
+
+def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
+    """The table of a folder, and its lines that are not empty, with their numbers."""
+    if not folder.is_dir():
+        raise SceneError(str(folder), "must be a folder that holds tests.csv")
+    tables = []
+    for path in sorted(folder.glob("*.csv")):
+        lines = list(_lines(path))
+        if lines and any(cell.strip().lstrip("\ufeff").casefold().startswith(NAME) for cell in lines[0][1]):
+            tables.append((path, lines))
+    if len(tables) != 1:
+        found = f"has {len(tables)}: {', '.join(path.name for path, _ in tables)}" if tables else "has none"
+        raise SceneError(str(folder), f'must hold one table, a CSV file with a column "Test unit name"; it {found}')
+    return tables[0]
+
+
+def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+        reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+        for cells in reader:
+            if any(cell.strip() for cell in cells):
+                yield reader.line_num, cells
+    except OSError as error:
+        raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise SceneError(path.name, "is no table: it is not UTF-8 text") from error
+    except csv.Error as error:
+        raise SceneError(f"{path.name}, line {reader.line_num}", f"is no line of a CSV file: {error}") from error
+
+
+def _wall(folder: Path, name: str, row: TableRow) -> MeasuredWall:
+    files = {ending: folder / f"{name}{ending}" for ending in (".csv", ".toml", "-cracks.png")}
+    there = {ending: path if path.is_file() else None for ending, path in files.items()}
+    curve = read_curve(there[".csv"]) if there[".csv"] else np.zeros((0, 2))
+    printed = [row.optional(column) for column in ("Vmax,+", "Vmax,-")]
+    peaks = tuple(value for value in printed if value is not None) or _peaks(curve)
+    said = row.text("from test report: failure type").replace(";", ",").replace("/", ",").split(",")
+    modes = tuple(mode.strip().upper() for mode in said if mode.strip())
+    for mode in modes:
+        if mode not in MODES:
+            raise SceneError(row.key("Failure type"), f"must be of {', '.join(MODES)}", mode)
+    return MeasuredWall(name, row, curve, peaks, modes, there[".toml"], there["-cracks.png"])
+
+
+def _peaks(curve: Array) -> tuple[float, ...]:
+    """Largest forces of a curve to either side."""
+    if not len(curve):
+        return ()
+    most, least = float(np.nanmax(curve[:, 1])), float(np.nanmin(curve[:, 1]))
+    return (most, -least) if -least > most / 2 else (most,)
+
+
+def read_curve(path: Path) -> Array:
+    """Displacement [m] and force [N] of a curve, ``(n, 2)``; rows of two NaN part its loops."""
+    lines = list(_lines(path))
+    heads = [cell.strip() for cell in lines[0][1]] if lines else []
+    if any(head not in heads for head in HEADS):
+        raise SceneError(
+            f"{path.name}, line {lines[0][0] if lines else 1}", f"must be the heads {','.join(HEADS)}", ",".join(heads)
+        )
+    columns = [heads.index(head) for head in HEADS]
+    rows = [_point(path, number, [cells[k] if k < len(cells) else "" for k in columns]) for number, cells in lines[1:]]
+    curve = np.array(rows, dtype=float).reshape(-1, 2) * (1e-3, 1e3)
+    known = curve[~np.isnan(curve).any(axis=1)]
+    if len(known) < 2 or not np.ptp(known[:, 0]) or not known[:, 1].any():
+        raise SceneError(
+            path.name, "must hold points of a curve: two or more, at different displacements, under a force"
+        )
+    return curve
+
+
+def _point(path: Path, line: int, cells: list[str]) -> tuple[float, float]:
+    try:
+        x, y = (float(cell) for cell in cells)
+    except ValueError:
+        x, y = math.inf, math.inf
+    if math.isinf(x) or math.isinf(y) or math.isnan(x) != math.isnan(y):
+        raise SceneError(f"{path.name}, line {line}", "must be two numbers, or NaN,NaN between loops", ",".join(cells))
+    return x, y

@@ -1,0 +1,114 @@
+"""The ladder that walls are predicted with: two formulas worked out by hand, and models with ever more in them."""
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from runningbond.compare.model import Model
+from runningbond.compare.models import EXTRAS, MODELS, STIFFNESS
+from runningbond.results import Outcome
+from runningbond.scene import Scene, SceneError
+from runningbond.scene.ranges import suggestion
+
+from .rig import Features
+
+PUSHED = Features(driven=False)
+FORMULAS = ("rocking", "sliding")
+"""Names of the two formulas that are worked out by hand."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rung:
+    """A model, with the features of a wall that it is handed."""
+
+    model: Model
+    features: Features
+    is_by_hand: bool = False
+
+    @property
+    def name(self) -> str:
+        """What tables call it."""
+        return self.model.name
+
+
+def by_hand(scene: Scene) -> dict[str, float]:
+    """What is worked out by hand: the forces [N] of `FORMULAS`."""
+    beam = scene.beam
+    if beam is None or beam.drive is None:
+        raise SceneError("beam.drive", "is missing; the formulas are of walls that are pushed at a beam")
+    (left, bottom), (right, _) = scene.blocks.extent(scene.wall)
+    length, pressed = right - left, -beam.force[1]
+    height = scene.blocks.centroid[beam.block, 1] - bottom if beam.drive.at is None else beam.drive.at
+    # A beam that does not turn bends the wall doubly: it presses on one corner of its top.
+    lever = length / (2 * height) if beam.condition == "free" else length / height
+    joint = scene.joint_materials[0]
+    sliding = pressed * joint.friction + joint.cohesion * length * scene.thickness
+    return dict(zip(FORMULAS, (pressed * lever, sliding), strict=True))
+
+
+def _formula(scene: Scene, tolerance: float, *, what: str) -> Outcome:
+    loads = by_hand(scene)
+    load = loads.get(what, min(loads.values()))
+    return Outcome(scene.title, what, "collapse", load, load, load, message="worked out by hand")
+
+
+def _run(scene: Scene, tolerance: float, *, base: str, settings: Mapping[str, Any]) -> Outcome:
+    """Run a model of the package with some settings, by the clock of the processor."""
+    for key in settings:
+        if key not in MODELS[base].parameters:
+            raise SceneError(f"model {base}: {key}", "is no parameter of it")
+    start = time.process_time()
+    outcome = MODELS[base].solve(scene, tolerance, **settings)
+    return replace(outcome, seconds=time.process_time() - start)
+
+
+def _hand(name: str, title: str) -> Rung:
+    model = Model(name, title, partial(_formula, what=name), STIFFNESS, takes=EXTRAS, colour="0.45", marker="_")
+    return Rung(model, PUSHED, is_by_hand=True)
+
+
+def _rung(name: str, title: str, base: str, features: Features, colour: str, marker: str, **settings: Any) -> Rung:
+    solve = partial(_run, base=base, settings=settings)
+    return Rung(replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker), features)
+
+
+FINITE: dict[str, Any] = {"displacements": "finite"}
+CRUSHES, SPLITS = Features(closes=True, crushes=True), Features(closes=True, crushes=True, splits=True)
+
+LADDER: dict[str, Rung] = {
+    rung.name: rung
+    for rung in (
+        _hand("rocking", "the wall turns as one block: N L / (2 H₀)"),
+        _hand("sliding", "it slides on a bed joint: N tan φ"),
+        _hand("by-hand", "the smaller of the two"),
+        _rung("limit", "limit analysis", "limit", PUSHED, "#0b559f", "o"),
+        _rung("limit-crushing", "limit analysis, toes crush", "limit", replace(PUSHED, crushes=True), "#7c3aed", "s"),
+        _rung("rigid", "rigid blocks, small displacements", "dem-dynamic", Features(), "#9bd0c9", "^"),
+        _rung("rigid-finite", "rigid blocks", "dem-dynamic", CRUSHES, "#2a9d8f", "^", **FINITE),
+        _rung("rigid-splitting", "rigid blocks that split", "dem-dynamic", SPLITS, "#c2410c", "P", **FINITE),
+        _rung(
+            "fem-splitting",
+            "deformable blocks that split",
+            "fem",
+            replace(SPLITS, deformable=True),
+            "#be185d",
+            "D",
+            **FINITE,
+        ),
+    )
+}
+"""Every rung by its name, the cheapest first."""
+
+
+def find_rungs(names: str | None) -> list[Rung]:
+    """Rungs by their names, separated by commas; all of them where none is given."""
+    if names is None:
+        return list(LADDER.values())
+    found = []
+    for name in dict.fromkeys(each.strip() for each in names.split(",")):
+        if name not in LADDER:
+            raise SceneError("--models", f"must be of {', '.join(LADDER)}{suggestion(name, list(LADDER))}", name)
+        found.append(LADDER[name])
+    return found

@@ -1,0 +1,108 @@
+"""A wall that was tested: what is known of it before its test, and what was measured in it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from runningbond.scene import Array
+
+from .table_row import TableRow
+
+SWING = 0.05
+"""Displacements that turn back by less, relative to the largest, are noise of the record and no turn of the rig."""
+
+LARGER = 1.1
+"""Cycles not larger than the last one by this factor repeat it, and are left out of a prediction."""
+
+SHOWN = ("SW.30",)
+"""Walls that are shown and not scored, by how their names begin: their beam was not as free as it is said."""
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredWall:
+    """A tested wall.
+
+    Parameters
+    ----------
+    name
+        What the campaign calls it.
+    row
+        Its row of the table.
+    curve : (n, 2) float
+        Displacement at the height of the actuator [m] and horizontal force [N]; rows that are not numbers part the
+        loops of a record. Empty where only the peak is known.
+    peaks
+        Largest horizontal force [N] to one side, and to the other where it was pushed there.
+    modes
+        How it failed, in the words of the table: R, TC, F, SL. Empty where that is not said.
+    scene_file, cracks
+        Its scene where it is not made from the row, and the drawing of its cracks.
+    """
+
+    name: str
+    row: TableRow
+    curve: Array
+    peaks: tuple[float, ...]
+    modes: tuple[str, ...]
+    scene_file: Path | None = None
+    cracks: Path | None = None
+
+    @property
+    def reference(self) -> str:
+        """Where it was published."""
+        return self.row.text("reference") or "–"
+
+    @property
+    def is_cyclic(self) -> bool:
+        """Whether it was pushed to both sides."""
+        said = self.row.text("cyclic / monotonic").casefold()
+        if said:
+            return said.startswith("cyc")
+        return bool(len(self.curve) and np.nanmin(self.curve[:, 0]) < -0.2 * np.nanmax(self.curve[:, 0]))
+
+    @property
+    def is_scored(self) -> bool:
+        """Whether it counts."""
+        return not self.name.startswith(SHOWN)
+
+    @property
+    def peak(self) -> float | None:
+        """Its strength [N]: the mean of both sides where it was pushed to both."""
+        return float(np.mean(self.peaks)) if self.peaks else None
+
+    @property
+    def path(self) -> tuple[float, ...]:
+        """Displacements [m] that the actuator was taken to one after the other; empty where no curve says so."""
+        moved = self.curve[~np.isnan(self.curve[:, 0]), 0]
+        if not len(moved):
+            return ()
+        if not self.is_cyclic:
+            return (float(moved[np.argmax(np.abs(moved))]),)
+        return growing(turning_points(moved))
+
+
+def turning_points(moved: Array) -> list[float]:
+    """Where a record of displacements ``(n,)`` turns back, and its end."""
+    least = SWING * float(np.ptp(moved)) / 2
+    turns, extreme, sense = list[float](), float(moved[0]), 0.0
+    for x in moved.tolist():
+        if abs(x - extreme) >= least and (x - extreme) * sense <= 0:
+            if sense:
+                turns.append(extreme)
+            sense, extreme = float(np.sign(x - extreme)), x
+        elif (x - extreme) * sense > 0:
+            extreme = x
+    return [*turns, extreme]
+
+
+def growing(turns: list[float]) -> tuple[float, ...]:
+    """The first of several cycles of one size: turns that go farther than any before, and the one after each."""
+    kept, farthest, owed = list[float](), 0.0, False
+    for k, turn in enumerate(turns):
+        grows = abs(turn) > LARGER * farthest
+        if (grows or owed) and (not kept or kept[-1] * turn < 0):
+            kept.append(turn)
+            owed = grows and k + 1 < len(turns)
+            farthest = max(farthest, abs(turn))
+    return tuple(kept)

@@ -1,0 +1,56 @@
+"""How a wall fails, read from the motion in which a model sees it fail.
+
+The beam's point at the actuator's height moves by U. If at least half of that comes of the beam's rotation ω over the
+height H, |ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on the mean over its
+length, the wall slides there (SL). Else the motion is spread over the steps of a diagonal (F).
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from runningbond.joints import wall_points
+from runningbond.pictures.legend import is_bed
+from runningbond.results import Outcome
+from runningbond.results.mechanism import carried, rigid_jumps
+from runningbond.scene import Array, Scene
+
+ROCKING, DIAGONAL, SLIDING = "R/TC", "F", "SL"
+GROUPS = {"R": ROCKING, "TC": ROCKING, "F": DIAGONAL, "S": DIAGONAL, "DT": DIAGONAL, "SL": SLIDING}
+"""Modes by the words of the tables; toes crush where walls rock."""
+
+HALF = 0.5
+
+
+def measured_modes(words: Iterable[str]) -> tuple[str, ...]:
+    """Modes that the words of a report name."""
+    return tuple(dict.fromkeys(GROUPS[word] for word in words))
+
+
+def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:
+    """How the wall fails; None where nothing moves."""
+    motion = outcome.motion
+    if scene.beam is None or scene.beam.block is None or not len(motion) or not motion.any():
+        return None
+    beam, drive = scene.beam.block, scene.beam.drive
+    x, y = scene.blocks.centroid[beam]
+    base = float(scene.blocks.extent(scene.wall)[0][1])
+    height = float(y) - base if drive is None or drive.at is None else drive.at
+    moved = abs(float(carried(scene.blocks, np.array([beam]), np.array([[x, base + height]]), motion)[0, 0]))
+    if moved == 0:
+        return None
+    if abs(float(motion[beam, 2])) * height >= HALF * moved:
+        return ROCKING
+    return SLIDING if max(bed_slips(scene, motion)) >= HALF * moved else DIAGONAL
+
+
+def bed_slips(scene: Scene, motion: Array) -> list[float]:
+    """Mean slip of each bed joint over the wall's whole length [m], in a motion ``(nb, 3)``."""
+    points, bed = wall_points(scene), is_bed(scene)
+    _, slip = rigid_jumps(scene.blocks, points, motion)
+    level = np.round(points.position[:, 1] / scene.blocks.tolerance).astype(int)
+    slips = []
+    for each in np.unique(level[bed[points.joint]]):
+        own = (level == each) & bed[points.joint]
+        slips.append(abs(float(np.average(slip[own], weights=points.area[own]))))
+    return slips

@@ -1,0 +1,167 @@
+"""The page of the laboratory: error against experiment over cost, scores, a card a wall, and sources."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from runningbond.compare.figures import bare
+from runningbond.compare.table import Sheet
+from runningbond.pictures.captions import to_png
+from runningbond.results import write_atomically
+from runningbond.scene import BlockMaterial, JointMaterial, table_of
+from runningbond.studies.page import Block, Picture, write_page
+
+from .cards import card, error_over_cost
+from .ladder import LADDER, Rung
+from .measured import MeasuredWall
+from .predictions import Prediction
+from .rig import vertical_load
+from .stones import sources
+from .summary import percent, summary_sheet, totals, verdicts
+
+NAME = "laboratory"
+OVER_COST = (
+    "Error against experiment over cost: a point a wall, large the median of a model, and what is worked out by hand."
+)
+LEGEND = (
+    "ΔV is the predicted strength over the measured one, less 1; of a wall pushed to and fro they are means of both. "
+    "*Stiffness* is the ratio of secants at 0.3 of the strength, *at peak* and *at 0.8* of displacements there and "
+    "where it has fallen to 0.8 of it. *Cycles* is the mean ratio of peaks of cycles, *energy* that of the dissipated "
+    "work, *residual* that of the largest displacement without force. Modes: rocking with toe crushing R/TC, a stepped "
+    "diagonal F, sliding SL; a prediction is right where the report names it. A dash is a number that does not exist. "
+    "No parameter is fitted to a test."
+)
+
+
+def write_laboratory(predictions: Sequence[Prediction], folder: Path) -> list[Path]:
+    """Draw and write the page into a folder; the files that were written."""
+    sums = totals(predictions)
+    blocks: list[Block] = ["# The laboratory: measured walls, predicted blind", *verdicts(sums)]
+    blocks += [LEGEND, summary_sheet(sums), _chart(predictions, folder), error_sheet(predictions)]
+    blocks.append(score_sheet(predictions))
+    blocks.append(
+        Sheet("Models", ("model", "what it is"), [[rung.name, rung.model.title] for rung in _rungs(predictions)])
+    )
+    for wall in _walls(predictions):
+        blocks += _wall(wall, [each for each in predictions if each.wall is wall], folder)
+    blocks += ["## Where numbers come from", sources()]
+    return write_page(NAME, blocks, folder, NAME)
+
+
+def _walls(predictions: Sequence[Prediction]) -> list[MeasuredWall]:
+    return list({each.wall.name: each.wall for each in predictions}.values())
+
+
+def _rungs(predictions: Sequence[Prediction]) -> list[Rung]:
+    used = {each.rung.name for each in predictions}
+    return [rung for name, rung in LADDER.items() if name in used]
+
+
+def _chart(predictions: Sequence[Prediction], folder: Path) -> Picture:
+    figure = Figure(figsize=(11, 5), layout="constrained")
+    error_over_cost(figure, predictions)
+    return _picture(figure, folder / "error-over-cost.png", OVER_COST)
+
+
+def _picture(figure: Figure, path: Path, caption: str) -> Picture:
+    for axes in figure.axes:
+        bare(axes)
+    write_atomically(path, to_png(figure, 150))
+    return Picture(path, caption)
+
+
+def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
+    """ΔV, a row a wall and a column a model."""
+    rungs, rows = _rungs(predictions), list[list[str]]()
+    for wall in _walls(predictions):
+        errors = {each.rung.name: percent(each.error, "+") for each in predictions if each.wall is wall}
+        name = wall.name if wall.is_scored else f"{wall.name} (not scored)"
+        peak = "–" if wall.peak is None else f"{wall.peak / 1e3:.1f}"
+        rows.append([name, peak, *(errors.get(rung.name, "–") for rung in rungs)])
+    return Sheet("ΔV", ("wall", "measured [kN]", *(rung.name for rung in rungs)), rows)
+
+
+def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
+    """Every score, a row a wall and model."""
+    heads = (
+        "wall",
+        "model",
+        "status",
+        "V [kN]",
+        "measured",
+        "ΔV",
+        "stiffness",
+        "at peak",
+        "at 0.8",
+        "cycles",
+        "energy",
+    )
+    rows = []
+    for row in (each.row() for each in predictions):
+        keys = (
+            "stiffness_ratio",
+            "peak_displacement_ratio",
+            "drift_ratio",
+            "cycle_ratio",
+            "energy_ratio",
+            "residual_ratio",
+        )
+        forces = ["–" if row[key] is None else f"{row[key] / 1e3:.1f}" for key in ("V_max", "V_measured")]
+        ratios = ["–" if row[key] is None else f"{row[key]:.2f}" for key in keys]
+        mode = f"{row['mode'] or '–'} ({row['mode_measured'] or '–'})"
+        seconds = "–" if row["seconds"] is None else f"{row['seconds']:.2g}"
+        error = percent(row["dV"], "+") + ("" if row["scored"] else " (not scored)")
+        rows.append([row["wall"], row["model"], row["status"], *forces, error, *ratios, mode, seconds])
+    return Sheet("Scores", (*heads, "residual", "mode (measured)", "CPU s"), rows)
+
+
+def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[Block]:
+    caption = "Measured and predicted curves"
+    if any(each.mode and not each.rung.is_by_hand for each in own):
+        caption += ", and the motion in which the dearest model sees it fail"
+    if wall.cracks:
+        caption += ", beside the cracks"
+    picture = _picture(card(own), folder / f"wall-{wall.name}.png", caption + ".")
+    told = [f"Published in {wall.reference}. {_rig(wall, own[0])}"]
+    if not wall.is_scored:
+        told.append("Shown, not scored: it took more than rocking or friction allow; its beam was not as free as said.")
+    said = [[each.rung.name, each.row()["message"]] for each in own]
+    messages = Sheet("What the models say", ("model", "message"), said)
+    return [f"## {wall.name}", *told, picture, _parameters(own[-1]), messages]
+
+
+def _parameters(one: Prediction) -> Sheet:
+    """All that the dearest model is handed of materials, under the names of the scene file."""
+    materials: list[BlockMaterial | JointMaterial] = [*one.scene.block_materials, *one.scene.joint_materials]
+    rows = [
+        [f"{table_of(material)}.{key}", f"{value:.5g}"] for material in materials for key, value in _numbers(material)
+    ]
+    return Sheet(f"Materials, as {one.rung.name} is handed them, in SI units", ("key", "value"), rows)
+
+
+def _numbers(part: Any) -> Iterator[tuple[str, float]]:
+    """Numbers of a material that are not their defaults, and of what stands in it, by their keys."""
+    for entry in fields(part):
+        value = getattr(part, entry.name)
+        if is_dataclass(value):
+            yield from ((f"{entry.name}.{key}", number) for key, number in _numbers(value))
+        elif isinstance(value, float) and value != entry.default:
+            yield entry.name, value
+
+
+def _rig(wall: MeasuredWall, one: Prediction) -> str:
+    """Size and loads in words."""
+    beam = one.scene.beam
+    own = one.scene.wall.copy()
+    own[[] if beam is None else beam.block] = False
+    (left, bottom), (right, top) = one.scene.blocks.extent(own)
+    pressed = -beam.force[1] if beam else vertical_load(wall)
+    where = "from a scene of its own" if wall.scene_file else f"from line {wall.row.line} of {wall.row.path.name}"
+    kind = "pushed to and fro" if wall.is_cyclic else "pushed to one side"
+    return (
+        f"{1e3 * (right - left):.0f} × {1e3 * (top - bottom):.0f} × {1e3 * one.scene.thickness:.0f} mm, under "
+        f"{pressed / 1e3:.0f} kN, {kind}; made {where}."
+    )

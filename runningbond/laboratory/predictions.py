@@ -1,0 +1,174 @@
+"""Predictions of walls: every rung on every wall, in parallel and kept, and the scores of each."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from runningbond.compare.campaign import Campaign, run_tasks
+from runningbond.compare.models import TOLERANCE
+from runningbond.compare.tasks import Cell, Task
+from runningbond.results import Outcome
+from runningbond.scene import Array, Scene
+
+from .ladder import FORMULAS, Rung, by_hand
+from .measured import MeasuredWall
+from .modes import ROCKING, SLIDING, measured_modes, predicted_mode
+from .rig import scene_of
+from .scores import Marks, cycle_peaks, marks_of, ratio
+
+ARRIVED = 0.99
+"""Part of the path's way after which a wall has been followed to its end."""
+
+FOLLOWED, INAPPLICABLE = "followed", "inapplicable"
+"""Statuses beside those of outcomes: the wall was taken along the whole path and still hardened; a model refuses it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What one rung says of one wall.
+
+    `outcome` is None where the rung does not apply to the wall, for a `reason`.
+    """
+
+    wall: MeasuredWall
+    rung: Rung
+    scene: Scene
+    outcome: Outcome | None
+    reason: str = ""
+
+    @property
+    def status(self) -> str:
+        """That of the outcome, unless the wall was followed to the path's end without one."""
+        if self.outcome is None:
+            return INAPPLICABLE
+        return FOLLOWED if self.outcome.status in ("undecided", "unbounded") and self._arrived else self.outcome.status
+
+    @property
+    def _arrived(self) -> bool:
+        drive = self.scene.beam.drive if self.scene.beam else None
+        if self.outcome is None or drive is None or not drive.path or not len(self.outcome.curve):
+            return False
+        way = float(np.abs(np.diff((0.0, *drive.path))).sum())
+        return float(np.abs(np.diff(self.outcome.curve[:, 0])).sum()) >= ARRIVED * way
+
+    @property
+    def is_answer(self) -> bool:
+        """Whether there is something to score."""
+        return self.status in ("collapse", FOLLOWED)
+
+    @property
+    def curve(self) -> Array:
+        """Displacement [m] and force [N], positive as in the test."""
+        drive = self.scene.beam.drive if self.scene.beam else None
+        if self.outcome is None or drive is None or not drive.path:
+            return np.zeros((0, 2))
+        return np.asarray(self.outcome.curve * np.sign(drive.force[0]))
+
+    @cached_property
+    def marks(self) -> Marks | None:
+        """What is read off its curve."""
+        return marks_of(self.curve, cyclic=self.wall.is_cyclic) if self.is_answer else None
+
+    @property
+    def strength(self) -> float | None:
+        """Its largest force [N]."""
+        if not self.is_answer or self.outcome is None:
+            return None
+        found = self.marks.strength if self.marks else self.outcome.multiplier
+        return None if found is None else float(found)
+
+    @property
+    def error(self) -> float | None:
+        """ΔV."""
+        over = ratio(self.strength, self.wall.peak)
+        return None if over is None else over - 1
+
+    @property
+    def mode(self) -> str | None:
+        """How it fails."""
+        if self.rung.is_by_hand and self.is_answer:
+            loads = by_hand(self.scene)
+            formula = self.rung.name if self.rung.name in loads else min(loads, key=lambda name: loads[name])
+            return dict(zip(FORMULAS, (ROCKING, SLIDING), strict=True))[formula]
+        return predicted_mode(self.scene, self.outcome) if self.is_answer and self.outcome else None
+
+    @property
+    def is_mode_right(self) -> bool | None:
+        """Whether the report names that mode; None where one of both is not known."""
+        known = measured_modes(self.wall.modes)
+        return self.mode in known if self.mode and known else None
+
+    def row(self) -> dict[str, Any]:
+        """Its scores, under the names that the command line prints."""
+        test = marks_of(self.wall.curve, cyclic=self.wall.is_cyclic)
+        own, outcome = self.marks, self.outcome
+        over = {
+            name: ratio(getattr(own, key, None), getattr(test, key, None))
+            for name, key in (
+                ("stiffness_ratio", "stiffness"),
+                ("peak_displacement_ratio", "at_peak"),
+                ("drift_ratio", "at_loss"),
+                ("energy_ratio", "dissipated"),
+                ("residual_ratio", "residual"),
+            )
+        }
+        return {
+            "wall": self.wall.name,
+            "model": self.rung.name,
+            "status": self.status,
+            "V_max": self.strength,
+            "V_measured": self.wall.peak,
+            "dV": self.error,
+            **over,
+            "cycle_ratio": self._cycles(),
+            "mode": self.mode,
+            "mode_measured": ", ".join(self.wall.modes) or None,
+            "mode_right": self.is_mode_right,
+            "scored": self.wall.is_scored,
+            "seconds": outcome.seconds if outcome else None,
+            "message": outcome.message if outcome else self.reason,
+        }
+
+    def _cycles(self) -> float | None:
+        """Mean of what is predicted over what was measured in the peaks of cycles."""
+        if not self.wall.is_cyclic or not self.marks:
+            return None
+        pairs = zip(cycle_peaks(self.curve, self.wall.path), cycle_peaks(self.wall.curve, self.wall.path), strict=False)
+        over = [own / test for own, test in pairs if test]
+        return float(np.mean(over)) if over else None
+
+
+def scenes_of(walls: Sequence[MeasuredWall], rungs: Sequence[Rung]) -> dict[Cell, Scene]:
+    """The scene of every wall for every rung; `SceneError` where one cannot be made."""
+    return {(wall.name, rung.name): scene_of(wall, rung.features) for wall in walls for rung in rungs}
+
+
+def predict(
+    walls: Sequence[MeasuredWall],
+    rungs: Sequence[Rung],
+    scenes: Mapping[Cell, Scene],
+    folder: Path,
+    *,
+    jobs: int = -1,
+    fresh: bool = False,
+    progress: Callable[[Cell], None] = lambda cell: None,
+) -> tuple[list[Prediction], Campaign]:
+    """Predict walls with rungs, on their scenes; what a folder holds of the same computation is taken from there.
+
+    Parameters and errors as of `runningbond.compare.run_campaign`.
+    """
+    tasks = [
+        Task(wall.name, scenes[wall.name, rung.name], rung.model, TOLERANCE) for rung in rungs[::-1] for wall in walls
+    ]
+    campaign = run_tasks(tasks, folder=folder, jobs=jobs, fresh=fresh, progress=progress)
+    predictions = []
+    for wall in walls:
+        for rung in rungs:
+            cell = (wall.name, rung.name)
+            outcome, reason = campaign.outcomes.get(cell), campaign.inapplicable.get(cell, "")
+            predictions.append(Prediction(wall, rung, scenes[cell], outcome, reason))
+    return predictions, campaign

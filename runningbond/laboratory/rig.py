@@ -1,0 +1,149 @@
+"""The scene of a tested wall: its own file, or what its row of the table and its stone say of it."""
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from runningbond.scene import Scene, SceneError, scene_from_dict
+from runningbond.scene.file import read_description
+
+from .measured import MeasuredWall
+from .stones import SHARE, SHEAR_ENERGIES, SPLITTING_ENERGY, UNIT_WEIGHT, Stone, find_stone
+
+GRAVITY = 9.81
+LOAD_IN_NAME = re.compile(r"^[^\W\d_]+\d*[._ -](\d+)(?!\d)")
+FAR = 0.03
+"""Displacement over the actuator's height to which a wall without a curve is pushed."""
+
+LEAST_BEAM = 0.2
+"""Least height of the beam [m] where the actuator's height does not give it; of no influence, for it is stiff."""
+
+
+@dataclass(frozen=True)
+class Features:
+    """What a scene has of its wall; models are asked with more and more of it.
+
+    Parameters
+    ----------
+    driven
+        Whether the beam is taken along the test's path; else it is pushed by a force of λ newtons.
+    closes, crushes, splits
+        Whether joints get stiffer with pressure, whether they crush, and whether blocks may split on their axis.
+    deformable
+        Whether blocks deform themselves, so that joints have what is left of the wall's stiffness.
+    """
+
+    driven: bool = True
+    closes: bool = False
+    crushes: bool = False
+    splits: bool = False
+    deformable: bool = False
+
+
+def scene_of(wall: MeasuredWall, features: Features) -> Scene:
+    """The scene of a wall, with some of its features."""
+    if wall.scene_file is None:
+        return scene_from_dict(_tables(wall, features))
+    tables = read_description(wall.scene_file)
+    if not features.splits:
+        tables.pop("inner_joint", None)
+    joint = tables.get("joint", {})
+    if not features.crushes:
+        for key in ("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure"):
+            joint.pop(key, None)
+    if not features.closes:
+        joint.pop("closure", None)
+    beam = tables.get("beam", {})
+    if not isinstance(beam, dict) or "drive" not in beam:
+        raise SceneError(f"{wall.scene_file.name}: beam.drive", "is missing; a tested wall is pushed at its beam")
+    if not features.driven:
+        beam["drive"] = {"force": [1, 0], **{key: beam["drive"][key] for key in ("at",) if key in beam["drive"]}}
+    return scene_from_dict(tables, folder=wall.scene_file.parent, default_title=wall.name)
+
+
+def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
+    row = wall.row
+    stone = find_stone(row.key("Stone"), row.text("stone"))
+    if row.text("joints").casefold() not in ("dry", ""):
+        raise SceneError(row.key("Joints"), 'must be "Dry"; for others give a scene NAME.toml', row.text("joints"))
+    length, thickness, at = row.number("L"), row.number("t"), row.number("H0")
+    height, width = row.number("hb"), row.number("lb")
+    courses = _courses(wall, stone, height)
+    pressed = vertical_load(wall)
+    start, growth = stone.stiffness(height, deformable=features.deformable)
+    normal = start + growth * pressed / (length * thickness)
+    joint: dict[str, Any] = {
+        "friction": stone.friction,
+        "normal_stiffness": start if features.closes else normal,
+        "shear_stiffness": normal / (2 * (1 + SHARE)),
+    }
+    if features.closes:
+        joint["closure"] = {"growth": growth, "stiffest": stone.young / height}
+    if features.crushes:
+        joint["compressive_strength"] = stone.prism
+    top = courses * height
+    beam = max(2 * (at - top), LEAST_BEAM)
+    drive: dict[str, Any] = {"force": [1, 0]}
+    if features.driven:
+        drive = {"displacement": [list(wall.path or (FAR * at,))]}
+    tables: dict[str, Any] = {
+        "title": wall.name,
+        "wall": {
+            "block_width": width,
+            "block_height": height,
+            "thickness": thickness,
+            "length": length,
+            "height": top,
+            "first_course": stone.first_course,
+        },
+        "block": {"density": UNIT_WEIGHT / GRAVITY, "young": stone.young, "poisson": SHARE},
+        "joint": joint,
+        "support": {"kind": "base"},
+        "load": {"gravity": GRAVITY},
+        "beam": {
+            "height": beam,
+            "condition": "free",
+            "force": [0, -pressed],
+            "force_line": "fixed",
+            "drive": drive | {"at": at},
+        },
+    }
+    if features.splits:
+        tables["inner_joint"] = _crack(stone, width, deformable=features.deformable)
+    return tables
+
+
+def _crack(stone: Stone, width: float, *, deformable: bool) -> dict[str, Any]:
+    """A potential crack on the axis of a block: as stiff as its halves, or stiff beside them where they deform."""
+    normal = (10 if deformable else 1) * stone.young / (width / 2)
+    return {
+        "friction": stone.friction,
+        "cohesion": stone.cohesion,
+        "tensile_strength": stone.tensile,
+        "fracture_energy_1": SPLITTING_ENERGY,
+        "fracture_energy_2": SHEAR_ENERGIES * SPLITTING_ENERGY,
+        "normal_stiffness": normal,
+        "shear_stiffness": normal / (2 * (1 + SHARE)),
+    }
+
+
+def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
+    """Number of courses: of the actuator's height for walls drawn as high as that, else of the table's height."""
+    column = "H0" if stone.is_square else "H"
+    tall = wall.row.number(column)
+    courses = round(tall / height)
+    if courses < 1 or abs(courses * height - tall) > 0.02 * height:
+        raise SceneError(wall.row.key(column), f"must be a whole number of courses of {height:g} m", f"{tall:g} m")
+    return courses
+
+
+def vertical_load(wall: MeasuredWall) -> float:
+    """The load on the beam [N]: the number in the wall's name, or Ntot less the weight of the wall."""
+    named = LOAD_IN_NAME.match(wall.name)
+    if named and float(named[1]) > 0:
+        return 1e3 * float(named[1])
+    row = wall.row
+    load = row.number("Ntot") - UNIT_WEIGHT * row.number("L") * row.number("t") * row.number("H")
+    if load <= 0:
+        raise SceneError(row.key("Ntot"), "must be more than the weight of the wall", row.text("Ntot"))
+    return load

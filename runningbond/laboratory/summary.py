@@ -1,0 +1,177 @@
+"""What predictions add up to, rung by rung, and which of them reaches what the laboratory asks for."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from statistics import median
+from typing import Any
+
+from runningbond.compare.table import Sheet
+
+from .ladder import FORMULAS
+from .predictions import Prediction
+
+MEDIAN, WORST, MODES, FACTOR = 0.10, 0.20, 0.80, 1.5
+"""What is asked for: |ΔV| in the median and at most, share of modes that are right, and a factor of stiffnesses and of
+displacements at the loss of a fifth of the strength."""
+
+
+@dataclass(frozen=True)
+class Total:
+    """What the scored predictions of one rung on walls of one kind add up to.
+
+    Parameters
+    ----------
+    kind, model
+        The walls' joints, and the rung.
+    walls, answers
+        How many walls are scored, and of how many it predicts a strength.
+    median, worst
+        Of |ΔV|; None without an answer.
+    modes
+        Share of the modes that are right, of those that are known; None without one.
+    stiffness, drift
+        Largest factor by which a stiffness, and a displacement at the loss, is off; None where none is known.
+    beaten
+        Walls on which it is nearer than the better of the two formulas worked out by hand.
+    seconds
+        Median time of the processor.
+    is_by_hand
+        Whether it is one of those formulas.
+    """
+
+    kind: str
+    model: str
+    walls: int
+    answers: int
+    median: float | None
+    worst: float | None
+    modes: float | None
+    stiffness: float | None
+    drift: float | None
+    beaten: int
+    seconds: float | None
+    is_by_hand: bool
+
+    @property
+    def reaches(self) -> bool:
+        """Whether it does all that is asked for, on every wall; a formula knows of no stiffness, and does not."""
+        if self.median is None or self.worst is None or self.answers < self.walls:
+            return False
+        factors = self.stiffness is not None and max(self.stiffness, self.drift or 1.0) <= FACTOR
+        return self.median <= MEDIAN and self.worst <= WORST and (self.modes or 0.0) >= MODES and factors
+
+
+def kind_of(prediction: Prediction) -> str:
+    """What tables call walls of its kind, by their joints."""
+    return prediction.wall.row.text("joints").casefold() or "dry"
+
+
+def totals(predictions: Sequence[Prediction]) -> list[Total]:
+    """Totals of the scored walls, by their kinds and by rungs."""
+    scored = [each for each in predictions if each.wall.is_scored]
+    groups: dict[tuple[str, str], list[Prediction]] = {}
+    for each in scored:
+        groups.setdefault((kind_of(each), each.rung.name), []).append(each)
+    return [_total(*group, own, errors_by_hand(scored)) for group, own in groups.items()]
+
+
+def errors_by_hand(predictions: Sequence[Prediction]) -> dict[str, float]:
+    """|ΔV| of the better of the two formulas, by walls."""
+    better: dict[str, float] = {}
+    for each in predictions:
+        if each.rung.name in FORMULAS and each.error is not None:
+            better[each.wall.name] = min(abs(each.error), better.get(each.wall.name, abs(each.error)))
+    return better
+
+
+def _total(kind: str, model: str, own: Sequence[Prediction], to_beat: dict[str, float]) -> Total:
+    errors = [abs(each.error) for each in own if each.error is not None]
+    modes = [each.is_mode_right for each in own if each.is_mode_right is not None]
+    rows = [each.row() for each in own]
+    beaten = [each.error is not None and abs(each.error) < to_beat.get(each.wall.name, 0.0) for each in own]
+    return Total(
+        kind,
+        model,
+        len(own),
+        len(errors),
+        median(errors) if errors else None,
+        max(errors, default=None),
+        sum(modes) / len(modes) if modes else None,
+        _factor([row["stiffness_ratio"] for row in rows]),
+        _factor([row["drift_ratio"] for row in rows]),
+        sum(beaten),
+        median(seconds) if (seconds := [row["seconds"] for row in rows if row["seconds"] is not None]) else None,
+        own[0].rung.is_by_hand,
+    )
+
+
+def _factor(ratios: Sequence[float | None]) -> float | None:
+    """Largest of ratios, or of their inverses."""
+    return max((max(ratio, 1 / ratio) for ratio in ratios if ratio), default=None)
+
+
+def cheapest(sums: Sequence[Total]) -> str | None:
+    """The rung of dry walls that reaches what is asked for in the least time; None where none does."""
+    reaching = [(each.seconds or 0.0, each.model) for each in sums if each.reaches and each.kind == "dry"]
+    return min(reaching)[1] if reaching else None
+
+
+def as_json(sums: Sequence[Total]) -> dict[str, Any]:
+    """The summary as the command line prints it."""
+    kinds: dict[str, dict[str, Any]] = {}
+    for each in sums:
+        kinds.setdefault(each.kind, {})[each.model] = {
+            "walls": each.walls,
+            "answers": each.answers,
+            "median_dV": each.median,
+            "worst_dV": each.worst,
+            "modes_right": each.modes,
+            "beats_hand": each.beaten,
+            "seconds": each.seconds,
+            "reaches": each.reaches,
+        }
+    return {**kinds, "cheapest": cheapest(sums)}
+
+
+def percent(value: float | None, sign: str = "") -> str:
+    """A share in percent; a dash where there is none."""
+    return "–" if value is None else f"{100 * value:{sign}.1f} %"
+
+
+def summary_sheet(sums: Sequence[Total]) -> Sheet:
+    """Totals as a table."""
+    heads = ("walls", "model", "scored", "median |ΔV|", "worst |ΔV|", "modes right", "stiffness within", "drift within")
+    rows = []
+    for each in sums:
+        hand = "–" if each.is_by_hand else f"{each.beaten} of {each.answers}"
+        shares = [percent(each.median), percent(each.worst), percent(each.modes)]
+        factors = ["–" if x is None else f"× {x:.2f}" for x in (each.stiffness, each.drift)]
+        time = "–" if each.seconds is None or each.is_by_hand else f"{each.seconds:.2g}"
+        rows.append([each.kind, each.model, f"{each.answers} of {each.walls}", *shares, *factors, hand, time])
+    return Sheet("Summary", (*heads, "nearer than by hand", "CPU seconds"), rows)
+
+
+def verdicts(sums: Sequence[Total]) -> list[str]:
+    """In words: what the best rung reaches, and which have not earned their cost."""
+    asked = (
+        f"Asked for, on dry walls: median |ΔV| ≤ {MEDIAN:.0%}, none beyond {WORST:.0%}, {MODES:.0%} of the modes, "
+        f"stiffness and drift at the loss of a fifth within a factor of {FACTOR:g}."
+    )
+    best = cheapest(sums)
+    lines = [f"{asked} The cheapest that reaches it: `{best}`." if best else f"{asked} **None reaches all of it.**"]
+    for kind in dict.fromkeys(each.kind for each in sums):
+        own = [each for each in sums if each.kind == kind and each.median is not None]
+        models = [each for each in own if not each.is_by_hand]
+        if models:
+            least = min(models, key=lambda each: each.median or 0.0)
+            lines.append(
+                f"Walls with {kind} joints: median |ΔV| {percent(least.median)} by `{least.model}` at best, "
+                f"{percent(least.worst)} at worst; {percent(least.modes)} of its modes are right."
+            )
+        lines += [
+            f"`{each.model}` has not earned its cost on walls with {kind} joints: it is nearer than the better "
+            f"of the two formulas on {each.beaten} of {each.answers} of them."
+            for each in models
+            if 2 * each.beaten <= each.answers
+        ]
+    return lines

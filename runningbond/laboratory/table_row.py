@@ -1,0 +1,70 @@
+"""A row of a table of tests: its entries as numbers in SI units, refused by file and line where they are none."""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from runningbond.scene import SceneError
+
+UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "N": 1.0, "kN": 1e3, "Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "%": 1e-2}
+USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "ntot": "kN"}
+USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa"}
+"""Units of columns that do not say theirs."""
+
+HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class TableRow:
+    """A row of a table: its file and line, and its entries by the heads of their columns, small and without units."""
+
+    path: Path
+    line: int
+    entries: Mapping[str, tuple[str, str]]  # the entry, and its unit
+
+    @classmethod
+    def read(cls, path: Path, line: int, heads: list[str], cells: list[str]) -> "TableRow":
+        """The row of some cells; there may be fewer of them than heads, but not more."""
+        if any(cell.strip() for cell in cells[len(heads) :]):
+            raise SceneError(
+                f"{path.name}, line {line}", f"must have {len(heads)} entries, as its heads; has {len(cells)}"
+            )
+        entries = {}
+        for head, cell in zip(heads, cells, strict=False):
+            parts = HEAD.match(head.strip().lstrip("\ufeff"))
+            assert parts is not None  # it matches any text
+            name = parts[1].casefold()
+            entries[name] = (cell.strip(), parts[2] or USUAL.get(name, ""))
+        return cls(path, line, entries)
+
+    def key(self, column: str) -> str:
+        """What an entry is called in a message."""
+        return f"{self.path.name}, line {self.line}: {column}"
+
+    def text(self, column: str) -> str:
+        """An entry as it is written; empty where there is none."""
+        return self.entries.get(column.casefold(), ("", ""))[0]
+
+    def number(self, column: str) -> float:
+        """A number above 0, in SI units."""
+        value = self.optional(column)
+        if value is None:
+            raise SceneError(self.key(column), "is missing; it must be a number above 0, or a scene NAME.toml be there")
+        return value
+
+    def optional(self, column: str) -> float | None:
+        """A number above 0, in SI units; None where the entry is empty."""
+        text, unit = self.entries.get(column.casefold(), ("", ""))
+        if text in ("", "-", "–") or text.casefold() in ("nan", "n/a"):
+            return None
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not (math.isfinite(value) and value > 0):
+            raise SceneError(self.key(column), "must be a number above 0", text)
+        if unit not in UNITS:
+            raise SceneError(self.key(column), f"must have a unit, one of {', '.join(UNITS)}", unit)
+        return value * UNITS[unit]

@@ -1,0 +1,283 @@
+"""Limit analysis of joints that crush: points on the boundary of what they carry, more of them where they are needed.
+
+Forces of a joint are mixes of resultants that it carries, and of none: a polyhedron inside the true set, so that
+multipliers of the program are proved from below. Its mechanism, put into the true set's support function, proves a
+multiplier from above; where that function takes its value is a resultant that the program had not known. It is added,
+and the program solved again, until the two are as close as asked for (Dantzig & Wolfe 1960).
+"""
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.optimize import linprog
+from scipy.sparse import block_array, csc_array, eye_array
+
+from runningbond.joints import PointStrength
+from runningbond.scene import Array, Indices
+
+from .crushing import STRONGEST, Crushing, may_crush
+from .equilibrium import Equilibrium
+from .force_program import STATUS, Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
+from .interior_point import InteriorPoint, interior_point
+from .proved import CLOSE, ROUGH, WIDE, is_large, loaded
+from .repair import admissible, balanced
+
+ROUNDS = 60
+"""Programs after which a bracket is left as wide as it is."""
+
+FINER, SMALLEST = 16.0, 0.1
+"""Ratio of the shares of a joint that the first stress blocks take, and force units on the smallest of them."""
+
+NEW = 1e-10
+"""Power, relative to that of all joints, which a new resultant must have before those known."""
+
+ZERO = 1e-3
+"""Multiplier below which the bracket is no longer narrowed relatively."""
+
+SPENT, LISTED = 1e-3, 3
+"""Share of all that joints that crush dissipate, below which a hinge is not counted, and how many a message lists."""
+
+IDLE = 1e-5
+"""Force of a resultant, relative to the largest, without which balance is first looked for."""
+
+NOTHING = 1e-9
+"""Force, in force units, that is none."""
+
+
+@dataclass(frozen=True, eq=False)
+class Resultants:
+    """Forces N₁, N₂ and V ``(3, n)`` on the boundary of what joints ``(n,)`` of a `Crushing` carry."""
+
+    owner: Indices
+    forces: Array
+
+    @property
+    def size(self) -> Array:
+        """Largest force of each, ``(n,)``."""
+        return np.asarray(np.abs(self.forces).max(axis=0))
+
+    def nearer(self, joints: Crushing, jumps: Array) -> "Resultants":
+        """These, and those that dissipate more on jumps ``(3, nc)``."""
+        forces = joints.forces(jumps)
+        power, best = (forces * jumps).sum(axis=0), np.zeros(len(joints))
+        np.maximum.at(best, self.owner, (self.forces * jumps[:, self.owner]).sum(axis=0))
+        new = np.flatnonzero(power - best > NEW * power.sum())
+        return Resultants(np.append(self.owner, new), np.hstack([self.forces, forces[:, new]]))
+
+
+def first_resultants(joints: Crushing) -> Resultants:
+    """Stress blocks from either end, with and without shear, down to those of small forces."""
+    levels = int(np.ceil(np.log(max(joints.strength.max() / SMALLEST, 1.0)) / np.log(FINER)))
+    forces = joints.blocks(np.append(FINER ** -np.arange(levels + 1.0), 0.0))
+    found = Resultants(np.repeat(np.arange(len(joints)), forces.shape[1] // len(joints)), forces)
+    used = found.size > NOTHING
+    return Resultants(found.owner[used], forces[:, used])
+
+
+def without_crushing(system: Equilibrium, joints: Crushing) -> tuple[Equilibrium, ForceSet]:
+    """A system and its forces while joints that crush carry nothing."""
+    carries = np.ones(len(system.points))
+    carries[joints.ends] = 0.0
+    strength = system.strength
+    strength = PointStrength(strength.friction, strength.tension * carries, strength.shear * carries)
+    rays = replace(coulomb(strength), most=[np.where(carries > 0, np.inf, 0.0)] * 2)
+    return replace(system, strength=strength), rays
+
+
+@dataclass(frozen=True, eq=False)
+class InnerProgram:
+    """A `force_program` whose joints that crush carry mixes of known resultants.
+
+    Its unknowns are the forces of those, what is left of each joint, and the unknowns of the program without them.
+    """
+
+    system: Equilibrium
+    joints: Crushing
+    known: Resultants
+
+    @cached_property
+    def others(self) -> tuple[Equilibrium, ForceSet]:
+        """The system and its forces without the joints that crush."""
+        return without_crushing(self.system, self.joints)
+
+    def arguments(self, aim: Aim = "largest") -> dict[str, Any]:
+        """Arguments of `scipy.optimize.linprog`."""
+        system, known, size, n = self.system, self.known, self.known.size, len(self.joints)
+        program = force_program(*self.others, aim)
+        first, second = self.joints.ends[:, known.owner]
+        operators = system.opening[:, first], system.opening[:, second], system.slip[:, first]
+        columns = sum(each * part[None] for each, part in zip(operators, known.forces / size, strict=True))
+        of_joint = csc_array((1 / size, (known.owner, np.arange(len(size)))), shape=(n, len(size)))
+        parts = [[csc_array(columns), None, program["A_eq"]], [of_joint, eye_array(n), None]]
+        bounds = np.tile([0.0, np.inf], (len(size) + n, 1))
+        return {
+            "c": np.append(np.zeros(len(bounds)), program["c"]),
+            "A_eq": csc_array(block_array(parts)),
+            "b_eq": np.append(program["b_eq"], np.ones(n)),
+            "bounds": np.vstack([bounds, program["bounds"]]),
+        }
+
+    def solution(self, status: ProgramStatus, found: Array, multipliers: Array, iterations: int) -> ForceSolution:
+        """Unknowns and multipliers of rows, by what they are; a joint's shear is where its pressure is."""
+        system, known, ends, n = self.system, self.known, self.joints.ends, len(self.joints)
+        multipliers = multipliers[: system.freedoms]
+        rest = found[len(known.owner) + n :]
+        solution = solution_of(*self.others, status, rest, multipliers, iterations)
+        shares = found[: len(known.owner)] / known.size
+        *normal, shear = (np.bincount(known.owner, part * shares, n) for part in known.forces)
+        pressure, tangential = solution.pressure.copy(), solution.tangential.copy()
+        pressure[ends] = system.strength.tension[ends] - normal
+        most = (system.strength.shear + system.strength.friction * pressure)[ends]
+        tangential[ends] = shear * most / np.maximum(most.sum(axis=0), np.finfo(float).tiny)
+        motion = multipliers / (float(system.live @ multipliers) or 1.0)
+        return replace(solution, pressure=pressure, tangential=tangential, motion=motion)
+
+    def vertex(self) -> ForceSolution:
+        """What HiGHS finds."""
+        result = linprog(**self.arguments(), method="highs-ipm")
+        status = STATUS[int(result.status)]
+        if result.x is None or status != "optimal":
+            return nothing(status, int(result.nit))
+        return self.solution(status, np.asarray(result.x), np.asarray(result.eqlin.marginals), int(result.nit))
+
+
+def nothing(status: ProgramStatus, iterations: int = 0) -> ForceSolution:
+    """A solution that is none."""
+    none = np.zeros(0)
+    return ForceSolution(status, np.nan, none, none, none, none, iterations)
+
+
+def closest(system: Equilibrium) -> float:
+    """Relative width of the bracket that is aimed at; of a large wall programs take too long for more."""
+    return WIDE if is_large(system) else CLOSE
+
+
+def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool | None]:
+    """Forces and mechanism of a system with joints that crush, and whether it rests under its dead load.
+
+    Their bracket is as wide as `closest` says, or as `ROUNDS` leave it.
+    """
+    dead = system.under_dead_load()
+    rests, known = _resting(dead, joints)
+    if not rests:
+        return nothing("numerical" if rests is None else "infeasible"), rests
+    program, point, iterations = _narrowed(system, joints, known)
+    if point.status != "optimal":
+        return nothing(point.status, iterations), True
+    found = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
+    if found is None or _width(system, found) > closest(system):
+        vertex = program.vertex()
+        if vertex.status == "optimal":
+            found = vertex if found is None else _best(system, found, vertex)
+    return (nothing("numerical") if found is None else replace(found, iterations=iterations)), True
+
+
+def _width(system: Equilibrium, found: ForceSolution) -> float:
+    """Relative width of the bracket of forces and a mechanism."""
+    bounds = found.multiplier, system.kinematic_multiplier(found.motion)
+    return float(abs(bounds[1] - bounds[0]) / max(*np.abs(bounds), ZERO))
+
+
+def _best(system: Equilibrium, one: ForceSolution, other: ForceSolution) -> ForceSolution:
+    """The forces of the larger multiplier, and the mechanism of the smaller one."""
+    forces = max(one, other, key=lambda each: each.multiplier)
+    return replace(forces, motion=min(one.motion, other.motion, key=system.kinematic_multiplier))
+
+
+def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None) -> ForceSolution | None:
+    """Exact forces and an exact mechanism from approximate ones; None if one of them was not found.
+
+    Resultants of which there is next to nothing are better left alone, if it can be done without them.
+    """
+    arguments, n = program.arguments(), len(program.known.owner)
+    within = None if resting is None else loaded(program.system, arguments, resting)
+    idle = np.arange(len(point.forces)) < n
+    idle &= point.forces < IDLE * point.forces[:n].max()
+    without = replace(
+        point, forces=np.where(idle, 0.0, point.forces), compliance=np.where(idle, IDLE, 1.0) * point.compliance
+    )
+    tried: list[Array | None] = []
+    motion = None
+    with suppress(RuntimeError):  # so few resultants may be in use that their metric is singular
+        motion = admissible(arguments, point)
+        tried = [balanced(arguments, each, within) for each in (point, without)]
+    forces = max((each for each in tried if each is not None), key=lambda each: float(each[-1]), default=None)
+    if forces is None or motion is None or program.system.live @ motion[: program.system.freedoms] <= 0:
+        return None
+    return program.solution("optimal", forces, motion, 0)
+
+
+def _narrowed(system: Equilibrium, joints: Crushing, known: Resultants) -> tuple[InnerProgram, InteriorPoint, int]:
+    """The last of a row of programs that know more and more resultants, its interior point, and all iterations."""
+    aim, iterations, width = closest(system), 0, 1.0
+    for _ in range(ROUNDS):
+        program = InnerProgram(system, joints, known)
+        accuracy = min(max(width, aim) / 1e3, ROUGH)
+        point = interior_point(program.arguments(), accuracy)
+        iterations += point.iterations
+        if point.status != "optimal":
+            break
+        found = program.solution("optimal", point.forces, point.motion, iterations)
+        known = known.nearer(joints, system.crushed_jumps(found.motion))
+        width = _width(system, found)
+        if width <= aim / 2 and accuracy <= aim / 1e3:
+            break
+    return program, point, iterations
+
+
+def _rest(program: InnerProgram) -> Array | None:
+    """Forces that balance the dead load strictly within all bounds, unknowns of the program; None if not found."""
+    arguments = program.arguments("zero")
+    point = interior_point(arguments, ROUGH)
+    return balanced(arguments, point, None) if point.status == "optimal" else None
+
+
+def _resting(dead: Equilibrium, joints: Crushing) -> tuple[bool | None, Resultants]:
+    """Whether forces balance the dead load, and resultants that do; None if that cannot be told.
+
+    Where the first resultants do not, it is the largest multiple of the dead load that decides.
+    """
+    known = first_resultants(joints)
+    multiple = replace(dead, live=dead.dead, dead=np.zeros_like(dead.dead))
+    for _ in range(ROUNDS):
+        if _rest(InnerProgram(dead, joints, known)) is not None:
+            return True, known
+        program = InnerProgram(multiple, joints, known)
+        point = interior_point(arguments := program.arguments(), CLOSE / 1e3)
+        if point.status != "optimal":
+            return (True if point.status == "unbounded" else None), known
+        found = program.solution("optimal", point.forces, point.motion, 0)
+        motion = admissible(arguments, point)
+        if motion is not None and multiple.kinematic_multiplier(motion[: dead.freedoms]) < 1 - CLOSE:
+            return False, known
+        more = known.nearer(joints, dead.crushed_jumps(found.motion))
+        if len(more.owner) == len(known.owner):
+            break
+        known = more
+    return None, known
+
+
+def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
+    """What joints that crush spend in a mechanism, and where those that spend most turn."""
+    joints = system.crushing
+    assert joints is not None
+    jumps = system.crushed_jumps(forces.motion)
+    spent = joints.dissipation(jumps)
+    first, second, _ = jumps
+    turns = np.flatnonzero((first * second < 0) & (spent > SPENT * spent.sum()))
+    most = turns[np.argsort(-spent[turns], kind="stable")][:LISTED]
+    run = np.diff(system.points.position[joints.ends[:, most]], axis=0)[0]
+    at = system.points.position[joints.ends[0, most]] + (first[most] / (first - second)[most])[:, None] * run
+    places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in at)
+    hinges = f"; turning about points inside them: {len(turns)}, foremost about {places}" if len(most) else ""
+    return f"joints with a compressive strength: {len(joints)}, plastic within σ² + C_ss τ² ≤ f_m²{hinges}"
+
+
+def beyond_note(system: Equilibrium) -> str:
+    """What is to be said of joints too strong to be taken as ones that crush."""
+    left_out = len(may_crush(system.scene)) - (0 if system.crushing is None else len(system.crushing))
+    limit = f"a compressive strength beyond {STRONGEST:g} times the largest load on a block"
+    return f"; {left_out} with {limit} are taken not to crush" if left_out else ""

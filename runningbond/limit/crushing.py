@@ -1,0 +1,173 @@
+"""Resultants of joints of finite compressive strength: the support function of their set, and points on its boundary.
+
+At each point of such a joint the tractions lie in K: |τ| ≤ c − σ tan φ, σ ≤ f_t and the cap σ² + C_ss τ² ≤ f_m², an
+ellipse that holds in tension too. A joint carries the resultants of all fields of tractions in K along it, a convex
+set. Where its ends open by α₁ and α₂ and it slips by β, α running linearly between, that set's support function is
+
+    H(α₁, α₂, β) = A ∫₀¹ h(α₁ + (α₂ − α₁) ξ, β) dξ,    h(α, β) = max {α σ + β τ : (σ, τ) ∈ K},
+
+the power that the joint dissipates at most; its gradient are the forces N₁ = A ∫ σ (1 − ξ), N₂ = A ∫ σ ξ at the ends
+and V = A ∫ τ of the field that does so. The boundary of K is, for τ ≥ 0 and by the ratio α / β of its normals, falling,
+
+    T, the corner of the cut-off;  an arc;  B₁ and B₂, the ends of the cone's edge;  the other arc,
+
+some of them missing; corners have constant tractions, and arcs σ = f_m tanh u with sinh u = √C_ss α / β.
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from runningbond.joints import wall_cones
+from runningbond.scene import Array, Indices, Scene
+
+SHORT = 0.1
+"""Length of an arc, relative to α and β on it, below which quadrature is exact to rounding and closed forms are not."""
+
+TINY = 1e-14
+"""Differences of α, and slips, relative to the largest jump, that count as none."""
+
+STRONGEST = 1e9
+"""Strength of a joint, in force units, beyond which it never crushes: the others would be lost beside it."""
+
+NODES, WEIGHTS = ((part + shift) / 2 for part, shift in zip(np.polynomial.legendre.leggauss(8), (1, 0), strict=True))
+
+
+@dataclass(frozen=True, eq=False)
+class Crushing:
+    """Joints of finite compressive strength, in force units.
+
+    Parameters
+    ----------
+    joint : (nc,) int
+        Which joints they are; the points of joint j are 2j and 2j + 1.
+    strength, cap_shear : (nc,) float
+        Largest pressure f_m A, and C_ss.
+    ratio : (4, nc) float
+        Ratios α / β at which one piece of the boundary of K gives way to the next, falling.
+    sigma, tau : (3, nc) float
+        Corners T, B₁ and B₂, times the joint's area.
+    """
+
+    joint: Indices
+    strength: Array
+    cap_shear: Array
+    ratio: Array
+    sigma: Array
+    tau: Array
+
+    def __len__(self) -> int:
+        return len(self.joint)
+
+    @property
+    def ends(self) -> Indices:
+        """Points at the first and at the second ends of the joints, ``(2, nc)``."""
+        return np.array([2 * self.joint, 2 * self.joint + 1])
+
+    def forces(self, jumps: Array) -> Array:
+        """Forces N₁, N₂ and V ``(3, nc)`` that dissipate most on jumps α₁, α₂ and β, ``(3, nc)``."""
+        first, second, slip = jumps
+        scale = np.abs(jumps).max(axis=0) + np.finfo(float).tiny
+        low, beta = np.minimum(first, second), np.maximum(np.abs(slip), TINY * scale)
+        high = low + np.maximum(np.abs(second - first), TINY * scale)
+        span = high - low
+        edges = [high, *np.clip(beta * self.ratio, low, high), low]
+        total = np.zeros((3, len(self)))
+        corners = iter(zip(self.sigma, self.tau, strict=True))
+        for piece, (end, start) in enumerate(pairwise(edges)):
+            width, middle = (end - start) / span, ((end + start) / 2 - low) / span
+            if piece in (1, 4):
+                total += self._arc(start, width, (start - low) / span, span, beta)
+            else:
+                sigma, tau = next(corners)
+                total += np.array([sigma * width, sigma * width * middle, tau * width])
+        normal, moment, shear = total
+        ends = np.where(second >= first, [normal - moment, moment], [moment, normal - moment])
+        return np.array([*ends, np.sign(slip) * shear])
+
+    def _arc(self, start: Array, width: Array, at: Array, span: Array, beta: Array) -> Array:
+        """∫σ, ∫σ ξ and ∫τ over ξ from `at` on by `width`, where α grows from `start`, on the ellipse, ``(3, nc)``."""
+        unit = np.sqrt(np.where(self.cap_shear > 0, self.cap_shear, 1.0))
+        small, end = beta / unit, start + width * span
+        root, root_end = np.hypot(start, small), np.hypot(end, small)
+        alpha = start + NODES[:, None] * width * span
+        weight, radius = WEIGHTS[:, None] * width, np.hypot(alpha, small)
+        sigma, tau = alpha / radius, small / radius
+        here = (weight * np.array([sigma, sigma * NODES[:, None] * width, tau])).sum(axis=1)
+        turn = np.arcsinh(end / small) - np.arcsinh(start / small)
+        normal = (root_end - root) / span
+        second = ((end * root_end - start * root - small**2 * turn) / (2 * span) - start * normal) / span
+        closed = np.array([normal, second, small * turn / span])
+        short = width * span <= SHORT * np.maximum(root, root_end)
+        normal, second, shear = self.strength * np.where(short, here, closed)
+        return np.where(width > 0, [normal, at * normal + second, shear / unit], 0.0)
+
+    def dissipation(self, jumps: Array) -> Array:
+        """Largest power of admissible forces on jumps α₁, α₂ and β ``(3, nc)``: H, ``(nc,)``."""
+        return np.asarray((self.forces(jumps) * jumps).sum(axis=0))
+
+    def blocks(self, share: Array) -> Array:
+        """Forces of stress blocks that take shares ``(k,)`` of a joint from either end, ``(3, n)``, joint by joint.
+
+        Crushed straight down or at a corner with shear, and at the cut-off elsewhere.
+        """
+        end, other = share - share**2 / 2, share**2 / 2
+        found = []
+        for side in (1, -1):
+            for sense in (0.0, 1.0, -1.0):
+                here = -self.strength if sense == 0.0 else self.sigma[2]
+                rise = (here - self.sigma[0])[:, None]
+                ends = [rise * end + self.sigma[0, :, None] / 2, rise * other + self.sigma[0, :, None] / 2][::side]
+                shear = sense * (share * (self.tau[2] - self.tau[0])[:, None] + self.tau[0, :, None])
+                found.append([*ends, shear])
+        return np.moveaxis(np.array(found), 0, 2).reshape(3, -1)
+
+
+def may_crush(scene: Scene) -> Indices:
+    """Joints of a scene that have a compressive strength."""
+    has = np.array([material.compressive_strength is not None for material in scene.joint_materials])
+    return np.flatnonzero(has[scene.material_of_joint])
+
+
+def crushing(scene: Scene, force_unit: float, strongest: float = STRONGEST) -> Crushing | None:
+    """The joints of a scene that crush, those beyond the strongest left out; None if there are none."""
+    materials, joint = [scene.joint_materials[k] for k in scene.material_of_joint], may_crush(scene)
+    strength = np.array([materials[k].compressive_strength for k in joint], dtype=float)
+    area = scene.joints.length[joint] * scene.thickness / force_unit
+    crushes = strength * area <= strongest
+    joint, strength, area = joint[crushes], strength[crushes], area[crushes]
+    if not len(joint):
+        return None
+    shear = np.array([materials[k].cap_shear for k in joint])
+    ratio, sigma, tau = _boundary(*wall_cones(scene, joint), strength, shear)
+    return Crushing(joint, strength * area, shear, ratio, sigma * area, tau * area)
+
+
+def _boundary(slope: Array, tension: Array, held: Array, strength: Array, shear: Array) -> tuple[Array, Array, Array]:
+    """Ratios and corners of `Crushing` from tan φ, f_t, τ at f_t, f_m and C_ss: ``(4, n)``, ``(3, n)``, ``(3, n)``."""
+    cohesion, tension = held + slope * tension, np.minimum(tension, strength)
+    stretch, crossing = 1 + shear * slope**2, shear * slope * cohesion
+    inside = strength**2 * stretch - shear * cohesion**2
+    root = np.sqrt(inside.clip(min=0.0))
+    ends = np.array([crossing + root, crossing - root]) / stretch  # of the cone's edge on the ellipse
+    cone = cohesion - slope * tension
+    within = tension**2 + shear * cone**2 <= strength**2
+    edge = within | ((inside > 0) & (ends[0] < tension))
+    top = np.sqrt((strength**2 - tension**2) / np.where(shear > 0, shear, 1.0))
+    sigma = np.where(edge, [tension, np.where(within, tension, ends[0]), ends[1]], tension)
+    tau = np.where(edge, np.array([cohesion - slope * each for each in sigma]), top).clip(min=0.0)
+    tau[0] = np.where(within, cone, top)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slopes = sigma / (shear * tau)
+    first = np.where(np.isnan(slopes[0]), np.inf, slopes[0])
+    last = np.where((shear * tau[2] > 0), slopes[2], -np.inf)
+    ratio = np.array(
+        [
+            np.where(within, slope, first),
+            np.where(within, slope, np.where(edge, slopes[1], -np.inf)),
+            np.where(edge, slope, -np.inf),
+            np.where(edge, last, -np.inf),
+        ]
+    )
+    return ratio, sigma, tau

@@ -1,0 +1,196 @@
+"""Scores on curves and motions whose marks are known."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runningbond.laboratory import read_folder
+from runningbond.laboratory.folder import SHIPPED
+from runningbond.laboratory.ladder import by_hand, find_rungs
+from runningbond.laboratory.modes import DIAGONAL, ROCKING, SLIDING, bed_slips, measured_modes, predicted_mode
+from runningbond.laboratory.predictions import Prediction
+from runningbond.laboratory.rig import Features, scene_of
+from runningbond.laboratory.scores import backbone, cycle_peaks, dissipated, first_crossing, marks_of, residual, swing
+from runningbond.laboratory.summary import cheapest, totals
+from runningbond.results import Outcome
+from runningbond.scene import Array, Scene, SceneError
+
+WALLS = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+
+
+def curve(*points: tuple[float, float]) -> Array:
+    return np.array(points, dtype=float)
+
+
+def test_marks_of_a_triangle_are_read_by_hand() -> None:
+    """Up to 100 N at 10 m along 10 N/m, and down by 5 N/m: .8 of it at 14 m."""
+    marks = marks_of(curve((0, 0), (10, 100), (20, 50)), cyclic=False)
+    assert marks is not None
+    assert (marks.strength, marks.stiffness, marks.at_peak, marks.at_loss) == pytest.approx((100, 10, 10, 14))
+    assert marks.dissipated is marks.residual is None
+
+
+def test_secant_is_between_two_points_of_the_curve_at_three_tenths() -> None:
+    """√x · 10 up to 100 m: 30 N at 9 m, so 30 / 9."""
+    x = np.linspace(0, 100, 100_001)
+    marks = marks_of(np.column_stack([x, 10 * np.sqrt(x)]), cyclic=False)
+    assert marks is not None
+    assert marks.stiffness == pytest.approx(30 / 9, rel=1e-6)
+    assert marks.at_loss is None
+
+
+def test_curve_that_pushes_nowhere_has_no_marks() -> None:
+    assert marks_of(np.zeros((0, 2)), cyclic=False) is None
+    assert marks_of(curve((0, 0), (1, -5)), cyclic=False) is None
+
+
+def elastic_plastic(stiffness: float, most: float, path: tuple[float, ...]) -> Array:
+    """A rigid-plastic slider on a spring, through a path."""
+    rows, plastic, at = [(0.0, 0.0)], 0.0, 0.0
+    for goal in path:
+        for x in np.linspace(at, goal, 2001)[1:].tolist():
+            force = float(np.clip(stiffness * (x - plastic), -most, most))
+            plastic = x - force / stiffness
+            rows.append((x, force))
+        at = goal
+    return np.array(rows)
+
+
+def test_cycle_of_a_slider_dissipates_its_loop_and_leaves_what_it_slid() -> None:
+    """10 N on 10 N/m to ±3 m: from +3 round to +3 again 4 · 10 · (3 - 1), on top of the first 30 - 5 J."""
+    loop = elastic_plastic(10.0, 10.0, (3.0, -3.0, 3.0))
+    assert dissipated(loop) == pytest.approx(80 + 25, rel=1e-3)
+    assert residual(loop) == pytest.approx(2.0, rel=1e-3)
+    marks = marks_of(loop, cyclic=True)
+    assert marks is not None
+    assert marks.strength == pytest.approx(10.0)
+    assert marks.stiffness == pytest.approx(10.0)  # of a branch, though the loop is 4 m wide
+    assert cycle_peaks(loop, (3.0, -3.0, 3.0)) == pytest.approx([10, -10, 10])
+
+
+def test_swing_needs_both_sides() -> None:
+    assert swing(curve((0, 0), (3, 5), (0, 0)), 3.0) is None
+    assert swing(curve((0, -5), (10, 5)), 3.0) == pytest.approx(6.0)
+    assert swing(curve((0, -5), (1, -4), (5, 4), (6, 5)), 3.0) == pytest.approx(3.0)
+
+
+def test_parted_loops_dissipate_nothing_between_their_parts() -> None:
+    parted = curve((0, 1), (1, 1), (np.nan, np.nan), (5, 1), (6, 1))
+    assert dissipated(parted) == pytest.approx(2.0)
+
+
+def test_backbone_goes_ever_farther_from_rest() -> None:
+    path = curve((-1, -1), (1, 2), (0, 0), (2, 3), (1.5, 1))
+    assert backbone(path).tolist() == [[0, 0], [1, 2], [2, 3]]
+    assert first_crossing(backbone(path), 2.5) == pytest.approx(1.5)
+
+
+# --- modes -------------------------------------------------------------------------------------------------
+
+
+def moved(scene: Scene, motion: Array) -> str | None:
+    return predicted_mode(scene, Outcome("", "", "collapse", 1.0, motion=motion))
+
+
+def still(scene: Scene) -> Array:
+    return np.zeros((len(scene.blocks), 3))
+
+
+@pytest.fixture(scope="module")
+def granite() -> Scene:
+    return scene_of(WALLS["WS.250"], Features(driven=False))
+
+
+def test_wall_that_turns_about_its_toe_rocks(granite: Scene) -> None:
+    motion = still(granite)
+    arm = granite.blocks.centroid[granite.wall] - (1.0, 0.0)
+    motion[granite.wall] = np.column_stack([arm[:, 1], -arm[:, 0], -np.ones(len(arm))])
+    assert moved(granite, motion) == ROCKING
+
+
+@pytest.mark.parametrize("level", [0.0, 0.45, 1.2])
+def test_wall_that_is_cut_along_a_bed_joint_slides(granite: Scene, level: float) -> None:
+    motion = still(granite)
+    motion[granite.wall & (granite.blocks.centroid[:, 1] > level), 0] = 1.0
+    assert moved(granite, motion) == SLIDING
+    assert max(bed_slips(granite, motion)) == pytest.approx(1.0)
+
+
+def test_wall_that_parts_along_its_steps_fails_on_the_diagonal(granite: Scene) -> None:
+    motion = still(granite)
+    x, y = granite.blocks.centroid.T
+    motion[granite.wall & (y > 1.2 - 1.1 * x), 0] = 1.0
+    assert moved(granite, motion) == DIAGONAL
+
+
+def test_wall_that_rests_has_no_mode(granite: Scene) -> None:
+    assert moved(granite, still(granite)) is None
+    assert predicted_mode(granite, Outcome("", "", "undecided")) is None
+
+
+def test_words_of_reports_name_modes_once() -> None:
+    assert measured_modes(("R", "TC")) == (ROCKING,)
+    assert measured_modes(("TC", "SL")) == (ROCKING, SLIDING)
+
+
+# --- formulas, totals --------------------------------------------------------------------------------------
+
+
+def test_formulas_are_those_of_the_readme() -> None:
+    """N L / (2 H₀) and N tan φ; J4D bends doubly, N L / H, and has a cohesion, c L t + N tan φ."""
+    assert by_hand(scene_of(WALLS["WS.100"], Features(driven=False))) == pytest.approx(
+        {"rocking": 1e5 / 2.65, "sliding": 65e3}
+    )
+    assert by_hand(scene_of(WALLS["J4D"], Features(driven=False))) == pytest.approx(
+        {"rocking": 29.7e3 * 0.99 / 0.992, "sliding": 0.35e6 * 0.099 + 0.75 * 29.7e3}
+    )
+
+
+def prediction(wall: str, model: str, load: float | None, **other: object) -> Prediction:
+    rung = find_rungs(model)[0]
+    status = "undecided" if load is None else "collapse"
+    scene = scene_of(WALLS[wall], rung.features)
+    return Prediction(WALLS[wall], rung, scene, Outcome(wall, model, status, load, **other))  # type: ignore[arg-type]
+
+
+def test_error_is_of_the_mean_of_both_sides() -> None:
+    """WS1.100 took 39 and 43.3 kN."""
+    assert prediction("WS1.100", "limit", 41.15e3).error == pytest.approx(0.0)
+    assert prediction("WS.100", "limit", 40.7e3).error == pytest.approx(0.1)
+    assert prediction("WS.100", "limit", None).error is None
+
+
+def test_wall_that_was_followed_to_the_end_of_its_path_is_an_answer_and_another_is_not() -> None:
+    far = WALLS["WS.100"].path[0]
+    for end, status in ((far, "followed"), (far / 2, "undecided")):
+        one = prediction("WS.100", "rigid", None, curve=curve((0, 0), (end / 2, 30e3), (end, 37e3)))
+        assert one.status == status
+        assert one.strength == (37e3 if status == "followed" else None)
+    assert one.row()["dV"] is None
+
+
+def test_totals_leave_out_sw_30_and_count_who_is_nearer_than_both_formulas() -> None:
+    """WS.100, 37 kN: rocking 37.7. WS.250, 85.9: rocking 94.3."""
+    own = [
+        prediction(wall, model, load)
+        for wall, loads in {"WS.100": (37.1e3, 37.7e3), "WS.250": (99e3, 94.3e3), "SW.30.1": (1.0, 1.0)}.items()
+        for model, load in zip(("limit", "rocking"), loads, strict=True)
+    ]
+    limit = next(each for each in totals(own) if each.model == "limit")
+    assert (limit.walls, limit.answers, limit.beaten) == (2, 2, 1)
+    assert limit.worst == pytest.approx(99 / 85.9 - 1)
+    assert limit.median == pytest.approx((99 / 85.9 - 1 + 0.1 / 37) / 2)
+    assert cheapest(totals(own)) is None  # neither knows of a stiffness
+
+
+def test_model_that_is_none_of_the_ladder_is_refused() -> None:
+    with pytest.raises(SceneError, match="--models = 'limt': must be of .*; did you mean \"limit\""):
+        find_rungs("rocking, limt")
+    assert [rung.name for rung in find_rungs("limit,rocking,limit")] == ["limit", "rocking"]
+
+
+def test_two_curves_of_the_campaign_are_what_their_files_say() -> None:
+    assert WALLS["WS.250"].curve[-1, 0] == pytest.approx(0.04311)
+    assert WALLS["SW.200.1"].curve[:, 1].max() == pytest.approx(72.2e3)
+    assert Path(str(WALLS["WS.250"].cracks)).name == "WS.250-cracks.png"

@@ -1,0 +1,137 @@
+"""``runningbond validate``: what it prints, writes, keeps and refuses, on walls that are not shipped."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import pytest
+
+from runningbond.commands.command_line import command
+from runningbond.laboratory.ladder import LADDER
+from runningbond.results import Outcome
+
+from .folders import GRANITE, SANDSTONE, write_folder
+
+QUICK = ["--models", "rocking,sliding,by-hand,limit", "--jobs", "1"]
+KEYS = {
+    "wall",
+    "model",
+    "status",
+    "V_max",
+    "V_measured",
+    "dV",
+    "stiffness_ratio",
+    "drift_ratio",
+    "mode",
+    "mode_measured",
+}
+
+
+@pytest.fixture
+def walls(tmp_path: Path) -> list[str]:
+    return ["--data", str(write_folder(tmp_path / "walls", GRANITE, SANDSTONE)), "--out", str(tmp_path / "out")]
+
+
+def printed(capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+    """The one object on standard output, none of whose numbers is NaN."""
+    content: dict[str, Any] = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    return content
+
+
+def test_walls_that_are_not_shipped_are_predicted_and_scored(
+    walls: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Rocking: 175 / 2.65 and 100 / 2 kN."""
+    assert command(["validate", *walls, *QUICK, "--json"]) == 0
+    content = printed(capsys)
+    rows = {(row["wall"], row["model"]): row for row in content["walls"]}
+    assert len(rows) == 8
+    assert all(KEYS | {"seconds", "message"} <= set(row) for row in rows.values())
+    rocking = rows["WS.175", "rocking"]
+    assert rocking["V_max"] == pytest.approx(175e3 / 2.65)
+    assert rocking["V_measured"] == 61e3
+    assert rocking["dV"] == pytest.approx(175 / 2.65 / 61 - 1)
+    assert rocking["stiffness_ratio"] is None
+    assert rows["SW.100.1", "by-hand"]["V_max"] == pytest.approx(50e3)
+    assert rows["SW.100.1", "limit"]["V_max"] == pytest.approx(50e3, rel=0.05)
+    assert rows["WS.175", "limit"]["mode"] == "R/TC"
+    assert content["summary"]["dry"]["limit"]["walls"] == 2
+    assert content["summary"]["cheapest"] is None
+    out = tmp_path / "out"
+    page = (out / "laboratory.md").read_text()
+    assert all(
+        word in page for word in ("# The laboratory", "## WS.175", "Where numbers come from", "not earned its cost")
+    )
+    assert "data:image/png;base64" in (out / "report.html").read_text()
+    assert all((out / f"{name}.png").is_file() for name in ("error-over-cost", "wall-WS.175", "wall-SW.100.1"))
+
+
+def test_what_is_kept_is_not_computed_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder, out = write_folder(tmp_path / "walls", GRANITE), str(tmp_path / "out")
+    for models, cases, kept, more in (
+        ("rocking", 1, 0, []),
+        ("rocking,limit", 2, 1, []),
+        ("rocking,limit", 2, 2, []),
+        ("limit", 1, 0, ["--fresh"]),
+    ):
+        arguments = ["validate", "--data", str(folder), "--out", out, "--models", models, "--jobs", "1", *more]
+        assert command(arguments) == 0
+        assert f"{cases} cases, {kept} of them already in" in capsys.readouterr().out
+
+
+def test_row_that_changes_is_predicted_again(
+    walls: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command(["validate", *walls, *QUICK, "--json"]) == 0
+    before = printed(capsys)["walls"]
+    write_folder(tmp_path / "walls", GRANITE, SANDSTONE.replace(",200,1000,100,", ",200,2000,100,"))
+    assert command(["validate", *walls, *QUICK, "--json"]) == 0
+    after = printed(capsys)["walls"]
+    loads = [{(row["wall"], row["model"]): row["V_max"] for row in rows} for rows in (before, after)]
+    assert loads[1]["SW.100.1", "limit"] == pytest.approx(loads[0]["SW.100.1", "limit"] / 2, rel=0.05)
+    assert loads[1]["WS.175", "limit"] == loads[0]["WS.175", "limit"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--models", "limti"], "--models = 'limti': must be of rocking"),
+        (["--models", ""], "--models = '': must be of rocking"),
+        (["--jobs", "0"], "--jobs = 0: must be a number of processes"),
+        (["--data", "/nowhere"], "/nowhere: must be a folder that holds tests.csv"),
+    ],
+)
+def test_bad_arguments_are_one_line_and_nothing_is_written(
+    arguments: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command(["validate", "--out", str(tmp_path / "out"), *arguments]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert len(told.err.splitlines()) == 1
+    assert said in told.err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("row", [GRANITE.replace("Granite", "Marble"), GRANITE.replace(",150,", ",15 cm,")])
+def test_wall_that_cannot_be_made_is_one_line_and_nothing_is_written(
+    row: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = write_folder(tmp_path / "walls", row)
+    assert command(["validate", "--data", str(folder), "--out", str(tmp_path / "out"), *QUICK, "--json"]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("runningbond: tests.csv, line 2: ")
+    assert len(told.err.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_model_that_does_not_answer_is_exit_code_3(walls: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    rung = LADDER["limit"]
+    silent = replace(rung, model=replace(rung.model, solve=lambda *_: Outcome("", "", "undecided", message="none")))
+    with patch.dict(LADDER, {"limit": silent}):
+        assert command(["validate", *walls, *QUICK, "--json"]) == 3
+    rows = [row for row in printed(capsys)["walls"] if row["model"] == "limit"]
+    assert {row["status"] for row in rows} == {"undecided"}
+    assert {row["V_max"] for row in rows} == {None}

@@ -1,0 +1,277 @@
+"""Rows of tables become scenes: facts of the campaigns, and one line for what is wrong."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from runningbond.laboratory import SHIPPED, MeasuredWall, read_folder
+from runningbond.laboratory.folder import DATA
+from runningbond.laboratory.measured import growing, turning_points
+from runningbond.laboratory.rig import Features, scene_of, vertical_load
+from runningbond.laboratory.stones import STONES
+from runningbond.scene import Closure, SceneError, Stiffness
+
+from .folders import CURVE, GRANITE, HEADS, SANDSTONE, write_folder
+
+ALL = Features(closes=True, crushes=True, splits=True)
+
+
+def shipped() -> dict[str, MeasuredWall]:
+    return {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+
+
+def one(tmp_path: Path, row: str = GRANITE) -> MeasuredWall:
+    return read_folder(write_folder(tmp_path, row))[0]
+
+
+def test_nine_dry_and_four_mortared_walls_are_shipped_with_their_licence_and_two_crack_maps() -> None:
+    walls = shipped()
+    assert len(walls) == 13
+    assert [name for name, wall in walls.items() if not wall.is_scored] == ["SW.30.1", "SW.30.2"]
+    assert [name for name, wall in walls.items() if wall.cracks] == ["SW.200.1", "WS.250"]
+    assert "MIT" in (DATA / "dry" / "LICENSE").read_text()
+    assert "10.5281/zenodo.812145" in (DATA / "README.md").read_text()
+
+
+def test_every_file_of_the_laboratory_is_package_data() -> None:
+    with (Path(__file__).parents[2] / "pyproject.toml").open("rb") as file:
+        patterns = tomllib.load(file)["tool"]["setuptools"]["package-data"]["runningbond.laboratory"]
+    packed = {path for pattern in patterns for path in DATA.parent.glob(pattern)}
+    assert packed == {path for path in DATA.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "courses", "pressed", "modes"),
+    [
+        ("WS.250", (1.0, 1.2), 8, 250e3, ("R",)),
+        ("WS1.175", (1.0, 1.2), 8, 175e3, ("R",)),
+        ("SW.200.2", (1.0, 1.0), 10, 200e3, ("TC", "SL")),
+        ("SW.30.1", (1.0, 1.0), 10, 30e3, ("F", "R", "SL")),
+    ],
+)
+def test_rows_become_the_walls_of_the_crack_maps(
+    name: str, size: tuple[float, float], courses: int, pressed: float, modes: tuple[str, ...]
+) -> None:
+    wall = shipped()[name]
+    scene = scene_of(wall, Features(driven=False))
+    assert scene.beam is not None
+    assert scene.beam.block is not None
+    own = scene.wall & (np.arange(len(scene.blocks)) != scene.beam.block)
+    low, high = scene.blocks.extent(own)
+    assert high - low == pytest.approx(size)
+    assert len(np.unique(np.round(scene.blocks.centroid[own, 1], 6))) == courses
+    assert wall.modes == modes
+    assert vertical_load(wall) == pressed
+    assert scene.beam.force == (0.0, -pressed)
+    assert scene.beam.drive is not None
+    assert scene.beam.drive.at == pytest.approx(1.325 if name.startswith("WS") else 1.0)
+
+
+def test_granite_starts_with_whole_blocks_and_sandstone_with_half_ones() -> None:
+    for name, lowest in (("WS.100", 5), ("SW.200.1", 6)):
+        scene = scene_of(shipped()[name], Features(driven=False))
+        own = scene.wall & (scene.blocks.centroid[:, 1] < 0.1 if name[0] == "S" else scene.blocks.centroid[:, 1] < 0.15)
+        assert own.sum() == lowest
+
+
+def test_scene_has_the_features_that_it_is_asked_for_and_no_others() -> None:
+    wall = shipped()["WS.250"]
+    plain, full = scene_of(wall, Features()), scene_of(wall, ALL)
+    joint, rich = plain.joint_materials[0], full.joint_materials[0]
+    assert (joint.friction, joint.cohesion, joint.compressive_strength, joint.closure) == (0.65, 0.0, None, None)
+    assert rich.compressive_strength == 73e6
+    assert isinstance(rich.closure, Closure)
+    assert not plain.joints.inner.any()
+    assert full.joints.inner.sum() == 36  # 4 courses of five whole blocks, 4 of four and two halves
+    assert plain.beam is not None
+    assert plain.beam.drive is not None
+    assert plain.beam.drive.path == pytest.approx((0.04311,))
+
+
+def test_joints_get_as_stiff_as_walls_were_measured_to_be_under_their_vertical_load() -> None:
+    """Through Epc / h_b within a tenth; without closure that stiffness itself, in shear 1 / 2.4 of it."""
+    for stone, height in (("sandstone", 0.1), ("granite", 0.15)):
+        start, growth = STONES[stone].stiffness(height, deformable=False)
+        for pressure, modulus in STONES[stone].moduli.items():
+            assert (start + growth * pressure) * height == pytest.approx(modulus, rel=0.12)
+    given = scene_of(shipped()["WS.250"], Features()).joint_materials[0].elasticity
+    assert isinstance(given, Stiffness)
+    assert given.normal == pytest.approx(4722e6 / 0.15, rel=0.01)
+    assert given.shear == pytest.approx(given.normal / 2.4)
+
+
+def test_deformable_blocks_and_their_joints_are_together_as_stiff_as_the_wall() -> None:
+    for stone, height in (("sandstone", 0.1), ("granite", 0.15)):
+        start, growth = STONES[stone].stiffness(height, deformable=True)
+        for pressure, modulus in STONES[stone].moduli.items():
+            joint = start + growth * pressure
+            assert 1 / (1 / joint / height + 1 / STONES[stone].young) == pytest.approx(modulus, rel=0.12)
+
+
+def test_unnamed_load_is_what_is_left_of_ntot(tmp_path: Path) -> None:
+    """1.2 × 1 × .2 m of 20 kN/m³ are 4.8 kN."""
+    assert vertical_load(one(tmp_path, GRANITE.replace("WS.175", "wall"))) == pytest.approx(175e3)
+
+
+@pytest.mark.parametrize("name", ["WS.175", "WS2.175", "WS-175", "WS 175", "WS.175.3"])
+def test_load_is_read_from_names_with_and_without_numbers_beside_it(tmp_path: Path, name: str) -> None:
+    assert vertical_load(one(tmp_path, GRANITE.replace("WS.175", name).replace("179.8", ""))) == 175e3
+
+
+def test_further_columns_other_names_of_the_table_and_missing_entries_are_taken(tmp_path: Path) -> None:
+    heads = "Note," + HEADS + ",More"
+    wall = read_folder(write_folder(tmp_path, f"x,{SANDSTONE}", heads=heads, table="hidden-walls.csv"))[0]
+    assert wall.peak == 49.2e3
+    assert scene_of(wall, ALL).title == "SW.100.1"
+    bare = read_folder(write_folder(tmp_path / "bare", SANDSTONE.replace(",49.2,,R", ",,,")))[0]
+    assert bare.peak == 61e3  # that of the curve
+    assert bare.modes == ()
+
+
+def test_wall_without_a_curve_is_pushed_anyway(tmp_path: Path) -> None:
+    wall = one(tmp_path)
+    (tmp_path / "WS.175.csv").unlink()
+    again = read_folder(tmp_path)[0]
+    assert len(wall.curve) == 4
+    assert again.path == ()
+    beam = scene_of(again, Features()).beam
+    assert beam is not None
+    assert beam.drive is not None
+    assert beam.drive.path == pytest.approx((0.03 * 1.325,))
+
+
+def test_scene_of_its_own_is_taken_instead_of_the_row(tmp_path: Path) -> None:
+    wall = shipped()["J4D"]
+    assert wall.scene_file is not None
+    row = "other,Monotonic,Mortar,Clay brick,,,,,,,,40,,F"
+    folder = write_folder(tmp_path, row)
+    (folder / "other.toml").write_text(wall.scene_file.read_text())
+    mine = read_folder(folder)[0]
+    assert len(scene_of(mine, ALL).blocks) > len(scene_of(mine, Features()).blocks)
+    pushed = scene_of(mine, Features(driven=False)).beam
+    assert pushed is not None
+    assert pushed.drive is not None
+    assert pushed.drive.path == ()
+
+
+def test_unit_in_the_head_of_a_column_counts(tmp_path: Path) -> None:
+    heads = HEADS.replace("L [mm]", "L [m]").replace("Ntot [kN]", "Ntot")
+    wall = read_folder(write_folder(tmp_path, GRANITE.replace(",1000,", ",1.0,"), heads=heads))[0]
+    assert scene_of(wall, Features()).blocks.extent()[1][0] >= 1.0
+
+
+# --- protocols ---------------------------------------------------------------------------------------------
+
+
+def test_turning_points_of_a_noisy_record_are_those_of_its_cycles() -> None:
+    t = np.linspace(0, 3, 3001)
+    moved = (1 + np.floor(t)) * np.sin(2 * np.pi * t) + 0.02 * np.sin(400 * t)
+    assert turning_points(moved) == pytest.approx([1, -1, 2, -2, 3, -3, 0], abs=0.05)
+
+
+def test_repeated_cycles_are_left_out_and_sides_alternate() -> None:
+    assert growing([1, -1, 1, -1, 2, -2, 2.05, -2.05, 3, -2.9]) == (1, -1, 2, -2, 3, -2.9)
+
+
+def test_cyclic_walls_are_pushed_to_both_sides_and_ever_farther() -> None:
+    for name in ("WS1.100", "WS1.175", "WS2.100"):
+        wall = shipped()[name]
+        assert wall.is_cyclic
+        assert (np.sign(wall.path[1:]) == -np.sign(wall.path[:-1])).all()
+        assert max(map(abs, wall.path)) == pytest.approx(np.nanmax(np.abs(wall.curve[:, 0])), rel=0.02)
+
+
+# --- refusals ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        (GRANITE.replace(",1000,", ",long,"), "tests.csv, line 2: L = 'long': must be a number above 0"),
+        (GRANITE.replace(",1000,", ",-1,"), "tests.csv, line 2: L = '-1': must be a number above 0"),
+        (GRANITE.replace(",1000,", ",inf,"), "tests.csv, line 2: L = 'inf': must be a number above 0"),
+        (GRANITE.replace(",1000,", ",,"), "tests.csv, line 2: L: is missing"),
+        (GRANITE.replace(",1325,", ",0,"), "tests.csv, line 2: H0 = '0': must be a number above 0"),
+        (GRANITE.replace(",1200,", ",1270,"), "tests.csv, line 2: H = '1.27 m': must be a whole number of courses"),
+        (
+            GRANITE.replace("Granite", "Marble"),
+            "tests.csv, line 2: Stone = 'Marble': must be one of sandstone, granite",
+        ),
+        (GRANITE.replace("Granite", "Granit"), 'did you mean "granite"?'),
+        (GRANITE.replace("Dry", "Mortar"), "tests.csv, line 2: Joints = 'Mortar': must be \"Dry\""),
+        (GRANITE.replace("WS.175", "wall").replace("179.8", "3"), "tests.csv, line 2: Ntot = '3': must be more than"),
+        (GRANITE.replace("WS.175", "wall").replace("179.8", ""), "tests.csv, line 2: Ntot: is missing"),
+        (GRANITE.replace(",200,179.8", ",350,179.8"), "wall.length = 1.0: must be a whole number of half blocks"),
+    ],
+)
+def test_row_that_describes_no_wall_is_refused_by_file_and_line(tmp_path: Path, row: str, said: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        scene_of(one(tmp_path, row), Features())
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("rows", "heads", "said"),
+    [
+        ([], HEADS, "tests.csv: holds no wall, only heads"),
+        ([GRANITE, GRANITE], HEADS, "tests.csv, line 3: Test unit name = 'WS.175': is the second row of that name"),
+        (["/etc/x" + GRANITE[6:]], HEADS, "Test unit name = '/etc/x': must be a name"),
+        ([GRANITE[6:]], HEADS, "tests.csv, line 2: Test unit name = '': must be a name"),
+        ([GRANITE + ",1,2"], HEADS, "tests.csv, line 2: must have 14 entries, as its heads; has 16"),
+        ([GRANITE[:-1] + "topples"], HEADS, "Failure type = 'TOPPLES': must be of R, TC, F, SL, S, DT"),
+        ([GRANITE.replace(",61,", ",x,")], HEADS, "tests.csv, line 2: Vmax,+ = 'x': must be a number above 0"),
+        ([GRANITE], HEADS.replace("Vmax,+ [kN]", "Vmax,+ [kip]"), "Vmax,+ = 'kip': must have a unit, one of mm"),
+        ([GRANITE], HEADS.replace("Test unit name", "wall"), 'a CSV file with a column "Test unit name"; it has none'),
+        (['"WS.175'], HEADS, "tests.csv, line 2: is no line of a CSV file"),
+    ],
+)
+def test_table_that_is_none_is_refused(tmp_path: Path, rows: list[str], heads: str, said: str) -> None:
+    folder = tmp_path / "walls"
+    folder.mkdir()
+    (folder / "tests.csv").write_text("\n".join([heads, *rows]) + "\n", encoding="utf-8")
+    with pytest.raises(SceneError) as refused:
+        read_folder(folder)
+    assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("curve", "said"),
+    [
+        ("", "WS.175.csv, line 1 = '': must be the heads displacement_mm,force_kN"),
+        ("mm,kN\n0,0\n1,2\n", "WS.175.csv, line 1 = 'mm,kN': must be the heads"),
+        (CURVE + "x,1\n", "WS.175.csv, line 6 = 'x,1': must be two numbers"),
+        (CURVE + "1\n", "WS.175.csv, line 6 = '1,': must be two numbers"),
+        (CURVE + "1,nan\n", "WS.175.csv, line 6 = '1,nan': must be two numbers"),
+        (CURVE + "1,inf\n", "WS.175.csv, line 6 = '1,inf': must be two numbers"),
+        ("displacement_mm,force_kN\n1,1\n", "WS.175.csv: must hold points of a curve"),
+        ("displacement_mm,force_kN\n1,1\n1,2\n", "WS.175.csv: must hold points of a curve"),
+        ("displacement_mm,force_kN\n0,0\n1,0\n", "WS.175.csv: must hold points of a curve"),
+        ("displacement_mm,force_kN\nNaN,NaN\n", "WS.175.csv: must hold points of a curve"),
+    ],
+)
+def test_curve_that_is_none_is_refused(tmp_path: Path, curve: str, said: str) -> None:
+    with pytest.raises(SceneError) as refused:
+        read_folder(write_folder(tmp_path, GRANITE, curve=curve))
+    assert said in str(refused.value)
+
+
+def test_folder_that_is_none_or_holds_two_tables_or_bytes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match="must be a folder that holds tests.csv"):
+        read_folder(tmp_path / "nowhere")
+    write_folder(tmp_path, GRANITE)
+    write_folder(tmp_path, SANDSTONE, table="more.csv")
+    with pytest.raises(SceneError, match="it has 2: more.csv, tests.csv"):
+        read_folder(tmp_path)
+    (tmp_path / "more.csv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(SceneError, match="more.csv: is no table: it is not UTF-8 text"):
+        read_folder(tmp_path)
+
+
+def test_scene_of_its_own_without_a_drive_is_refused(tmp_path: Path) -> None:
+    folder = write_folder(tmp_path, GRANITE)
+    (folder / "WS.175.toml").write_text("[wall]\n")
+    with pytest.raises(SceneError, match="WS.175.toml: beam.drive: is missing"):
+        scene_of(read_folder(folder)[0], Features())

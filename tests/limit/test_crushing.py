@@ -1,0 +1,470 @@
+"""Joints of finite compressive strength: what one carries, and walls of them, by hand and by fibres."""
+
+import copy
+import math
+from dataclasses import replace
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from typing import Any
+
+import clarabel
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import csc_matrix, eye_array, hstack, vstack
+
+from runningbond.compare.models import run_model
+from runningbond.compare.published import published_scene
+from runningbond.limit import equilibrium, limit, limit_state
+from runningbond.limit.crushed import InnerProgram, first_resultants
+from runningbond.limit.crushing import Crushing, _boundary
+from runningbond.limit.kinematics import dead_load, live_load, movable_freedoms
+from runningbond.limit.proved import is_large
+from runningbond.results import save_outcome
+from runningbond.scene import (
+    Array,
+    BlockMaterial,
+    JointMaterial,
+    Lateral,
+    Load,
+    PointLoad,
+    Scene,
+    build_scene,
+    scene_from_dict,
+)
+from tests.limit.test_limit import rectangle
+from tests.random_scenes import mirrored, random_scene
+from tests.walls import courses, panel
+
+NARROW = 1e-6
+THICKNESS, DENSITY = 0.1, 2000.0
+MATERIALS = {
+    "dry": JointMaterial(0.6, compressive_strength=1.0, cap_shear=0.0),
+    "dry, capped in shear": JointMaterial(0.6, compressive_strength=1.0),
+    "steep": JointMaterial(3.0, compressive_strength=1.0),
+    "without friction": JointMaterial(0.0, compressive_strength=1.0),
+    "cohesive": JointMaterial(0.6, 0.15, compressive_strength=1.0),
+    "cut off": JointMaterial(0.6, 0.15, 0.05, compressive_strength=1.0, cap_shear=2.0),
+    "cohesive, without friction": JointMaterial(0.0, 0.2, 0.1, compressive_strength=1.0, cap_shear=0.0),
+    "its cone a rest on the cap": JointMaterial(0.3, 0.31, 0.2, compressive_strength=1.0),
+    "capped all round": JointMaterial(0.6, 0.6, 0.2, compressive_strength=1.0),
+    "stronger in tension": JointMaterial(0.5, 2.0, 2.0, compressive_strength=1.0),
+}
+OF_ALL = pytest.mark.parametrize("name", MATERIALS)
+
+
+def joint(name: str, n: int = 1) -> Crushing:
+    """Joints of a material, of unit area."""
+    material = MATERIALS[name]
+    strength, shear = np.full(n, material.compressive_strength), np.full(n, material.cap_shear)
+    least = material.cohesion - material.friction * material.tension
+    slope, tension, held = (np.full(n, part) for part in (material.friction, material.tension, least))
+    return Crushing(np.arange(n), strength, shear, *_boundary(slope, tension, held, strength, shear))
+
+
+def jumps(seed: int, n: int) -> Array:
+    """Directions of jumps ``(3, n)``, of entries that differ by up to three orders."""
+    random = np.random.default_rng(seed)
+    return np.asarray(random.normal(size=(3, n)) * 10 ** random.uniform(-3, 0, (3, n)))
+
+
+# --- what one joint carries ----------------------------------------------------------------------------------
+
+
+def fibres(friction: float, cohesion: float, tension: float, strength: float, shear: float, n: int) -> tuple[Any, ...]:
+    """Clarabel's rows A x + s = b and cones of tractions (σ, τ) on n fibres, n of each, with strengths of any size."""
+    one, zero = eye_array(n), 0 * eye_array(n)
+    cone = vstack([hstack([friction * one, one]), hstack([friction * one, -one]), hstack([one, zero])])
+    ellipse = vstack([hstack([zero, zero]), hstack([-one, zero]), hstack([zero, -math.sqrt(shear) * one])])
+    order = np.arange(3 * n).reshape(3, n).T.ravel()
+    right = np.concatenate([np.full(2 * n, cohesion), np.full(n, tension)])
+    cap = np.tile([strength, 0.0, 0.0], n)
+    return cone, ellipse.tocsr()[order], right, cap
+
+
+def largest(cost: Array, equal: Any, given: Array, cone: Any, ellipse: Any, right: Array, cap: Array) -> float:
+    """Largest cost · x by Clarabel."""
+    rows = vstack([equal, cone, ellipse], format="csc") if len(given) else vstack([cone, ellipse], format="csc")
+    cones = [clarabel.ZeroConeT(len(given))] if len(given) else []
+    cones += [clarabel.NonnegativeConeT(len(right)), *[clarabel.SecondOrderConeT(3)] * (len(cap) // 3)]
+    set_ = clarabel.DefaultSettings()
+    set_.verbose, set_.tol_gap_rel, set_.tol_gap_abs, set_.tol_feas = False, 1e-10, 1e-12, 1e-10
+    nothing = csc_matrix((len(cost), len(cost)))
+    every = np.concatenate([given, right, cap])
+    return -float(clarabel.DefaultSolver(nothing, -cost, csc_matrix(rows), every, cones, set_).solve().obj_val)
+
+
+@OF_ALL
+def test_a_joint_carries_the_resultants_of_400_fibres(name: str) -> None:
+    """In any direction as far as the best tractions on fibres, beyond which 1 / (8 n²) of the strength is left."""
+    material, one, n = MATERIALS[name], joint(name), 400
+    at = (np.arange(n) + 0.5) / n
+    program = fibres(material.friction, material.cohesion, material.tension, 1.0, material.cap_shear, n)
+    for first, second, slip in jumps(1, 6).T:
+        cost = np.concatenate([first * (1 - at) + second * at, np.full(n, slip)]) / n
+        found = largest(cost, None, np.zeros(0), *program)
+        exact = one.dissipation(np.array([[first], [second], [slip]]))[0]
+        size = max(abs(first), abs(second), abs(slip))
+        assert -1e-8 * size <= exact - found <= 1e-6 * size
+
+
+@OF_ALL
+def test_forces_of_a_joint_are_the_slopes_of_what_it_dissipates(name: str) -> None:
+    for direction in jumps(2, 20).T:
+        if np.abs(direction[2]) > 1e-2 * np.abs(direction).max():  # elsewhere it has all but a kink
+            step = 1e-6 * np.abs(direction).max()
+            changed = direction[:, None] + step * np.hstack([np.eye(3), -np.eye(3)])
+            up, down = joint(name, 6).dissipation(changed).reshape(2, 3)
+            assert joint(name).forces(direction[:, None])[:, 0] == pytest.approx((up - down) / (2 * step), abs=1e-4)
+
+
+@OF_ALL
+def test_forces_found_in_one_direction_lie_within_in_all_others(name: str) -> None:
+    directions = jumps(3, 300)
+    forces = np.hstack([joint(name, 300).forces(directions), joint(name).blocks(4.0 ** -np.arange(8.0))])
+    beyond = forces.T @ directions - joint(name, 300).dissipation(directions)
+    assert (beyond <= 1e-12 * np.abs(directions).max(axis=0)).all()
+
+
+@pytest.mark.parametrize("name", ["dry", "cohesive", "capped all round"])
+@pytest.mark.parametrize("slip", [0.0, 1e-12, 1e-3, 1.0])
+def test_what_a_joint_dissipates_has_no_seams(name: str, slip: float) -> None:
+    """Between closed forms and quadrature, and where its ends all but move as one; homogeneous, and even in slip."""
+    one = joint(name)
+    for tilt in 10.0 ** -np.arange(0.0, 17.0, 0.5):
+        direction = np.array([[-0.3], [-0.3 + tilt], [slip]])
+        level = np.array([[-0.3 + tilt / 2]] * 2 + [[slip]])
+        value, beside = one.dissipation(direction)[0], one.dissipation(level)[0]
+        assert -1e-14 <= value - beside <= tilt**2 / 2 + 1e-14
+        other = 1e7 * direction[[1, 0, 2]] * [[1], [1], [-1]]
+        assert one.dissipation(other)[0] == pytest.approx(1e7 * value, rel=1e-12)
+
+
+@given(share=st.floats(1e-4, 1.0))
+@settings(max_examples=20, deadline=None)
+def test_a_dry_joint_whose_cap_knows_no_shear_is_a_stress_block(share: float) -> None:
+    """M ≤ N/2 (l − N / (t f_c)) and V ≤ N tan φ, both at once."""
+    one = joint("dry")
+    blocks = one.blocks(np.array([share]))
+    normal, moment = -blocks[:2].sum(axis=0), np.abs(blocks[0] - blocks[1]) / 2
+    assert moment == pytest.approx(normal / 2 * (1 - normal), abs=1e-15)
+    assert np.abs(blocks[2]).max() == pytest.approx(0.6 * share)
+    n1, n2, v = one.forces(np.array([[-share], [1 - share], [1e-12]]))[:, 0]
+    assert [-n1 - n2, (n2 - n1) / 2, v] == pytest.approx([share, share / 2 * (1 - share), 0.6 * share], abs=1e-11)
+
+
+# --- walls by hand -------------------------------------------------------------------------------------------
+
+
+def built(blocks: list[Array], crushing: JointMaterial, live: Any = None, grounds: list[Array] | None = None) -> Scene:
+    """Blocks on a flat base, or without weight between grounds."""
+    more: dict[str, Any] = {"grounds": grounds} if grounds else {}
+    load = Load((0.0, 0.0 if grounds else -9.81), (live or Lateral(),))
+    block = BlockMaterial(DENSITY)
+    return build_scene("by hand", blocks, thickness=THICKNESS, block=block, joint=crushing, load=load, **more)
+
+
+def collapse(scene: Scene) -> float:
+    """λ of a scene whose bracket is narrow."""
+    outcome = limit(scene)
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.multiplier == outcome.lower
+    assert outcome.upper - outcome.lower <= NARROW * abs(outcome.upper)
+    return outcome.lower
+
+
+@pytest.mark.parametrize(("share", "height"), [(0.9, 1.0), (0.3, 2.5), (0.01, 1.0), (1e-4, 2.5), (1e-8, 1.0)])
+def test_the_toe_of_a_block_on_crushing_ground(share: float, height: float) -> None:
+    """N crushes that share of the base: pushed at its top V H = N (l/2 − N / (2 t f_c)), about N / (t f_c)."""
+    weight = DENSITY * 9.81 * THICKNESS * height
+    material = JointMaterial(5.0, compressive_strength=weight / (share * THICKNESS), cap_shear=0.0)
+    scene = built([rectangle(0, 0, 1, height)], material, PointLoad((0.0, height), (1.0, 0.0)))
+    assert collapse(scene) == pytest.approx(weight * (1 - share) / (2 * height), rel=NARROW)
+    outcome = limit(scene)
+    if share > 1e-3:
+        assert f"inside them: 1, foremost about ({1 - share:.3g}"[:-1] in outcome.message
+    corner = outcome.motion[0] @ [[1, 0], [0, 1], [height / 2, 1 / 2]]  # of the toe: down, and not sideways
+    assert -corner[1] == pytest.approx(share / (1 - share) * (corner[1] + outcome.motion[0] @ [0, 0, -1]), abs=1e-3)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.01])
+def test_a_block_of_little_friction_slides_all_the_same(share: float) -> None:
+    """V = N tan φ, whether its ground crushes or not."""
+    weight = DENSITY * 9.81 * THICKNESS
+    material = JointMaterial(0.1, compressive_strength=weight / (share * THICKNESS), cap_shear=0.0)
+    assert collapse(built([rectangle(0, 0, 1, 1)], material)) == pytest.approx(0.1, rel=NARROW)
+
+
+@pytest.mark.parametrize("eccentricity", [0.0, 0.1, 0.3, 0.45])
+@pytest.mark.parametrize("shear", [0.0, 9.0])
+def test_an_eccentric_column_bears_the_pressure_on_twice_its_way_to_the_edge(eccentricity: float, shear: float) -> None:
+    """P = t f_c (l − 2 e); weightless, on ground."""
+    material = JointMaterial(0.6, compressive_strength=1e6, cap_shear=shear)
+    live = PointLoad((0.5 + eccentricity, 2.0), (0.0, -1.0))
+    scene = built([rectangle(0, 0, 1, 2)], material, live, [rectangle(0, -1, 1, 1)])
+    assert collapse(scene) == pytest.approx(THICKNESS * 1e6 * (1 - 2 * eccentricity), rel=NARROW)
+
+
+@pytest.mark.parametrize("strength", [2e5, 1e6])
+def test_a_stack_crushes_at_its_foot(strength: float) -> None:
+    """n blocks b × h: λ = (b − n W / (t f_c)) / (n h)."""
+    n, height = 3, 0.5
+    material = JointMaterial(2.0, compressive_strength=strength, cap_shear=0.0)
+    scene = built([rectangle(0, k * height, 1, height) for k in range(n)], material)
+    crushed = n * DENSITY * 9.81 * height / strength
+    assert collapse(scene) == pytest.approx((1 - crushed) / (n * height), rel=NARROW)
+
+
+@pytest.mark.parametrize(("factor", "status"), [(0.5, "infeasible"), (0.999, "infeasible"), (1.001, "collapse")])
+@pytest.mark.parametrize("shear", [0.0, 9.0])
+def test_a_column_too_heavy_for_its_foot_does_not_stand(factor: float, status: str, shear: float) -> None:
+    strength = 2 * DENSITY * 9.81 * factor
+    material = JointMaterial(0.6, compressive_strength=strength, cap_shear=shear)
+    assert limit(built([rectangle(0, 0, 1, 1), rectangle(0, 1, 1, 1)], material)).status == status
+
+
+def strut(material: JointMaterial) -> Scene:
+    """Two weightless blocks 1 × 0.2 end to end between abutments, pressed down where they meet."""
+    blocks = [rectangle(0, 0, 1, 0.2), rectangle(1, 0, 1, 0.2)]
+    return built(
+        blocks, material, PointLoad((1.0, 0.2), (0.0, -1.0)), [rectangle(-1, -1, 1, 3), rectangle(2, -1, 1, 3)]
+    )
+
+
+def test_a_strut_between_abutments_that_crush_is_a_plastic_arch() -> None:
+    """P = t f_c h² / L: thrust t f_c h / 2 with the arm h / 2 over the span's half; without crushing it locks."""
+    exact = THICKNESS * 1e6 * 0.2**2 / 2
+    material = JointMaterial(3.0, compressive_strength=1e6, cap_shear=0.0)
+    assert collapse(strut(material)) == pytest.approx(exact, rel=1e-6)
+    assert limit(strut(JointMaterial(3.0))).status == "unbounded"
+
+
+def test_joints_of_one_material_may_crush_beside_others_that_do_not() -> None:
+    """The strut's abutments crush, its middle does not: T (h − T / (2 t f_c)) is largest at T = t f_c h."""
+    whole = strut(JointMaterial(3.0, compressive_strength=1e6, cap_shear=0.0))
+    middle = [bool((whole.joints.block[j] < 2).all()) for j in range(len(whole.joints))]
+    scene = replace(
+        whole,
+        joint_materials=(whole.joint, JointMaterial(3.0, name="strong")),
+        material_of_joint=np.array(middle, dtype=np.int64),
+    )
+    assert collapse(scene) == pytest.approx(THICKNESS * 1e6 * 0.2**2, rel=NARROW)
+    state = limit_state(equilibrium(scene).with_crushing().under_live_load())
+    assert max(value for name, value in state.measures.items() if name not in ("gap", "complementarity")) < 1e-9
+
+
+# --- walls by fibres -----------------------------------------------------------------------------------------
+
+
+def fibre_load(scene: Scene, n: int) -> float:
+    """Largest λ that tractions, one on each of n pieces of every joint, balance, from equations of its own."""
+    joints, free = scene.joints, movable_freedoms(scene)
+    start, run = joints.ends[:, 0], joints.ends[:, 1] - joints.ends[:, 0]
+    tangent = run / joints.length[:, None]
+    normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+    at = start[:, None] + (np.arange(n) + 0.5)[None, :, None] / n * run[:, None]
+    count = len(joints) * n
+    columns = np.zeros((3 * len(scene.blocks), 2 * count + 1))
+    pull = np.stack([np.repeat(part, n, axis=0) for part in (normal, tangent)])  # on a; on b the opposite
+    for side, sense in ((0, 1.0), (1, -1.0)):
+        block = np.repeat(joints.block[:, side], n)
+        arm = at.reshape(-1, 2) - scene.blocks.centroid[block]
+        for kind in range(2):
+            force = sense * pull[kind] * np.repeat(joints.length * scene.thickness / n, n)[:, None]
+            moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+            for row, part in enumerate((force[:, 0], force[:, 1], moment)):
+                np.add.at(columns, (3 * block + row, kind * count + np.arange(count)), part)
+    dead, live = dead_load(scene)[free], live_load(scene)[free]
+    unit, strength = np.abs(dead).max() or 1.0, scene.joint.compressive_strength or math.nan
+    columns[free, -1] = live
+    columns[:, :-1] *= strength / unit
+    columns[:, -1] /= unit
+    joint = scene.joint
+    program = fibres(joint.friction, joint.cohesion / strength, joint.tension / strength, 1.0, joint.cap_shear, count)
+    cone, ellipse = (csc_matrix(hstack([part, csc_matrix((part.shape[0], 1))])) for part in program[:2])
+    cost = np.append(np.zeros(2 * count), 1.0)
+    return largest(cost, csc_matrix(columns[free]), -dead / unit, cone, ellipse, *program[2:])
+
+
+@pytest.mark.parametrize("shear", [0.0, 9.0])
+@pytest.mark.parametrize(
+    ("strength", "friction", "cohesion"), [(3e5, 0.7, 0.0), (2e4, 0.7, 0.0), (3e4, 0.5, 3e3), (2e4, 0.2, 0.0)]
+)
+def test_the_bracket_holds_what_fibres_carry(shear: float, strength: float, friction: float, cohesion: float) -> None:
+    """A wall of five blocks whose joints are 60 fibres each: below the upper bound, and hardly below the lower."""
+    scene = courses(
+        [[0.5, 0.5], [1], [0.5, 0.5]],
+        joint={
+            "friction": friction,
+            "cohesion": cohesion,
+            "tensile_strength": cohesion / 4,
+            "compressive_strength": strength,
+            "cap_shear": shear,
+        },
+    )
+    outcome, found = limit(scene), fibre_load(scene, 60)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.upper - outcome.lower <= NARROW * outcome.upper
+    assert (1 - 1e-3) * outcome.lower <= found <= outcome.upper * (1 + 1e-7)
+    assert fibre_load(scene, 20) <= found * (1 + 1e-7)
+
+
+def test_the_inner_polyhedron_grows_to_the_set() -> None:
+    """Lower bounds rise with resultants known, and are never above the upper ones."""
+    system = equilibrium(panel(joint__compressive_strength=3e4, wall__height=0.36)).with_crushing()
+    joints = system.crushing
+    assert joints is not None
+    known, bounds = first_resultants(joints), []
+    for _ in range(6):
+        found = InnerProgram(system, joints, known).vertex()
+        bounds.append((found.multiplier, system.kinematic_multiplier(found.motion)))
+        known = known.nearer(joints, system.crushed_jumps(found.motion))
+    lower, upper = np.array(bounds).T
+    assert (np.diff(lower) >= -1e-9).all()
+    assert lower.max() <= upper.min() + 1e-9
+    assert upper[-1] - lower[-1] < (upper[0] - lower[0]) / 5
+
+
+# --- what must not change ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("name", "strength"), [("panel-01", 1e6), ("wall-w1", 3e10)])
+def test_a_strength_without_end_changes_nothing(name: str, strength: float) -> None:
+    """To 1e-6; one far beyond all forces is left out, and that is said."""
+    scene = published_scene(name)
+    exact, found, beyond = (limit(scene.with_joint(compressive_strength=f)) for f in (None, strength, 1e15))
+    assert found.lower == pytest.approx(exact.lower, rel=1e-6)
+    assert found.upper == pytest.approx(exact.upper, rel=1e-6)
+    assert (beyond.lower, beyond.upper) == (exact.lower, exact.upper)
+    assert "are taken not to crush" in beyond.message
+    assert "crush" not in exact.message
+
+
+def test_a_wall_s_load_grows_with_the_strength_of_its_joints() -> None:
+    """Random walls of all keys, up to what they bear without crushing."""
+    found = 0
+    for seed in range(8):
+        content = random_scene(seed)
+        exact = limit(scene_from_dict(content))
+        if exact.status != "collapse" or scene_from_dict(content).settlement is not None:
+            continue
+        tables = [content["joint"], *content.get("joints", {}).values()]
+        loads = []
+        for strength in (1e5, 4e5, 1e7):
+            for table in tables:
+                table["compressive_strength"] = strength
+            outcome = limit(scene_from_dict(content))
+            assert outcome.status in ("collapse", "infeasible"), outcome.message
+            if outcome.lower is not None and outcome.upper is not None:
+                loads += [outcome.lower, outcome.upper]
+        unit = abs(exact.upper or 0.0)
+        assert (np.diff([*loads, exact.upper]) >= -1e-6 * unit - 1e-9).all()
+        found += len(loads) > 2
+    assert found > 1
+
+
+@pytest.mark.parametrize("seed", range(101, 105))
+def test_a_mirrored_wall_crushes_alike(seed: int) -> None:
+    content = random_scene(seed)
+    if content["support"]["kind"] == "corners":
+        content["support"]["kind"] = "pinned-corners"
+    content["assign"] = [entry for entry in content.get("assign", []) if "blocks" not in entry]
+    content["joint"]["compressive_strength"] = 2e5
+    one, two = (limit(scene_from_dict(tables)) for tables in (content, mirrored(copy.deepcopy(content))))
+    assert one.status == two.status
+    if one.multiplier is not None:
+        assert one.multiplier == pytest.approx(two.multiplier, rel=2e-6, abs=1e-7)
+
+
+# --- all else that a wall may have ---------------------------------------------------------------------------
+
+TIE = {"from": [0.03, 0.33], "to": [-1.0, 0.1], "area": 1e-4, "young": 2e11, "yield": 30.0}
+BEAM = {"height": 0.1, "force": [0, -2e3], "drive": {"force": [1, 0]}}
+SINKS = {"kind": "settlement", "box": [[0.75, -1], [4, 0.01]], "by": [0.0, -0.01]}
+WALLS: dict[str, dict[str, Any]] = {
+    "dry": {"joint__friction": 1.2},
+    "cohesive and tied": {"tie": [TIE], "joint__cohesion": 2e3, "joint__tensile_strength": 1e3},
+    "level beam": {"beam": BEAM | {"condition": "level"}},
+    "beam at its height": {"beam": BEAM | {"condition": "fixed-height"}},
+    "sinking": {"load__live": SINKS},
+    "pinned corners": {"support__kind": "pinned-corners", "joint__cohesion": 1e4},
+    "inset": {"joint__inset": 0.01, "joint__cap_shear": 0.0},
+    "capped all round": {"joint__cohesion": 3e4, "joint__tensile_strength": 1e4, "wall__height": 0.24},
+}
+
+
+@pytest.fixture(scope="module")
+def checker() -> Any:
+    """The script that shares no code with the suite."""
+    path = Path(__file__).parents[2] / "tools" / "check_limit.py"
+    spec = spec_from_file_location("check_limit", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def crushing_panel(name: str) -> Scene:
+    """A panel 0.96 m × 0.36 m."""
+    size = {"wall__length": 0.96, "wall__height": 0.36, "joint__compressive_strength": 4e4}
+    return panel(**{**size, **WALLS[name]})
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_forces_and_mechanism_are_proved_by_others(name: str, checker: Any, tmp_path: Path) -> None:
+    """By the checker's own tractions and equations."""
+    scene = crushing_panel(name)
+    outcome = run_model("limit", scene)
+    assert outcome.status == "collapse", outcome.message
+    assert "not taken into account" not in outcome.message
+    save_outcome(outcome, tmp_path, "", scene)
+    assert checker.check(tmp_path)
+
+
+@pytest.mark.parametrize("array", ["force", "motion", "multiplier"])
+def test_the_checker_sees_what_crushes_too_little_or_too_late(array: str, checker: Any, tmp_path: Path) -> None:
+    """A block whose toe bears more than it can, in balance; a motion and a multiplier that do not go together."""
+    scene = crushing_panel("dry")
+    weaker = scene.with_joint(compressive_strength=0.9 * 4e4)
+    outcome = limit(scene)
+    if array == "force":
+        save_outcome(outcome, tmp_path, "", weaker)
+    elif array == "motion":
+        save_outcome(replace(outcome, motion=outcome.motion * [1.001, 1, 1]), tmp_path, "", scene)
+    else:
+        changed = {bound: 1.001 * getattr(outcome, bound) for bound in ("lower", "multiplier", "upper")}
+        save_outcome(replace(outcome, **changed), tmp_path, "", scene)
+    assert not checker.check(tmp_path)
+
+
+def test_forces_at_the_ends_are_what_points_without_a_cap_might_carry() -> None:
+    scene = crushing_panel("cohesive and tied")
+    system, force = equilibrium(scene), limit(scene).force / equilibrium(scene).force_unit
+    assert system.strength.violation(*force.T).max() < 1e-9 * np.abs(force).max()
+
+
+def test_true_friction_leaves_the_strength_out_and_says_so() -> None:
+    scene = courses([[1], [1]], joint__compressive_strength=2e4)
+    outcome, without = (run_model("limit-nonassociated", scene.with_joint(compressive_strength=f)) for f in (2e4, None))
+    assert "not taken into account: joint.compressive_strength" in outcome.message
+    assert outcome.lower == without.lower
+    assert outcome.lower is not None
+    assert collapse(scene) < 0.9 * outcome.lower
+
+
+def test_a_large_wall_is_bracketed_by_the_repaired_interior_point() -> None:
+    """204 blocks that slide, whatever crushes."""
+    scene = panel(wall__length=2.16, wall__height=1.32, joint__compressive_strength=5e5)
+    assert is_large(equilibrium(scene))
+    outcome = limit(scene)
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower <= 0.6 * (1 + 1e-9)
+    assert outcome.upper >= 0.6 * (1 - 1e-9)
+    assert outcome.upper - outcome.lower <= 1e-4 * 0.6
