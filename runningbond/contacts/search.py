@@ -175,7 +175,8 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Arra
     """Area of each end of facing sides after a motion ``(3 nb,)``, ``(n,)`` [m²].
 
     Half the joint's that they made on the undeformed wall. Sides that meet later have half of what they overlap now,
-    at least `LEAST_OVERLAP`: as one block slides from the first onto the second, the second one's share grows.
+    at least `LEAST_OVERLAP`, at most half the shorter one, which is what running bond gives them from the start: as a
+    block slides from one onto another, the share of that one grows.
     """
     length, joints = outline.length, outline.joints.length
     corners, after = outline.corners(motion), outline.blocks.successor
@@ -183,7 +184,7 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Arra
     first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
     overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)
     shorter = np.minimum(length[e], length[f])
-    later = np.clip(overlap, LEAST_OVERLAP * shorter, shorter)
+    later = np.clip(overlap, LEAST_OVERLAP * shorter, shorter / 2)
     shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later
     return shared * outline.thickness / 2
 
