@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from dem.dynamic import dem_dynamic, finite_pushover
 from dem.finite_system import finite_system
 from runningbond.compare import run_model
+from runningbond.compare.recording import MotionRecorder
 from runningbond.dynamics import Carried, Run, State
 from runningbond.dynamics.contact_update import contacts_of
 from runningbond.results import Outcome
@@ -120,6 +121,35 @@ def test_five_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str,
     assert column(outcome, "ground vertical [N]") == pytest.approx(2e4, rel=1e-3)
     exact = 2 * force / (STIFFNESS * 0.2 * length) + force * height**2 / (STIFFNESS * 0.2 * length**3 / arm)
     assert outcome.curve[-1, 0] == pytest.approx(exact, rel=5e-3)
+
+
+def test_a_toe_that_crushes_shortens_the_lever() -> None:
+    """The first two points share N = f_m A / 10, of which the first one bears f_m A / 20 and the second the rest.
+
+    The latter lies (1 − √(3/7)) / 2 of the length inside, so V = N (b − half of that) / h, under a line that is fixed.
+    """
+    joint = {"joint__compressive_strength": 2.5e6, "joint__cap_shear": 0.0}
+    scene = rig(**joint, beam__force_line="fixed", beam__drive={"displacement": [0.02, 0], "at": 0.6})
+    exact = 2e4 * (0.2 - 0.4 * (1 - math.sqrt(3 / 7)) / 4) / 0.6
+    assert force_at(finite(scene), 0.018) == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+@pytest.mark.parametrize("strength", [None, 1e12])
+def test_frames_of_a_rig_show_its_joints(model: str, strength: float | None) -> None:
+    """The last frame's tractions bear what lies on the ground, and the joint that has opened is as wide as it looks."""
+    changes: dict[str, Any] = {"block": {"density": 1000.0, "young": 1e12}}
+    if strength:
+        changes["joint__compressive_strength"] = strength
+    scene = rig(**changes, beam__drive={"displacement": [0.003, 0], "at": 0.6})
+    recorder = MotionRecorder(scene, None)
+    outcome = run_model(model, scene, observe=recorder, displacements="finite")
+    frame, points = recorder.frames[-1], recorder.discretisation.points
+    ground = (points.block == 2).any(axis=1)
+    assert (frame.normal * points.area)[ground].sum() == pytest.approx(-2e4, rel=0.01)
+    rotation = abs(column(outcome, "beam rotation [rad]")[-1])
+    assert np.ptp(frame.opening[ground]) == pytest.approx(0.4 * rotation, rel=0.01)
+    assert outcome.force[:, 0].sum() == pytest.approx(-4e4, rel=0.02)
 
 
 def test_pushed_the_other_way_a_wall_does_the_same() -> None:
