@@ -155,7 +155,7 @@ def test_frames_of_a_rig_show_its_joints(model: str, strength: float | None) -> 
 def test_pushed_the_other_way_a_wall_does_the_same() -> None:
     changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "inner_joint": GLUE}
     outcomes = [
-        finite(rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [sign * 0.01, 0], "at": 0.3}))
+        finite(rig(3, 0.2, 0.3, **changes, beam__drive={"displacement": [sign * 0.003, 0], "at": 0.3}))
         for sign in (1, -1)
     ]
     right, left = outcomes
