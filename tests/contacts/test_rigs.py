@@ -128,7 +128,7 @@ def test_a_toe_that_crushes_shortens_the_lever() -> None:
 
     The latter lies (1 − √(3/7)) / 2 of the length inside, so V = N (b − half of that) / h, under a line that is fixed.
     """
-    joint = {"joint__compressive_strength": 2.5e6, "joint__cap_shear": 0.0}
+    joint: dict[str, Any] = {"joint__compressive_strength": 2.5e6, "joint__cap_shear": 0.0}
     scene = rig(**joint, beam__force_line="fixed", beam__drive={"displacement": [0.02, 0], "at": 0.6})
     exact = 2e4 * (0.2 - 0.4 * (1 - math.sqrt(3 / 7)) / 4) / 0.6
     assert force_at(finite(scene), 0.018) == pytest.approx(exact, rel=0.01)
