@@ -23,11 +23,11 @@ STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "in
 CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
-CRUSHING = SOFTENING | {
+INTERFACE = SOFTENING | {
     *("joint.compressive_strength", "joint.compressive_fracture_energy", "joint.cap_shear", "joint.peak_closure"),
     "joint.closure",
 }
-ELASTIC = CRUSHING | {"block.young", "block.poisson"}
+ELASTIC = INTERFACE | {"block.young", "block.poisson"}
 
 EXTRAS = frozenset(
     {
@@ -103,7 +103,7 @@ _EVERY_MODEL = (
         marker="v",
     ),
     Model(
-        *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, CRUSHING, "history"),
+        *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, INTERFACE, "history"),
         parameters=(*IN_STEPS, "displacements"),
         observer=_MOTION_RECORDER,
         progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
