@@ -35,7 +35,7 @@ class MeasuredWall:
     peaks
         Largest horizontal force [N] to one side, and to the other where it was pushed there.
     modes
-        How it failed, in the words of the table: R, TC, F, SL. Empty where that is not said.
+        How it failed, in the words of the table, such as R, TC, F, SL. Empty where that is not said.
     scene_file, cracks
         Its scene where it is not made from the row, and the drawing of its cracks.
     """

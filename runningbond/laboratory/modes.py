@@ -23,8 +23,8 @@ HALF = 0.5
 
 
 def measured_modes(words: Iterable[str]) -> tuple[str, ...]:
-    """Modes that the words of a report name."""
-    return tuple(dict.fromkeys(GROUPS[word] for word in words))
+    """Modes that the words of a report name; words of others are passed over."""
+    return tuple(dict.fromkeys(GROUPS[word] for word in words if word in GROUPS))
 
 
 def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:

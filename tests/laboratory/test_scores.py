@@ -131,7 +131,7 @@ def test_wall_that_rests_has_no_mode(granite: Scene) -> None:
 
 def test_words_of_reports_name_modes_once() -> None:
     assert measured_modes(("R", "TC")) == (ROCKING,)
-    assert measured_modes(("TC", "SL")) == (ROCKING, SLIDING)
+    assert measured_modes(("TC", "SL", "MIXED")) == (ROCKING, SLIDING)
 
 
 # --- formulas, totals --------------------------------------------------------------------------------------
