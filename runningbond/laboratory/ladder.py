@@ -26,6 +26,7 @@ class Rung:
     model: Model
     features: Features
     is_by_hand: bool = False
+    is_one_way: bool = False  # too dear for walls that are pushed to and fro
 
     @property
     def name(self) -> str:
@@ -71,7 +72,8 @@ def _hand(name: str, title: str) -> Rung:
 
 def _rung(name: str, title: str, base: str, features: Features, colour: str, marker: str, **settings: Any) -> Rung:
     solve = partial(_run, base=base, settings=settings)
-    return Rung(replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker), features)
+    model = replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker)
+    return Rung(model, features, is_one_way=base == "fem")
 
 
 FINITE: dict[str, Any] = {"displacements": "finite"}
