@@ -23,10 +23,7 @@ STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "in
 CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
-INTERFACE = SOFTENING | {
-    *("joint.compressive_strength", "joint.compressive_fracture_energy", "joint.cap_shear", "joint.peak_closure"),
-    "joint.closure",
-}
+INTERFACE = SOFTENING | CRUSHING | {"joint.compressive_fracture_energy", "joint.peak_closure", "joint.closure"}
 ELASTIC = INTERFACE | {"block.young", "block.poisson"}
 
 EXTRAS = frozenset(

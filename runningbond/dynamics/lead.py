@@ -38,8 +38,8 @@ class Way:
     motion: Array  # (nd,) how the wall moved where it had come farthest
     moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[tuple[float, float]] = field(default_factory=list)  # displacement [m] and force
-    # (np, 2) forces of the joint points [N] in each; at finite displacements resultants on the bodies, `Run.resultants`
-    points: list[Array] = field(default_factory=list)
+    points: list[Array] = field(default_factory=list)  # (np, 2) forces of the joint points [N], at small displacements,
+    resultants: list[Array] = field(default_factory=list)  # or (n, 3) `Run.resultants` on the bodies, at finite ones
     ties: list[Array] = field(default_factory=list)  # (nt,) forces of the ties [N] in each
     works: list[tuple[float, float]] = field(default_factory=list)  # of the dead load and of what leads [J]
     beam: list[tuple[float, float, float]] = field(default_factory=list)  # `BEAM` of one that is driven
@@ -89,8 +89,10 @@ class Lead:
         """Add a row of a state to a way."""
         dead = self.run.dead_work(state)
         way.rows.append((moved, force))
-        finite = self.run.system.contacts is not None
-        way.points.append(self.run.resultants(state, force) if finite else np.column_stack(self.run.forces(state)))
+        if self.run.system.contacts is None:
+            way.points.append(np.column_stack(self.run.forces(state)))
+        else:
+            way.resultants.append(self.run.resultants(state, force))
         if not self.settles and self.scene.beam is not None:
             _, uplift, rotation = self.run.system.motion_of_blocks(state.motion - self.start.motion)[
                 self.scene.beam.block

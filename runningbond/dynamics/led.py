@@ -19,7 +19,7 @@ from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, settle
 from .lead import BEAM, Lead, Way
-from .run import Observer, Run, Unstable
+from .run import CALMING, Observer, Run, Unstable
 from .state import State
 
 STEPS, UNHURRIED, FAR = 20_000, 20, 2
@@ -58,7 +58,8 @@ def collapse_of_led(
     """
     state, ways, answers = State.at_rest(run.system), list[Way](), list[float]()
     try:
-        verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
+        resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
+        verdict = settle(resting, state, 0.0, criteria, observe, sudden=True)
         outcome = replace(outcome, steps=state.steps)
         if verdict == "collapse":
             return replace(outcome, status="infeasible", message="collapses under its dead load")
@@ -81,10 +82,8 @@ def collapse_of_led(
         return replace(outcome, message="interrupted: the way so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    # Of the way alone, for its rest is balanced. What a support hardly moves does hardly any work, nor does a way that
-    # ends where it began.
-    most = max(float(np.abs(way.works).sum(axis=1).max()), LITTLE * run.system.carried.work)
-    lost = abs(run.ledger(last).residual - run.ledger(state).residual) / most if most else 0.0
+    # What a support hardly moves does hardly any work.
+    lost = run.unaccounted(last, LITTLE * run.system.carried.work)
     outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -141,7 +140,7 @@ def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Wa
     supports, works, beam = Supports(scene, points, run.system.owner), np.array(way.works), np.array(way.beam)
     columns = (*supports.columns, *WORKS, AT_REST)
     if run.system.contacts is not None:
-        held = np.array(way.points)[:, supports.block]
+        held = np.array(way.resultants)[:, supports.block]
         held[:, :, 2] -= supports.about[:, 0] * held[:, :, 1] - supports.about[:, 1] * held[:, :, 0]
         path = np.column_stack([-held.reshape(len(held), -1), works, np.zeros(len(held))])
     else:

@@ -22,8 +22,8 @@ from .time_step import stable_step
 LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
 
-MOVING = 0.2
-"""Local damping α of what moves far: less than at rest, for it drags."""
+MOVING, CALMING = 0.2, 0.8
+"""Local damping α of what moves far: less than at rest, for it drags; and more while it comes to rest before that."""
 
 Observer: TypeAlias = Callable[["Run", State, float], None]
 """Looks at a run, its state and the multiplier, now and then, and changes none of them."""
@@ -192,14 +192,14 @@ class Run:
         state.velocity[self.system.late] = 0.0
         return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
 
-    def unaccounted(self, state: State) -> float:
-        """Share of the work of the loads that the energy ledger misses.
+    def unaccounted(self, state: State, least: float = 0.0) -> float:
+        """Share of the work of the loads, or of a least one [J], that the energy ledger misses.
 
         Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
         """
         ledger = self.ledger(state)
         dead = self.dead_work(state)
-        work = abs(dead) + abs(ledger.external - dead)
+        work = max(abs(dead) + abs(ledger.external - dead), least)
         return abs(ledger.residual) / work if work else 0.0
 
     def dead_work(self, state: State) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from runningbond.scene import Array, JointMaterial
 
-from .closure import closure_curve, pressure_at, stiffness_at, stored_at
+from .closure import Curve, closure_curve, pressure_at, stiffness_at, stored_at
 from .compiled import kernel
 from .coulomb import PLASTIC_SLIP
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
@@ -42,6 +42,25 @@ def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangent
     closed = stored_at.py_func(np.maximum(0.0, -normal), curve)
     opened = np.maximum(0.0, normal) * np.maximum(0.0, opening) / 2
     return np.asarray(closed + opened + tangential**2 / (2 * points.shear_stiffness))
+
+
+@kernel
+def snapped(
+    before: tuple[float, float],
+    after: tuple[float, float],
+    change: tuple[float, float],
+    curve: Curve,
+    flexibility: float,
+) -> float:
+    """All that is put into a point and not stored in a step [J/m²]: more than the cap spends, where it snaps.
+
+    From a closure [m] and a shear [Pa] to a pressure and a shear [Pa], by a change of both jumps [m].
+    """
+    p_before, (p, t) = pressure_at(before[0], curve), after
+    put_in = 0.5 * ((before[1] + t) * change[1] - (p_before + p) * change[0])
+    released = stored_at(p_before, curve) - stored_at(p, curve)
+    energy: float = max(0.0, put_in + released + 0.5 * (before[1] * before[1] - t * t) * flexibility)
+    return energy
 
 
 @kernel
@@ -111,13 +130,8 @@ def interface_kernel(
                     kappa = crushed[i] + mu * math.sqrt(p * p + cap_shear * t * t)
                     work = work_until(kappa, cap) - work_until(crushed[i], cap) - flowed * held
                     if sudden:
-                        # All that is put in and not stored: more than the cap spends, in a step where it snaps.
-                        p_before = pressure_at(max(0.0, -opening_before[i] - seat[i]), curve)
-                        t_before = k_t * (slip_before[i] - plastic_slip[i])
-                        put_in = 0.5 * ((t_before + held) * change_t - (p_before + p) * change_n)
-                        released = stored_at(p_before, curve) - stored_at(p, curve)
-                        released += 0.5 * (t_before * t_before - t * t) * flexibility
-                        work = max(0.0, put_in + released) - held * slid
+                        was = (max(0.0, -opening_before[i] - seat[i]), k_t * (slip_before[i] - plastic_slip[i]))
+                        work = snapped(was, (p, held), (change_n, change_t), curve, flexibility) - held * slid
                     spent[i] += work
                     crushed[i] = kappa
                     seat[i] += p * mu

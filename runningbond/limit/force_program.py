@@ -102,24 +102,31 @@ class ForceSolution:
 
 def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> dict[str, Any]:
     """Arguments of `scipy.optimize.linprog` that look for a multiplier which forces of a set can balance."""
-    n, n_pins, n_rays, n_ties = len(system.points), system.reaction.shape[1], len(forces.slopes), len(system.tie_yield)
     rays = [system.slip.multiply(slope).tocsc() - system.opening for slope in forces.slopes]
     shear = [system.slip] if forces.has_shear else []
     others = [*shear, system.tie, system.reaction, csc_array(-system.live[:, None])]
     matrix = csc_array(hstack([*rays, *others], format="csc"))
-    bounds = np.zeros((matrix.shape[1], 2))
-    bounds[: n_rays * n, 1] = np.concatenate(list(forces.most))
-    if forces.has_shear:
-        bounds[n_rays * n : (n_rays + 1) * n] = np.column_stack([forces.shear_low, forces.shear_high])
-    bounds[-1 - n_pins - n_ties : -1 - n_pins, 0] = 0.0 if forces.tie_low is None else forces.tie_low
-    bounds[-1 - n_pins - n_ties : -1 - n_pins, 1] = system.tie_yield if forces.tie_high is None else forces.tie_high
-    bounds[-1 - n_pins : -1] = -np.inf, np.inf
-    bounds[-1 - max(0, n_pins - len(system.scene.pins)) : -1, 0] = forces.late_least
-    bounds[-1] = (0.0, 0.0) if aim == "zero" else (system.least, np.inf)
+    bounds = bounds_of(system, forces, has_shear=forces.has_shear)
+    if aim == "zero":
+        bounds[-1] = 0.0, 0.0
     cost = np.zeros(matrix.shape[1])
-    cost[-1] = {"largest": -1.0, "smallest": 1.0, "zero": 0.0}[aim] * _mechanism_scale(system)
+    cost[-1] = {"largest": -1.0, "smallest": 1.0, "zero": 0.0}[aim] * mechanism_scale(system)
     right = system.dead - system.opening @ system.strength.tension
     return {"c": cost, "A_eq": matrix, "b_eq": right, "bounds": bounds}
+
+
+def bounds_of(system: Equilibrium, forces: ForceSet, *, has_shear: bool) -> Array:
+    """Bounds ``(n, 2)`` of pressures on rays, shears if there are any, pulls of ties, reactions, and the multiplier."""
+    n_pins, n_ties = system.reaction.shape[1], len(system.tie_yield)
+    late = n_pins - len(system.scene.pins)
+    shears = (forces.shear_low, forces.shear_high) if has_shear else ([], [])
+    tie_low = np.zeros(n_ties) if forces.tie_low is None else forces.tie_low
+    tie_high = system.tie_yield if forces.tie_high is None else forces.tie_high
+    held = np.repeat([-np.inf, forces.late_least], [n_pins - late, late])
+    rays = len(forces.slopes) * len(system.points)
+    low = np.concatenate([np.zeros(rays), shears[0], tie_low, held, [system.least]])
+    high = np.concatenate([*forces.most, shears[1], tie_high, np.full(n_pins + 1, np.inf)])
+    return np.column_stack([low, high])
 
 
 def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *, method: str = "") -> ForceSolution:
@@ -138,26 +145,26 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
 def solution_of(
     system: Equilibrium, forces: ForceSet, status: ProgramStatus, found: Array, marginals: Array, iterations: int
 ) -> ForceSolution:
-    """Unknowns ``(n,)`` and multipliers of equations ``(nd,)`` of a `force_program`, by what they are."""
+    """Unknowns ``(n,)``, as of `bounds_of`, and multipliers of equations ``(nd,)``, by what they are."""
     n, n_pins, n_rays = len(system.points), system.reaction.shape[1], len(forces.slopes)
     ties = slice(len(found) - 1 - n_pins - len(system.tie_yield), len(found) - 1 - n_pins)
     rays = found[: n_rays * n].reshape(n_rays, n)
     tangential = (np.asarray(forces.slopes) * rays).sum(axis=0)
-    if forces.has_shear:
-        tangential = tangential + found[n_rays * n : (n_rays + 1) * n]
+    if len(shear := found[n_rays * n : ties.start]):
+        tangential = tangential + shear
     return ForceSolution(
         status,
         float(found[-1]),
         rays.sum(axis=0),
         tangential,
         found[-1 - n_pins : -1],
-        marginals / _mechanism_scale(system),
+        marginals / mechanism_scale(system),
         iterations,
         found[ties],
     )
 
 
-def _mechanism_scale(system: Equilibrium) -> float:
+def mechanism_scale(system: Equilibrium) -> float:
     """Power unit that brings a mechanism's motions to order one, far above the solver's dual tolerance.
 
     With unit power the motions of a wall of a thousand blocks are a thousandth each, and its smallest

@@ -26,7 +26,7 @@ from .interior_point import interior_point
 from .search import Observer, Search, averaged
 
 POINTS = 4500
-"""Joint points, six or so a block, from which a wall is large."""
+"""Joint points, six or so a block, from which a wall is searched so."""
 
 ROUGH = 1e-6
 """Relative tolerance of programs that only bring pressures up to date, and of whether there are forces."""
@@ -42,8 +42,8 @@ IN_A_ROW = 2
 """Certificates in a row that end the sequence."""
 
 
-def is_large(system: Equilibrium) -> bool:
-    """Whether a wall is searched in this way."""
+def takes_one_start(system: Equilibrium) -> bool:
+    """Whether a wall is too large for more than this."""
     return len(system.points) >= POINTS
 
 

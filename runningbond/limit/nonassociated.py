@@ -17,7 +17,7 @@ from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
-from .large import is_large, search_large
+from .large import search_large, takes_one_start
 from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
 from .remarks import remarks
 from .search import STARTS, Observer, Search, search
@@ -92,7 +92,7 @@ def _collapse(
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
     ordered = order.applied(cut)
-    associated = None if is_large(ordered) else solve_forces(ordered, coulomb(ordered.strength))
+    associated = None if takes_one_start(ordered) else solve_forces(ordered, coulomb(ordered.strength))
     result = (
         search_large(ordered, observe) if associated is None else search(ordered, associated, starts, workers, observe)
     )

@@ -12,7 +12,7 @@ from scipy.sparse import csc_array, hstack
 from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
-from .force_program import ForceSet, ForceSolution, frozen_friction
+from .force_program import ForceSet, ForceSolution, bounds_of, frozen_friction, mechanism_scale, solution_of
 from .simplex import DUAL, PRIMAL, Simplex
 
 NO_FORCE = 1e-7
@@ -49,7 +49,7 @@ class Programs:
         self._frozen = model(-system.opening, right=right)
         self._moved = model(system.opening, right=np.zeros(system.freedoms))
         self._models = self._driven, self._frozen, self._moved
-        self._power = float(np.abs(system.live).sum()) or 1.0
+        self._power = mechanism_scale(system)
 
     @property
     def corners(self) -> Corners:
@@ -115,30 +115,17 @@ class Programs:
         method: int = DUAL,
         pivots: int | None = None,
     ) -> ForceSolution:
-        system, n, rays = self.system, len(self.system.points), len(forces.slopes)
-        n_pins, n_ties = system.reaction.shape[1], len(system.tie_yield)
-        late = n_pins - len(system.scene.pins)
-        tie_low = np.zeros(n_ties) if forces.tie_low is None else forces.tie_low
-        tie_high = system.tie_yield if forces.tie_high is None else forces.tie_high
-        held = np.repeat([-np.inf, forces.late_least], [n_pins - late, late])
-        low = np.concatenate([np.zeros(rays * n), forces.shear_low, tie_low, held, [system.least]])
-        high = np.concatenate([*forces.most, forces.shear_high, tie_high, np.full(n_pins + 1, np.inf)])
+        low, high = bounds_of(self.system, forces, has_shear=True).T.copy()
         if multiplier is not None:
             low[-1] = high[-1] = multiplier
         cost = np.zeros(len(low))
         cost[-1] = sense * self._power
         if weights is not None:
-            cost[: rays * n] = np.tile(weights, rays)
+            pressures = np.tile(weights, len(forces.slopes))
+            cost[: len(pressures)] = pressures
         self._count()
         status, found, motion = model.solve(low, high, cost, method, pivots)
         if status not in ("optimal", "budget"):
             none = np.zeros(0)
             return ForceSolution(status, np.nan, none, none, none, none, 0)
-        parts, (shear, tie, held) = (
-            found[: rays * n].reshape(rays, n),
-            np.split(found[rays * n : -1], [n, n + n_ties]),
-        )
-        tangential = (np.asarray(forces.slopes) * parts).sum(axis=0) + shear
-        return ForceSolution(
-            "optimal", float(found[-1]), parts.sum(axis=0), tangential, held, motion / self._power, 0, tie
-        )
+        return solution_of(self.system, forces, "optimal", found, motion, 0)

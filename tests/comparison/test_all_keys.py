@@ -4,7 +4,6 @@ import copy
 import subprocess
 import sys
 from dataclasses import replace
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +14,10 @@ from runningbond.compare.models import MODELS, run_model
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.results import Outcome, save_outcome
 from runningbond.scene import Scene, SceneError, scene_from_dict
+from tests.checker import SCRIPT, check
 from tests.random_scenes import mirrored, random_scene
 from tests.walls import courses
 
-CHECKER = Path(__file__).parents[2] / "tools" / "check_limit.py"
 LIMITS = ("limit", "limit-nonassociated")
 SLACK = 1e-4
 """Load, in weights of the heaviest block, that the criterion of rest cannot see."""
@@ -31,26 +30,15 @@ BUDGETS = {
 }
 
 
-@pytest.fixture(scope="module")
-def checker() -> Any:
-    """The script that shares no code with the suite."""
-    spec = spec_from_file_location("check_limit", CHECKER)
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def _unit(scene: Scene) -> float:
     """Multiplier at which the live load is as large as the heaviest block; of a moving support the whole weight."""
     live = float(np.abs(live_load(scene)).max())
     return float(np.abs(dead_load(scene)).max()) / live if live else 1.0
 
 
-def _proved(checker: Any, outcome: Outcome, scene: Scene, folder: Path) -> None:
+def _proved(outcome: Outcome, scene: Scene, folder: Path) -> None:
     save_outcome(outcome, folder, "", scene)
-    assert checker.check(folder)
+    assert check(folder)
 
 
 def _within(outcome: Outcome, bound: Outcome, scene: Scene) -> None:
@@ -82,33 +70,33 @@ def _outcome(model: str, scene: Scene) -> Outcome | None:
         return None
 
 
-def _holds(seed: int, models: tuple[str, ...], checker: Any, folder: Path) -> str:
+def _holds(seed: int, models: tuple[str, ...], folder: Path) -> str:
     scene = scene_from_dict(random_scene(seed))
     bound = run_model("limit", scene)
     assert bound.status in ("collapse", "unbounded", "infeasible"), bound.message
-    _proved(checker, bound, scene, folder / "limit")
+    _proved(bound, scene, folder / "limit")
     for model in models:
         outcome = _outcome(model, scene)
         if outcome is None:
             continue
         assert model != "limit-nonassociated" or outcome.status != "failed", outcome.message
         if model == "limit-nonassociated":
-            _proved(checker, outcome, scene, folder / model)
+            _proved(outcome, scene, folder / model)
         if model != "homog":  # an estimate, on either side
             _within(outcome, bound, scene)
     return bound.status
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_no_model_bears_more_than_limit_proves(seed: int, checker: Any, tmp_path: Path) -> None:
-    _holds(seed, ("limit-nonassociated", "dem-static"), checker, tmp_path)
+def test_no_model_bears_more_than_limit_proves(seed: int, tmp_path: Path) -> None:
+    _holds(seed, ("limit-nonassociated", "dem-static"), tmp_path)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("start", range(0, 300, 30))
-def test_no_model_bears_more_than_limit_proves_at_length(start: int, checker: Any, tmp_path: Path) -> None:
+def test_no_model_bears_more_than_limit_proves_at_length(start: int, tmp_path: Path) -> None:
     others = tuple(model for model in MODELS if model != "limit")
-    found = [_holds(seed, others, checker, tmp_path) for seed in range(start, start + 30)]
+    found = [_holds(seed, others, tmp_path) for seed in range(start, start + 30)]
     assert found.count("collapse") > len(found) / 3
 
 
@@ -124,13 +112,13 @@ def test_a_mirrored_scene_has_the_mirrored_answer(seed: int) -> None:
 
 
 @pytest.mark.parametrize("array", ["force", "pull", "motion", "multiplier"])
-def test_the_checker_sees_what_is_wrong(array: str, checker: Any, tmp_path: Path) -> None:
+def test_the_checker_sees_what_is_wrong(array: str, tmp_path: Path) -> None:
     """A force, a pull or a motion that is a thousandth off, a multiplier that is: run as a script, it ends with 1."""
     tie = {"from": [0.03, 0.5], "to": [-1.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 5.0}
     scene = courses([[1], [1]], width=0.1, height=0.3, tie=[tie])
     outcome = run_model("limit", scene)
     assert outcome.status == "collapse"
-    _proved(checker, outcome, scene, tmp_path)
+    _proved(outcome, scene, tmp_path)
     value: Any = getattr(outcome, array)
     if array == "multiplier":
         changed = dict.fromkeys(("lower", "multiplier", "upper"), 1.001 * value)
@@ -140,11 +128,11 @@ def test_the_checker_sees_what_is_wrong(array: str, checker: Any, tmp_path: Path
         spoilt[largest] *= 1.001
         changed = {array: spoilt}
     save_outcome(replace(outcome, **changed), tmp_path, "", scene)
-    found = subprocess.run([sys.executable, str(CHECKER), str(tmp_path)], capture_output=True, text=True, check=False)
+    found = subprocess.run([sys.executable, str(SCRIPT), str(tmp_path)], capture_output=True, text=True, check=False)
     assert found.returncode == 1
     assert "WRONG" in found.stdout
 
 
 def test_the_checker_needs_numpy_alone() -> None:
-    imported = [line.split()[1] for line in CHECKER.read_text().splitlines() if line.startswith(("import ", "from "))]
+    imported = [line.split()[1] for line in SCRIPT.read_text().splitlines() if line.startswith(("import ", "from "))]
     assert {name.partition(".")[0] for name in imported} <= {*sys.stdlib_module_names, "numpy"}

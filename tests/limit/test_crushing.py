@@ -3,7 +3,6 @@
 import copy
 import math
 from dataclasses import replace
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +32,7 @@ from runningbond.scene import (
     build_scene,
     scene_from_dict,
 )
+from tests.checker import check
 from tests.limit.test_limit import rectangle
 from tests.random_scenes import mirrored, random_scene
 from tests.walls import courses, panel
@@ -398,18 +398,6 @@ WALLS: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.fixture(scope="module")
-def checker() -> Any:
-    """The script that shares no code with the suite."""
-    path = Path(__file__).parents[2] / "tools" / "check_limit.py"
-    spec = spec_from_file_location("check_limit", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def crushing_panel(name: str) -> Scene:
     """A panel 0.96 m × 0.36 m."""
     size = {"wall__length": 0.96, "wall__height": 0.36, "joint__compressive_strength": 4e4}
@@ -417,18 +405,18 @@ def crushing_panel(name: str) -> Scene:
 
 
 @pytest.mark.parametrize("name", WALLS)
-def test_forces_and_mechanism_are_proved_by_others(name: str, checker: Any, tmp_path: Path) -> None:
+def test_forces_and_mechanism_are_proved_by_others(name: str, tmp_path: Path) -> None:
     """By the checker's own tractions and equations."""
     scene = crushing_panel(name)
     outcome = run_model("limit", scene)
     assert outcome.status == "collapse", outcome.message
     assert "not taken into account" not in outcome.message
     save_outcome(outcome, tmp_path, "", scene)
-    assert checker.check(tmp_path)
+    assert check(tmp_path)
 
 
 @pytest.mark.parametrize("array", ["force", "motion", "multiplier"])
-def test_the_checker_sees_what_crushes_too_little_or_too_late(array: str, checker: Any, tmp_path: Path) -> None:
+def test_the_checker_sees_what_crushes_too_little_or_too_late(array: str, tmp_path: Path) -> None:
     """A block whose toe bears more than it can, in balance; a motion and a multiplier that do not go together."""
     scene = crushing_panel("dry")
     weaker = scene.with_joint(compressive_strength=0.9 * 4e4)
@@ -440,7 +428,7 @@ def test_the_checker_sees_what_crushes_too_little_or_too_late(array: str, checke
     else:
         changed = {bound: 1.001 * getattr(outcome, bound) for bound in ("lower", "multiplier", "upper")}
         save_outcome(replace(outcome, **changed), tmp_path, "", scene)
-    assert not checker.check(tmp_path)
+    assert not check(tmp_path)
 
 
 def test_forces_at_the_ends_are_what_points_without_a_cap_might_carry() -> None:

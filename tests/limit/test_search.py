@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from pathlib import Path
-from runpy import run_path
 
 import numpy as np
 import pytest
@@ -21,10 +20,9 @@ from runningbond.limit.programs import Programs
 from runningbond.limit.search import Search, search
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
+from tests.checker import check
 
 SIZE, CELLS = 2.0, 5
-
-check = run_path(str(Path(__file__).parents[2] / "tools" / "check_limit.py"))["check"]
 
 
 def cells(seed: int) -> list[Array]:
