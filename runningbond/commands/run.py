@@ -76,7 +76,7 @@ def run(
         # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
         save_outcome(outcome, out, "" if stopped else fingerprint(wall, chosen, tolerance), wall)
         if recorder is None:
-            from runningbond.compare.recording import record_mechanism
+            from runningbond.pictures.recording import record_mechanism
 
             record_mechanism(wall, outcome, out)
         else:

@@ -53,7 +53,7 @@ def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
 
 _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(_late, "dem.dynamic", "dem_dynamic")
 _STATIC_RECORDER, _MOTION_RECORDER = (
-    partial(_late, "runningbond.compare.recording", recorder) for recorder in ("StaticRecorder", "MotionRecorder")
+    partial(_late, "runningbond.pictures.recording", recorder) for recorder in ("StaticRecorder", "MotionRecorder")
 )
 
 IN_STEPS = ("collapse", "first_step", "budget")

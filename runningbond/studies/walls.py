@@ -1,4 +1,4 @@
-"""Walls that studies are done on: blocks and walls whose collapse load is known, and their vibrations.
+"""Walls that studies are done on: blocks and walls whose collapse load is known.
 
 While a wall falls in one motion, its blocks' displacements u φ with the largest translation u, the loads drive it by
 (λ − λ_c) F, F = f_live · φ, against the inertia M = Σ m φ² of its blocks. Local damping takes a share α of every
@@ -15,7 +15,6 @@ from functools import cache
 from typing import TypeAlias
 
 import numpy as np
-from scipy.linalg import eigh
 
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
@@ -24,7 +23,7 @@ from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.limit import limit_nonassociated
 from runningbond.results import Outcome
-from runningbond.scene import Array, BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
+from runningbond.scene import BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
 
 from .study import Row
 
@@ -56,30 +55,6 @@ def inset_wall(name: str) -> Scene:
 def bonded(scene: Scene) -> Scene:
     """The same wall with joints that neither open nor slide."""
     return scene.with_joint(cohesion=HOLDS, tensile_strength=HOLDS)
-
-
-def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
-    """Stiffness of the modes that move, blocks and closed joints together, ``(n, n)`` [N/m], and their masses ``(n,)``.
-
-    Assembled from the jumps that each mode makes, one after another.
-    """
-    law, moving, one = system.interface.law, np.flatnonzero(np.isfinite(system.mass)), np.eye(len(system.mass))
-    jump = np.zeros((len(moving), 2, law.points))
-    for row, mode in zip(jump, moving, strict=True):
-        system.interface.gather(one[mode], system.interface.geometry, *row)
-    springs = system.interface.area * np.stack([law.normal_stiffness, law.shear_stiffness])
-    joints = np.einsum("idp,dp,jdp->ij", jump, springs, jump, optimize=True)
-    return joints + np.diag(system.stiffness[moving]), system.mass[moving]
-
-
-def vibrations(system: BlockSystem) -> tuple[Array, Array]:
-    """Frequencies ω [1/s] of a system in ascending order, ``(n,)``, and their shapes, mass-normalised ``(nd, n)``."""
-    stiffness, mass = elastic_stiffness(system)
-    root = 1 / np.sqrt(mass)
-    square, vectors = eigh(stiffness * root[:, None] * root)
-    shapes = np.zeros((len(system.mass), len(mass)))
-    shapes[np.isfinite(system.mass)] = root[:, None] * vectors
-    return np.sqrt(np.maximum(square, 0.0)), shapes
 
 
 def outcome_row(outcome: Outcome) -> Row:

@@ -13,12 +13,12 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem, fem_pushover
 from fem_interface.system import system_of
 from meshing import wall_mesh
-from runningbond.compare.recording import MotionRecorder
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.led import formed
 from runningbond.dynamics.ties import tie_rows
 from runningbond.joints import joint_stiffness
+from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
 from runningbond.scene import (
     Array,

@@ -20,10 +20,10 @@ from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.controls import ramp
+from runningbond.dynamics.vibrations import elastic_stiffness as of_modes
+from runningbond.dynamics.vibrations import vibrations
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError
-from runningbond.studies.walls import elastic_stiffness as of_modes
-from runningbond.studies.walls import vibrations
 from tests.limit.test_limit import rectangle
 from tests.walls import panel
 

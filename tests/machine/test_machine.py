@@ -15,10 +15,10 @@ import pytest
 
 from runningbond.commands.command_line import command, main
 from runningbond.compare.published import find_scene
-from runningbond.compare.recording import StaticRecorder
 from runningbond.limit import limit
 from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.pictures.recording import StaticRecorder
 from runningbond.pictures.time_series import frame_files
 from runningbond.results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
 from tests.walls import courses

@@ -15,13 +15,13 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
 from runningbond.compare.fingerprint import fingerprint
 from runningbond.compare.models import run_model
-from runningbond.compare.recording import MotionRecorder, StaticRecorder, record_mechanism, stresses
 from runningbond.joints import wall_points
 from runningbond.joints.coulomb import COULOMB
 from runningbond.limit import limit
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.pictures.joint_state import JointState, states_of_mechanism, states_under_load
 from runningbond.pictures.mechanism import mechanism_frame
+from runningbond.pictures.recording import MotionRecorder, StaticRecorder, record_mechanism, stresses
 from runningbond.pictures.time_series import MAX_FRAMES, TimeSeries, frame_files, read_grid
 from runningbond.pictures.vtk_safety import VtkError, vtk_errors_raised
 from runningbond.results import Outcome, StoreError, load_scene, save_outcome, write_atomically

@@ -7,8 +7,9 @@ from fem_interface.mass_scaling import LOST, LOWEST
 from fem_interface.modal_wall import modal_wall
 from fem_interface.model import fem
 from fem_interface.system import system_of
+from runningbond.dynamics.vibrations import vibrations
 from runningbond.studies.stability.block_stiffness import uniformly_scaled, wall
-from runningbond.studies.walls import INSET, vibrations
+from runningbond.studies.walls import INSET
 
 
 @pytest.mark.parametrize("young", [1e10, 1e12])

@@ -13,6 +13,7 @@ from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, Unstable, collapse_by_steps, drive, settle
 from runningbond.dynamics.central_differences import LOOK
+from runningbond.dynamics.vibrations import elastic_stiffness, vibrations
 from runningbond.limit.kinematics import jump_operator
 from runningbond.scene import Scene
 from runningbond.studies.stability.time_step import (
@@ -25,7 +26,7 @@ from runningbond.studies.stability.time_step import (
     mass_row,
     run_beyond,
 )
-from runningbond.studies.walls import bonded, elastic_stiffness, vibrations
+from runningbond.studies.walls import bonded
 from tests.walls import courses, panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}

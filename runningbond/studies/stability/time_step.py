@@ -19,11 +19,12 @@ from fem_interface.modes import ModeCount
 from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Run, State, collapse_by_steps
+from runningbond.dynamics.vibrations import vibrations
 from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Stiffness
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.charts import looks_of
-from runningbond.studies.walls import bonded, boxes, outcome_row, vibrations
+from runningbond.studies.walls import bonded, boxes, outcome_row
 
 STEPS, STEPS_DAMPED = 4000, 100_000  # after which a vibration that has not grown is not going to, and a damped one
 PIECE, CLOSE = 20, 1e-4  # steps between two looks at a vibration, relative accuracy of an edge
