@@ -11,13 +11,13 @@ import numpy as np
 from dem.rigid_system import rigid_system
 from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
+from fem_interface.periodic_cell import deformable_cell, rigid_cell
 from fem_interface.system import system_of
 from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.scene import Scene, SceneError, Stiffness
 
-from .cell import deformable_cell, rigid_cell
 from .walls import TURNED, Question, rigid_moduli
 
 DRIVEN = 0.05  # displacement of the control point to which a wall is driven, in block sizes

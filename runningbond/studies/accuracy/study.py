@@ -63,7 +63,7 @@ def depends(case: Case) -> str:
 
 
 COLUMNS = ("wall", "model", "parameter", "setting")
-OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "cell", "questions", "measure")]
+OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "questions", "measure")]
 SOURCES = (*OWN, PACKAGE / "studies" / "walls.py", PACKAGE / "compare" / "models.py")
 CASES = {
     "accuracy": [*_cases(accuracy_walls())],

@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from fem_interface.modal_wall import modal_wall
-from fem_interface.modes import ModeCount
-from fem_interface.operators import nodal_jump
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_stiffness
 from runningbond.limit.kinematics import Jump, jump_operator
 from runningbond.scene import Array, Indices, Scene
+
+from .modal_wall import modal_wall
+from .modes import ModeCount
+from .operators import nodal_jump
 
 RULE = lobatto(3)  # exact for the squared jumps of rigid blocks
 
