@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 
 from homog import crack_slope, lateral_multiplier
 from runningbond.pictures.captions import to_png
+from runningbond.pictures.charts import COLOURS, bare
 from runningbond.results import Outcome, write_atomically
 from runningbond.scene import Array
 
@@ -20,7 +21,6 @@ from .table import Comparison, csv_lines
 FRICTION = 0.6
 TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # what to call b/a, block width to height, and b/a
 SLENDERNESS = (("0.5", 0.5), ("1", 1.0), ("2", 2.0))
-COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
 PRINTED = {"FEM/DEM": "P", "DEM": "X", "HOMO": "d"}
 MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
 
@@ -166,8 +166,3 @@ def panel_figure(
         bare(axes)
         columns.append((axes, panels[4 * column : 4 * column + 4]))
     return figure, columns
-
-
-def bare(axes: Axes) -> None:
-    """Take away the frame where nothing is read off it."""
-    axes.spines[["top", "right"]].set_visible(False)

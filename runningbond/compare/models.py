@@ -130,6 +130,9 @@ _EVERY_MODEL = (
 MODELS: dict[str, Model] = {model.name: model for model in _EVERY_MODEL}
 """Every model by its name, the cheapest first."""
 
+MODEL_LOOKS = {model.name: (model.colour, model.marker) for model in _EVERY_MODEL}
+"""Colour and marker of each model."""
+
 TOLERANCE = 0.01
 """Relative width of the bracket where none is asked for."""
 

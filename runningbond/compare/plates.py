@@ -5,16 +5,11 @@ from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-
-from runningbond.pictures.captions import colour_key, multiplier_text, to_png
-from runningbond.pictures.deformed_shape import DeformedShape, Extent, undeformed_shape
-from runningbond.pictures.joint_state import JointState
+from runningbond.pictures.captions import multiplier_text
+from runningbond.pictures.deformed_shape import undeformed_shape
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
-from runningbond.pictures.pyvista_figure import draw_painted
+from runningbond.pictures.plate import PlateRow, draw_plate
 from runningbond.pictures.pyvista_painter import Painter
 from runningbond.results import Outcome, write_atomically
 
@@ -23,9 +18,6 @@ from .model import Model
 from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
 from .table import Comparison
 
-WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
-TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
-LETTER, GAP = 0.06, 0.1  # width of a letter, and of a gap between walls [in]
 PIXELS = 640  # longer side of the image of one wall
 OWN_WALLS = 12  # largest number of walls on the plate of one's own
 
@@ -63,8 +55,10 @@ def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
     written = []
     with closing(Painter(PIXELS)) as painter:
         for plate in plates(comparison):
-            write_atomically(folder / f"{plate.name}.png", _draw(comparison, plate, painter))
+            models = _models(comparison, plate)
+            rows = [_row(comparison, name, label, models) for name, label in plate.walls.items()]
             written.append(folder / f"{plate.name}.png")
+            write_atomically(written[-1], draw_plate(plate.title, [model.name for model in models], rows, painter))
     return written
 
 
@@ -74,38 +68,8 @@ def _models(comparison: Comparison, plate: Plate) -> list[Model]:
     return [model for model, own in outcomes.items() if any(x is not None and len(x.motion) for x in own)]
 
 
-def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
-    models = _models(comparison, plate)
-    rows = [_row(comparison, name, models) for name in plate.walls]
-    below = LINE * max(2, *(text.count("\n") + 1 for _, captions, _ in rows for text in captions)) + 0.08
-    ratios = [(top - bottom) / (right - left) for _, _, (left, right, bottom, top) in rows]
-    room = TALLEST - TITLES - below * len(rows)
-    labels = [textwrap.wrap(label, 16) or [""] for label in plate.walls.values()]
-    side = 0.1 + LETTER * max(len(line) for label in labels for line in label)
-    width = min((WIDTH - side) / max(len(models), 3) - GAP, room / sum(ratios))
-    total = max(NARROWEST, side + (width + GAP) * len(models))
-    figure = Figure((total, TALLEST - room + sum(ratios) * width), DPI, layout="constrained")
-    figure.suptitle(plate.title, fontsize=8, fontweight="bold")
-    grid = figure.subplots(len(rows), len(models), squeeze=False, height_ratios=ratios)
-    for axes, model in zip(grid[0], models, strict=True):
-        axes.set_title(model.name, fontsize=8)
-    for line, (shapes, captions, extent), label in zip(grid, rows, labels, strict=True):
-        _write(line[0], -0.04, 0.5, "\n".join(label), ha="right", va="center", fontsize=7.5)
-        for axes, shape, caption in zip(line, shapes, captions, strict=True):
-            draw_painted(axes, shape, painter, extent)
-            _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
-    handles = colour_key((JointState.SLIDE, JointState.OPEN))
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
-    return to_png(figure, DPI)
-
-
-def _write(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
-    """Text at shares of the width and height of some axes."""
-    axes.text(x, y, text, transform=axes.transAxes, parse_math=False, **style)
-
-
-def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> tuple[list[DeformedShape], list[str], Extent]:
-    """One wall by all models: what is drawn, its captions, and an extent that shows all of it."""
+def _row(comparison: Comparison, name: str, label: str, models: Sequence[Model]) -> PlateRow:
+    """One wall by all models: what is drawn, and its captions."""
     scene = comparison.scenes[name]
 
     def caption(outcome: Outcome) -> str:  # the load, its bracket, and what is wrong with the mechanism, if anything
@@ -115,6 +79,4 @@ def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> tuple[li
     outcomes = [comparison.outcome(name, model) for model in models]
     mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
     shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
-    lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
-    captions = [comparison.cell(name, model, caption) for model in models]
-    return shapes, captions, (min(lefts), max(rights), min(bottoms), max(tops))
+    return PlateRow(label, shapes, [comparison.cell(name, model, caption) for model in models])

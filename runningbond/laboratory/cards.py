@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.ticker import NullLocator
 
-from runningbond.compare.figures import bare
+from runningbond.pictures.charts import bare
 from runningbond.pictures.flat import draw_mechanism
 from runningbond.scene import Array
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from runningbond.compare.figures import bare
 from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
+from runningbond.pictures.charts import bare
 from runningbond.results import write_atomically
 from runningbond.scene import BlockMaterial, JointMaterial, table_of
 from runningbond.studies.page import Block, Picture, write_page

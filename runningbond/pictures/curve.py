@@ -9,6 +9,7 @@ from runningbond.results.reactions import AT_REST
 from runningbond.scene import Array, Scene
 
 from .captions import is_force, load_symbol, multiplier_text, wall_title
+from .charts import bare
 from .style import DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
     axes.set_ylabel(f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}", fontsize=TYPE + 1)
     axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2)
     axes.tick_params(labelsize=TYPE)
-    axes.spines[["top", "right"]].set_visible(False)
+    bare(axes)
     return figure
 
 

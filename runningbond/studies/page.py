@@ -10,10 +10,10 @@ from typing import TypeAlias
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from runningbond.compare.figures import bare
 from runningbond.compare.report import figure_html, page_html, table_html
 from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
+from runningbond.pictures.charts import bare
 from runningbond.results import write_atomically
 
 from .store import failures

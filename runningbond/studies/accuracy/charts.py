@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import ArrayLike
 
+from runningbond.compare.models import MODEL_LOOKS
 from runningbond.scene import Array
 from runningbond.studies import Chart, Row, Rows
-from runningbond.studies.charts import MODEL_LOOKS
 
 from .measure import REFERENCE
 from .parameters import VARIED

@@ -17,9 +17,9 @@ from fem_interface.model import fem
 from fem_interface.system import system_of
 from runningbond.dynamics import BlockSystem, Run
 from runningbond.dynamics.vibrations import vibrations
+from runningbond.pictures.charts import bracket, level, looks_of, series
 from runningbond.scene import Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import bracket, level, looks_of, series
 from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 
 YOUNG = (1e9, 1e10, 1e11, 1e12, 1e13)

@@ -27,8 +27,8 @@ from scipy.optimize import brentq
 from runningbond.dynamics import Criteria, Run, State, ramp, settle
 from runningbond.dynamics.collapse import CALM, CollapseDetector
 from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.pictures.charts import LOOKS, looks_of
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import LOOKS, looks_of
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, known_wall
 
 LOCALS = (0.0, 0.05, 0.1, 0.2, 0.35, LOCAL, 0.65, 0.8, 0.9, 0.95)  # local damping α

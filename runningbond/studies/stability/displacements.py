@@ -17,9 +17,9 @@ from matplotlib.figure import Figure
 
 from dem.dynamic import finite_pushover
 from dem.static import dem_static
+from runningbond.pictures.charts import looks_of
 from runningbond.scene import Array, Mortar, Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import looks_of
 from runningbond.studies.walls import inset_wall, one_block
 
 LOSSES = (0.01, 0.02, 0.05, 0.1)  # shares of the small-displacement λ whose loss is looked for

@@ -9,13 +9,13 @@ from matplotlib.figure import Figure
 
 from dem.rigid_system import rigid_system
 from dem.static_system import static_system
-from runningbond.compare.models import MODELS, TOLERANCE
+from runningbond.compare.models import MODEL_LOOKS, MODELS, TOLERANCE
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.joints.stiffness import SOFT
+from runningbond.pictures.charts import LOOKS, bracket
 from runningbond.scene import Scene, Stiffness
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import LOOKS, MODEL_LOOKS, bracket
 from runningbond.studies.walls import W1, inset_wall, known_wall, outcome_row
 
 NORMAL = tuple(10.0**power for power in range(5, 16))  # normal stiffnesses of the joints [Pa/m]

@@ -8,14 +8,14 @@ from itertools import product
 import numpy as np
 from matplotlib.figure import Figure
 
-from runningbond.compare.models import MODELS, TOLERANCE
+from runningbond.compare.models import MODEL_LOOKS, MODELS, TOLERANCE
 from runningbond.compare.published import published_scene
 from runningbond.limit import equilibrium
 from runningbond.limit.associated import LimitState
 from runningbond.limit.force_program import coulomb, solve_forces
+from runningbond.pictures.charts import LOOKS, level
 from runningbond.scene import JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
 from runningbond.studies import Chart, Part, Row, Rows, Study
-from runningbond.studies.charts import LOOKS, MODEL_LOOKS, level
 from runningbond.studies.walls import boxes
 
 POWERS = (-6, -4, -2, 0, 2, 4, 6)  # powers of ten by which quantities are multiplied, one at a time

@@ -22,9 +22,9 @@ from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING, LOADING_WEIGHTLESS
 from runningbond.dynamics.run import LOCAL
+from runningbond.pictures.charts import LOOKS, level, looks_of, series
 from runningbond.scene import Array
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import LOOKS, level, looks_of, series
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 
 WALLS = (SLIDING, TOPPLING, W1)

@@ -21,10 +21,10 @@ from dem.static import dem_static
 from fem_interface.model import fem
 from runningbond.compare.published import published_scene
 from runningbond.joints import Rule, gauss, lobatto
+from runningbond.pictures.charts import looks_of
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import looks_of
 from runningbond.studies.walls import inset_wall, one_block
 
 RULES = {"Gauss 2": gauss(2), "Gauss 3": gauss(3), "Lobatto 2": lobatto(), "Simpson": lobatto(3)}

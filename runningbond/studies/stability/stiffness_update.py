@@ -17,9 +17,9 @@ from matplotlib.patches import Patch
 from dem.static import dem_static
 from dem.stiffness_update import StiffnessUpdate, stiffness_update
 from runningbond.compare.published import BARALDI, FERRIS, PUBLISHED, published_scene
+from runningbond.pictures.charts import LOOKS as LINES
 from runningbond.scene import Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import LOOKS as LINES
 from runningbond.studies.walls import one_block
 
 WALLS = tuple(case.name for case in PUBLISHED if case.source in (BARALDI, FERRIS))  # dry: twelve panels, W1 to W3

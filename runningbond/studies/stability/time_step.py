@@ -20,10 +20,10 @@ from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Run, State, collapse_by_steps
 from runningbond.dynamics.vibrations import vibrations
+from runningbond.pictures.charts import looks_of
 from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Stiffness
 from runningbond.studies import Chart, Part, Row, Rows, Study
-from runningbond.studies.charts import looks_of
 from runningbond.studies.walls import bonded, boxes, outcome_row
 
 STEPS, STEPS_DAMPED = 4000, 100_000  # after which a vibration that has not grown is not going to, and a damped one

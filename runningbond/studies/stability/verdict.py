@@ -21,9 +21,9 @@ from runningbond.dynamics import Criteria, Run, load_steps, ramp, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.limit import limit_nonassociated
+from runningbond.pictures.charts import LOOKS, looks_of
 from runningbond.scene import Array, Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.charts import LOOKS, looks_of
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wall
 
 SUITE = Criteria(collapse=U_CRIT)

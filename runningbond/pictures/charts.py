@@ -1,18 +1,20 @@
-"""How charts look in all studies: colours and markers of models and of other things, and series of rows."""
+"""How charts look: colours and markers, series of rows, levels and brackets."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from matplotlib.axes import Axes
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-from runningbond.compare.figures import COLOURS
-from runningbond.compare.models import MODELS
-
-from .study import Row
-
-MODEL_LOOKS = {model.name: (model.colour, model.marker) for model in MODELS.values()}  # colour and marker of each model
-LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))  # and of other things
+COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
+LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))  # colour and marker, one after another
 Looks: TypeAlias = Mapping[Any, tuple[str, str]]  # colour and marker by the entries of a column
+Row: TypeAlias = Mapping[str, Any]  # of a table, by columns
+
+
+def bare(axes: "Axes") -> None:
+    """Take away the frame where nothing is read off it."""
+    axes.spines[["top", "right"]].set_visible(False)
 
 
 def looks_of(names: Sequence[Any]) -> Looks:
@@ -21,7 +23,13 @@ def looks_of(names: Sequence[Any]) -> Looks:
 
 
 def series(
-    axes: Axes, rows: Sequence[Row], x: str, y: str | Callable[[Row], float | None], by: str, looks: Looks, **style: Any
+    axes: "Axes",
+    rows: Sequence[Row],
+    x: str,
+    y: str | Callable[[Row], float | None],
+    by: str,
+    looks: Looks,
+    **style: Any,
 ) -> None:
     """Plot one column of rows over another, a series for each entry of a third; rows without a number are left out."""
     for name, (colour, marker) in looks.items():
@@ -31,14 +39,14 @@ def series(
             axes.plot(*zip(*points, strict=True), **{"marker": marker, "color": colour, "label": str(name)} | style)
 
 
-def level(axes: Axes, y: float, text: str, x: float = 0.98, **style: Any) -> None:
+def level(axes: "Axes", y: float, text: str, x: float = 0.98, **style: Any) -> None:
     """A dashed line at a level, its name above it at a share of the axes' width."""
     axes.axhline(y, color="0.5", lw=0.9, ls="--", zorder=0)
     where: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 8, "color": "0.4"} | style
     axes.annotate(text, (x, y), xycoords=("axes fraction", "data"), **where)
 
 
-def bracket(axes: Axes, x: float, row: Row, colour: str, **style: Any) -> None:
+def bracket(axes: "Axes", x: float, row: Row, colour: str, **style: Any) -> None:
     """A bracket of λ as an upright bar, paler where it is no collapse."""
     paler = 1.0 if row["status"] == "collapse" else 0.4
     bar: dict[str, Any] = {"color": colour, "lw": 4, "alpha": paler, "solid_capstyle": "butt"} | style

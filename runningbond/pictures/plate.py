@@ -1,0 +1,59 @@
+"""A plate: mechanisms side by side, a row for each wall."""
+
+import textwrap
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .captions import colour_key, to_png
+from .deformed_shape import DeformedShape
+from .joint_state import JointState
+from .pyvista_figure import draw_painted
+from .pyvista_painter import Painter
+
+WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
+TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
+LETTER, GAP = 0.06, 0.1  # width of a letter, and of a gap between walls [in]
+
+
+class PlateRow(NamedTuple):
+    """One wall: what it is called, its shape in each column, and what is said under each."""
+
+    label: str
+    shapes: Sequence[DeformedShape]
+    captions: Sequence[str]
+
+
+def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow], painter: Painter) -> bytes:
+    """Draw a plate as PNG; each row's extent shows all of its shapes."""
+    extents = []
+    for row in rows:
+        lefts, rights, bottoms, tops = zip(*(shape.extent for shape in row.shapes), strict=True)
+        extents.append((min(lefts), max(rights), min(bottoms), max(tops)))
+    below = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
+    ratios = [(top - bottom) / (right - left) for left, right, bottom, top in extents]
+    room = TALLEST - TITLES - below * len(rows)
+    labels = [textwrap.wrap(row.label, 16) or [""] for row in rows]
+    side = 0.1 + LETTER * max(len(line) for label in labels for line in label)
+    width = min((WIDTH - side) / max(len(columns), 3) - GAP, room / sum(ratios))
+    total = max(NARROWEST, side + (width + GAP) * len(columns))
+    figure = Figure((total, TALLEST - room + sum(ratios) * width), DPI, layout="constrained")
+    figure.suptitle(title, fontsize=8, fontweight="bold")
+    grid = figure.subplots(len(rows), len(columns), squeeze=False, height_ratios=ratios)
+    for axes, column in zip(grid[0], columns, strict=True):
+        axes.set_title(column, fontsize=8)
+    for line, row, extent, label in zip(grid, rows, extents, labels, strict=True):
+        _write(line[0], -0.04, 0.5, "\n".join(label), ha="right", va="center", fontsize=7.5)
+        for axes, shape, caption in zip(line, row.shapes, row.captions, strict=True):
+            draw_painted(axes, shape, painter, extent)
+            _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
+    handles = colour_key((JointState.SLIDE, JointState.OPEN))
+    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
+    return to_png(figure, DPI)
+
+
+def _write(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:
+    """Text at shares of the width and height of some axes."""
+    axes.text(x, y, text, transform=axes.transAxes, parse_math=False, **style)
