@@ -17,11 +17,10 @@ from runningbond.scene import Action, Scene
 
 from .model import Model
 
-COMPUTING_ROOMS = (
+COMPUTING_ROOMS = (  # packages in which a change can change a number
     *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics")),
     *("meshing", "fem_interface", "dem", "homog"),
 )
-"""Packages in which a change can change a number."""
 LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh")
 
 

@@ -26,20 +26,12 @@ SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
 INTERFACE = SOFTENING | CRUSHING | {"joint.compressive_fracture_energy", "joint.peak_closure", "joint.closure"}
 ELASTIC = INTERFACE | {"block.young", "block.poisson"}
 
-EXTRAS = frozenset(
-    {
-        "tie",
-        "beam",
-        "beam.condition fixed-height",
-        "beam.drive.displacement",
-        "beam.drive.displacement, cyclic",
-        "load.live settlement",
-    }
-)
-"""All that a model may know of `Scene.extras`."""
-
-KERNELS = 3.0
-"""Seconds until the kernels of blocks in motion are loaded."""
+LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
+EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # all that a model may know of `Scene.extras`
+KERNELS = 3.0  # seconds until the kernels of blocks in motion are loaded
+TOLERANCE = 0.01  # relative width of the bracket where none is asked for
+IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
+OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # of deformable blocks
 
 
 def _homog(scene: Scene, tolerance: float) -> Outcome:
@@ -55,12 +47,6 @@ _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(
 _STATIC_RECORDER, _MOTION_RECORDER = (
     partial(_late, "runningbond.pictures.recording", recorder) for recorder in ("StaticRecorder", "MotionRecorder")
 )
-
-IN_STEPS = ("collapse", "first_step", "budget")
-"""Settings of every model that raises its loads in steps."""
-
-OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")
-"""Settings of deformable blocks and their interfaces."""
 
 _EVERY_MODEL = (
     Model(
@@ -130,21 +116,11 @@ _EVERY_MODEL = (
 MODELS: dict[str, Model] = {model.name: model for model in _EVERY_MODEL}
 """Every model by its name, the cheapest first."""
 
-MODEL_LOOKS = {model.name: (model.colour, model.marker) for model in _EVERY_MODEL}
-"""Colour and marker of each model."""
-
-TOLERANCE = 0.01
-"""Relative width of the bracket where none is asked for."""
+MODEL_LOOKS = {model.name: (model.colour, model.marker) for model in _EVERY_MODEL}  # in charts
 
 
 def find_model(model: str | Model, key: str = "model") -> Model:
-    """The model of a name; a model itself is given back as it is.
-
-    Raises
-    ------
-    SceneError
-        For a name that is no model's; it names the key, on the command line an option.
-    """
+    """The model of a name, or else a `SceneError` under the key, an option perhaps; a model is given back as it is."""
     if isinstance(model, Model):
         return model
     if model not in MODELS:
@@ -171,8 +147,6 @@ def run_model(
     ----------
     model
         A key of `MODELS`, or a model.
-    scene
-        The scene.
     tolerance
         Relative width of the bracket asked for.
     observe
@@ -184,12 +158,8 @@ def run_model(
     -------
     Outcome
         Its message ends with the keys of the scene that the model does not take into account. ``failed``, with the
-        error's own words, where the model broke.
-
-    Raises
-    ------
-    SceneError
-        For an unknown model or parameter, or a model that does not apply to the scene.
+        error's own words, where the model broke; an unknown model or parameter, or a model that does not apply to the
+        scene, is a `SceneError`.
     """
     model = find_model(model)
     check_tolerance(tolerance)

@@ -31,14 +31,13 @@ TABLE_2 = {  # multipliers of the twelve panels, as the paper prints them
     "DEM": (0.570, 0.390, 0.260, 0.160, 0.390, 0.310, 0.230, 0.110, 0.330, 0.310, 0.200, 0.094),
     "HOMO": (0.537, 0.380, 0.269, 0.134, 0.537, 0.380, 0.269, 0.134, 0.372, 0.328, 0.267, 0.134),
 }
-PUBLISHED: tuple[PublishedCase, ...] = (
+PUBLISHED: tuple[PublishedCase, ...] = (  # sixteen panels of Baraldi, Reccia & Cecchi, three walls of Ferris & Tin-Loi
     *(PublishedCase(f"panel-{k + 1:02d}", BARALDI, {x: TABLE_2[x][k] for x in TABLE_2}) for k in range(12)),
     *(PublishedCase(f"point-load-{texture}", CONCENTRATED) for texture in ("4", "2", "1", "quarter")),
     PublishedCase("wall-w1", FERRIS, {"associated": 0.643, "non-associated": 0.640}),
     PublishedCase("wall-w2", FERRIS, {"associated": 0.580, "non-associated": 0.563}),
     PublishedCase("wall-w3", FERRIS, {"associated": 0.404, "non-associated": 0.356}),
 )
-"""The sixteen panels of Baraldi, Reccia & Cecchi and three walls of Ferris & Tin-Loi."""
 
 
 def cases_of(source: str) -> tuple[PublishedCase, ...]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runningbond.scene import JointMaterial, Mortar, SceneError, Stiffness, table_of
+from runningbond.scene import JointMaterial, Mortar, Scene, SceneError, Stiffness, table_of
 
 SOFT = 0.02
 """Overlap of two blocks, in displacements that count as collapse, above which joints are too soft.
@@ -42,6 +42,18 @@ def joint_stiffness(material: JointMaterial) -> Stiffness:
 def stiffest(material: JointMaterial) -> float:
     """Largest normal stiffness per unit area [Pa/m], that of a joint that has closed."""
     return joint_stiffness(material).normal if material.closure is None else material.closure.stiffest
+
+
+def block_compliance(scene: Scene) -> float:
+    """Share of the blocks in the compliance of a column of blocks and joints, k_n h / (k_n h + E).
+
+    Zero where the scene leaves out either stiffness and blocks are taken as rigid.
+    """
+    if scene.block.young is None or scene.joint.elasticity is None:
+        return 0.0
+    height = scene.bond.height if scene.bond else scene.lowest_block
+    softer = joint_stiffness(scene.joint).normal * height
+    return softer / (softer + scene.block.young)
 
 
 def stiffness_note(overlap: float, collapse: float, size: float, stiffness: float, force_unit: float) -> str:

@@ -80,7 +80,7 @@ def draw_charts(study: Study, rows: Rows, folder: Path) -> list[Picture]:
     """Draw the charts of a study into a folder, if there is a row."""
     pictures = []
     for chart in study.charts if any(rows.values()) else ():
-        figure = Figure(figsize=(8, 4.6), layout="constrained")
+        figure = Figure(figsize=chart.size, layout="constrained")
         figure.suptitle(chart.caption, fontsize=11)
         with rc_context({"legend.frameon": False, "legend.fontsize": 8}):
             chart.draw(figure, rows)

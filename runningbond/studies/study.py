@@ -51,11 +51,12 @@ class Part:
 
 @dataclass(frozen=True)
 class Chart:
-    """A chart: what it shows, and what draws it on an empty figure."""
+    """A chart: what it shows, and what draws it on an empty figure of a size [in]."""
 
     caption: str
     draw: Callable[[Figure, Rows], None]
     name: str = ""  # of its file, without suffix; where none is given, that of the study
+    size: tuple[float, float] = (8, 4.6)
 
 
 def all_rows(rows: Rows) -> list[Sheet]:

@@ -88,9 +88,9 @@ class KnownWall:
         return run, state
 
 
+# Walls whose load is known: a block twice as long as high with λ = tan φ, one twice as high as long with λ = b/h, and
+# walls with rounded corners, whose one collapse load limit analysis certifies
 SLIDING, TOPPLING, W1, W2 = KNOWN = ("block that slides", "block that topples", "rounded W1", "rounded W2")
-"""Names of walls whose load is known: a block twice as long as high with λ = tan φ, one twice as high as long with
-λ = b/h, and walls with rounded corners, whose one collapse load limit analysis certifies."""
 
 
 @cache

@@ -13,9 +13,10 @@ from runningbond.commands.command_line import command
 from runningbond.compare import MODELS, PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, Advice, advise
 from runningbond.compare.advice.costs import estimate, pace
-from runningbond.compare.advice.knowledge import block_compliance, sliding_dilates
 from runningbond.compare.advice.steps import WORTH
+from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import limit
+from runningbond.limit.dilatancy import sliding_dilates
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 from tests.walls import courses, panel

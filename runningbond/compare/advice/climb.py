@@ -18,8 +18,8 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
 from .costs import Estimate
-from .knowledge import Knowledge
-from .steps import Step, after_refusal, first_step, next_step
+from .knowledge import Knowledge, ladder
+from .steps import Step, after_refusal, next_step
 
 TOLERANCE = 0.05  # relative width of the bracket that is asked for where nothing else is
 SPEED, HALVINGS = 0.02, 3  # of the first push, in block sizes a second; how often it is halved until the peak settles
@@ -47,7 +47,7 @@ class Advice:
 
     def climb(self) -> Iterator[Rung]:
         """Climb rung by rung; each is given when it is done, before the next is begun."""
-        step = first_step()
+        step = Step(ladder("estimate")[0], "the trend at no cost")
         while step.model is not None:
             outcome: Outcome | None = None
             try:

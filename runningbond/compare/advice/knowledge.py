@@ -5,18 +5,17 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from dem.stiffness_update import resultant_wall
+from dem.stiffness_update import elastic_displacement
 from runningbond.compare.model import Kind, Model
 from runningbond.compare.models import MODELS
-from runningbond.joints import joint_stiffness, wall_points, wall_strength
-from runningbond.limit.kinematics import jump_operator
+from runningbond.joints.stiffness import block_compliance
+from runningbond.limit.dilatancy import sliding_dilates
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
-from runningbond.scene import Array, Scene
+from runningbond.scene import Scene
 
 from .costs import Estimate, estimate, pace
 
-NO_SLIP = 1e-6  # slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m
 Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]  # what a bracket rests on; first nothing
 
 
@@ -119,43 +118,3 @@ class Knowledge:
             return f"collapse is certified from the lower load on; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
         return f"largest load at rest and smallest at collapse in one history, loads raised slowly{below}{above}"
-
-
-def block_compliance(scene: Scene) -> float:
-    """Share of the blocks in the compliance of a column of blocks and joints, k_n h / (k_n h + E).
-
-    Zero where the scene leaves out either stiffness and blocks are taken as rigid.
-    """
-    if scene.block.young is None or scene.joint.elasticity is None:
-        return 0.0
-    height = scene.bond.height if scene.bond else scene.lowest_block
-    softer = joint_stiffness(scene.joint).normal * height
-    return softer / (softer + scene.block.young)
-
-
-def sliding_dilates(scene: Scene, motion: Array) -> bool:
-    """Whether a mechanism ``(nb, 3)`` of associated joints opens some only because they slide.
-
-    Where none does, joints that slide are off each other anyway and carry no friction: forces and mechanism prove
-    their load for friction without dilatancy just as well.
-    """
-    points = wall_points(scene)
-    jump = jump_operator(points, scene.blocks.centroid)
-    opening, slip = jump.opening @ motion.ravel(), np.abs(jump.slip @ motion.ravel())
-    friction = wall_strength(scene, points).friction
-    return bool(((slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())
-
-
-def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
-    """Largest displacement of a block under the live load alone, in block sizes, while joints neither open nor slip.
-
-    A lower bound of that at collapse, soft blocks counted in; None without a stiffness, or on pins that leave such a
-    wall loose.
-    """
-    if scene.joint.elasticity is None:
-        return None
-    wall = resultant_wall(scene)
-    moved = wall.move(np.ones(wall.law.stiffness.shape, dtype=np.bool_), multiplier * wall.live)
-    if moved is None:
-        return None
-    return float(np.abs(moved.reshape(-1, 3)[:, :2]).max() / (1 - block_compliance(scene)) / scene.block_size)

@@ -24,11 +24,6 @@ class Step:
         return None if self.model is None else self.model.name + (", finite" if self.finite else "")
 
 
-def first_step() -> Step:
-    """The foot of the ladder."""
-    return Step(ladder("estimate")[0], "the trend at no cost")
-
-
 def next_step(known: Knowledge, step: Step, outcome: Outcome) -> Step:
     """What follows from an outcome that is already part of what is known."""
     assert step.model is not None

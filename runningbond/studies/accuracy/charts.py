@@ -19,9 +19,8 @@ from .parameters import VARIED
 from .tables import CHANGED, exponent, growth, stiffness
 
 FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and the end of the axis
-RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1
-"""Models with three freedoms a block, and the ratio by which they stand apart."""
-
+RIGID = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic")  # models with three freedoms a block,
+ASIDE = 1.1  # and the ratio by which they stand apart
 LEGEND_ROWS = 3
 FREE = "homog"  # model that is not drawn: a closed form costs nothing
 DRIVEN = "driven, steps"
@@ -37,7 +36,6 @@ TITLES = {
 
 def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
     """Error against a cost, wall by wall."""
-    figure.set_size_inches(11, 9.4)
     drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != FREE]
     judged = [row for row in drawn if row.get("error") is not None]
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
@@ -134,7 +132,6 @@ def _legend(figure: Figure, rows: Sequence[Row]) -> None:
 
 def draw_growth(figure: Figure, rows: Rows) -> None:
     """Processor seconds against the number of blocks, with fitted slopes."""
-    figure.set_size_inches(8, 6.4)
     axes = figure.add_subplot(xscale="log", yscale="log")
     result = growth(rows)
     for model, own in result.items():
@@ -157,7 +154,6 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
 
 def draw_stiffness(figure: Figure, rows: Rows) -> None:
     """Processor seconds a physical second against Young's modulus of the blocks."""
-    figure.set_size_inches(8, 5.2)
     axes = figure.add_subplot(xscale="log", yscale="log")
     (scaled, plain, rigid), (colour, _) = stiffness(rows), MODEL_LOOKS["fem"]
     looks: dict[str, Any] = {"color": colour, "ms": 8, "lw": 2}
@@ -177,8 +173,10 @@ def draw_stiffness(figure: Figure, rows: Rows) -> None:
 SECONDS = "Error against processor seconds; homog, which costs nothing, is left out"
 FREEDOMS = "Error against degrees of freedom; models with as many stand side by side"
 CHARTS = (
-    Chart(SECONDS, partial(draw_errors, _against_seconds, "cpu_s", "processor seconds"), "accuracy-seconds"),
-    Chart(FREEDOMS, partial(draw_errors, _against_freedoms, "dofs", "degrees of freedom"), "accuracy-freedoms"),
-    Chart("Growth of cost with the number of blocks", draw_growth, "accuracy-growth"),
-    Chart("What a physical second costs where blocks are ever stiffer", draw_stiffness, "accuracy-stiffness"),
+    Chart(SECONDS, partial(draw_errors, _against_seconds, "cpu_s", "processor seconds"), "accuracy-seconds", (11, 9.4)),
+    Chart(
+        FREEDOMS, partial(draw_errors, _against_freedoms, "dofs", "degrees of freedom"), "accuracy-freedoms", (11, 9.4)
+    ),
+    Chart("Growth of cost with the number of blocks", draw_growth, "accuracy-growth", (8, 6.4)),
+    Chart("What a physical second costs where blocks are ever stiffer", draw_stiffness, "accuracy-stiffness", (8, 5.2)),
 )

@@ -8,8 +8,8 @@ from runningbond.joints import gauss, lobatto
 
 VARIED = ("stack-of-5", "wall-w1-inset", "wall-w3-inset", "panel-02")  # walls on which parameters are varied
 COLLAPSE = tuple(name for name in MODELS if name != "homog")  # models that answer for any wall, the cheapest first
+# rigid blocks, uniform strains, all displacements up to third degree, and all of the constant-strain triangles
 MODES: dict[str, dict[str, Any]] = {str(count): {"modes": count} for count in (3, 6, 20, "all")}
-"""Rigid blocks, uniform strains, all displacements up to third degree, and all of the constant-strain triangles."""
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from .walls import Wall, accuracy_walls, all_walls, growth_walls, stiffness_wall
 ELASTIC = ("homog", "dem-static", "fem")
 ASKED = {"collapse": ("homog", *COLLAPSE), "turned block": IN_MOTION, "compression": ELASTIC, "shear": ELASTIC}
 ASKED |= {"physical second": ("fem",)}
-HOW = (
+HOW = (  # the study is made, for its reader
     "Walls with an exact answer are a block that topples, one that slides and a stack, λ = min(tan φ, b / (n h)); a "
     "block that has turned by θ, λ = tan(α − θ); and periodic cells. W1 – W3 of Ferris & Tin-Loi have their contacts "
     f"{1e3 * INSET:g} mm in from the ends of the joints, with which λ is unique, and are published to four digits. Of "
@@ -39,7 +39,6 @@ HOW = (
     f"`{REFERENCE}` on the same wall, run in turn in the same process. A run that would take more than {LONGEST} s is "
     "broken off and left out.",
 )
-"""How the study is made, for its reader."""
 
 
 def _cases(walls: Mapping[str, Wall]) -> Iterator[Case]:

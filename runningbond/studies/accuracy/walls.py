@@ -13,13 +13,11 @@ from runningbond.scene import Scene, scene_from_dict
 from runningbond.studies.walls import inset_wall
 
 Known: TypeAlias = Literal["exact", "published", "certified", ""]  # what an answer is worth, where one is known
+# λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second
 Question: TypeAlias = Literal["collapse", "turned block", "compression", "shear", "physical second"]
-"""λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second."""
-
 Interval: TypeAlias = tuple[float, float]
+# λ with contacts moved in (Ferris & Tin-Loi 2001), to four digits
 PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
-"""Their λ with contacts moved in (Ferris & Tin-Loi 2001), to four digits."""
-
 DIGITS = 5e-5  # half of the last digit that is published
 TURNED = 0.1  # rotation of the turned block [rad]
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}

@@ -7,7 +7,7 @@ from importlib import import_module
 
 from runningbond.studies import Study
 
-EXPERIMENTS = (
+EXPERIMENTS = (  # their names, in the order in which they are told
     "time-step",
     "block-stiffness",
     "joint-stiffness",
@@ -20,8 +20,6 @@ EXPERIMENTS = (
     "material-edges",
     "linear-program",
 )
-"""Names of the experiments, in the order in which they are told."""
-
 __all__ = ["EXPERIMENTS", "experiment"]
 
 

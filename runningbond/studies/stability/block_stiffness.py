@@ -78,7 +78,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(11, 4.8)
     steps, loads, shifts = figure.subplots(1, 3)
     looks, own, exact = looks_of(SCALINGS), rows[PART], known_wall(W1).multiplier
     hollow = {"mfc": "none", "lw": 1.2}
@@ -106,6 +105,6 @@ STUDY = Study(
     beyond="many times as many steps without scaling; with one factor for all deformable modes blocks would vibrate in "
     "the band in which they move as wholes, and `fem` does not offer it",
     parts={PART: Part((YOUNGS, KIND), [*product(YOUNG, SCALINGS)], measure)},
-    charts=[Chart("Time step, λ and lowest frequencies of blocks from soft to stiff", _draw)],
+    charts=[Chart("Time step, λ and lowest frequencies of blocks from soft to stiff", _draw, size=(11, 4.8))],
     fits=fits,
 )

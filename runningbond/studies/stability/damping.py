@@ -146,7 +146,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(10, 6)
     grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 0.95))
     norm = LogNorm(min(row["steps"] for row in rows[MAPS] if row["verdict"] == "right"), BUDGET)
     for place, (name, load) in enumerate(dict.fromkeys((row["wall"], row[LOAD]) for row in rows[MAPS])):
@@ -209,6 +208,8 @@ STUDY = Study(
             lambda what, name: {LEAST: least_local, MOST: most_local, FEIGNED: most_mass_rate}[what](name),
         ),
     },
-    charts=[Chart("Steps until the verdict over local and viscous damping, and over mass-proportional", _draw)],
+    charts=[
+        Chart("Steps until the verdict over local and viscous damping, and over mass-proportional", _draw, size=(10, 6))
+    ],
     fits=fits,
 )

@@ -105,7 +105,6 @@ def _slow(rows: Rows) -> list[Row]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(9, 4.8)
     curves, losses = figure.subplots(1, 2)
     looks, shares = looks_of(WALLS), np.linspace(0.001, 0.2, 50)
     for row in _slow(rows):
@@ -133,6 +132,8 @@ STUDY = Study(
     beyond="a model at small displacements says so in its message and goes on at the same λ; "
     "`dem.dynamic.finite_pushover` gives the curve that falls",
     parts={PART: Part(("what", "speed [m/s]"), [*product(WALLS, SPEEDS)], measure)},
-    charts=[Chart("λ past its peak at small and at finite displacements, and what is lost between", _draw)],
+    charts=[
+        Chart("λ past its peak at small and at finite displacements, and what is lost between", _draw, size=(9, 4.8))
+    ],
     fits=fits,
 )

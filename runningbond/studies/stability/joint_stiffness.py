@@ -89,7 +89,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(11, 4.6)
     loads, depths, steps = figure.subplots(1, 3)
     for place, model in enumerate(RUN):
         for row in rows[COLLAPSES]:
@@ -125,6 +124,8 @@ STUDY = Study(
     beyond="softer: a message that joints are too soft, in the end `undecided`; stiffer: `undecided`, for the budget "
     "runs out, with the time for which each load was followed",
     parts={REST: Part((K_N,), [*zip(NORMAL)], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
-    charts=[Chart("λ, overlap under the dead load, and time steps of joints from soft to stiff", _draw)],
+    charts=[
+        Chart("λ, overlap under the dead load, and time steps of joints from soft to stiff", _draw, size=(11, 4.6))
+    ],
     fits=fits,
 )

@@ -41,14 +41,13 @@ def dusty() -> Scene:
     return boxes(*pier, *grains, joint=JointMaterial(0.6, elasticity=STIFFNESS))
 
 
-DEGENERATE: dict[str, tuple[Callable[[], Scene], float]] = {
+DEGENERATE: dict[str, tuple[Callable[[], Scene], float]] = {  # degenerate walls and their exact multipliers
     "one pier": (lambda: row_of_piers(1), 0.5),
     "20 equal piers: 20 mechanisms at one load": (lambda: row_of_piers(20), 0.5),
     "slides and topples at one load": (lambda: row_of_piers(5, 0.5), 0.5),
     "slides in every joint at one load": (lambda: row_of_piers(5, 0.2), 0.2),
     "grains of 1e-7 of a block's weight": (dusty, 0.5),
 }
-"""Degenerate walls and their exact multipliers."""
 
 
 def glued(quantity: str = "", factor: float = 1.0) -> tuple[Scene, float]:
@@ -98,7 +97,6 @@ def solver_row(wall: str) -> Row:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(11, 4.6)
     left, right = figure.subplots(1, 2)
     styles = dict(zip(QUANTITIES, ("-", "--", ":"), strict=True))
     for row in rows[SCALES]:
@@ -135,5 +133,5 @@ STUDY = Study(
         SCALES: Part(("model", "quantity"), [*product(PROGRAMS, QUANTITIES)], scale_row),
         SOLVERS: Part(("wall",), [*zip(WALLS)], solver_row),
     },
-    charts=[Chart("Errors of limit analysis at every scale, and of its two solvers", _draw)],
+    charts=[Chart("Errors of limit analysis at every scale, and of its two solvers", _draw, size=(11, 4.6))],
 )

@@ -156,7 +156,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(10, 4.8)
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.2, 1.2, 0.8))
     looks = looks_of(WALLS)
     series(left, rows[RAMPS], RATE, OFF, "wall", looks, ls="none", ms=5)
@@ -203,6 +202,8 @@ STUDY = Study(
         OWN: Part(("wall",), [(W1,)], own_row),
         STEPPED: Part(("wall", LOADED), [*product((W1, *DRY), LOADINGS)], step_row),
     },
-    charts=[Chart("λ by the speed of loading: a ramp, a prescribed displacement, and load steps", _draw)],
+    charts=[
+        Chart("λ by the speed of loading: a ramp, a prescribed displacement, and load steps", _draw, size=(10, 4.8))
+    ],
     fits=fits,
 )

@@ -25,14 +25,13 @@ UNSEEN = 1e-4  # multiplier below which models in motion see no difference from 
 SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of one and the same wall
 PART = "Answers"
 Exact: TypeAlias = float | tuple[float, float] | str  # λ, two loads between which it lies, a status, or ``refused``
-WORTH = {
+WORTH = {  # what an answer may be worth: its colour, and words for it
     "right": ("#a6cee3", "right"),
     "estimate": ("#dcdcdc", "estimate, on either side"),
     "refused": ("#f7f7f7", "refused: no closed form"),
     "says so": ("#fdd49e", "no answer, and it says so"),
     "wrong": ("#d7301f", "wrong"),
 }
-"""What an answer may be worth: its colour, and words for it."""
 
 
 def dry(**changes: Any) -> dict[str, Any]:
@@ -90,10 +89,9 @@ BRICK = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length":
 SOFTENING = {"fracture_energy_1": 1e-9, "fracture_energy_2": 1e-9}
 BRITTLE = {"fracture_energy_1": 0.0, "fracture_energy_2": 0.0}
 GLUED = {"friction": 0.0, "cohesion": 300.0, "tensile_strength": 0.0}
+# λ at which a block of 1 m on one of 10 mm turns with it about the ground: weights and their arms
 ON_SMALL = (0.01 * 0.005 * 0.01 + 1 * 0.005) / (0.01 * 0.01 * 0.005 + 1 * 0.51)
-"""λ at which a block of 1 m on one of 10 mm turns with it about the ground: weights and their arms."""
-
-EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {
+EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may be refused, and what is true of them
     "tan φ = 0": (lambda: panel(joint=dry(friction=0.0)), 0.0),
     "tan φ = 1e-9": (lambda: panel(joint=dry(friction=1e-9)), "refused"),
     "tan φ = 1e-6": (lambda: panel(joint=dry(friction=1e-6)), 1e-6),
@@ -123,7 +121,6 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {
     "1 m wall, similar": (lambda: similar(SIZES[1] / 0.48), 0.6),
     "1000 m wall, similar": (lambda: similar(SIZES[2] / 0.48), 0.6),
 }
-"""Walls at an edge, which may be refused, and what is true of them."""
 
 
 def answer(what: str, model: str) -> Row:
@@ -193,7 +190,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(10.5, 0.31 * len(EXTREMES) + 1.6)
     axes = figure.add_subplot()
     for row in rows[PART]:
         at, column = list(EXTREMES).index(row["wall"]), list(MODELS).index(row["model"])
@@ -222,6 +218,12 @@ STUDY = Study(
         PART: Part(("wall", "model"), [*product(EXTREMES, MODELS)], answer),
         "widest gap that is contact [block sizes]": Part(("between",), [("two blocks",)], widest_gap),
     },
-    charts=[Chart("What every model answers at the edge, beside the exact answer", _draw)],
+    charts=[
+        Chart(
+            "What every model answers at the edge, beside the exact answer",
+            _draw,
+            size=(10.5, 0.31 * len(EXTREMES) + 1.6),
+        )
+    ],
     fits=fits,
 )

@@ -88,7 +88,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(8, 4.8)
     looks = looks_of(list(RULES)[::-1])
     for axes, (name, title) in zip(figure.subplots(1, len(SCENES), sharey=True), SCENES.items(), strict=True):
         for place, rule in enumerate(RULES):
@@ -122,6 +121,6 @@ STUDY = Study(
     beyond="nothing: every rule ends in `collapse`, its bracket as narrow; Lobatto is the default of every model, and "
     "no scene or command can ask for another",
     parts={PART: Part(("scene", "rule", "cells"), CASES, measure)},
-    charts=[Chart("λ by rule and mesh, over λ with points at the ends of the joints", _draw)],
+    charts=[Chart("λ by rule and mesh, over λ with points at the ends of the joints", _draw, size=(8, 4.8))],
     fits=fits,
 )

@@ -29,7 +29,7 @@ ARMS = (0.5, 1.0)  # l_c as a share of the joint's length: exact, and as the pap
 OUTSIDE = 1e-3  # excess of forces over Eq. 3, in the largest of them, that counts as one
 TOLERANCE = 0.02  # width of the bracket of collapse loads
 
-LOOKS = {
+LOOKS = {  # colour, letter and words of what may become of a tenth of the collapse load
     "converged": ("#bfe3df", "", "converged"),
     "outside": ("#6db8af", "×", "converged, forces break Eq. 3"),
     "cycle": (LINES[2][0], "c", "cycle"),
@@ -37,15 +37,11 @@ LOOKS = {
     "wandering": (LINES[0][0], "w", "wandering"),
     "unreached": ("white", "", "given up before"),
 }
-"""Colour, letter and words of what may become of a tenth of the collapse load."""
-
-BLOCKS = {
+BLOCKS = {  # width and height [m], exact λ, l_c as a share of the joint, and load borne by theory, in collapse loads
     "topples, l_c half the joint": ((0.5, 2.0), 0.25, 0.5, 1.0),
     "slides, l_c half the joint": ((2.0, 0.5), 0.6, 0.5, 1.0),
     "topples, l_c the whole joint": ((0.5, 2.0), 0.25, 1.0, 2.0),
 }
-"""Width and height [m], exact λ, l_c as a share of the joint, and load borne by theory, in collapse loads."""
-
 BLOCK, PART = "load borne by one block [collapse load]", "Walls up to their collapse load"
 ENDED, BORNE, EXCESS = "ended", "borne [collapse load]", "largest excess over Eq. 3 [largest force]"
 
@@ -117,7 +113,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(9, 5)
     for axes, increments in zip(figure.subplots(1, len(INCREMENTS), sharey=True), INCREMENTS, strict=True):
         own = [row for row in rows[PART] if (row["steps"], row["l_c / joint"]) == (increments, ARMS[0])]
         for place, row in enumerate(own):
@@ -151,6 +146,6 @@ STUDY = Study(
         BLOCK: Part(("block that",), [*zip(BLOCKS)], block_row),
         PART: Part(("wall", "l_c / joint", "steps"), [*product(WALLS, ARMS, INCREMENTS)], measure),
     },
-    charts=[Chart("What became of each tenth of the collapse load under the published algorithm", _draw)],
+    charts=[Chart("What became of each tenth of the collapse load under the published algorithm", _draw, size=(9, 5))],
     fits=fits,
 )

@@ -31,15 +31,13 @@ PIECE, CLOSE = 20, 1e-4  # steps between two looks at a vibration, relative accu
 SMALL, GROWN = 1e-20, 1e6  # size of a vibration at its start, growth by which it is told from one that beats
 TIMES = (0.8, 0.9, 0.99, 1.001, 1.01, 1.03, 1.06, 1.1)  # time steps at which growth is measured, in critical ones
 MUCH = 1.05  # critical steps that a user's run is given
-KINDS: dict[str, tuple[ModeCount, bool]] = {
+KINDS: dict[str, tuple[ModeCount, bool]] = {  # modes of a block, and whether masses are scaled
     "rigid blocks, 3 modes": (3, True),
     "uniform strains, 6 modes, scaled": (6, True),
     "uniform strains, 6 modes": (6, False),
     "all modes, scaled": ("all", True),
     "all modes": ("all", False),
 }
-"""Modes of a block, and whether masses are scaled."""
-
 WALL, CRITICAL, MASS = "wall-w1", "W1 with joints that hold: critical step [µs]", "One mass on its joint"
 BEYOND = f"W1 at {MUCH} critical steps"
 GROWTH, LOCAL, VISCOUS = "growth a step at ω Δt", "largest ω Δt, local damping", "largest ω Δt, viscous damping"
@@ -143,7 +141,6 @@ def run_beyond(model: str, times: float = MUCH) -> Outcome:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(10, 4.8)
     left, right = figure.subplots(1, 2, width_ratios=(1.15, 1))
     times = np.linspace(min(TIMES), max(TIMES), 400)
     left.plot(times, [growth_at(x) for x in times], color="0.4", lw=1.2, label="theory")
@@ -176,5 +173,5 @@ STUDY = Study(
         MASS: Part(("what", "value"), [(what, x) for what in DAMPED for x in DAMPED[what]], mass_row),
         BEYOND: Part(("model",), [("dem-dynamic",), ("fem",)], lambda model: outcome_row(run_beyond(model))),
     },
-    charts=[Chart("Growth of a vibration a step, and the steps at which it begins", _draw)],
+    charts=[Chart("Growth of a vibration a step, and the steps at which it begins", _draw, size=(10, 4.8))],
 )

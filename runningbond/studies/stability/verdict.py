@@ -111,7 +111,6 @@ def fits(rows: Rows) -> list[Edge]:
 
 
 def _draw(figure: Figure, rows: Rows) -> None:
-    figure.set_size_inches(10, 5)
     left, right = figure.subplots(1, 2)
     many: Array = np.geomspace(1e-5, 0.3, 60)
     for name, (colour, marker) in looks_of(WALLS).items():
@@ -169,6 +168,6 @@ STUDY = Study(
     "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
     "large costs steps, and in the end is `undecided`",
     parts={PART: Part(("wall", "criterion", "value"), CASES, search)},
-    charts=[Chart("λ by the threshold of rest and by the displacement that counts as a collapse", _draw)],
+    charts=[Chart("λ by the threshold of rest and by the displacement that counts as a collapse", _draw, size=(10, 5))],
     fits=fits,
 )
