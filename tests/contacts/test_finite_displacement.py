@@ -287,7 +287,10 @@ def _period(theta: float, stiffness: float) -> float:
     motion[:3] = *(corner - np.array([[c, s], [-s, c]]) @ corner), -theta
     motion[1] -= GRAVITY / (stiffness * 0.25)
     state = State.at_rest(run.system, motion)
-    turned, time = state.motion[2], state.time
+    while state.motion[2] < 0:
+        before = state.copy()
+        run.hold(state, 0.0, 500)
+    state = before
     while state.motion[2] < 0:
         turned, time = state.motion[2], state.time
         run.hold(state, 0.0, 1)

@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
@@ -22,12 +22,13 @@ def draw(figure: Figure, rows: Rows) -> None:
     figure.add_subplot().plot([0, 1], [0, 1])
 
 
-def beam(measure: Callable[[str], Row], name: str) -> Study:
+CHARTS = [Chart("Sag", draw)]
+
+
+def beam(measure: Callable[[str], Row], name: str, charts: Sequence[Chart] = CHARTS) -> Study:
     """An experiment that takes no time."""
     part = Part(("beam",), [("long",), ("short",)], measure)
-    return Study(
-        name, f"Experiment {name}", {"sag": part}, [Chart("Sag", draw)], trusted="loads | small", beyond="falls"
-    )
+    return Study(name, f"Experiment {name}", {"sag": part}, charts, trusted="loads | small", beyond="falls")
 
 
 def straight(beam: str) -> Row:
@@ -137,7 +138,7 @@ def slow(which):
             pass
     return straight(which)
 
-stability.experiment = lambda name: beam(slow if name == stability.EXPERIMENTS[1] else straight, name)
+stability.experiment = lambda name: beam(slow if name == stability.EXPERIMENTS[1] else straight, name, [])
 main(["stability", "--out", sys.argv[2]])
 """
 
