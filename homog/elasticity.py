@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+from runningbond.joints import joint_stiffness
+from runningbond.scene import Scene
+
 
 @dataclass(frozen=True)
 class Moduli:
@@ -34,3 +37,12 @@ def elastic_moduli(
         a * bed_normal,
         tilting * sliding / (tilting + sliding),
     )
+
+
+def rigid_moduli(scene: Scene) -> Moduli:
+    """Closed-form moduli [Pa] of a wall's running bond of rigid blocks."""
+    assert scene.bond is not None
+    joint = joint_stiffness(scene.joint)
+    springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
+    springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
+    return elastic_moduli(scene.bond.width, scene.bond.height, **springs)

@@ -53,30 +53,7 @@ def run_campaign(
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> Campaign:
-    """Run models, all of `MODELS` where none is named, on scenes by name.
-
-    Parameters
-    ----------
-    folder
-        Where outcomes are kept, as ``folder/scene/model/``. A whole outcome computed from the same scene,
-        tolerance and code is reused.
-    tolerance
-        Relative width of the bracket asked for.
-    jobs
-        Number of processes; −1 is one a core.
-    cluster
-        Address of a Dask scheduler, or its file: tasks go to its workers, which share no folder with this process.
-    fresh
-        Compute everything again.
-    progress
-        Called with each cell that is done.
-
-    Raises
-    ------
-    Interrupted
-        On Ctrl-C, where the folder takes no more or the cluster is lost, with what there is. Running the same
-        campaign again goes on from there.
-    """
+    """Run models, all of `MODELS` where none is named, on scenes by name; parameters and errors as of `run_tasks`."""
     chosen = [find_model(model, "models") for model in models or MODELS]
     check_tolerance(tolerance)
     largest_first = sorted(scenes, key=lambda name: -len(scenes[name].blocks))
@@ -94,7 +71,26 @@ def run_tasks(
     fresh: bool = False,
     progress: Callable[[Cell], None] = lambda cell: None,
 ) -> Campaign:
-    """Run tasks, each cell one, in their order; parameters and errors as of `run_campaign`."""
+    """Run tasks, each cell one, in their order.
+
+    Parameters
+    ----------
+    folder
+        Where outcomes are kept, as ``folder/scene/model/``. A whole one of the same scene, tolerance and code is
+        reused, unless all are asked for `fresh`.
+    jobs
+        Number of processes; −1 is one a core.
+    cluster
+        Address of a Dask scheduler, or its file: tasks go to its workers, which share no folder with this process.
+    progress
+        Called with each cell that is done.
+
+    Raises
+    ------
+    Interrupted
+        On Ctrl-C, where the folder takes no more or the cluster is lost, with what there is; the same tasks go on
+        from there.
+    """
     campaign = Campaign()
     scenes = {task.cell: task.scene for task in tasks}
     try:

@@ -44,9 +44,10 @@ def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
 
 
 _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(_late, "dem.dynamic", "dem_dynamic")
-_STATIC_RECORDER, _MOTION_RECORDER = (
-    partial(_late, "runningbond.pictures.recording", recorder) for recorder in ("StaticRecorder", "MotionRecorder")
-)
+_RECORDER = partial(_late, "runningbond.pictures.recording")
+_PROGRESS = partial(_late, "runningbond.pictures.progress")
+_IN_MOTION: dict[str, Any] = {"interruptible": True, "takes": EXTRAS, "observer": partial(_RECORDER, "MotionRecorder")}
+_IN_MOTION["progress"] = partial(_PROGRESS, "MotionProgress")
 
 _EVERY_MODEL = (
     Model(
@@ -68,7 +69,7 @@ _EVERY_MODEL = (
         kind="certificate",
         takes=EXTRAS,
         parameters=("starts", "workers"),
-        progress=partial(_late, "runningbond.compare.progress", "SearchProgress"),
+        progress=partial(_PROGRESS, "SearchProgress"),
         interruptible=True,
         cost=Cost(0.22, 1.87, 1.48),
         colour="#c2410c",
@@ -77,8 +78,8 @@ _EVERY_MODEL = (
     Model(
         *("dem-static", "equilibrium of rigid blocks, load by load", _DEM_STATIC, STIFFNESS, "history"),
         parameters=(*IN_STEPS, "past"),
-        observer=_STATIC_RECORDER,
-        progress=partial(_late, "runningbond.compare.progress", "StaticProgress"),
+        observer=partial(_RECORDER, "StaticRecorder"),
+        progress=partial(_PROGRESS, "StaticProgress"),
         interruptible=True,
         cost=Cost(0.29, 1.82, 1.55, weightless=0.72, finer=0.10),
         takes=EXTRAS,
@@ -88,12 +89,9 @@ _EVERY_MODEL = (
     Model(
         *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, INTERFACE, "history"),
         parameters=(*IN_STEPS, "displacements"),
-        observer=_MOTION_RECORDER,
-        progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
-        interruptible=True,
         cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
-        takes=EXTRAS,
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
+        **_IN_MOTION,
         colour="#2a9d8f",
         marker="^",
         line=":",
@@ -101,12 +99,9 @@ _EVERY_MODEL = (
     Model(
         *("fem", "deformable blocks in motion", partial(_late, "fem_interface.model", "fem"), ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS, "displacements"),
-        observer=_MOTION_RECORDER,
-        progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
-        interruptible=True,
         cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
-        takes=EXTRAS,
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),
+        **_IN_MOTION,
         colour="#be185d",
         marker="D",
         line=(0, (3, 1, 1, 1)),

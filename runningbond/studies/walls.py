@@ -18,8 +18,7 @@ import numpy as np
 
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
-from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.limit import limit_nonassociated
 from runningbond.results import Outcome

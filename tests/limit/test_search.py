@@ -10,7 +10,6 @@ from shapely.geometry import Polygon, box
 from shapely.geometry.polygon import orient
 
 from runningbond.compare import published_scene
-from runningbond.compare.progress import SearchProgress
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state
 from runningbond.limit.canonical import canonical_order
 from runningbond.limit.certificates import driving_forces
@@ -18,6 +17,7 @@ from runningbond.limit.descent import Descent, is_lower
 from runningbond.limit.force_program import frozen_friction, solve_forces
 from runningbond.limit.programs import Programs
 from runningbond.limit.search import Search, search
+from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
 from tests.checker import check

@@ -77,14 +77,8 @@ def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequ
     y, right = [max(row["error"], FLOOR) for row in rows], 3 * max(x)
     axes.set(xscale="log", yscale="log", xlim=(min(x) / 2, right), ylim=(FLOOR / 1.8, TOP))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
-    level: dict[str, Any] = {
-        "xycoords": ("axes fraction", "data"),
-        "ha": "right",
-        "va": "center",
-        "fontsize": 8,
-        "color": "0.35",
-    }
-    axes.annotate("0.01 % or less", (0.99, FLOOR / 1.35), **level)
+    style: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8, "color": "0.35"}
+    axes.annotate("0.01 % or less", (0.99, FLOOR / 1.35), xycoords=("axes fraction", "data"), **style)
     front = pareto_front(cost, y)
     ends = [x[front[0]], *(x[i] for i in front), right], [TOP, *(y[i] for i in front), y[front[-1]]]
     axes.step(*ends, where="post", color="0.55", lw=1.4, zorder=1)

@@ -13,12 +13,12 @@ from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
 from fem_interface.periodic_cell import deformable_cell, rigid_cell
 from fem_interface.system import system_of
+from homog import rigid_moduli
 from runningbond.compare.models import MODELS, TOLERANCE
-from runningbond.dynamics import BlockSystem, Criteria, Drive, Run, State, drive, settle
-from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Drive, Run, State, drive, settle
 from runningbond.scene import Scene, SceneError, Stiffness
 
-from .walls import TURNED, Question, rigid_moduli
+from .walls import TURNED, Question
 
 DRIVEN = 0.05  # displacement of the control point to which a wall is driven, in block sizes
 SPEED = 1e-3  # speed at which the turned block is pushed where nothing else is said [m/s]

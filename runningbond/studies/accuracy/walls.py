@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal, TypeAlias
 
-from homog import Moduli, elastic_moduli
+from homog import rigid_moduli
 from runningbond.compare.published import published_scene
 from runningbond.joints import joint_stiffness
 from runningbond.limit import limit_nonassociated
@@ -55,10 +55,6 @@ def error(value: float, interval: Interval) -> float:
     return 0.0 if low <= value <= high else abs(value - nearer) / abs(nearer)
 
 
-def _exactly(scene: Scene, answer: float, question: Question = "collapse") -> Wall:
-    return Wall(scene, question, "exact", (answer, answer))
-
-
 def _scene(width: float, height: float, friction: float, young: float = STIFF, /, **wall: Any) -> Scene:
     return scene_from_dict(
         {
@@ -74,13 +70,13 @@ def _scene(width: float, height: float, friction: float, young: float = STIFF, /
 def pile(width: float, height: float, count: int, friction: float) -> Wall:
     """A stack of n blocks b × h, which falls at λ = min(tan φ, b / (n h))."""
     scene = _scene(width, height, friction, courses=[[1]] * count)
-    return _exactly(scene, min(friction, width / (count * height)))
+    return Wall(scene, known="exact", answer=(min(friction, width / (count * height)),) * 2)
 
 
 def turned_block(width: float, height: float) -> Wall:
     """A block that has turned by θ about its corner bears λ = tan(α − θ), tan α = b / h."""
     scene = _scene(width, height, 0.9, courses=[[1]])
-    return _exactly(scene, math.tan(math.atan2(width, height) - TURNED), "turned block")
+    return Wall(scene, "turned block", "exact", (math.tan(math.atan2(width, height) - TURNED),) * 2)
 
 
 def elastic_cell(young: float, question: Question, width: float = 0.24, height: float = 0.06) -> Wall:
@@ -91,16 +87,8 @@ def elastic_cell(young: float, question: Question, width: float = 0.24, height: 
     """
     scene = _scene(width, height, 0.6, young, length=6 * width, height=6 * height)
     in_series = 1 / (1 / (height * joint_stiffness(scene.joint).normal) + 1 / young)
-    return _exactly(scene, in_series if question == "compression" else rigid_moduli(scene).a1212, question)
-
-
-def rigid_moduli(scene: Scene) -> Moduli:
-    """Closed-form moduli [Pa] of a wall's running bond of rigid blocks."""
-    assert scene.bond is not None
-    joint = joint_stiffness(scene.joint)
-    springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
-    springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
-    return elastic_moduli(scene.bond.width, scene.bond.height, **springs)
+    answer = in_series if question == "compression" else rigid_moduli(scene).a1212
+    return Wall(scene, question, "exact", (answer, answer))
 
 
 def square_panel(courses: int, young: float = STIFF) -> Scene:

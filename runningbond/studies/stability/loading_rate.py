@@ -17,8 +17,7 @@ from matplotlib.figure import Figure
 
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import BlockSystem, Criteria, Run, drive, load_steps, settle, settled_drive
-from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, drive, load_steps, settle, settled_drive
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING, LOADING_WEIGHTLESS
 from runningbond.dynamics.run import LOCAL

@@ -108,11 +108,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
 
 
 USED = ("Gauss 2", "Lobatto 2", "Simpson")
-CASES = [
-    *product(["block"], RULES, CELLS),
-    *product(["W1"], USED, CELLS),
-    *product(["panel-04"], USED, CELLS[:2]),
-]
+CASES = [*product(["block"], RULES, CELLS), *product(["W1"], USED, CELLS), *product(["panel-04"], USED, CELLS[:2])]
 STUDY = Study(
     "quadrature",
     "Quadrature and mesh of the joints",

@@ -17,8 +17,7 @@ from matplotlib.figure import Figure
 
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import Criteria, Run, load_steps, ramp, settle
-from runningbond.dynamics.collapse import U_CRIT
+from runningbond.dynamics import U_CRIT, Criteria, Run, load_steps, ramp, settle
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.limit import limit_nonassociated
 from runningbond.pictures.charts import LOOKS, looks_of
