@@ -52,10 +52,7 @@ class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
 
 
 def on_cluster(tasks: Sequence[Task], where: str) -> Iterator[Answer]:
-    """Answers as they come, from a cluster: the address of its scheduler, or its file.
-
-    Where no scheduler with a worker answers, that is a `SceneError`.
-    """
+    """Answers as they come, from a cluster by its scheduler's address or file; a `SceneError` if it has no worker."""
     keys = {task.cell: task.key() for task in tasks}
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are reported here, in a line
     try:

@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 
 from homog import crack_slope, lateral_multiplier
 from runningbond.pictures.captions import to_png
-from runningbond.pictures.charts import COLOURS, bare
-from runningbond.results import Outcome, write_atomically
+from runningbond.pictures.charts import COLOURS, bare, mark
+from runningbond.results import write_atomically
 from runningbond.scene import Array
 
 from .model import Model
@@ -88,7 +88,7 @@ def table_2(comparison: Comparison) -> Figure:
                 axes.plot(k + shift, case.printed[label], marker, color="0.62", ms=5, ls="none")
             for model, shift in zip(comparison.models, shifts, strict=True):
                 if (outcome := comparison.outcome(case.name, model)) is not None:
-                    _mark(axes, k + float(shift), model, outcome)
+                    mark(axes, k + float(shift), outcome, model.colour, model.marker)
                     hollow |= outcome.multiplier is None
         axes.set_xticks(range(4), [label for label, _ in TEXTURES])
     looks = [(f"printed {label}", "0.62", marker) for label, marker in PRINTED.items()]
@@ -101,21 +101,8 @@ def table_2(comparison: Comparison) -> Figure:
     return figure
 
 
-def _mark(axes: Axes, x: float, model: Model, outcome: Outcome) -> None:
-    """A bar for the bracket and a mark on it; a hollow one, on a thin bar, where no collapse load was found."""
-    loads = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
-    place, width, face, edge = outcome.multiplier, 2.5, model.colour, 1.5
-    if place is None:
-        place, width, face, edge = loads[-1], 0.8, "white", 1.0
-    axes.plot([x, x], [loads[0], loads[-1]], color=model.colour, lw=width, solid_capstyle="butt")
-    axes.plot(x, place, model.marker, color=model.colour, mfc=face, ms=5, mew=edge, ls="none", clip_on=False)
-
-
 def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Figure:
-    """Curves of the walls of one source, each with a dot at its end; of loads in kN where λ is a load in newtons.
-
-    A level line is drawn for each model that only estimates the multiplier of the twelve panels.
-    """
+    """Curves of one source's walls, loads in kN where λ is in newtons; level lines of models that only estimate λ."""
     panels, point_load = source == BARALDI, source == CONCENTRATED
     where, load = ("under the load", "load [kN]") if point_load else ("of the upper corner", "load multiplier λ")
     labels = {"xlabel": f"displacement {where} [mm]", "ylabel": load}

@@ -11,8 +11,6 @@ from pathlib import Path
 from .fingerprint import LIBRARIES, code_digest
 from .table import Comparison, Sheet, cost_sheets, multiplier_sheets
 
-DRAWN_WITH = ("pyvista", "vtk", "matplotlib")
-
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
@@ -39,12 +37,12 @@ HEAD = """<!doctype html>
 def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: float, why_no_plates: str = "") -> str:
     """Write the page, with the PNG files of charts and plates in their order, or why there are no plates."""
     versions = [
-        ("models", ", ".join(comparison.names)),
+        ("models", ", ".join(model.name for model in comparison.models)),
         ("tolerance", f"{tolerance:g}"),
         ("written", datetime.now(UTC).isoformat(timespec="seconds")),
         ("runningbond", f"{version('runningbond')}, sources {code_digest()[:16]}"),
         ("Python", f"{platform.python_version()} on {platform.system()} {platform.machine()}"),
-        *((name, version(name)) for name in (*LIBRARIES, *DRAWN_WITH)),
+        *((name, version(name)) for name in (*LIBRARIES, "pyvista", "vtk", "matplotlib")),
     ]
     parts = [
         "<h1>Masonry walls from their description to their collapse</h1>",

@@ -46,11 +46,6 @@ class Comparison:
     campaign: Campaign
     published: Mapping[str, PublishedCase] = field(default_factory=dict)
 
-    @property
-    def names(self) -> list[str]:
-        """Names of the models."""
-        return [model.name for model in self.models]
-
     def groups(self) -> dict[str, list[str]]:
         """Names of scenes by the table they stand in: one a source, and λ and newtons apart."""
         groups: dict[str, list[str]] = {}
@@ -112,7 +107,7 @@ def _sheet(
     """A row a scene: its name, the cells that are its own, and the text of each model's outcome."""
     models = comparison.models
     rows = [[name, *own, *(comparison.cell(name, model, text) for model in models)] for name, own in cells.items()]
-    return Sheet(title, ["scene", *heads, *comparison.names], rows)
+    return Sheet(title, ["scene", *heads, *(model.name for model in models)], rows)
 
 
 def csv_text(comparison: Comparison) -> str:
@@ -143,8 +138,7 @@ def csv_lines(rows: Iterable[Sequence[object]]) -> str:
 
 def corrected_homo(scene: Scene) -> float:
     """Homogenised multiplier by the corrected Eq. (6), with the tan 30° the paper's column was computed with."""
-    friction = math.tan(math.radians(30))
-    multiplier = homog(scene.with_joint(friction=friction)).multiplier
+    multiplier = homog(scene.with_joint(friction=math.tan(math.radians(30)))).multiplier
     assert multiplier is not None  # it answers or refuses
     return multiplier
 

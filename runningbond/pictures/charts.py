@@ -3,6 +3,12 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from runningbond.results import Outcome
+from runningbond.scene import Array
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
@@ -51,3 +57,18 @@ def bracket(axes: "Axes", x: float, row: Row, colour: str, **style: Any) -> None
     paler = 1.0 if row["status"] == "collapse" else 0.4
     bar: dict[str, Any] = {"color": colour, "lw": 4, "alpha": paler, "solid_capstyle": "butt"} | style
     axes.plot([x, x], [row["λ lower"], row["λ upper"]], **bar)
+
+
+def mark(axes: "Axes", x: float, outcome: Outcome, colour: str, marker: str) -> None:
+    """A bar for a bracket and a mark on it; a hollow one, on a thin bar, where no collapse load was found."""
+    loads = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
+    place, width, face, edge = outcome.multiplier, 2.5, colour, 1.5
+    if place is None:
+        place, width, face, edge = loads[-1], 0.8, "white", 1.0
+    axes.plot([x, x], [loads[0], loads[-1]], color=colour, lw=width, solid_capstyle="butt")
+    axes.plot(x, place, marker, color=colour, mfc=face, ms=5, mew=edge, ls="none", clip_on=False)
+
+
+def in_units(unit: float) -> tuple[Callable[[ArrayLike], Array], Callable[[ArrayLike], Array]]:
+    """From values to ratios to a unit, and back, as a second axis needs them."""
+    return lambda value: np.asarray(value, float) / unit, lambda ratio: np.asarray(ratio, float) * unit

@@ -30,10 +30,7 @@ Where: TypeAlias = tuple[str, Case]  # the name of a part, and one of its cases
 def run_study(
     study: Study, folder: Path, *, jobs: int = 1, progress: Callable[[str], None] = lambda case: None
 ) -> dict[str, list[Row]]:
-    """Measure what is not in the table of a folder yet, some cases side by side; every row, by the study's parts.
-
-    `progress` is called with each case that is done, in words.
-    """
+    """Measure what is not in a folder's table yet, telling `progress` each case in words; every row, by parts."""
     kept = kept_rows(study, folder)
 
     def tell(where: Where) -> None:

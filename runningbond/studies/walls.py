@@ -96,12 +96,8 @@ SLIDING, TOPPLING, W1, W2 = KNOWN = ("block that slides", "block that topples", 
 def known_wall(name: str) -> KnownWall:
     """A wall of `KNOWN`."""
     exact = {SLIDING: SLIDES, TOPPLING: TOPPLES}.get(name)
-    if exact is None:
-        scene = inset_wall(f"wall-{name.split()[-1].lower()}")
-    elif name == SLIDING:
-        scene = one_block(0.24, 0.12, SLIDES, 1e10)
-    else:
-        scene = one_block(0.12, 0.12 / TOPPLES, 0.9, 1e10)
+    blocks = {SLIDING: (0.24, 0.12, SLIDES), TOPPLING: (0.12, 0.12 / TOPPLES, 0.9)}
+    scene = inset_wall(f"wall-{name[-2:].lower()}") if exact is None else one_block(*blocks[name], 1e10)
     certified, system = limit_nonassociated(scene), rigid_system(scene)
     assert certified.multiplier is not None
     phi = np.zeros(len(system.mass))

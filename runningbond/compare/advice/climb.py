@@ -1,9 +1,7 @@
 """Which model a scene needs: the ladder of models, climbed until the answer is as narrow as asked.
 
-Each rung is climbed for a reason, and left out for one. An estimate has no bracket and shows the trend alone. The
-bound is a proof from above: no wall of Coulomb joints stands above it. Certificates are loads at which the wall can
-collapse. A model that follows the wall brackets the collapse of one history. docs/advise.md says what ends the climb,
-and what its bracket means.
+Each rung is climbed for a reason, and left out for one. `Kind` says what its answer is worth, docs/advise.md what ends
+the climb and what its bracket means.
 """
 
 import time
@@ -85,10 +83,7 @@ class Advice:
 
 
 def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:
-    """Climb the ladder as far as a scene needs for a bracket of some relative width.
-
-    With `finite` it ends at finite displacements, however small they may be.
-    """
+    """Climb the ladder as far as a scene needs for a bracket of some relative width, or to `finite` displacements."""
     check_tolerance(tolerance)
     advice = Advice(Knowledge(scene, tolerance, finite))
     for _ in advice.climb():
@@ -99,8 +94,8 @@ def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) 
 def finite_peak(known: Knowledge, step: Step) -> Outcome:
     """Peak of the pushover curve at finite displacements, pushed ever slower until it settles.
 
-    It is settled where half the speed changes it by less than the tolerance. A peak far above the load above which
-    nothing stands at small displacements is one of inertia. The bracket is of the peaks at the last two speeds.
+    It is settled where half the speed changes it by less than the tolerance, which is its bracket, and is not one of
+    inertia, far above the load above which nothing stands at small displacements.
     """
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None

@@ -89,10 +89,7 @@ class Knowledge:
 
     @property
     def displacement(self) -> float | None:
-        """How far the wall moves under the live load until it collapses, in block sizes; None where nothing tells.
-
-        By the answer's own curve, where its model followed the wall, else `elastic_displacement`.
-        """
+        """How far the live load moves the wall until it collapses, by its curve or elastically [block sizes]."""
         if self.answer is None or self.answer.lower is None:
             return None
         if not len(self.answer.curve):

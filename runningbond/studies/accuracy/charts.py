@@ -8,10 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from numpy.typing import ArrayLike
 
 from runningbond.compare.models import MODEL_LOOKS
-from runningbond.scene import Array
+from runningbond.pictures.charts import in_units
 from runningbond.studies import Chart, Row, Rows
 
 from .measure import REFERENCE
@@ -22,7 +21,6 @@ FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and
 RIGID = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic")  # models with three freedoms a block,
 ASIDE = 1.1  # and the ratio by which they stand apart
 LEGEND_ROWS = 3
-FREE = "homog"  # model that is not drawn: a closed form costs nothing
 DRIVEN = "driven, steps"
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
 MARKS = dict(zip(VARIATIONS, "os^DXPv*", strict=True))  # of the parameters; a model as it is has the first one, filled
@@ -36,7 +34,7 @@ TITLES = {
 
 def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
     """Error against a cost, wall by wall."""
-    drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != FREE]
+    drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != "homog"]  # which costs nothing
     judged = [row for row in drawn if row.get("error") is not None]
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
@@ -54,7 +52,7 @@ def _against_seconds(axes: Axes, rows: Sequence[Row]) -> None:
     _draw_errors(axes, rows, seconds, seconds)
     unit = next((row["cpu_s"] for row in rows if row["model"] == REFERENCE), None)
     if unit:
-        ratio = axes.secondary_xaxis("top", functions=_in_units(unit))
+        ratio = axes.secondary_xaxis("top", functions=in_units(unit))
         ratio.set_xlabel(f"times the {REFERENCE} program on the same wall", fontsize=9, color="0.35")
 
 
@@ -106,11 +104,6 @@ def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:
     return front
 
 
-def _in_units(unit: float) -> tuple[Callable[[ArrayLike], Array], Callable[[ArrayLike], Array]]:
-    """From seconds to ratios to a unit, and back."""
-    return lambda seconds: np.asarray(seconds, float) / unit, lambda ratio: np.asarray(ratio, float) * unit
-
-
 def _legend(figure: Figure, rows: Sequence[Row]) -> None:
     def mark(marker: str, label: str, **style: Any) -> Line2D:
         return Line2D([], [], ls="none", marker=marker, label=label, **style)
@@ -142,7 +135,7 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
     axes.grid(color="0.9", lw=0.7)
     figure.legend(fontsize=10, loc="outside lower center", ncols=2)
     if REFERENCE in result:
-        ratio = axes.secondary_yaxis("right", functions=_in_units(result[REFERENCE][0]["cpu_s"]))
+        ratio = axes.secondary_yaxis("right", functions=in_units(result[REFERENCE][0]["cpu_s"]))
         ratio.set_ylabel(f"times the {REFERENCE} program on {sizes[0]} blocks", color="0.35")
 
 
@@ -155,7 +148,7 @@ def draw_stiffness(figure: Figure, rows: Rows) -> None:
     axes.plot([E / 1e9 for E in scaled], [*scaled.values()], "D-", label="fem, masses of stiff modes scaled", **looks)
     if rigid:
         axes.axhline(rigid, color=MODEL_LOOKS["dem-dynamic"][0], lw=2, ls=":", label="dem-dynamic, rigid blocks")
-        axes.secondary_yaxis("right", functions=_in_units(rigid)).set_ylabel("times rigid blocks", color="0.35")
+        axes.secondary_yaxis("right", functions=in_units(rigid)).set_ylabel("times rigid blocks", color="0.35")
     axes.set_xlabel("Young's modulus of the blocks [GPa]")
     axes.set_ylabel(f"processor seconds a physical second, {rows['stiffness'][0].get('blocks')} blocks")
     axes.set_xticks([E / 1e9 for E in scaled], [f"{E / 1e9:g}" for E in scaled])

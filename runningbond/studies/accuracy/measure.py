@@ -20,15 +20,13 @@ from .walls import Wall, accuracy_walls, all_walls, error
 
 RUNS, CHEAP = 3, 2.0  # timed runs of a case of which one takes no more processor seconds than that; else one
 REFERENCE = "limit"  # its processor seconds on the same wall are the unit of ratios, which hold on every machine
-MEGABYTE = 1e6
 
 
 def measure(name: str, model: str, parameter: str, setting: str) -> Row:
     """Measure a case in this process, after an untimed run on a small wall of the same kind that loads the kernels.
 
-    The row has the wall and what is known of it, the `Answer` and its relative error, and of the timed runs the median,
-    the least and the most seconds by the clock, of the processor, and of the processor in those of `REFERENCE`, run
-    just before; and the most memory that a run took beyond what its process held before [MB].
+    The row has what is known of the wall, the `Answer` and its relative error; median, least and most seconds of timed
+    runs by the clock, of the processor, and in those of `REFERENCE` just before; and the most memory they took [MB].
     """
     wall, settings = all_walls()[name], settings_of(model, parameter, setting)
     interval = wall.interval()
@@ -46,7 +44,7 @@ def measure(name: str, model: str, parameter: str, setting: str) -> Row:
         limit_time()
         held = start_of_memory()
         answer, clock, processor = _timed(wall, model, settings)
-        memory = max(memory, (most_memory() - held) / MEGABYTE)
+        memory = max(memory, (most_memory() - held) / 1e6)
         spent["wall_s"].append(clock)
         spent["cpu_s"].append(processor)
         spent["ratio"] += [] if unit is None else [processor / unit]

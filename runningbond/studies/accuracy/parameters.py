@@ -25,14 +25,12 @@ class Parameter:
 
 IN_MOTION = ("dem-dynamic", "fem")
 OFF: dict[str, dict[str, Any]] = {"off": {"mass_scaling": False}}
-RULES = {"Simpson": {"rule": lobatto(3)}, "Gauss 2": {"rule": gauss(2)}}
 STEPS = {f"{steps:,}": {"drive": steps} for steps in (25_000, 100_000, 400_000)}
 BRACKETS = {f"{100 * width:g} %": {"tolerance": width} for width in (0.05, 0.02, 0.005)}
-SPEEDS = {"4 mm/s": {"speed": 4e-3}, "16 mm/s": {"speed": 1.6e-2}}
 STIFF = tuple(f"stiff-1e{power}" for power in range(9, 14))
 
-PARAMETERS = (
-    Parameter("joint rule", ("fem",), RULES),
+PARAMETERS = (  # what is varied, and where; three Lobatto points are Simpson's rule
+    Parameter("joint rule", ("fem",), {"Simpson": {"rule": lobatto(3)}, "Gauss 2": {"rule": gauss(2)}}),
     Parameter("cells", ("fem",), {"2": {"cells": 2}, "4": {"cells": 4}}, expensive=("4",)),
     Parameter("modes", ("fem",), MODES),
     Parameter("mass scaling", ("fem",), OFF, expensive=("off",)),
@@ -40,16 +38,12 @@ PARAMETERS = (
     Parameter("first step", ("dem-static",), {"half": {"first_step": 0.015}, "double": {"first_step": 0.06}}),
     Parameter("first step", IN_MOTION, {"half": {"first_step": 0.025}, "double": {"first_step": 0.1}}),
     Parameter("driven, steps", IN_MOTION, STEPS, expensive=("400,000",)),
-    Parameter("speed", IN_MOTION, SPEEDS, walls=("turned-block",)),
+    Parameter("speed", IN_MOTION, {"4 mm/s": {"speed": 4e-3}, "16 mm/s": {"speed": 1.6e-2}}, walls=("turned-block",)),
     Parameter("displacements", IN_MOTION, {"small": {"drive": 100_000}}, walls=("turned-block",)),
     Parameter("modes", ("fem",), MODES, walls=("cell-1e10", "cell-1e11", "cell-1e12")),
     Parameter("modes", ("fem",), {"3": {"modes": 3}}, walls=("cell-shear",)),
     Parameter("mass scaling", ("fem",), OFF, walls=STIFF),
 )
-"""What is varied, and where. As they are, blocks of `fem` have two Lobatto points an element, one cell and ten modes.
-
-Three Lobatto points are Simpson's rule.
-"""
 
 
 def settings_of(model: str, parameter: str, setting: str) -> dict[str, Any]:

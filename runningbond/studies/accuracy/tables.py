@@ -93,10 +93,7 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Rec
 
 
 def cheapest(result: dict[Setting, Record], tolerance: float, models: Sequence[str]) -> Setting | None:
-    """The cheapest setting of some models whose error on every wall of `VARIED` is within a tolerance.
-
-    Where a model certified the answer itself, it counts as within.
-    """
+    """The cheapest setting of some models with errors within a tolerance on `VARIED`, where its own are none."""
     good = [
         (record.ratio, setting)
         for setting, record in result.items()

@@ -47,9 +47,9 @@ FEIGNED = f"largest mass-proportional damping that does not feign rest at {1 + B
 def judged(
     name: str, load: float, local: float = LOCAL, viscous: float = VISCOUS, mass_rate: float = 0.0, budget: int = BUDGET
 ) -> Row:
-    """Bring a wall to rest, ramp up a load, in units of λ_c, and hold it: is the verdict right, and after which steps.
+    """Bring a wall to rest, ramp up to a load in λ_c, hold it: is the verdict right, and after which steps.
 
-    Damped by local damping, the joints' viscous ratio and a mass-proportional rate [1/s], within a budget of steps.
+    Damped locally, by the joints' viscous ratio and by a mass-proportional rate [1/s], within a budget of steps.
     """
     wall = known_wall(name)
     drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)

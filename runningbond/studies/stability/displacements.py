@@ -49,8 +49,7 @@ def scene_of(name: str) -> tuple[Scene, float]:
 def curves(scene: Scene, width: float, speed: float) -> tuple[float, Array, Array, Array]:
     """Push a scene at small and at finite displacements, at a mean speed of its blocks along the live load [m/s].
 
-    Returns λ at small displacements in the end, and from the finite curve's peak on the displacement of the control
-    point in block widths, and λ of both curves, each ``(n,)``.
+    Returns λ at small displacements in the end, and from the finite curve's peak on u / b and λ of both, ``(n,)``.
     """
     distance = FARTHEST * width
     static = dem_static(scene, collapse=2 * distance / scene.lowest_block).curve

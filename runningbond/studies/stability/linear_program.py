@@ -51,10 +51,7 @@ DEGENERATE: dict[str, tuple[Callable[[], Scene], float]] = {  # degenerate walls
 
 
 def glued(quantity: str = "", factor: float = 1.0) -> tuple[Scene, float]:
-    """A glued pier under a load on its top with a quantity multiplied, strength along with weight, and its change of λ.
-
-    Its multiplier is in newtons; the force on its top is 1.1 N at λ = 1.
-    """
+    """A glued pier under 1.1 λ N on its top, a quantity multiplied, strength along with weight; its change of λ."""
     size, load = (factor if quantity == what else 1.0 for what in ("size", "load"))
     strength = 1.0 if quantity == "load" else factor
     pier = row_of_piers(1)

@@ -65,10 +65,7 @@ def order(name: str, rate: Array, multiplier: Array) -> float:
 
 
 def at_no_speed(rate: Array, multiplier: Array) -> tuple[float, float]:
-    """λ of a ramp without speed, and its standard error: a line over rate^(2/3), weighted by its inverse.
-
-    The scatter is as the excess.
-    """
+    """λ of a ramp without speed and its standard error, by a line over rate^(2/3), as which the scatter grows."""
     away = rate**ORDER
     line, covariance = np.polyfit(away, multiplier, 1, w=1 / away, cov=True)
     return float(line[1]), float(np.sqrt(covariance[1, 1]))

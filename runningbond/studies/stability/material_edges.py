@@ -86,7 +86,6 @@ def similar(size: float) -> Scene:
 
 
 BRICK = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.24, "height": 0.06}
-SOFTENING = {"fracture_energy_1": 1e-9, "fracture_energy_2": 1e-9}
 BRITTLE = {"fracture_energy_1": 0.0, "fracture_energy_2": 0.0}
 GLUED = {"friction": 0.0, "cohesion": 300.0, "tensile_strength": 0.0}
 # λ at which a block of 1 m on one of 10 mm turns with it about the ground: weights and their arms
@@ -98,8 +97,11 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may b
     "tan φ = 1e-3": (lambda: panel(joint=dry(friction=1e-3)), 1e-3),
     "tan φ = 3, pier": (lambda: pier(0.24, 0.36, 3, friction=3.0), 2 / 3),
     "tan φ = 1e6, pier": (lambda: pier(0.24, 0.36, 3, friction=1e6), 2 / 3),
-    "c, G → 0": (lambda: panel(joint=dry(cohesion=1e-3, **SOFTENING)), 0.6),
-    "G = 0, c = 1 kPa": (lambda: panel(joint=dry(cohesion=1e3, **BRITTLE)), (0.6, 0.836)),
+    "c, G → 0": (lambda: panel(joint=dry(cohesion=1e-3, fracture_energy_1=1e-9, fracture_energy_2=1e-9)), 0.6),
+    "G = 0, c = 1 kPa": (
+        lambda: panel(joint=dry(cohesion=1e3, **BRITTLE)),
+        (0.6, 0.836),
+    ),
     "f_t = 0, c = 10 kPa": (lambda: pier(0.24, 0.36, 3, cohesion=1e4, tensile_strength=0.0), 2 / 3),
     "tan φ = f_t = 0, c = 300 Pa": (lambda: pier(0.24, 0.12, 1, **GLUED), 300.0 / (1800.0 * 9.81 * 0.12)),
     "self-locking: pressed": (lambda: pressed(0.24, [0.0, -1.0]), "unbounded"),

@@ -158,7 +158,6 @@ def _draw_sweep(
     axes.plot(suite, drawn[suite], "o", ms=11, mfc="none", mec=colour)
 
 
-CASES = [(name, criterion, value) for (name, criterion), values in SWEEPS.items() for value in values]
 STUDY = Study(
     "verdict",
     "Verdict: when a wall is at rest, and when it has fallen",
@@ -166,7 +165,7 @@ STUDY = Study(
     beyond="a threshold of rest too loose gives a λ too high by (4), one below rounding `undecided`; a u_crit too "
     "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
     "large costs steps, and in the end is `undecided`",
-    parts={PART: Part(("wall", "criterion", "value"), CASES, search)},
+    parts={PART: Part(("wall", "criterion", "value"), [(*x, y) for x, ys in SWEEPS.items() for y in ys], search)},
     charts=[Chart("λ by the threshold of rest and by the displacement that counts as a collapse", _draw, size=(10, 5))],
     fits=fits,
 )
