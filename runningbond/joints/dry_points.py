@@ -21,7 +21,7 @@ SLIPPED, SEAT, CRUSHED = (len(HISTORY) + k for k in (-1, 0, 1))
 LONGEST = 8.0
 """Largest g c for which the series is exact to rounding: a stiffness that grows by a factor of 3000."""
 
-A, B, C, D, E, F, G, H, I = (1.0 / math.factorial(k) for k in range(2, 11))
+C2, C3, C4, C5, C6, C7, C8, C9, C10 = (1.0 / math.factorial(k) for k in range(2, 11))
 """Coefficients of the series of expm1."""
 
 PRESSED, JOLTED = 0.9, 0.1
@@ -47,9 +47,7 @@ def dry_within(of: Array, viscosity: float) -> tuple[float, float]:
 
 
 @kernel
-def is_beyond(
-    rows: tuple[np.uint64, np.uint64], opening: Array, history: Array, bounds: tuple[float, float]
-) -> bool:
+def is_beyond(rows: tuple[np.uint64, np.uint64], opening: Array, history: Array, bounds: tuple[float, float]) -> bool:
     """Whether a point from one up to another is beyond `dry_within`, or was crushed before."""
     before, seat, crushed = history[OPENING_BEFORE], history[SEAT], history[CRUSHED]
     closure, jolt = bounds
@@ -91,7 +89,7 @@ def dry_points(
         closure = closure if is_closed else 0.0
         below = closure if closure < end else end
         x = scale * below
-        y = x * (1.0 + x * (A + x * (B + x * (C + x * (D + x * (E + x * (F + x * (G + x * (H + x * I)))))))))
+        y = x * (1.0 + x * (C2 + x * (C3 + x * (C4 + x * (C5 + x * (C6 + x * (C7 + x * (C8 + x * (C9 + x * C10)))))))))
         y = y * (y + 2.0)
         y = y * (y + 2.0)
         y = y * (y + 2.0)
