@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
+from runningbond.compare.advice.experiment import ModelError
 from runningbond.compare.table import Sheet
 
 from .ladder import FORMULAS
@@ -59,6 +60,21 @@ class Total:
             return False
         factors = self.stiffness is not None and max(self.stiffness, self.drift or 1.0) <= FACTOR
         return self.median <= MEDIAN and self.worst <= WORST and (self.modes or 0.0) >= MODES and factors
+
+
+def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
+    """ΔV of each rung that is a model, on the scored walls of each kind that it answers for."""
+    groups: dict[tuple[str, str], list[Prediction]] = {}
+    for each in predictions:
+        if each.wall.is_scored and each.error is not None and each.rung.base:
+            groups.setdefault((kind_of(each), each.rung.name), []).append(each)
+    found = []
+    for (kind, name), own in groups.items():
+        rung, errors = own[0].rung, [each.error or 0.0 for each in own]
+        features = rung.is_finite, rung.features.crushes, rung.features.splits
+        walls, middle = " ".join(each.wall.name for each in own), median(map(abs, errors))
+        found.append(ModelError(name, rung.base, kind, *features, walls, middle, min(errors), max(errors)))
+    return found
 
 
 def kind_of(prediction: Prediction) -> str:
