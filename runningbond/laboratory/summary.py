@@ -8,7 +8,7 @@ from typing import Any
 from runningbond.compare.advice.experiment import ModelError
 from runningbond.compare.table import Sheet
 
-from .ladder import FORMULAS
+from .ladder import by_hand
 from .predictions import Prediction
 
 MEDIAN, WORST, MODES, FACTOR = 0.10, 0.20, 0.80, 1.5
@@ -92,12 +92,13 @@ def totals(predictions: Sequence[Prediction]) -> list[Total]:
 
 
 def errors_by_hand(predictions: Sequence[Prediction]) -> dict[str, float]:
-    """|ΔV| of the better of the two formulas, by walls."""
-    better: dict[str, float] = {}
-    for each in predictions:
-        if each.rung.name in FORMULAS and each.error is not None:
-            better[each.wall.name] = min(abs(each.error), better.get(each.wall.name, abs(each.error)))
-    return better
+    """|ΔV| of the better of the two formulas, by walls, whether or not the formulas are among the rungs."""
+    peaks = {each.wall.name: (each.scene, each.wall.peak) for each in predictions}
+    return {
+        name: float(min(abs(load / peak - 1) for load in by_hand(scene).values()))
+        for name, (scene, peak) in peaks.items()
+        if peak
+    }
 
 
 def _total(kind: str, model: str, own: Sequence[Prediction], to_beat: dict[str, float]) -> Total:
