@@ -1,5 +1,6 @@
 """Scores on curves and motions whose marks are known."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from runningbond.laboratory.scores import backbone, cycle_peaks, dissipated, fir
 from runningbond.laboratory.summary import cheapest, totals
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene.beam import Condition
 
 WALLS = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
 
@@ -197,10 +199,11 @@ def test_two_curves_of_the_campaign_are_what_their_files_say() -> None:
     assert Path(str(WALLS["WS.250"].cracks)).name == "WS.250-cracks.png"
 
 
-def toe_broken_by(broken: float, force: tuple[float, ...]) -> str | None:
+def toe_broken_by(broken: float, force: tuple[float, ...], condition: Condition = "free") -> str | None:
     """Mode of a wall whose beam is shifted and does not turn, with a toe that is broken in the third row of its way."""
     scene = scene_of(WALLS["SW.200.1"], Features(crushes=True))
     assert scene.beam is not None
+    scene = replace(scene, beam=replace(scene.beam, condition=condition))
     motion = np.zeros((len(scene.blocks), 3))
     motion[scene.wall, 0] = np.linspace(0, 1, int(scene.wall.sum()))
     path = np.array([[0.0], [0.0], [broken], [2 * broken]])
@@ -214,6 +217,7 @@ def test_toe_that_is_broken_as_far_as_is_seen_crushes() -> None:
     assert toe_broken_by(1.5e-4, (0, 10, 8, 9)) == ROCKING
     assert toe_broken_by(0.6e-4, (0, 10, 8, 9)) != ROCKING
     assert toe_broken_by(0.6e-4, (0, 10, 9, 9)) == ROCKING
+    assert toe_broken_by(1.5e-4, (0, 10, 8, 9), "fixed-height") != ROCKING  # it cannot rock
 
 
 @pytest.mark.parametrize(
