@@ -1,9 +1,10 @@
 """How a wall fails, read where a model sees it fail: where the force has fallen to 0.8, else at the end of the way.
 
 If its toe is broken as far as can be seen, crushed or split by 0.1 mm, toes crush (R/TC): what reports name so. Under a
-beam that is kept at its height a wall cannot rock; there toes are the ends of its strut, and do not count. The beam's point at the actuator's height moves by U. If at least half of that comes of the beam's rotation ω over the
-height H, |ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on the mean over its
-length, the wall slides there (SL). Else the motion is spread over the steps of a diagonal (F).
+beam that is kept at its height a wall cannot rock; there toes are the ends of its strut, and do not count. The beam's
+point at the actuator's height moves by U. If at least half of that comes of the beam's rotation ω over the height H,
+|ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on the mean over its length, the
+wall slides there (SL). Else the motion is spread over the steps of a diagonal (F).
 """
 
 from collections.abc import Iterable
