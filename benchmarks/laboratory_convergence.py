@@ -29,7 +29,7 @@ from runningbond.scene import Scene
 RATE = 0.04
 """Speed of the beam [m/s], about that at which the shipped walls settle."""
 
-POINTS = 9
+POINTS = (9, 17)
 """Points along a joint, for 5."""
 
 
@@ -87,7 +87,7 @@ def main(names: list[str]) -> None:
             f"{RATE:g} m/s": (led, 1, None),
             "half the speed": (at_rate(scene, RATE / 2), 1, None),
             "half the step": (led, 0.5, None),
-            f"{POINTS} points a joint": (led, 1, POINTS),
+            **{f"{points} points a joint": (led, 1, points) for points in POINTS},
             "as shipped": (scene, 1, None),
         }
         first: Marks | None = None
