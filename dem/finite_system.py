@@ -73,7 +73,7 @@ class RigidContacts:
     def at_joints(self, contacts: Contacts, values: Array) -> Array:
         """As of `ContactSearch`, at `contact_points`."""
         at = position_of(self.points(contacts)[0], self._key_of_point)
-        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
+        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
         return np.where(at >= 0, values[:, at], lost[:, None])
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:

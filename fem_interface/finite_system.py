@@ -149,8 +149,8 @@ class DeformableContacts:
         """As of `ContactSearch`, at joint elements' points: each has its part of the nearest contact's force."""
         key, share = self._joint_points
         at = position_of(contacts.key, key)
-        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0])
-        part = np.where(np.arange(5)[:, None] // 2 == 1, share, 1.0)
+        lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])
+        part = np.where(np.arange(6)[:, None] // 2 == 1, share, 1.0)
         return np.where(at >= 0, values[:, at] * part, lost[:, None])
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:

@@ -42,7 +42,7 @@ def advise(
         if rung.next.model is not None:
             stopped = interruptions(rung.next.model)
     outcome = advice.outcome()
-    print(_as_json(advice, outcome) if json else _as_text(outcome), flush=True)
+    print(_as_json(advice, outcome) if json else _as_text(advice, outcome), flush=True)
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
@@ -57,17 +57,22 @@ def _rung_line(rung: Rung) -> str:
     return f"{line} → {rung.next.name}, {rung.next_cost or 'at a cost that no law gives'}"
 
 
-def _as_text(outcome: Outcome) -> str:
-    """The answer, by which model, and what its bracket means."""
+def _as_text(advice: Advice, outcome: Outcome) -> str:
+    """The answer, by which model, what its bracket means, and how far such answers were from tests."""
     result = f"λ {bracket(outcome)}" if outcome.status == "collapse" else outcome.status
-    return f"{result} by {outcome.model}, {outcome.seconds:.2f} s\n  {outcome.message}"
+    said = outcome.message, advice.against_experiment()[1]
+    return "\n  ".join([f"{result} by {outcome.model}, {outcome.seconds:.2f} s", *filter(None, said)])
 
 
 def _as_json(advice: Advice, outcome: Outcome) -> str:
     """The answer and its rungs as one JSON object."""
     answer = {key: value for key, value in outcome.summary().items() if key not in ("dofs", "steps")}
+    error, _ = advice.against_experiment()
+    measured = {"model_error": None if error is None else error.as_json()}
     bounds = {"lowest": advice.known.lowest, "bound": advice.known.bound}
-    return to_json.dumps({**answer, **bounds, "rungs": [_rung_json(rung) for rung in advice.rungs]}, allow_nan=False)
+    return to_json.dumps(
+        {**answer, **bounds, **measured, "rungs": [_rung_json(rung) for rung in advice.rungs]}, allow_nan=False
+    )
 
 
 def _rung_json(rung: Rung) -> dict[str, Any]:

@@ -48,6 +48,8 @@ class ContactMaterials:
         own, self._of_joint = scene.joint_materials, scene.material_of_joint
         self._broken = tuple(map(dry, own))
         self._all = (*(each if each.cohesion > 0 else dry(each) for each in own), *self._broken)
+        # Alike ones are taken for one, so that there are few rows of points.
+        self._alike = np.array([self._all.index(each) for each in self._all])
 
     def number(self, contacts: Contacts) -> Indices:
         """Number of the material of each end, ``(n,)``."""
@@ -56,5 +58,5 @@ class ContactMaterials:
 
     def law(self, contacts: Contacts, pairs: Indices | None = None, points: int = 1) -> KernelLaw:
         """Law of the ends, or of a number of points along ``pairs`` ``(n, 2)`` of them (`joints.along`)."""
-        number = self.number(contacts)
+        number = self._alike[self.number(contacts)]
         return kernel_law(self._all, number if pairs is None else np.tile(number[pairs[:, 0]], points))

@@ -1,12 +1,13 @@
 """How walls are led: a beam along its path at a slow speed, supports to their settlement from rest to rest."""
 
-from collections import deque
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
-from runningbond.scene import Array, Scene
+from runningbond.joints import JointPoints
+from runningbond.scene import Array, Mask, Scene
 
 from .collapse import Criteria, Verdict, hold_load
 from .load_stepping import NEARLY_AT_REST
@@ -26,7 +27,11 @@ STAGES = 20
 """Rests on the way of a settlement."""
 
 
-BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]")
+LOSS = 0.8
+"""Share of the largest force to which it falls where the wall has failed, and its mechanism is drawn."""
+
+TOE = "broken toe [m]"
+BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]", TOE)
 """What else is known of each row of a beam's way."""
 
 
@@ -42,7 +47,7 @@ class Way:
     resultants: list[Array] = field(default_factory=list)  # or (n, 3) `Run.resultants` on the bodies, at finite ones
     ties: list[Array] = field(default_factory=list)  # (nt,) forces of the ties [N] in each
     works: list[tuple[float, float]] = field(default_factory=list)  # of the dead load and of what leads [J]
-    beam: list[tuple[float, float, float]] = field(default_factory=list)  # `BEAM` of one that is driven
+    beam: list[tuple[float, float, float, float]] = field(default_factory=list)  # `BEAM` of one that is driven
     verdict: Verdict = "stable"
 
     @property
@@ -64,6 +69,7 @@ class Lead:
     start: State
     criteria: Criteria
     observe: Observer
+    points: JointPoints  # of the joints, in the order of `Run.at_joints`
 
     @property
     def settles(self) -> bool:
@@ -75,6 +81,13 @@ class Lead:
         """Displacements along the first move [m], or parts of the settlement, one after the other."""
         drive = self.scene.beam.drive if self.scene.beam else None
         return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path)
+
+    @property
+    def beam(self) -> int:
+        """The block that is the beam."""
+        if self.scene.beam is None or self.scene.beam.block is None:
+            raise TypeError("only a beam is driven")
+        return self.scene.beam.block
 
     @property
     def longest(self) -> float:
@@ -94,12 +107,35 @@ class Lead:
         else:
             way.resultants.append(self.run.resultants(state, force))
         if not self.settles and self.scene.beam is not None:
-            _, uplift, rotation = self.run.system.motion_of_blocks(state.motion - self.start.motion)[
-                self.scene.beam.block
-            ]
-            way.beam.append((rotation, uplift, self.run.ledger(state).friction))
+            _, uplift, rotation = self.run.system.motion_of_blocks(state.motion - self.start.motion)[self.beam]
+            way.beam.append((rotation, uplift, self.run.ledger(state).friction, self.broken_toe(state, moved)))
         way.ties.append(self.run.system.ties.force(state.motion, state.stretch))
         way.works.append((dead, state.external - dead))
+
+    def broken_toe(self, state: State, moved: float) -> float:
+        """How far a toe has been crushed, or blocks have split there [m], whichever is more.
+
+        The toe is the lower half of the outer quarter of the wall, on the side that it is pushed to.
+        """
+        opening, *_, damage, crushed = self.run.at_joints(state)
+        split = np.where(self._is_inner & (damage >= 1), np.maximum(opening, 0.0), 0.0)
+        drive = self.scene.beam.drive if self.scene.beam else None
+        right = drive is None or moved * drive.force[0] >= 0
+        return float(np.maximum(crushed, split)[self._toes[int(right)]].max(initial=0.0))
+
+    @cached_property
+    def _is_inner(self) -> Mask:
+        return self.scene.joints.inner[self.points.joint]
+
+    @cached_property
+    def _toes(self) -> tuple[Mask, Mask]:
+        """The points of the left and of the right toe."""
+        wall = self.scene.wall.copy()
+        wall[self.beam] = False
+        (left, bottom), (right, top) = self.scene.blocks.extent(wall)
+        x, y = self.points.position.T
+        low = y <= (bottom + top) / 2
+        return low & (x <= left + (right - left) / 4), low & (x >= right - (right - left) / 4)
 
     def go(self, way: Way, speed: float) -> State:
         """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
@@ -109,10 +145,10 @@ class Lead:
         return state
 
     def _drive(self, way: Way, state: State, speed: float) -> None:
-        run, at, farthest, most = self.run, 0.0, 0.0, 0.0
+        run, at, most = self.run, 0.0, 0.0
         self.note(way, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
-        given, recent = run.given(state), deque([state.motion.copy()], maxlen=SEEN)
+        given, motions = run.given(state), [state.motion.copy()]
         for goal in self.goals.tolist():
             if goal == at:
                 continue
@@ -128,12 +164,12 @@ class Lead:
                 if force > most:
                     most, way.best = force, state.copy()
                 self.note(way, state, moved, force)
-                if moved > farthest:
-                    farthest, way.motion = moved, state.motion - recent[0]
-                recent.append(state.motion.copy())
+                motions.append(state.motion.copy())
                 if (k + 1) % SEEN == 0:
                     self.observe(run, state, force)
             at = goal
+        row = failing(way.curve)
+        way.motion = motions[row] - motions[max(0, row - SEEN)]
 
     def _settle(self, way: Way, state: State, speed: float) -> None:
         run, given = self.run, self.run.given(state)
@@ -155,6 +191,18 @@ class Lead:
             self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)
+
+
+def failing(curve: Array) -> int:
+    """The row of a curve of a drive ``(n, 2)`` in which a wall is seen to fail.
+
+    Where the force has first fallen to `LOSS` of its largest on the way farther; else the farthest one.
+    """
+    moved, force = curve.T
+    onward = np.append(True, moved[1:] > np.maximum.accumulate(moved)[:-1])
+    top = int(force.argmax())
+    fallen = top + np.flatnonzero(onward[top:] & (force[top:] <= LOSS * force[top]))
+    return int(fallen[0]) if len(fallen) else int(moved.argmax())
 
 
 def _pace(rows: int) -> Array:

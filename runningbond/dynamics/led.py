@@ -67,7 +67,7 @@ def collapse_of_led(
             return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
         run = run.held_late(state)
         run.led = True
-        lead = Lead(scene, run, state, criteria, observe)
+        lead = Lead(scene, run, state, criteria, observe, points)
         for speed in _speeds(lead):
             ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
             last = lead.go(way, speed)

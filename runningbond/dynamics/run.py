@@ -242,13 +242,14 @@ class Run:
         return opening, slip, normal, tangential
 
     def at_joints(self, state: State) -> Array:
-        """Opening and slip [m], normal and tangential force [N] and damage of the joints' points, ``(5, n)``.
+        """Opening, slip [m], normal, tangential force [N], damage, plastic closure [m] of joints' points, ``(6, n)``.
 
         At finite displacements they are points of the undeformed wall's joints, and what has met since is left out.
         """
         jumps, tractions = np.split(np.array(self.tractions(state)), 2)
-        damage = self.interface.law.damage(state.history)
-        values, search = np.vstack([jumps, self.interface.area * tractions, damage]), self.system.contacts
+        law, search = self.interface.law, self.system.contacts
+        broken = law.damage(state.history), law.plastic_closure(state.history)
+        values = np.vstack([jumps, self.interface.area * tractions, *broken])
         return values if search is None else search.at_joints(contacts_of(state), values)
 
     def resultants(self, state: State, multiplier: float) -> Array:

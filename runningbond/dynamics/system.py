@@ -94,9 +94,9 @@ class ContactSearch(Protocol):
         """A key of each point of the interface on contacts, and the end that it is or −1, two ``(np,)``."""
 
     def at_joints(self, contacts: Contacts, values: Array) -> Array:
-        """What is at the undeformed wall's joint points, ``(5, n)``, from what is at contacts' points ``(5, np)``.
+        """What is at the undeformed wall's joint points, ``(6, n)``, from what is at contacts' points ``(6, np)``.
 
-        That is openings and slips [m], normal and tangential forces [N], and damage.
+        That is openings and slips [m], normal and tangential forces [N], damage, and plastic closure [m].
         """
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:

@@ -15,14 +15,16 @@ from .closure import Curve, closure_curve, pressure_at, stiffness_at, stored_at
 from .compiled import kernel
 from .coulomb import PLASTIC_SLIP
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
+from .dry_points import CRUSHED, SEAT, SLIPPED, dry_points, dry_within, is_beyond
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
-from .softening import DAMAGE, SLIPPED, softening_constants
+from .softening import DAMAGE, softening_constants
 from .softening import HISTORY as SOFTENING_HISTORY
 
 HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, "crushed")
 """Beside the rows of softening points: plastic closure δ_p and κ of the cap, both [m]."""
 
-SEAT, CRUSHED = len(HISTORY) - 2, len(HISTORY) - 1
+ROW = np.uint64(64)
+"""Points that are looked at together."""
 
 CURVE = 9
 """Number of the first constant of the closure's curve."""
@@ -64,6 +66,96 @@ def snapped(
 
 
 @kernel
+def any_points(
+    rows: tuple[np.uint64, np.uint64],
+    of: Array,
+    opening: Array,
+    slip: Array,
+    history: Array,
+    viscosity: float,
+    normal: Array,
+    tangential: Array,
+) -> None:
+    """Bring points from one up to another of a material on, whatever they do."""
+    spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
+    opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
+    damage, slipped, seat, crushed = history[DAMAGE], history[SLIPPED], history[SEAT], history[CRUSHED]
+    k_t, tension, shear, friction, flexibility = of[1], of[2], of[3], of[4], of[5]
+    first, last, per_slip = of[6], of[7], of[8]
+    curve = (of[9], of[10], of[11], of[12], of[13])
+    cap = (of[14], of[15], of[16], of[17])
+    crushes, cap_shear, sudden = of[14] < math.inf, of[15], of[18] > 0.0
+    for i in range(rows[0], rows[1]):
+        change_n, change_t = opening[i] - opening_before[i], slip[i] - slip_before[i]
+        jump_n = opening[i] + seat[i]
+        before = damage[i]
+        after, sheared = before, min(1.0, slipped[i] * per_slip)
+        if jump_n > first or sheared > 0.0:
+            torn = min(1.0, max(0.0, (jump_n - first) / (last - first)))
+            after = max(before, min(1.0, math.sqrt(torn * torn + sheared * sheared)))
+        sound = 1.0 - after
+        trial = k_t * (slip[i] - plastic_slip[i])
+        room = sound * (shear + friction * tension)
+        viscous, pressure, closure = 0.0, 0.0, max(0.0, -jump_n)
+        if jump_n > 0.0:
+            onset = first + before * (last - first)
+            secant_before = (1.0 - before) * tension / onset if tension > 0.0 else 0.0
+            secant = sound * tension / (first + after * (last - first)) if tension > 0.0 else 0.0
+            spent[i] += 0.5 * (secant_before - secant) * jump_n * min(jump_n, onset)
+            elastic = secant * jump_n
+        else:
+            pressure = pressure_at(closure, curve)
+            elastic = -pressure
+            viscous = viscosity * stiffness_at(pressure, curve) * change_n
+        flowed = 0.0  # slip of the cap
+        n = min(elastic + viscous, sound * tension)
+        most = max(0.0, room - friction * n)
+        held = max(-most, min(most, trial))
+        slid = (trial - held) * flexibility
+        limit, still = math.inf, 0.0
+        if crushes:
+            limit = strength_at(crushed[i], cap)
+            still = min(abs(trial), max(0.0, room - friction * elastic))
+            if pressure * pressure + cap_shear * still * still > limit * limit:
+                pull = max(0.0, elastic)
+                beyond = (pressure, closure, abs(trial))
+                p, t, mu = return_to_cap(beyond, crushed[i], k_t, (room, friction, pull), curve, cap)
+                n = elastic = pull - p
+                held = math.copysign(t, trial)
+                most = t
+                slid = (trial - held) * flexibility
+                flowed = cap_shear * mu * held
+                kappa = crushed[i] + mu * math.sqrt(p * p + cap_shear * t * t)
+                work = work_until(kappa, cap) - work_until(crushed[i], cap) - flowed * held
+                if sudden:
+                    was = (max(0.0, -opening_before[i] - seat[i]), k_t * (slip_before[i] - plastic_slip[i]))
+                    work = snapped(was, (p, held), (change_n, change_t), curve, flexibility) - held * slid
+                spent[i] += work
+                crushed[i] = kappa
+                seat[i] += p * mu
+                limit = math.inf
+        t = max(-most, min(most, held + viscosity * k_t * change_t))
+        if crushes and min(0.0, n) ** 2 + cap_shear * t * t > limit * limit:
+            # Neither does viscosity press or shear beyond the cap.
+            n = max(n, -max(pressure, math.sqrt(limit * limit - cap_shear * still * still)))
+            if cap_shear > 0.0:
+                within = max(0.0, limit * limit - min(0.0, n) ** 2) / cap_shear
+                most = min(max(0.0, room - friction * n), max(still, math.sqrt(within)))
+            held = max(-most, min(most, trial))
+            slid = (trial - held) * flexibility
+            t = max(-most, min(most, held + viscosity * k_t * change_t))
+        plastic_slip[i] += slid
+        slipped[i] += abs(slid - flowed)
+        spent[i] += held * slid
+        damped[i] += (n - elastic) * change_n + (t - held) * change_t
+        damage[i] = after
+        opening_before[i] = opening[i]
+        slip_before[i] = slip[i]
+        normal[i] = n
+        tangential[i] = t
+
+
+@kernel
 def interface_kernel(
     opening: Array,
     slip: Array,
@@ -78,83 +170,17 @@ def interface_kernel(
     Viscosity goes with the present stiffness, and does not act on what is being crushed.
     """
     segments, constants = parameters
-    spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
-    opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
-    damage, slipped, seat, crushed = history[DAMAGE], history[SLIPPED], history[SEAT], history[CRUSHED]
     for segment in range(constants.shape[0]):
         of = constants[segment]
-        k_t, tension, shear, friction, flexibility = of[1], of[2], of[3], of[4], of[5]
-        first, last, per_slip = of[6], of[7], of[8]
-        curve = (of[9], of[10], of[11], of[12], of[13])
-        cap = (of[14], of[15], of[16], of[17])
-        crushes, cap_shear, sudden = of[14] < math.inf, of[15], of[18] > 0.0
-        for i in range(segments[segment], segments[np.uint64(segment + 1)]):
-            change_n, change_t = opening[i] - opening_before[i], slip[i] - slip_before[i]
-            jump_n = opening[i] + seat[i]
-            before = damage[i]
-            torn = min(1.0, max(0.0, (jump_n - first) / (last - first)))
-            sheared = min(1.0, slipped[i] * per_slip)
-            after = max(before, min(1.0, math.sqrt(torn * torn + sheared * sheared)))
-            sound = 1.0 - after
-            trial = k_t * (slip[i] - plastic_slip[i])
-            room = sound * (shear + friction * tension)
-            viscous, pressure, closure = 0.0, 0.0, max(0.0, -jump_n)
-            if jump_n > 0.0:
-                onset = first + before * (last - first)
-                secant_before = (1.0 - before) * tension / onset if tension > 0.0 else 0.0
-                secant = sound * tension / (first + after * (last - first)) if tension > 0.0 else 0.0
-                spent[i] += 0.5 * (secant_before - secant) * jump_n * min(jump_n, onset)
-                elastic = secant * jump_n
+        first, last = segments[segment], segments[np.uint64(segment + 1)]
+        bounds = dry_within(of, viscosity)
+        while first < last:
+            rows = (first, min(first + ROW, last))
+            if bounds[0] < 0.0 or is_beyond(rows, opening, history, bounds):
+                any_points(rows, of, opening, slip, history, viscosity, normal, tangential)
             else:
-                pressure = pressure_at(closure, curve)
-                elastic = -pressure
-                viscous = viscosity * stiffness_at(pressure, curve) * change_n
-            flowed = 0.0  # slip of the cap
-            n = min(elastic + viscous, sound * tension)
-            most = max(0.0, room - friction * n)
-            held = max(-most, min(most, trial))
-            slid = (trial - held) * flexibility
-            limit, still = math.inf, 0.0
-            if crushes:
-                limit = strength_at(crushed[i], cap)
-                still = min(abs(trial), max(0.0, room - friction * elastic))
-                if pressure * pressure + cap_shear * still * still > limit * limit:
-                    pull = max(0.0, elastic)
-                    beyond = (pressure, closure, abs(trial))
-                    p, t, mu = return_to_cap(beyond, crushed[i], k_t, (room, friction, pull), curve, cap)
-                    n = elastic = pull - p
-                    held = math.copysign(t, trial)
-                    most = t
-                    slid = (trial - held) * flexibility
-                    flowed = cap_shear * mu * held
-                    kappa = crushed[i] + mu * math.sqrt(p * p + cap_shear * t * t)
-                    work = work_until(kappa, cap) - work_until(crushed[i], cap) - flowed * held
-                    if sudden:
-                        was = (max(0.0, -opening_before[i] - seat[i]), k_t * (slip_before[i] - plastic_slip[i]))
-                        work = snapped(was, (p, held), (change_n, change_t), curve, flexibility) - held * slid
-                    spent[i] += work
-                    crushed[i] = kappa
-                    seat[i] += p * mu
-                    limit = math.inf
-            t = max(-most, min(most, held + viscosity * k_t * change_t))
-            if crushes and min(0.0, n) ** 2 + cap_shear * t * t > limit * limit:
-                # Neither does viscosity press or shear beyond the cap.
-                n = max(n, -max(pressure, math.sqrt(limit * limit - cap_shear * still * still)))
-                if cap_shear > 0.0:
-                    within = max(0.0, limit * limit - min(0.0, n) ** 2) / cap_shear
-                    most = min(max(0.0, room - friction * n), max(still, math.sqrt(within)))
-                held = max(-most, min(most, trial))
-                slid = (trial - held) * flexibility
-                t = max(-most, min(most, held + viscosity * k_t * change_t))
-            plastic_slip[i] += slid
-            slipped[i] += abs(slid - flowed)
-            spent[i] += held * slid
-            damped[i] += (n - elastic) * change_n + (t - held) * change_t
-            damage[i] = after
-            opening_before[i] = opening[i]
-            slip_before[i] = slip[i]
-            normal[i] = n
-            tangential[i] = t
+                dry_points(rows, of, opening, slip, history, viscosity, normal, tangential)
+            first = rows[1]
 
 
 INTERFACE = Law(

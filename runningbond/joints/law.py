@@ -124,8 +124,7 @@ class KernelLaw:
 
     def energy(self, opening: Array, normal: Array, tangential: Array, history: Array) -> Array:
         """Energy that points of some jumps and tractions would give back, ``(np,)`` [J/m²]."""
-        seat = history[self.law.row(PLASTIC_CLOSURE)] if PLASTIC_CLOSURE in self.law.history else 0.0
-        return self.law.stored(self, opening + seat, normal, tangential)
+        return self.law.stored(self, opening + self.plastic_closure(history), normal, tangential)
 
     @property
     def parameters(self) -> Parameters:
@@ -160,6 +159,11 @@ class KernelLaw:
     def of_points(self, constant: int) -> Array:
         """A constant of each point's material, ``(np,)``."""
         return np.repeat(self.constants[:, constant], np.diff(self.segments).astype(np.int64))
+
+    def plastic_closure(self, history: Array) -> Array:
+        """How far each point has been crushed with a history ``(rows, np)`` [m]; zero for a law that knows none."""
+        known = PLASTIC_CLOSURE in self.law.history
+        return history[self.law.row(PLASTIC_CLOSURE)].copy() if known else np.zeros(self.points)
 
     def damage(self, history: Array) -> Array:
         """Damage of each point with a history ``(rows, np)``; zero for a law that knows none."""

@@ -25,6 +25,8 @@ class Rung:
 
     model: Model
     features: Features
+    base: str = ""  # the model of the package that it is; empty for what is worked out by hand
+    is_finite: bool = False
     is_by_hand: bool = False
     is_one_way: bool = False  # too dear for walls that are pushed to and fro
 
@@ -73,7 +75,7 @@ def _hand(name: str, title: str) -> Rung:
 def _rung(name: str, title: str, base: str, features: Features, colour: str, marker: str, **settings: Any) -> Rung:
     solve = partial(_run, base=base, settings=settings)
     model = replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker)
-    return Rung(model, features, is_one_way=base == "fem")
+    return Rung(model, features, base, settings == FINITE, is_one_way=base == "fem")
 
 
 FINITE: dict[str, Any] = {"displacements": "finite"}

@@ -1,14 +1,17 @@
-"""How a wall fails, read from the motion in which a model sees it fail.
+"""How a wall fails, read where a model sees it fail: where the force has fallen to 0.8, else at the end of the way.
 
-The beam's point at the actuator's height moves by U. If at least half of that comes of the beam's rotation ω over the
-height H, |ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on the mean over its
-length, the wall slides there (SL). Else the motion is spread over the steps of a diagonal (F).
+If its toe is broken as far as can be seen, crushed or split by 0.1 mm, toes crush (R/TC): what reports name so. Under a
+beam that is kept at its height a wall cannot rock; there toes are the ends of its strut, and do not count. The beam's
+point at the actuator's height moves by U. If at least half of that comes of the beam's rotation ω over the height H,
+|ω| H ≥ U / 2, the wall rocks (R/TC). Else, if one bed joint slips by U / 2 or more on the mean over its length, the
+wall slides there (SL). Else the motion is spread over the steps of a diagonal (F).
 """
 
 from collections.abc import Iterable
 
 import numpy as np
 
+from runningbond.dynamics.lead import TOE, failing
 from runningbond.joints import wall_points
 from runningbond.pictures.legend import is_bed
 from runningbond.results import Outcome
@@ -20,6 +23,9 @@ GROUPS = {"R": ROCKING, "TC": ROCKING, "F": DIAGONAL, "S": DIAGONAL, "DT": DIAGO
 """Modes by the words of the tables; toes crush where walls rock."""
 
 HALF = 0.5
+
+VISIBLE = 1e-4
+"""Width of a crack that is seen and drawn [m]."""
 
 
 def measured_modes(words: Iterable[str]) -> tuple[str, ...]:
@@ -39,6 +45,10 @@ def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:
     moved = abs(float(carried(scene.blocks, np.array([beam]), np.array([[x, base + height]]), motion)[0, 0]))
     if moved == 0:
         return None
+    if TOE in outcome.path_columns and scene.beam.condition != "fixed-height":
+        broken = outcome.path[failing(outcome.curve), outcome.path_columns.index(TOE)]
+        if broken >= VISIBLE:
+            return ROCKING
     if abs(float(motion[beam, 2])) * height >= HALF * moved:
         return ROCKING
     return SLIDING if max(bed_slips(scene, motion)) >= HALF * moved else DIAGONAL

@@ -7,6 +7,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from runningbond.compare.advice.experiment import FILE, write_errors
 from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
 from runningbond.pictures.charts import bare
@@ -20,7 +21,7 @@ from .measured import MeasuredWall
 from .predictions import Prediction
 from .rig import vertical_load
 from .stones import sources
-from .summary import percent, summary_sheet, totals, verdicts
+from .summary import model_errors, percent, summary_sheet, totals, verdicts
 
 NAME = "laboratory"
 OVER_COST = (
@@ -48,6 +49,7 @@ def write_laboratory(predictions: Sequence[Prediction], folder: Path) -> list[Pa
     for wall in _walls(predictions):
         blocks += _wall(wall, [each for each in predictions if each.wall is wall], folder)
     blocks += ["## Where numbers come from", sources()]
+    write_atomically(folder / FILE, write_errors(model_errors(predictions)).encode())
     return write_page(NAME, blocks, folder, NAME)
 
 

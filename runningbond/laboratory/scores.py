@@ -9,10 +9,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from runningbond.dynamics.lead import LOSS
 from runningbond.scene import Array
 
-SECANT, LOSS = 0.3, 0.8
-"""Shares of the strength at which the stiffness is read, and to which the force falls after it."""
+SECANT = 0.3
+"""Share of the strength at which the stiffness is read."""
 
 
 @dataclass(frozen=True)

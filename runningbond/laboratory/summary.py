@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
+from runningbond.compare.advice.experiment import ModelError
 from runningbond.compare.table import Sheet
 
-from .ladder import FORMULAS
+from .ladder import by_hand
 from .predictions import Prediction
 
 MEDIAN, WORST, MODES, FACTOR = 0.10, 0.20, 0.80, 1.5
@@ -61,6 +62,21 @@ class Total:
         return self.median <= MEDIAN and self.worst <= WORST and (self.modes or 0.0) >= MODES and factors
 
 
+def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
+    """ΔV of each rung that is a model, on the scored walls of each kind that it answers for."""
+    groups: dict[tuple[str, str], list[Prediction]] = {}
+    for each in predictions:
+        if each.wall.is_scored and each.error is not None and each.rung.base:
+            groups.setdefault((kind_of(each), each.rung.name), []).append(each)
+    found = []
+    for (kind, name), own in groups.items():
+        rung, errors = own[0].rung, [each.error or 0.0 for each in own]
+        features = rung.is_finite, rung.features.crushes, rung.features.splits
+        walls, middle = " ".join(each.wall.name for each in own), median(map(abs, errors))
+        found.append(ModelError(name, rung.base, kind, *features, walls, middle, min(errors), max(errors)))
+    return found
+
+
 def kind_of(prediction: Prediction) -> str:
     """What tables call walls of its kind, by their joints."""
     return prediction.wall.row.text("joints").casefold() or "dry"
@@ -76,12 +92,13 @@ def totals(predictions: Sequence[Prediction]) -> list[Total]:
 
 
 def errors_by_hand(predictions: Sequence[Prediction]) -> dict[str, float]:
-    """|ΔV| of the better of the two formulas, by walls."""
-    better: dict[str, float] = {}
-    for each in predictions:
-        if each.rung.name in FORMULAS and each.error is not None:
-            better[each.wall.name] = min(abs(each.error), better.get(each.wall.name, abs(each.error)))
-    return better
+    """|ΔV| of the better of the two formulas, by walls, whether or not the formulas are among the rungs."""
+    peaks = {each.wall.name: (each.scene, each.wall.peak) for each in predictions}
+    return {
+        name: float(min(abs(load / peak - 1) for load in by_hand(scene).values()))
+        for name, (scene, peak) in peaks.items()
+        if peak
+    }
 
 
 def _total(kind: str, model: str, own: Sequence[Prediction], to_beat: dict[str, float]) -> Total:

@@ -1,6 +1,8 @@
 """`advise`: the answer is right where one is known, every rung has its reason, and economies keep the answer."""
 
 import json
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,10 +13,13 @@ from dem.static import dem_static
 from fem_interface.model import fem
 from runningbond.commands.command_line import command
 from runningbond.compare import MODELS, PUBLISHED, published_scene
-from runningbond.compare.advice import TOLERANCE, Advice, advise
+from runningbond.compare.advice import TOLERANCE, Advice, advise, experiment
 from runningbond.compare.advice.costs import estimate, pace
+from runningbond.compare.advice.experiment import ModelError, error_of, read_errors, write_errors
 from runningbond.compare.advice.steps import WORTH
 from runningbond.joints.stiffness import block_compliance
+from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
 from runningbond.limit.dilatancy import sliding_dilates
 from runningbond.results import Outcome
@@ -262,7 +267,16 @@ def test_cost_adds_up_rung_by_rung() -> None:
 def test_a_line_a_rung_is_printed(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["advise", "wall-w3"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    starts = ["Ferris & Tin-Loi W3", "homog", "limit", "limit-nonassociated", "dem-static", "λ 0.3", "  "]
+    starts = [
+        "Ferris & Tin-Loi W3",
+        "homog",
+        "limit",
+        "limit-nonassociated",
+        "dem-static",
+        "λ 0.3",
+        "  largest",
+        "  against",
+    ]
     assert len(lines) == len(starts)
     for line, start in zip(lines, starts, strict=True):
         assert line.startswith(start)
@@ -282,12 +296,60 @@ def test_json_is_one_object(capsys: pytest.CaptureFixture[str]) -> None:
         "message",
         "lowest",
         "bound",
+        "model_error",
         "rungs",
     )
     assert tuple(answer) == keys
     assert answer["model"] == answer["rungs"][-1]["model"] == "dem-static"
     assert answer["lower"] <= answer["multiplier"] <= answer["upper"] <= answer["bound"]
     assert answer["lowest"] <= answer["upper"]
+    assert answer["model_error"]["rung"] == "limit"  # dem-static broke no wall of the laboratory
+
+
+def test_shipped_errors_are_of_walls_that_were_tested_and_of_models_that_there_are() -> None:
+    tested = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    errors = read_errors()
+    for each in errors:
+        assert each.base in MODELS
+        assert LADDER[each.rung].base == each.base
+        assert all(tested[name].is_scored for name in each.walls.split())
+        assert each.least <= each.most
+        assert 0 <= each.median <= max(abs(each.least), abs(each.most))
+    assert {("limit", "dry"), ("rigid-splitting", "dry")} <= {(each.rung, each.joints) for each in errors}
+
+
+def test_errors_survive_being_written_and_read(tmp_path: Path) -> None:
+    path = tmp_path / "errors.csv"
+    path.write_text(write_errors(read_errors()))
+    assert read_errors(path) == read_errors()
+
+
+@pytest.mark.parametrize(("joints", "features"), [("dry", {}), ("dry", {"crushes": True}), ("mortar", {})])
+def test_error_is_that_of_the_rung_with_the_scene_s_features(
+    joints: str, features: dict[str, bool], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of rungs that are one model the one with as many features of the scene; walls of other joints tell nothing."""
+    plain = ModelError("plain", "limit", "dry", False, False, False, "A B C", 0.1, -0.1, 0.2)
+    crushing = replace(plain, rung="crushing", crushes=True)
+    monkeypatch.setattr(experiment, "_shipped", lambda: [plain, crushing])
+    changes: dict[str, Any] = {"cohesion": 1e5} if joints == "mortar" else {}
+    changes |= {"compressive_strength": 1e7} if features else {}
+    found = error_of("limit", published_scene("wall-w3").with_joint(**changes), finite=False)
+    assert found == (None if joints == "mortar" else crushing if features else plain)
+    assert error_of("limit", published_scene("wall-w3"), finite=True) is None
+    assert str(plain) == "plain was off by 10% in the median, -10% to +20%, on 3 tested walls with dry joints (A, B, C)"
+
+
+def test_advice_says_how_far_its_rung_was_from_tests() -> None:
+    """A pier that topples: `limit` is the answer, and was tested."""
+    advice = advise(published_scene("panel-01"))
+    error, said = advice.against_experiment()
+    assert advice.known.answer is not None
+    assert error is not None
+    if advice.known.answer.model == error.base:
+        assert said == f"against experiment: {error}"
+    else:
+        assert said == f"against experiment: no such wall was tested with {advice.known.answer.model}; {error}"
 
 
 def test_bad_input_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,8 @@ from scipy.integrate import solve_ivp
 from runningbond.joints.closure import closure_at, closure_curve, pressure_at, stiffness_at, stored_at
 from runningbond.joints.coulomb import COULOMB, PLASTIC_SLIP
 from runningbond.joints.crushing import crushing_cap, strength_at, work_until
-from runningbond.joints.interface import CRUSHED, INTERFACE, SEAT, interface_kernel
+from runningbond.joints.dry_points import CRUSHED, SEAT
+from runningbond.joints.interface import INTERFACE, interface_kernel
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK, KernelLaw
 from runningbond.joints.softening import DAMAGE, SOFTENING
 from runningbond.joints.wall_law import kernel_law

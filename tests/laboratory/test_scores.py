@@ -1,10 +1,12 @@
 """Scores on curves and motions whose marks are known."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from runningbond.dynamics.lead import TOE, failing
 from runningbond.laboratory import read_folder
 from runningbond.laboratory.folder import SHIPPED
 from runningbond.laboratory.ladder import by_hand, find_rungs
@@ -15,6 +17,7 @@ from runningbond.laboratory.scores import backbone, cycle_peaks, dissipated, fir
 from runningbond.laboratory.summary import cheapest, totals
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene.beam import Condition
 
 WALLS = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
 
@@ -194,3 +197,41 @@ def test_two_curves_of_the_campaign_are_what_their_files_say() -> None:
     assert WALLS["WS.250"].curve[-1, 0] == pytest.approx(0.04311)
     assert WALLS["SW.200.1"].curve[:, 1].max() == pytest.approx(72.2e3)
     assert Path(str(WALLS["WS.250"].cracks)).name == "WS.250-cracks.png"
+
+
+def toe_broken_by(broken: float, force: tuple[float, ...], condition: Condition = "free") -> str | None:
+    """Mode of a wall whose beam is shifted and does not turn, with a toe that is broken in the third row of its way."""
+    scene = scene_of(WALLS["SW.200.1"], Features(crushes=True))
+    assert scene.beam is not None
+    scene = replace(scene, beam=replace(scene.beam, condition=condition))
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[scene.wall, 0] = np.linspace(0, 1, int(scene.wall.sum()))
+    path = np.array([[0.0], [0.0], [broken], [2 * broken]])
+    curve = np.column_stack([np.linspace(0, 0.003, 4), force])
+    outcome = Outcome("", "", "undecided", motion=motion, curve=curve, path=path, path_columns=(TOE,))
+    return predicted_mode(scene, outcome)
+
+
+def test_toe_that_is_broken_as_far_as_is_seen_crushes() -> None:
+    """0.15 mm are seen, and 0.06 are not, where the force has fallen to 0.8, though it is 0.12 at the end."""
+    assert toe_broken_by(1.5e-4, (0, 10, 8, 9)) == ROCKING
+    assert toe_broken_by(0.6e-4, (0, 10, 8, 9)) != ROCKING
+    assert toe_broken_by(0.6e-4, (0, 10, 9, 9)) == ROCKING
+    assert toe_broken_by(1.5e-4, (0, 10, 8, 9), "fixed-height") != ROCKING  # it cannot rock
+
+
+@pytest.mark.parametrize(
+    ("moved", "force", "row"),
+    [
+        ((0, 1, 2, 3), (0, 1, 2, 3), 3),
+        ((0, 1, 2, 3), (0, 10, 8.1, 8.1), 3),
+        ((0, 1, 2, 3), (0, 10, 8, 7), 2),
+        ((0, 1, 2, 3, 4), (0, 5, 3, 10, 9), 4),  # a drop on the way up is no failure
+        ((0, 2, 1, -2, 2.5), (0, 10, 2, -10, 9), 4),  # nor is unloading
+        ((0, 2, 1, -2, 2.5), (0, 10, 2, -10, 7), 4),
+    ],
+)
+def test_wall_fails_where_its_force_has_fallen_or_at_the_end(
+    moved: tuple[float, ...], force: tuple[float, ...], row: int
+) -> None:
+    assert failing(np.column_stack([moved, force]).astype(float)) == row

@@ -16,6 +16,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
 from .costs import Estimate
+from .experiment import ModelError, error_of
 from .knowledge import Knowledge, ladder
 from .steps import Step, after_refusal, next_step
 
@@ -70,6 +71,18 @@ class Advice:
         elif last.outcome is not None and last.outcome.status != "collapse" and known.answer is not None:
             message += f"; {last.model}: {last.next.reason}"
         return replace(answer, seconds=known.seconds, message=message)
+
+    def against_experiment(self) -> tuple[ModelError | None, str]:
+        """The measured error of the rung that the answer is of, and in words; of the bound where no wall tested it."""
+        known = self.known
+        if known.answer is None:
+            return None, ""
+        found = error_of(known.answer.model.split(",")[0], known.scene, finite=known.evidence == "finite")
+        if found is not None:
+            return found, f"against experiment: {found}"
+        found = error_of(ladder("bound")[0].name, known.scene, finite=False)
+        untested = f"against experiment: no such wall was tested with {known.answer.model}"
+        return found, untested if found is None else f"{untested}; {found}"
 
     def _run(self, step: Step) -> Outcome:
         known, model = self.known, step.model

@@ -1,0 +1,97 @@
+"""How far models were from walls that were broken in laboratories: what `runningbond validate` measured of them.
+
+``measured.csv`` is the table `FILE` that it writes into its folder, copied from there.
+"""
+
+import csv
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass, fields
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from runningbond.compare.table import csv_lines
+from runningbond.scene import Scene
+
+FILE = "model-errors.csv"
+"""Name of the table in the folder of the laboratory."""
+
+SHIPPED = Path(__file__).with_name("measured.csv")
+DRY, MORTAR = "dry", "mortar"
+
+
+@dataclass(frozen=True)
+class ModelError:
+    """ΔV of a model, predicted over measured strength less 1, on walls of one kind of joints.
+
+    Parameters
+    ----------
+    rung, base
+        The laboratory's name for it, and the model of this package that it is.
+    joints
+        Kind of the walls' joints.
+    finite, crushes, splits
+        Whether at finite displacements, with joints that crush, with blocks that split.
+    walls
+        The walls, separated by blanks.
+    median
+        Median of |ΔV|.
+    least, most
+        Of ΔV.
+    """
+
+    rung: str
+    base: str
+    joints: str
+    finite: bool
+    crushes: bool
+    splits: bool
+    walls: str
+    median: float
+    least: float
+    most: float
+
+    def __str__(self) -> str:
+        names = self.walls.split()
+        return (
+            f"{self.rung} was off by {self.median:.0%} in the median, {self.least:+.0%} to {self.most:+.0%}, on "
+            f"{len(names)} tested walls with {self.joints} joints ({', '.join(names)})"
+        )
+
+    def as_json(self) -> dict[str, Any]:
+        """What a script is told."""
+        return asdict(self) | {"walls": self.walls.split()}
+
+
+def write_errors(errors: Iterable[ModelError]) -> str:
+    """The table as the text of a CSV file."""
+    names = [field.name for field in fields(ModelError)]
+    rows = [[f"{x:.4f}" if isinstance(x, float) else str(x) for x in asdict(each).values()] for each in errors]
+    return csv_lines([names, *rows])
+
+
+def read_errors(path: Path = SHIPPED) -> list[ModelError]:
+    """Read such a table."""
+    with path.open(encoding="utf-8", newline="") as file:
+        return [_row(row) for row in csv.DictReader(file)]
+
+
+def _row(row: dict[str, str]) -> ModelError:
+    finite, crushes, splits = (row[key] == "True" for key in ("finite", "crushes", "splits"))
+    median, least, most = (float(row[key]) for key in ("median", "least", "most"))
+    features = finite, crushes, splits
+    return ModelError(row["rung"], row["base"], row["joints"], *features, row["walls"], median, least, most)
+
+
+@cache
+def _shipped() -> list[ModelError]:
+    return read_errors()
+
+
+def error_of(model: str, scene: Scene, *, finite: bool) -> ModelError | None:
+    """The error of a model on walls with such joints, and as many of a scene's features; None if none was tested."""
+    kind = MORTAR if any(each.cohesion > 0 for each in scene.joint_materials if each.name != "inner_joint") else DRY
+    crushes = any(each.compressive_strength is not None for each in scene.joint_materials)
+    splits = scene.inner_joint is not None
+    own = [each for each in _shipped() if (each.base, each.joints, each.finite) == (model, kind, finite)]
+    return max(own, key=lambda each: (each.splits == splits, each.crushes == crushes), default=None)
