@@ -84,7 +84,7 @@ _EVERY_MODEL = (
         parameters=("starts", "workers"),
         progress=partial(_late, "runningbond.compare.progress", "SearchProgress"),
         interruptible=True,
-        cost=Cost(0.22, 1.87, 1.48),
+        cost=Cost(1.8, 1.03, 1.34, weightless=0.56),
         colour="#c2410c",
         marker="s",
     ),
