@@ -143,7 +143,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     found = [(_along(result, first, first_step, tolerance, past), first)]
     steps, told = budget - first.budget, [_loads(found[0][0])]
     for factor in OTHER_STEPS if found[0][0].status == "collapse" else ():
-        if len(told) > 1 and _apart(found) <= tolerance:
+        if len(found) > 1 and _apart(found) <= tolerance:
             break
         path = LoadPath(first.system, first.far, left, rest)
         outcome = _along(result, path, factor * first_step, tolerance, past)
