@@ -177,6 +177,14 @@ def test_a_history_far_below_the_certified_loads_is_the_answer_and_calls_for_mor
     assert next_step(found, Step(HISTORY, "", draws=DRAWS), found.outcomes[-1]).model is not HISTORY
 
 
+def test_draws_that_are_fewer_than_asked_for_do_not_call_for_themselves_again() -> None:
+    found = known(1.0, (0.97, 0.99), (0.8, 0.81))
+    nowhere = Outcome("", HISTORY.name, "undecided")
+    fewer = [nowhere, nowhere, collapse(HISTORY.name, 0.8, 0.81)]
+    found.learn(HISTORY, together(fewer), draws=fewer)
+    assert next_step(found, Step(HISTORY, "", draws=DRAWS), together(fewer)).model is not HISTORY
+
+
 def test_draws_are_bracketed_together_below_the_bound() -> None:
     """λ is the median of the draws; no wall stands above the bound, and the lowest load is the certified one."""
     found = known(0.9, (0.7, 0.9), (0.84, 0.85), (0.86, 0.87), (0.88, 0.95))

@@ -43,7 +43,7 @@ def next_step(known: Knowledge, step: Step, outcome: Outcome) -> Step:
         return _after_certificate(known, outcome)
     if step.finite:
         return Step(None, "the wall was followed past its peak at finite displacements")
-    return _after_history(known, step.model, outcome)
+    return _after_history(known, step, step.model, outcome)
 
 
 def after_refusal(known: Knowledge, step: Step, refusal: str) -> Step:
@@ -85,11 +85,11 @@ def _after_certificate(known: Knowledge, outcome: Outcome) -> Step:
         return Step(_cheapest_rigid(known), f"{why}: one history is followed to see")
     model, why = _history(known)
     if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
-        return Step(model, f"no collapse was certified: {why}", draws=DRAWS)
-    return Step(model, f"λ depends on how the load came about, by more than the tolerance: {why}", draws=DRAWS)
+        return Step(model, f"no collapse was certified: {why}", draws=_draws(model))
+    return Step(model, f"λ depends on how the load came about, by more than the tolerance: {why}", draws=_draws(model))
 
 
-def _after_history(known: Knowledge, model: Model, outcome: Outcome) -> Step:
+def _after_history(known: Knowledge, step: Step, model: Model, outcome: Outcome) -> Step:
     if known.evidence == "certificate":
         agrees = f"the history is {outcome.status}, and the certified loads stay"
         return _enough(known, "a history agrees with them" if outcome.status == "collapse" else agrees)
@@ -103,7 +103,7 @@ def _after_history(known: Knowledge, model: Model, outcome: Outcome) -> Step:
         model, why = _history(known)
         return Step(model, f"the collapse of rigid blocks is bracketed; {why}")
     rigid = "" if deforms(model) else f"; {_compliance(known)}"
-    if known.contradicted and known.draws < DRAWS:
+    if known.contradicted and step.draws == 1 and not deforms(model):
         model, why = _history(known)
         return Step(model, f"the history ends below the certified loads: {why}", draws=DRAWS)
     histories_told = "one history" if known.draws == 1 else f"{known.draws} histories"
@@ -114,7 +114,12 @@ def _history(known: Knowledge) -> tuple[Model, str]:
     """The model that is to follow the wall, and why that one."""
     if known.soft:
         return next(model for model in ladder("history") if deforms(model)), _compliance(known)
-    return _cheapest_rigid(known), "histories are followed by the cheapest model of rigid blocks"
+    return _cheapest_rigid(known), "it is followed by the cheapest model of rigid blocks"
+
+
+def _draws(model: Model) -> int:
+    """Histories to follow by a model: one of deformable blocks, which are the dearest."""
+    return 1 if deforms(model) else DRAWS
 
 
 def _cheapest_rigid(known: Knowledge) -> Model:
