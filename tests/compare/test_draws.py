@@ -1,7 +1,9 @@
 """Draws: each is known by its number, stays within its tolerance and is kept; what is none is refused."""
 
 import json
+import signal
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,7 @@ import pytest
 import runningbond as rb
 from runningbond.commands.command_line import command
 from runningbond.compare import models, published_scene, tasks
+from runningbond.compare.campaign import Interrupted
 from runningbond.compare.draws import Drawing, Draws
 from runningbond.compare.models import MODELS
 from runningbond.compare.scatter import Scatter
@@ -144,6 +147,26 @@ def test_draws_go_on_where_they_were(small: str, tmp_path: Path, monkeypatch: py
     assert [x.multiplier for x in apart.outcomes] == [x.multiplier for x in three.outcomes]
     wall.draws("dem-static", 3, scatter="friction=0.1", folder=tmp_path / "kept", jobs=1)
     assert len(computed) == 7  # the first is the same wall
+
+
+def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A model ends with what it has, in this very process; that is kept under no draw, and no other is begun."""
+    begun = []
+
+    def cut_short(*_: Any) -> Outcome:
+        begun.append(1)
+        if len(begun) == 2:
+            with suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+        return outcome(1.0)
+
+    monkeypatch.setattr(tasks, "run_model", cut_short)
+    drawing = Drawing(block(), MODELS["dem-static"], 5)
+    with pytest.raises(Interrupted) as stopped:
+        drawing.run(folder=tmp_path, jobs=1)
+    assert (len(begun), stopped.value.campaign.kept) == (2, 1)
+    assert len(drawing.run(folder=tmp_path, jobs=1).outcomes) == 5
+    assert len(begun) == 6
 
 
 def test_one_run_is_among_the_draws(
