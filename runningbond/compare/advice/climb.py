@@ -86,9 +86,10 @@ class Advice:
         # No curve past the peak, which is no part of the bracket; and cracks in blocks where they may crack.
         wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.cracks else "joints"}
         settings = {name: value for name, value in wanted.items() if name in model.parameters}
-        found: list[Outcome] = []
+        # Draws that agree are to lie within the tolerance together.
+        tolerance, found = known.tolerance / min(step.draws, 2), list[Outcome]()
         for k in range(step.draws):
-            found.append(run_model(model, Scatter().draw(known.scene, k), known.tolerance, **settings))
+            found.append(run_model(model, Scatter().draw(known.scene, k), tolerance, **settings))
             if "interrupted" in found[-1].message:
                 break
         return found
