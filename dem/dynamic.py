@@ -16,7 +16,7 @@ from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_ob
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
-from runningbond.limit.associated import is_self_locking
+from runningbond.limit import is_self_locking, limit
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -62,6 +62,7 @@ def dem_dynamic(
         points=points,
         point_order=np.argsort(points.joint, kind="stable"),
         is_self_locking=lambda: is_self_locking(scene),
+        bound=lambda: limit(scene).upper,
         collapse=collapse,
         first_step=first_step,
         budget=budget,

@@ -15,7 +15,7 @@ from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
-from runningbond.limit.associated import is_self_locking
+from runningbond.limit import is_self_locking, limit
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -104,6 +104,7 @@ def fem(
         points=wall.elements.points,
         point_order=wall.elements.listing,
         is_self_locking=lambda: is_self_locking(scene),
+        bound=lambda: limit(scene).upper,
         note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",
         collapse=collapse,
         first_step=first_step,

@@ -14,6 +14,7 @@ from .scene import Scene, SceneError, read_description, scene_from_dict
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .compare.draws import Draws
     from .compare.model import Model
     from .run_result import Result
 
@@ -178,6 +179,43 @@ class Wall:
         from .run_result import run_wall
 
         return run_wall(self, model, tolerance, states, parameters)
+
+    def draws(
+        self,
+        model: "str | Model",
+        number: int,
+        *,
+        scatter: str = "bits",
+        tolerance: float = 0.01,
+        folder: str | Path | None = None,
+        jobs: int = -1,
+    ) -> "Draws":
+        """Run a model that follows a path on this wall, and on others that differ in nothing that is known.
+
+        Parameters
+        ----------
+        model, tolerance
+            As of `run`.
+        number
+            How many runs; the first is of the wall as it is.
+        scatter
+            ``"bits"``, the last ones of densities and frictions; or ``"size=0.01,friction=0.05"``, or one of them: the
+            blocks' sizes within a relative tolerance, each joint's friction with a relative standard deviation.
+        folder
+            Where outcomes are kept and found again; None keeps nothing.
+        jobs
+            Number of processes; −1 is one a core.
+
+        Raises
+        ------
+        SceneError
+            For a model that follows no path, or no number of draws; and as of `run`.
+        """
+        from .compare.draws import Drawing
+        from .compare.models import find_model
+
+        drawing = Drawing(self.scene, find_model(model), number, scatter)
+        return drawing.run(tolerance, None if folder is None else Path(folder), jobs)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
         """Draw the wall with its support and loads into axes, new ones where none are given."""

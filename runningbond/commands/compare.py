@@ -15,7 +15,18 @@ from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
 
-from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, Flag, Tolerance, print_table, progress_bar, remarks
+from .terminal import (
+    BAD_INPUT,
+    DONE,
+    NO_ANSWER,
+    STOPPED,
+    Flag,
+    Tolerance,
+    check_jobs,
+    print_table,
+    progress_bar,
+    remarks,
+)
 
 
 def compare(
@@ -49,8 +60,7 @@ def compare(
     names = list(MODELS) if models is None else [name.strip() for name in models.split(",")]
     chosen = [find_model(name, "--models") for name in dict.fromkeys(names)]
     check_tolerance(tolerance, "--tolerance")
-    if jobs == 0 or jobs < -1:
-        raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+    check_jobs(jobs)
     if cluster is not None and jobs != -1:
         raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
     if cluster is not None and find_spec("distributed") is None:

@@ -1,6 +1,7 @@
 """``runningbond run``."""
 
 import json as to_json
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated, Any
@@ -8,16 +9,20 @@ from typing import Annotated, Any
 import numpy as np
 from cyclopts import Parameter
 
+from runningbond.compare.campaign import Interrupted
+from runningbond.compare.draws import Drawing
 from runningbond.compare.fingerprint import fingerprint
+from runningbond.compare.model import Model, Recorder
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model, run_model
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import csv_lines
 from runningbond.pictures.time_series import KINDS
 from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
 from runningbond.results.store import RECORD
-from runningbond.scene import Scene, read_scene
+from runningbond.scene import Scene, SceneError, read_scene
 
 from .terminal import (
+    BAD_INPUT,
     DONE,
     NO_ANSWER,
     STOPPED,
@@ -25,13 +30,18 @@ from .terminal import (
     Json,
     SceneName,
     Tolerance,
+    Whole,
     can_draw,
+    check_jobs,
     interruptions,
+    print_table,
+    progress_bar,
     progress_line,
     remarks,
 )
 
 CURVE_FILES = ("curve.csv", "curve.png")
+DRAWS = "draws"
 
 
 def run(
@@ -42,8 +52,11 @@ def run(
     tolerance: Tolerance = TOLERANCE,
     json: Json = False,
     out: Path | None = None,
+    draws: Whole | None = None,
+    scatter: str | None = None,
+    jobs: Whole | None = None,
 ) -> int:
-    """Run one model on one scene.
+    """Run one model on one scene, once or as often as draws are asked for.
 
     Parameters
     ----------
@@ -52,10 +65,22 @@ def run(
     out
         Folder in which to keep the result, its time series for ParaView, its curve with all reactions as a table and
         as a picture, and a picture of its mechanism.
+    draws
+        Number of runs: of the wall as it is, and of walls beside it that differ in nothing that is known. What is kept
+        in --out is that of the first, and all of them in a folder of it, where the same command goes on.
+    scatter
+        What differs between draws: bits, the last ones; or size=0.01,friction=0.05, relatively, or one of them.
+    jobs
+        Number of processes for draws; -1, the default, is one a core.
     """
     chosen = find_model(model, "--model")
     check_tolerance(tolerance, "--tolerance")
+    for option, value in (("--scatter", scatter), ("--jobs", jobs)):
+        if draws is None and value is not None:
+            raise SceneError(option, "goes with --draws alone", value)
     wall = read_scene(find_scene(scene))
+    if draws is not None:
+        return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
     if out is not None:
         make_folder(out)
     stopped = interruptions(chosen)
@@ -73,20 +98,57 @@ def run(
         print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
     if out is not None:
+        (out / f"{DRAWS}.json").unlink(missing_ok=True)
         # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
         save_outcome(outcome, out, "" if stopped else fingerprint(wall, chosen, tolerance), wall)
-        if recorder is None:
-            from runningbond.pictures.recording import record_mechanism
-
-            record_mechanism(wall, outcome, out)
-        else:
-            recorder.finish(outcome)
-        _draw(wall, outcome, out)
-        if not json:
-            print("\n".join(map(str, _written(out))))
+        _picture(wall, outcome, out, recorder, json)
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+def _draws(
+    wall: Scene, model: Model, number: int, scatter: str, tolerance: float, jobs: int, out: Path | None, json: bool
+) -> int:
+    """Run a model on draws of a wall, and print and keep what came of them."""
+    check_jobs(jobs)
+    folder, drawing = None if out is None else out / DRAWS, Drawing(wall, model, number, scatter)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
+    try:
+        with progress_bar(f"{model.name}, draws", number) as advance:
+            found = drawing.run(tolerance, folder, jobs, advance)
+    except Interrupted as stopped:
+        kept = "nothing is kept without --out" if folder is None else f"{stopped.campaign.kept} of {number} draws are "
+        kept += "" if folder is None else f"kept in {folder}; the same command goes on."
+        print(f"{f'runningbond: {stopped.reason}' if stopped.reason else 'Interrupted'}: {kept}", file=sys.stderr)
+        return BAD_INPUT if stopped.reason else STOPPED
+    for line in remarks(wall):
+        print(line, file=sys.stderr)
+    outcome = found.outcomes[0]
+    if json:
+        print(to_json.dumps({**outcome.summary(), DRAWS: found.summary()}, allow_nan=False), flush=True)
+    else:
+        print(_as_text(outcome))
+        print_table(found.sheet())
+        print(found, flush=True)
+    if out is not None:
+        save_outcome(outcome, out, fingerprint(wall, model, tolerance), wall)
+        write_atomically(out / f"{DRAWS}.json", (to_json.dumps(found.summary(), indent=2) + "\n").encode())
+        _picture(wall, outcome, out, None, json)
+    return DONE if len(found.multipliers) else NO_ANSWER
+
+
+def _picture(wall: Scene, outcome: Outcome, out: Path, recorder: Recorder | None, json: bool) -> None:
+    """Write and draw what there is to see of an outcome, and say what was written."""
+    if recorder is None:
+        from runningbond.pictures.recording import record_mechanism
+
+        record_mechanism(wall, outcome, out)
+    else:
+        recorder.finish(outcome)
+    _draw(wall, outcome, out)
+    if not json:
+        print("\n".join(map(str, _written(out))))
 
 
 def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
@@ -110,7 +172,7 @@ def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
 
 def _written(out: Path) -> list[Path]:
     """What a run has left in its folder."""
-    names = (RECORD, "arrays-*.npz", *CURVE_FILES, *(f"{kind}.pvd" for kind in KINDS), "mechanism.png")
+    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *(f"{kind}.pvd" for kind in KINDS), "mechanism.png")
     return [path for name in names for path in sorted(out.glob(name))]
 
 

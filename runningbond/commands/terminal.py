@@ -18,7 +18,7 @@ from rich.text import Text
 from runningbond.compare.model import Model
 from runningbond.compare.table import Sheet
 from runningbond.pictures.offscreen import why_not_drawn
-from runningbond.scene import Scene
+from runningbond.scene import Scene, SceneError
 from runningbond.scene.plausibility import warnings
 
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
@@ -43,6 +43,12 @@ Tolerance: TypeAlias = Annotated[float, Parameter(help="Relative width of the br
 Flag: TypeAlias = Annotated[bool, Parameter(negative="")]
 Json: TypeAlias = Annotated[bool, Parameter(negative="", help="Print one JSON object and nothing else.")]
 Whole: TypeAlias = Annotated[int, Parameter(converter=_whole)]
+
+
+def check_jobs(jobs: int) -> None:
+    """Refuse what is no number of processes."""
+    if jobs == 0 or jobs < -1:
+        raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
 
 
 def print_table(sheet: Sheet) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from types import FrameType
 from typing import TypeAlias
 
 from joblib import Parallel, cpu_count, delayed, parallel_config
@@ -62,7 +63,10 @@ class Task:
         """Run the model."""
         key = self.key()
         try:
-            with _ONE_AT_A_TIME:  # also in a worker with threads: gmsh and those of linear algebra are there once
+            with (
+                _interruptions_kept(),
+                _ONE_AT_A_TIME,
+            ):  # also in a worker with threads: gmsh and those of linear algebra are there once
                 return Answer(self.cell, run_model(self.model, self.scene, self.tolerance), key=key)
         except SceneError as reason:
             return Answer(self.cell, None, str(reason), key)
@@ -71,6 +75,27 @@ class Task:
         """The answer where processes were killed over it."""
         outcome = Outcome(self.scene.title, self.model.name, "failed", message="its process was killed (memory?)")
         return Answer(self.cell, outcome)
+
+
+@contextmanager
+def _interruptions_kept() -> Iterator[None]:
+    """Raise KeyboardInterrupt in the end where a model took it for a sign to end with what it had."""
+    before, seen = signal.getsignal(signal.SIGINT), list[int]()
+    if not callable(before) or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def note(number: int, frame: FrameType | None) -> None:
+        seen.append(number)
+        before(number, frame)
+
+    signal.signal(signal.SIGINT, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if seen:
+        raise KeyboardInterrupt
 
 
 def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:

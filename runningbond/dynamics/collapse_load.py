@@ -42,6 +42,7 @@ def collapse_by_steps(
     points: JointPoints,
     point_order: Indices,
     is_self_locking: Callable[[], bool],
+    bound: Callable[[], float | None] = lambda: None,
     note: str = "",
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
@@ -66,6 +67,8 @@ def collapse_by_steps(
         Those points in the order in which the outcome lists their forces.
     is_self_locking
         Whether joint forces balance any multiple of the live load; asked where no load brought the wall down.
+    bound
+        Multiplier that is proved too large, if there is one.
     note
         What the message is to say about the run besides.
     collapse
@@ -98,7 +101,10 @@ def collapse_by_steps(
                 )
                 return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
             most, farthest = LARGEST_LOAD * first, LARGEST_DISPLACEMENT * sizes
-            result = load_steps(run, first, tolerance, criteria, most=most, farthest=farthest, observe=observe)
+            above = bound()
+            result = load_steps(
+                run, first, tolerance, criteria, most=most, farthest=farthest, bound=above, observe=observe
+            )
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     if result.rests:

@@ -11,12 +11,18 @@ from .controls import ramp
 from .run import Observer, Run, no_observer
 from .state import State
 
-LOADING, LOADING_WEIGHTLESS = 16, 4
+LOADING, LOADING_WEIGHTLESS = 32, 4
 """Times in which the load grows by its first step, in times that the wall takes to rest under that step put on at once.
 
 A wall that is loaded faster slips in several places at once where it would slip in one after the other, and so comes
 to bear more, or less.
 """
+
+FAR, FASTER = 1 / 3, 8
+"""Part of a bound of the load up to which a wall with a weight is loaded faster, and how much faster."""
+
+GIVES_WAY, STRETCH = 1.0, 1000
+"""Motion, in units of collapse, at which a load grows no more, and the time steps between two looks at it."""
 
 PAUSES, NEARLY_AT_REST = 10, 1e-3
 """How often the load of a wall without weight pauses in a step, and the unbalanced force at which it grows again.
@@ -106,6 +112,7 @@ def load_steps(
     most: float = np.inf,
     farthest: float | Array = np.inf,
     loading: float | None = None,
+    bound: float | None = None,
     observe: Observer = no_observer,
 ) -> LoadSteps:
     """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
@@ -127,6 +134,9 @@ def load_steps(
     loading
         Time in which the load grows by its first step, or by an eighth where that is more, in times that the wall
         takes to rest under the first step put on at once; `LOADING` or `LOADING_WEIGHTLESS` where none is given.
+    bound
+        Multiplier that is proved too large, where one is: far below it the load grows faster, and none that is much
+        larger is tried unless the wall bears it.
 
     Returns
     -------
@@ -137,7 +147,7 @@ def load_steps(
     if loading is None:
         loading = LOADING_WEIGHTLESS if run.system.weightless else LOADING
     try:
-        _search(result, run, first, tolerance, criteria, (most, farthest), loading, observe)
+        _search(result, run, first, tolerance, criteria, (most, farthest, bound or 0.0), loading, observe)
     except KeyboardInterrupt:
         result.interrupted, result.verdict = True, "undecided"
     return result
@@ -149,7 +159,7 @@ def _search(
     first: float,
     tolerance: float,
     criteria: Criteria,
-    limits: tuple[float, float | Array],
+    limits: tuple[float, float | Array, float],
     loading: float,
     observe: Observer,
 ) -> None:
@@ -160,7 +170,7 @@ def _search(
     if result.verdict != "stable":
         result.fallen = state
         return
-    most, farthest = limits
+    most, farthest, bound = limits
     result.lower, result.borne = 0.0, state
     result.rests.append((0.0, state))
     run = run.held_late(state)
@@ -176,12 +186,17 @@ def _search(
             result.verdict = "undecided"
             return
         trial = _next_trial(result, step, undecided, tolerance)
+        if not undecided.loads and result.lower < (edge := bound * (1 + tolerance / 2)) < trial:
+            trial = edge
         if trial > most:
             return
         state = result.borne.copy()
         growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
         share = (trial - result.lower) / max(first, growth * trial)
-        trial = _raise(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
+        if system.weightless:
+            trial = _raise_in_parts(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
+        else:
+            trial = _raise(run, state, result.lower, trial, unhurried * share, FAR * bound, criteria)
         verdict, halfway = hold_load(run, state, trial, criteria, observe)
         taken = state.steps - result.borne.steps
         result.steps += taken
@@ -212,14 +227,26 @@ def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, toler
     return (lower + low) / 2 if below > above else (high + upper) / 2
 
 
-def _raise(run: Run, state: State, start: float, stop: float, steps: float, pauses: float, criteria: Criteria) -> float:
-    """Raise the multiplier in some steps, in place, and return what it reached.
+def _raise(run: Run, state: State, start: float, stop: float, steps: float, far: float, criteria: Criteria) -> float:
+    """Raise the multiplier in some steps, in place, faster up to `far`, until the wall gives way; what it reached."""
+    motion, reached = state.motion.copy(), start
+    while reached < stop:
+        end, faster = (min(far, stop), FASTER) if reached < far else (stop, 1)
+        slope = faster * (stop - start) / max(1.0, steps)
+        before, reached = reached, min(reached + slope * STRETCH, end)
+        ramp(run, state, before, reached, max(20, round((reached - before) / slope)))
+        if run.system.farthest(state.motion - motion, criteria.collapse) > GIVES_WAY:
+            break
+    return reached
 
-    A wall without weight pauses, and falls where it cannot.
+
+def _raise_in_parts(
+    run: Run, state: State, start: float, stop: float, steps: float, pauses: float, criteria: Criteria
+) -> float:
+    """Raise the multiplier of a wall without weight in some steps, in place, and return what it reached.
+
+    It pauses, and falls where it cannot.
     """
-    if not run.system.weightless:
-        ramp(run, state, start, stop, round(steps))
-        return stop
     motion, parts = state.motion.copy(), max(1, round(pauses))
     reached = start
     for part in range(1, parts + 1):

@@ -77,7 +77,9 @@ class StaticRecorder(SeriesRecorder):
         super().__init__(Discretisation.of_rigid_blocks(scene), folder)
 
     def __call__(self, path: LoadPath, state: StaticState) -> None:
-        """Write a state."""
+        """Write a state; where a path begins anew, so does the series."""
+        if state is path.rests[0] and len(self._series):
+            self._series.clear()
         scene, points, system = self.discretisation.scene, self.discretisation.points, path.system
         equations, motion = system.equilibrium, system.motion(state.x)
         opening, slip = rigid_jumps(scene.blocks, points, motion)

@@ -14,9 +14,11 @@ from fem_interface.model import fem
 from runningbond.commands.command_line import command
 from runningbond.compare import MODELS, PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, Advice, advise, experiment
+from runningbond.compare.advice.climb import together
 from runningbond.compare.advice.costs import estimate, pace
 from runningbond.compare.advice.experiment import ModelError, error_of, read_errors, write_errors
-from runningbond.compare.advice.steps import WORTH
+from runningbond.compare.advice.knowledge import Knowledge
+from runningbond.compare.advice.steps import DRAWS, Step, next_step
 from runningbond.joints.stiffness import block_compliance
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
@@ -58,7 +60,7 @@ def check_against_what_is_known(name: str, advice: Advice) -> None:
     assert found.status == "collapse"
     assert found.lower is not None
     assert found.upper is not None
-    assert found.upper - found.lower <= TOLERANCE * found.upper * (1 + 1e-9)
+    assert found.upper - found.lower <= TOLERANCE * found.upper * (1 + 1e-9) or "further apart" in found.message
     assert advice.known.bound is not None
     assert found.upper <= advice.known.bound * (1 + 1e-6)
     if name not in KNOWN:
@@ -88,14 +90,14 @@ def test_all_published_walls_are_answered_with_few_models() -> None:
         run = climbed(advice)
         assert "fem" not in run
         assert len({"dem-static", "dem-dynamic"} & set(run)) <= 1
-        dear += len({"dem-static", "dem-dynamic", "fem"} & set(run))
-    assert dear <= 10, "of 57 runs that follow a wall"
+        dear += len({"dem-dynamic", "fem"} & set(run))
+    assert dear <= 10, "of 38 runs of blocks in motion"
 
 
 @pytest.mark.parametrize(
     ("name", "models"),
     [
-        ("panel-01", ["homog", "limit", "limit-nonassociated"]),
+        ("panel-01", ["homog", "limit", "limit-nonassociated", "dem-static"]),
         ("panel-04", ["homog", "limit", "limit-nonassociated", "dem-static"]),
         ("wall-w3", ["homog", "limit", "limit-nonassociated", "dem-static"]),
         ("point-load-quarter", ["homog", "limit", "dem-static"]),
@@ -108,13 +110,102 @@ def test_no_more_is_run_than_is_needed(name: str, models: list[str]) -> None:
     assert all(rung.next.reason for rung in advice.rungs)
 
 
-def test_a_certificate_much_dearer_than_a_history_is_not_bought() -> None:
-    """On 2628 blocks, by the laws of cost alone; on panel 11, of 1176, it is worth it. The machine's pace is in both
-    prices, so that the choice is the same on every machine."""
+def test_a_certificate_never_costs_more_than_a_few_histories_where_it_costs_anything() -> None:
+    """By the laws of cost alone: on 78 blocks, on 1176 and on 2628. The machine's pace is in both prices."""
     large = panel(wall__length=8.64, wall__height=4.32, **STIFF)
-    for scene, dear in ((published_scene("panel-11"), False), (large, True)):
+    for scene in (published_scene("panel-01"), published_scene("panel-11"), large):
         paths = min(estimate(MODELS[model], scene, TOLERANCE).seconds for model in ("dem-static", "dem-dynamic"))
-        assert (estimate(MODELS["limit-nonassociated"], scene, TOLERANCE).seconds > WORTH * paths) == dear
+        certificate = estimate(MODELS["limit-nonassociated"], scene, TOLERANCE).seconds
+        assert certificate < max(2.0, DRAWS * paths)
+
+
+# --- the lowest certificate, draws and the bound together --------------------------------------------------------
+
+CERTIFICATE, HISTORY = MODELS["limit-nonassociated"], MODELS["dem-static"]
+
+
+def collapse(model: str, lower: float, upper: float) -> Outcome:
+    return Outcome("", model, "collapse", lower, lower, upper)
+
+
+def known(bound: float, certified: tuple[float, float], *draws: tuple[float, float]) -> Knowledge:
+    """What is known of a wall of which limit analysis, a search and histories say so."""
+    found = Knowledge(published_scene("wall-w3"), 0.05)
+    found.bound = bound
+    found.learn(CERTIFICATE, collapse(CERTIFICATE.name, *certified))
+    if draws:
+        histories = [collapse(HISTORY.name, *each) for each in draws]
+        found.learn(HISTORY, together(histories), draws=histories)
+    return found
+
+
+def bracket_of(found: Knowledge) -> tuple[float | None, float | None]:
+    assert found.answer is not None
+    return found.answer.lower, found.answer.upper
+
+
+@pytest.mark.parametrize("certified", [(0.98, 0.99), (0.98, 1.0), (0.90, 0.92), (0.7, 0.9)])
+def test_no_certified_interval_ends_the_climb(certified: tuple[float, float]) -> None:
+    """A better search may move any of them: a history is followed, and several where the interval is wide."""
+    found = known(1.0, certified)
+    assert found.answer is not None
+    step = next_step(found, Step(CERTIFICATE, ""), found.outcomes[-1])
+    assert step.model is not None
+    assert step.model.kind == "history"
+    assert step.draws == (1 if found.narrow else DRAWS)
+    assert found.narrow == (certified != (0.7, 0.9))
+
+
+@pytest.mark.parametrize(
+    ("history", "lower"),
+    [((0.95, 0.99), 0.97), ((0.98, 1.02), 0.97), ((0.96, 0.969), 0.96), ((0.9, 0.971), 0.97)],
+)
+def test_a_history_that_fits_leaves_the_certified_loads_or_widens_them(
+    history: tuple[float, float], lower: float
+) -> None:
+    """Certified from .97 on, nothing stands above 1; one that ends below .97 takes the lower end along."""
+    found = known(1.0, (0.97, 0.99), history)
+    assert (found.evidence, bracket_of(found)) == ("certificate", (lower, 1.0))
+    assert not found.contradicted
+    assert found.lowest == min(0.97, history[1])
+    step = next_step(found, Step(HISTORY, ""), found.outcomes[-1])
+    assert step.model is None or step.finite
+
+
+def test_a_history_far_below_the_certified_loads_is_the_answer_and_calls_for_more() -> None:
+    found = known(1.0, (0.97, 0.99), (0.8, 0.81))
+    assert (found.evidence, bracket_of(found), found.lowest) == ("history", (0.8, 0.81), 0.81)
+    step = next_step(found, Step(HISTORY, ""), found.outcomes[-1])
+    assert (step.model, step.draws) == (HISTORY, DRAWS)
+    more = [collapse(HISTORY.name, *each) for each in ((0.8, 0.81), (0.82, 0.83), (0.84, 0.86))]
+    found.learn(HISTORY, together(more), draws=more)
+    assert (found.draws, bracket_of(found), found.lowest) == (3, (0.8, 0.86), 0.81)
+    assert "further apart than the tolerance" in found.meaning()
+    assert next_step(found, Step(HISTORY, "", draws=DRAWS), found.outcomes[-1]).model is not HISTORY
+
+
+def test_draws_that_are_fewer_than_asked_for_do_not_call_for_themselves_again() -> None:
+    found = known(1.0, (0.97, 0.99), (0.8, 0.81))
+    nowhere = Outcome("", HISTORY.name, "undecided")
+    fewer = [nowhere, nowhere, collapse(HISTORY.name, 0.8, 0.81)]
+    found.learn(HISTORY, together(fewer), draws=fewer)
+    assert next_step(found, Step(HISTORY, "", draws=DRAWS), together(fewer)).model is not HISTORY
+
+
+def test_draws_are_bracketed_together_below_the_bound() -> None:
+    """λ is the median of the draws; no wall stands above the bound, and the lowest load is the certified one."""
+    found = known(0.9, (0.7, 0.9), (0.84, 0.85), (0.86, 0.87), (0.88, 0.95))
+    assert (found.evidence, bracket_of(found), found.lowest) == ("history", (0.84, 0.9), 0.7)
+    assert found.answer is not None
+    assert found.answer.multiplier == pytest.approx(0.86)
+    assert "3 histories that differ in their last bits" in found.meaning()
+
+
+def test_draws_that_end_nowhere_are_left_out() -> None:
+    nowhere = Outcome("", HISTORY.name, "undecided", message="it neither rested nor fell")
+    found = together([nowhere, collapse(HISTORY.name, 0.5, 0.6)])
+    assert (found.status, found.lower, found.upper) == ("collapse", 0.5, 0.6)
+    assert together([nowhere, nowhere]) is nowhere
 
 
 # --- reasons to stop early ------------------------------------------------------------------------------------
@@ -131,11 +222,13 @@ def test_a_stack_that_topples_is_proved_by_limit_analysis_alone(n: int) -> None:
 
 def test_a_block_that_slides_is_not() -> None:
     """At λ = tan φ the associated block lifts off as it slides."""
-    scene = courses([[1]], joint__friction=0.5)
+    scene = courses([[1]], joint__friction=0.5, **STIFF)
     assert sliding_dilates(scene, limit(scene).motion)
     advice = advise(scene)
-    assert climbed(advice)[-1] == "limit-nonassociated"
+    assert climbed(advice)[-1] == "dem-static"
+    assert advice.outcome().model == "limit-nonassociated"
     assert advice.outcome().multiplier == pytest.approx(0.5, rel=1e-6)
+    assert "no history was followed" in advise(courses([[1]], joint__friction=0.5)).outcome().message
 
 
 def test_a_wall_that_falls_by_itself_needs_no_more_than_limit() -> None:
@@ -150,7 +243,9 @@ def test_deformability_is_of_no_account_where_the_certificates_suffice() -> None
     scene = published_scene("wall-w1")
     soft = scene.with_block(young=2e9, poisson=0.0)
     assert block_compliance(soft) > TOLERANCE
-    assert climbed(advise(soft))[-1] == "limit-nonassociated"
+    advice = advise(soft)
+    assert climbed(advice)[-1] == "dem-static"
+    assert advice.outcome().model == "limit-nonassociated"
 
 
 def test_rigid_enough_blocks_lose_their_modes_and_keep_the_answer() -> None:

@@ -1,10 +1,14 @@
 """Static rigid blocks: the joint's law, exact collapses, published walls, and honest answers where there is none."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from dem import static
 from dem.pushover import LoadPath, StaticState
 from dem.relaxation import RestVerdict, relax
 from dem.static import dem_static
@@ -13,6 +17,7 @@ from dem.stiffness_update import stiffness_update
 from runningbond.compare import published_scene
 from runningbond.joints import PointLaw, PointStrength, ResultantLaw, point_strength
 from runningbond.limit import equilibrium, limit
+from runningbond.pictures.recording import StaticRecorder
 from runningbond.results import Outcome
 from runningbond.scene import (
     Array,
@@ -408,6 +413,67 @@ def test_ctrl_c_past_the_largest_load_leaves_the_bracket(monkeypatch: pytest.Mon
 
 def interrupt(*arguments: object) -> None:
     raise KeyboardInterrupt
+
+
+# --- paths in other load steps ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("brackets", "expected"),
+    [
+        ([(1.0, 1.01), (1.005, 1.02)], (1.0, 1.01)),
+        ([(1.0, 1.002), (1.004, 1.006)], (1.0, 1.006)),
+        ([(1.004, 1.006), (1.0, 1.002)], (1.0, 1.006)),
+        ([(1.0, 1.01), (0.9, 0.91), (0.95, 0.96)], (0.9, 1.01)),
+        ([(1.0, 1.01), (1.1, 1.11), (1.0, 1.01)], (1.0, 1.11)),
+        ([(1.0, 1.01), None, (0.8, 0.81)], (0.8, 1.01)),
+        ([(1.0, 1.01), None, None], (1.0, 1.01)),
+        ([None], None),
+    ],
+)
+def test_the_bracket_takes_in_what_paths_in_other_load_steps_found(
+    brackets: list[tuple[float, float] | None],
+    expected: tuple[float, float] | None,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """One path more where brackets have a load in common or lie within the tolerance together, and else two."""
+    left = iter(brackets)
+
+    def along(result: Outcome, *_: object) -> Outcome:
+        found = next(left)
+        if found is None:
+            return replace(result, status="undecided", message="no answer: it neither rested nor fell")
+        return replace(result, status="collapse", lower=found[0], upper=found[1], multiplier=found[0], message="found")
+
+    monkeypatch.setattr("dem.static._along", along)
+    outcome = dem_static(ferris("W1"))
+    assert next(left, "none") == "none"
+    if expected is None:
+        assert (outcome.status, outcome.message) == ("undecided", "no answer: it neither rested nor fell")
+        return
+    assert (outcome.lower, outcome.multiplier, outcome.upper) == (expected[0], expected[0], expected[1])
+    for found, factor in zip(brackets, ("", "with load steps 0.5 times", "with load steps 0.7 times"), strict=False):
+        assert factor in outcome.message
+        assert ("no answer" if found is None else f"{found[0]:.4f}–{found[1]:.4f}") in outcome.message
+
+
+def test_states_are_those_of_the_lowest_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A path that ends lower than the first begins the series anew; the curve and the forces are its own."""
+    along, paths = static._along, list[LoadPath]()
+
+    def ever_lower(result: Outcome, path: LoadPath, *others: Any) -> Outcome:
+        found = along(result, path, *others)
+        paths.append(path)
+        lower, upper = (0.9 ** len(paths) * end for end in bracket(found))
+        return replace(found, lower=lower, multiplier=lower, upper=upper)
+
+    monkeypatch.setattr(static, "_along", ever_lower)
+    scene = ferris("W1")
+    recorder = StaticRecorder(scene, None)
+    outcome = dem_static(scene, observe=recorder)
+    assert len(paths) == 3
+    assert [frame.multiplier for frame in recorder.frames] == pytest.approx(outcome.curve[:, 1])
+    assert len(recorder.frames) == len(paths[-1].rests) + len(paths[-1].past)
 
 
 # --- the algorithm as published ------------------------------------------------------------------------------

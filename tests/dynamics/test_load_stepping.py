@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
 from runningbond.dynamics.collapse import Verdict
-from runningbond.dynamics.load_stepping import RESOLVED, _raise
+from runningbond.dynamics.load_stepping import FASTER, RESOLVED, _raise, _raise_in_parts
 from runningbond.scene import Array
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
@@ -23,7 +23,9 @@ PRESSED = {"gravity": 0.0, "live": {"kind": "point", "at": [0.12, 0.06], "force"
 WEIGHTLESS = Run(rigid_system(panel(**SIZE, load=PRESSED)))
 
 
-def searched(answer: Callable[[float], Verdict], tolerance: float = 0.005) -> tuple[LoadSteps, list[float]]:
+def searched(
+    answer: Callable[[float], Verdict], tolerance: float = 0.005, bound: float | None = None
+) -> tuple[LoadSteps, list[float]]:
     """Search on a wall that gives an answer to each load, and the loads that were tried."""
     tried: list[float] = []
 
@@ -35,7 +37,7 @@ def searched(answer: Callable[[float], Verdict], tolerance: float = 0.005) -> tu
     module = "runningbond.dynamics.load_stepping"
     settle = patch(f"{module}.settle", return_value="stable")
     with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
-        return load_steps(BLOCK, FIRST, tolerance, Criteria(collapse=1.0), most=10.0), tried
+        return load_steps(BLOCK, FIRST, tolerance, Criteria(collapse=1.0), most=10.0, bound=bound), tried
 
 
 def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
@@ -86,6 +88,35 @@ def test_a_narrow_band_without_an_answer_is_none_though_the_last_load_gave_one()
     assert max(min(unanswered) - found.lower, found.upper - max(unanswered)) <= 0.005 / 4 * found.upper
 
 
+@pytest.mark.parametrize("most", [0.2, 0.3, 1.0, 3.7])
+def test_no_load_far_above_a_proved_bound_is_tried(most: float) -> None:
+    """A wall that falls just below the bound: trials above it by half the tolerance at most, a bracket as narrow."""
+    found, tried = searched(lambda load: "stable" if load < 0.99 * most else "collapse", bound=most)
+    assert max(tried) <= most * (1 + 0.005 / 2) * (1 + 1e-12)
+    assert found.lower is not None
+    assert found.upper is not None
+    assert found.lower < 0.99 * most <= found.upper <= found.lower / (1 - 0.005)
+
+
+def test_a_bound_that_the_wall_bears_all_the_same_does_not_end_the_search() -> None:
+    found, tried = searched(lambda load: "stable" if load < 0.5 else "collapse", bound=0.2)
+    assert found.lower == pytest.approx(0.5, rel=0.005)
+    assert len(tried) < 60
+
+
+def test_a_load_grows_faster_far_below_its_bound_and_no_more_where_the_wall_gives_way() -> None:
+    """All the way to the stop at two speeds; or to where the wall has moved by the unit of collapse, sliding at 0.6."""
+    criteria, steps = Criteria(collapse=1.0), 9000.0
+    slow, fast, falling = (State.at_rest(BLOCK.system) for _ in range(3))
+    assert _raise(BLOCK, slow, 0.0, 0.3, steps, 0.0, criteria) == 0.3
+    assert _raise(BLOCK, fast, 0.0, 0.3, steps, 0.15, criteria) == 0.3
+    assert slow.steps == pytest.approx(steps, rel=0.02)
+    assert fast.steps == pytest.approx(steps / 2 + steps / 2 / FASTER, rel=0.1)
+    reached = _raise(BLOCK, falling, 0.0, 3.0, 4e4, 0.0, Criteria(collapse=1e-3))
+    assert 0.6 < reached < 1.5
+    assert BLOCK.system.farthest(falling.motion) > 1e-3
+
+
 @given(pauses=st.lists(st.booleans(), min_size=1, max_size=30), stop=st.floats(0.06, 3.0))
 @settings(max_examples=200, deadline=None)
 def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: list[bool], stop: float) -> None:
@@ -96,7 +127,7 @@ def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: lis
         patch("runningbond.dynamics.load_stepping.ramp"),
         patch("runningbond.dynamics.load_stepping._pauses", lambda *_: next(answers, True)),
     ):
-        reached = _raise(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
+        reached = _raise_in_parts(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
     assert reached <= stop
     assert (reached == stop) == all(pauses[:-1])
 

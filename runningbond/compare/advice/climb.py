@@ -5,13 +5,14 @@ the climb and what its bracket means.
 """
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from runningbond.compare.models import check_tolerance, run_model
+from runningbond.compare.scatter import Scatter
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -50,13 +51,15 @@ class Advice:
         while step.model is not None:
             outcome: Outcome | None = None
             try:
-                outcome = self._run(step)
+                draws = self._run(step)
             except SceneError as refusal:
-                following = after_refusal(step, str(refusal))
+                following = after_refusal(self.known, step, str(refusal))
             else:
-                self.known.learn(step.model, outcome, finite=step.finite)
+                outcome = together(draws)
+                self.known.learn(step.model, outcome, finite=step.finite, draws=draws)
                 following = next_step(self.known, step, outcome)
             cost = self.known.estimate(following.model) if following.model and not following.finite else None
+            cost = cost and replace(cost, seconds=following.draws * cost.seconds)
             self.rungs.append(Rung(step.name or "", outcome, following, cost, self.known.seconds))
             yield self.rungs[-1]
             step = following
@@ -67,7 +70,8 @@ class Advice:
         answer = known.answer or last.outcome or Outcome(known.scene.title, last.model, "undecided")
         message = known.meaning() or last.next.reason
         if last.outcome is None and known.answer is not None:
-            message += "; at small displacements, though they are not small"
+            finite = last.model.endswith("finite")
+            message += "; at small displacements, though they are not small" if finite else f"; {last.next.reason}"
         elif last.outcome is not None and last.outcome.status != "collapse" and known.answer is not None:
             message += f"; {last.model}: {last.next.reason}"
         return replace(answer, seconds=known.seconds, message=message)
@@ -84,15 +88,33 @@ class Advice:
         untested = f"against experiment: no such wall was tested with {known.answer.model}"
         return found, untested if found is None else f"{untested}; {found}"
 
-    def _run(self, step: Step) -> Outcome:
+    def _run(self, step: Step) -> list[Outcome]:
+        """The outcomes of a step, one a draw; fewer where one was interrupted."""
         known, model = self.known, step.model
         assert model is not None
         if step.finite:
-            return finite_peak(known, step)
+            return [finite_peak(known, step)]
         # No curve past the peak, which is no part of the bracket; and cracks in blocks where they may crack.
         wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.cracks else "joints"}
         settings = {name: value for name, value in wanted.items() if name in model.parameters}
-        return run_model(model, known.scene, known.tolerance, **settings)
+        # Draws that agree are to lie within the tolerance together.
+        tolerance, found = known.tolerance / min(step.draws, 2), list[Outcome]()
+        for k in range(step.draws):
+            found.append(run_model(model, Scatter().draw(known.scene, k), tolerance, **settings))
+            if "interrupted" in found[-1].message:
+                break
+        return found
+
+
+def together(draws: Sequence[Outcome]) -> Outcome:
+    """What draws come to: the one that ends lowest, with a bracket that holds all that collapse, and their median."""
+    fallen = [draw for draw in draws if draw.lower is not None and draw.multiplier is not None]
+    if len(draws) == 1 or not fallen:
+        return draws[0]
+    lowest = min(fallen, key=lambda draw: draw.lower or 0.0)
+    upper = max(draw.upper or 0.0 for draw in fallen)
+    median = float(np.median([draw.multiplier for draw in fallen if draw.multiplier is not None]))
+    return replace(lowest, upper=upper, multiplier=median, seconds=sum(draw.seconds for draw in draws))
 
 
 def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) -> Advice:

@@ -1,5 +1,6 @@
 """What a scene asks of a model, what the models run so far have shown of the wall, and what that is worth."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, TypeAlias
 
@@ -41,6 +42,8 @@ class Knowledge:
     evidence: Evidence = ""  # what the answer rests on
     answer: Outcome | None = None  # the outcome whose bracket it is
     lowest: float | None = None  # smallest load at which a proof, a certificate or a model brings the wall down
+    draws: int = 0  # histories that the last model followed to a collapse
+    contradicted: bool = False  # whether one ended below certified loads that lay within the tolerance
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
@@ -50,8 +53,8 @@ class Knowledge:
         )
         self.cracks = self.scene.inner_joint is not None  # blocks may crack
 
-    def learn(self, model: Model, outcome: Outcome, *, finite: bool = False) -> None:
-        """Take in the outcome of a model, at `finite` displacements or at small ones."""
+    def learn(self, model: Model, outcome: Outcome, *, finite: bool = False, draws: Sequence[Outcome] = ()) -> None:
+        """Take in the outcome of a model, at `finite` displacements or at small ones, or what its draws come to."""
         self.outcomes.append(outcome)
         if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
             return
@@ -67,11 +70,31 @@ class Knowledge:
         elif finite:
             self._answer("finite", outcome, outcome.lower)
         else:
-            history = outcome
-            if self.bound is not None and outcome.multiplier is not None:  # it cannot have stood above that
-                upper = max(outcome.lower, min(outcome.upper, self.bound))
-                history = replace(outcome, upper=upper, multiplier=min(outcome.multiplier, upper))
-            self._answer("history", history, outcome.upper)
+            falls = [draw.upper for draw in draws if draw.upper is not None]
+            self.draws = max(1, len(falls))
+            self._follow(outcome, min(falls, default=outcome.upper))
+
+    def _follow(self, outcome: Outcome, fall: float) -> None:
+        """Take in the bracket of histories, the first of which ended at a load; certified loads stay that it fits."""
+        assert outcome.lower is not None
+        assert outcome.upper is not None
+        history = outcome
+        if self.bound is not None and outcome.multiplier is not None:  # it cannot have stood above that
+            upper = max(outcome.lower, min(outcome.upper, self.bound))
+            history = replace(outcome, upper=upper, multiplier=min(outcome.multiplier, upper))
+        if self.narrow and self.answer is not None and self.answer.lower is not None:
+            lower = self.answer.lower if fall >= self.answer.lower else outcome.lower
+            wider = replace(self.answer, lower=min(lower, self.answer.lower))
+            self.contradicted = not _within(wider, self.tolerance)
+            if not self.contradicted:
+                self._answer("certificate", wider, fall)
+                return
+        self._answer("history", history, fall)
+
+    @property
+    def narrow(self) -> bool:
+        """Whether the answer is certified loads that lie within the tolerance."""
+        return self.evidence == "certificate" and self.answer is not None and _within(self.answer, self.tolerance)
 
     def _answer(self, evidence: Evidence, outcome: Outcome, collapse: float) -> None:
         self.evidence, self.answer = evidence, outcome
@@ -112,6 +135,15 @@ class Knowledge:
         if self.evidence == "finite":
             return self.answer.message + (above and f"{above} at small displacements")
         if self.evidence == "certificate":
-            return f"collapse is certified from the lower load on; smaller ones are not excluded{above}"
+            seen = ", and a history agrees" if self.draws else ""
+            return f"loads at which collapse is certified{seen}; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
-        return f"largest load at rest and smallest at collapse in one history, loads raised slowly{below}{above}"
+        told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"
+        wide = "" if _within(self.answer, self.tolerance) else ", which lie further apart than the tolerance"
+        return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
+
+
+def _within(outcome: Outcome, tolerance: float) -> bool:
+    """Whether a bracket is as narrow as a relative width."""
+    lower, upper = outcome.lower, outcome.upper
+    return lower is not None and upper is not None and upper - lower <= tolerance * upper

@@ -29,7 +29,7 @@ from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
 WALLS = (SLIDING, TOPPLING, W1)
 RATES = tuple(10.0 ** -(k / 3) for k in range(7))  # rates of λ [1/s], the fastest first
 PUSHES = tuple(1_000 * 2**k for k in range(12))  # steps in which a wall is pushed as far as a load step may move it
-LOADINGS = (0, 1, 4, LOADING, 4 * LOADING, 16 * LOADING)  # times of the first load step, in times to rest
+LOADINGS = (0, 1, 4, LOADING, 2 * LOADING, 8 * LOADING)  # times of the first load step, in times to rest
 DRY = ("panel-12", "point-load-4")  # published walls whose λ depends on their history; the second has no weight
 ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005  # power of the rate in (2), steps between two looks, width of brackets
 RAMPS, DRIVEN, STEPPED, OWN = "Ramps", "Displacement control", "Load steps", "The suite's own speeds"

@@ -1,0 +1,167 @@
+"""Draws: one model on walls that differ in nothing that is known, and what their answers have in common."""
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from runningbond.results import Outcome, make_folder
+from runningbond.results.outcome import number
+from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene.ranges import Range
+
+from .campaign import run_campaign
+from .model import Model
+from .models import TOLERANCE
+from .scatter import Scatter
+from .table import Sheet
+
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+NUMBER = Range(least=2, most=10_000)
+
+
+@dataclass(frozen=True, eq=False)
+class Draws:
+    """Outcomes of one model on a wall as it is, and on others drawn beside it."""
+
+    outcomes: tuple[Outcome, ...]  # by the numbers of the draws; 0 is the wall as it is
+    scatter: Scatter  # what differs besides the last bits
+
+    @cached_property
+    def multipliers(self) -> Array:
+        """λ of the draws that collapse, from the lowest ``(n,)``."""
+        return np.sort([x.multiplier for x in self.outcomes if x.multiplier is not None])
+
+    @property
+    def lowest(self) -> float | None:
+        """Lowest λ."""
+        return float(self.multipliers[0]) if len(self.multipliers) else None
+
+    @property
+    def mean(self) -> float | None:
+        """Mean λ."""
+        return float(self.multipliers.mean()) if len(self.multipliers) else None
+
+    @property
+    def error(self) -> float | None:
+        """Standard error of the mean, of two draws or more."""
+        n = len(self.multipliers)
+        return float(self.multipliers.std(ddof=1) / np.sqrt(n)) if n > 1 else None
+
+    @property
+    def quantiles(self) -> dict[str, float]:
+        """λ below which `QUANTILES` of the draws lie, by their percentages."""
+        if not len(self.multipliers):
+            return {}
+        return {f"{100 * q:g}": float(np.quantile(self.multipliers, q)) for q in QUANTILES}
+
+    def summary(self) -> dict[str, Any]:
+        """All of this as an object of JSON."""
+        keys = ("status", "multiplier", "lower", "upper", "seconds")
+        return {
+            "scatter": str(self.scatter),
+            "number": len(self.outcomes),
+            "collapsed": len(self.multipliers),
+            **{key: getattr(self, key) for key in ("lowest", "mean", "error", "quantiles")},
+            "each": [{key: getattr(outcome, key) for key in keys} for outcome in self.outcomes],
+        }
+
+    def sheet(self) -> Sheet:
+        """A row a draw."""
+        heads = ("draw", "status", "λ", "lower", "upper", "seconds")
+        rows = [
+            (str(k), each.status, *(_told(x) for x in (each.multiplier, each.lower, each.upper)), f"{each.seconds:.3g}")
+            for k, each in enumerate(self.outcomes)
+        ]
+        first = self.outcomes[0]
+        return Sheet(f"{first.scene}: {first.model}, draws of {self.scatter}", heads, rows)
+
+    def __str__(self) -> str:
+        """What they come to, in a line."""
+        collapsed = f"{len(self.multipliers)} of {len(self.outcomes)} draws collapse"
+        if self.error is None or self.lowest is None or self.mean is None:
+            return f"{collapsed}{'' if self.lowest is None else f', at {_told(self.lowest)}'}"
+        quantiles = ", ".join(f"{q} % {_told(x)}" for q, x in self.quantiles.items())
+        return (
+            f"{collapsed}: lowest {_told(self.lowest)}, quantiles {quantiles}, "
+            f"mean {_told(self.mean)} ± {_told(self.error)} (standard error)"
+        )
+
+
+def _told(load: float | None) -> str:
+    return "–" if load is None else number(load)
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """A model that follows a path, to be run on a wall and on others that differ in nothing that is known.
+
+    Parameters
+    ----------
+    scene
+        The wall as it is, which is the first draw.
+    number
+        How many draws.
+    scatter
+        What differs: ``bits``, the last ones of densities and frictions; or ``size=0.01,friction=0.05``, the blocks'
+        sizes within a relative tolerance, each joint's friction with a relative standard deviation.
+
+    Raises
+    ------
+    SceneError
+        For a number of draws or a scatter that there is not, or a model that follows no path, or not this wall's.
+    """
+
+    scene: Scene
+    model: Model
+    number: int
+    scatter: str = "bits"
+
+    def __post_init__(self) -> None:
+        if isinstance(self.number, bool) or not isinstance(self.number, int):
+            raise SceneError("--draws", f"must be a whole {str(NUMBER).removeprefix('a ')}", self.number)
+        NUMBER.take("--draws", self.number)
+        if self.model.kind != "history":
+            raise SceneError(
+                "--draws", f"is for models that follow a path, which {self.model.name} does not", self.number
+            )
+        self.model.check(self.scene)
+        self.read.draw(self.scene, 1)
+
+    @property
+    def read(self) -> Scatter:
+        """What differs."""
+        return Scatter.read(self.scatter)
+
+    def run(
+        self,
+        tolerance: float = TOLERANCE,
+        folder: Path | None = None,
+        jobs: int = -1,
+        progress: Callable[[str], None] = lambda done: None,
+    ) -> Draws:
+        """Run them, those that a folder does not hold; parameters and errors as of `run_campaign`.
+
+        Without a folder nothing is kept; progress is called with the name of each draw that is done.
+        """
+        scenes = {f"draw-{k:04d}": self.read.draw(self.scene, k) for k in range(self.number)}
+        if folder is not None:
+            make_folder(folder)
+        with ExitStack() as stack:
+            found = run_campaign(
+                scenes,
+                [self.model],
+                folder=folder or Path(stack.enter_context(TemporaryDirectory())),
+                tolerance=tolerance,
+                jobs=jobs,
+                progress=lambda cell: progress(cell[0]),
+            )
+        for refusal in found.inapplicable.values():
+            raise SceneError("--draws", refusal)
+        return Draws(tuple(found.outcomes[name, self.model.name] for name in scenes), self.read)

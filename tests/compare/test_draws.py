@@ -1,0 +1,248 @@
+"""Draws: each is known by its number, stays within its tolerance and is kept; what is none is refused."""
+
+import json
+import signal
+from collections import Counter
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import runningbond as rb
+from runningbond.commands.command_line import command
+from runningbond.compare import models, published_scene, tasks
+from runningbond.compare.campaign import Interrupted
+from runningbond.compare.draws import Drawing, Draws
+from runningbond.compare.models import MODELS
+from runningbond.compare.scatter import Scatter
+from runningbond.results import Outcome
+from runningbond.scene import Scene, SceneError
+from runningbond.scene.segments import find_joints
+
+from ..walls import content, courses, panel, write_toml
+
+STIFF = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9}
+ARCH = str(Path(__file__).parents[2] / "examples" / "walls" / "arch_with_tie.toml")
+
+
+def block(**changes: Any) -> Scene:
+    """A single block, which slides at λ = tan φ."""
+    return courses([[1]], joint__friction=0.3, **STIFF, **changes)
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> str:
+    changes = {"wall__length": 0.48, "wall__height": 0.12, "joint": {"friction": 0.3}}
+    stiffness = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9}
+    return str(write_toml(content(**changes, **stiffness), tmp_path / "small.toml"))
+
+
+# --- what is drawn ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", ["bits", "size=0.02", "friction=0.1", "size=0.02,friction=0.1"])
+def test_a_draw_is_known_by_its_number(text: str) -> None:
+    """The first is the wall as it is; others differ from it and from each other, and are the same when drawn again."""
+    scene, scatter = panel(), Scatter.read(text)
+    assert str(scatter) == text
+    assert scatter.draw(scene, 0) is scene
+    one, again, two = (scatter.draw(scene, k) for k in (1, 1, 2))
+    assert one.block.density == again.block.density != two.block.density
+    assert 0 < abs(one.block.density / scene.block.density - 1) < 2e-12
+    assert np.array_equal(one.blocks.vertices, again.blocks.vertices)
+    assert one.joint_materials == again.joint_materials != two.joint_materials
+
+
+@pytest.mark.parametrize("name", ["panel-04", "panel-08", "panel-10", "wall-w1", "wall-w3"])
+def test_sizes_lie_within_the_tolerance(name: str) -> None:
+    """Outer sides stay, widths and heights differ within the tolerance, and blocks touch as they did."""
+    scene, size = published_scene(name), 0.02
+    drawn = Scatter(size=size).draw(scene, 5)
+    drawn.blocks.check()
+    assert np.allclose(drawn.blocks.extent(drawn.wall), scene.blocks.extent(scene.wall), rtol=0, atol=1e-12)
+    before, after = (np.subtract(*each.blocks.boxes[::-1])[scene.wall] for each in (scene, drawn))
+    assert 0.2 * size < np.abs(after / before - 1).max() <= size * (1 + 1e-9)
+    joints = find_joints(drawn.blocks)
+    found = {tuple(pair): ends for pair, ends in zip(map(tuple, joints.block), joints.ends, strict=True)}
+    assert Counter(map(tuple, drawn.joints.block)) <= Counter(map(tuple, joints.block))
+    for pair, ends in zip(map(tuple, drawn.joints.block), drawn.joints.ends, strict=True):
+        assert ends == pytest.approx(found[pair], abs=1e-12)
+
+
+def test_friction_scatters_joint_by_joint() -> None:
+    scene, spread = published_scene("panel-12"), 0.1
+    drawn = Scatter(friction=spread).draw(scene, 1)
+    friction = np.array([material.friction for material in drawn.joint_materials])[drawn.material_of_joint]
+    logarithm = np.log(friction / scene.joint.friction)
+    error = spread / np.sqrt(len(logarithm))
+    assert abs(logarithm.mean()) < 4 * error
+    assert logarithm.std() == pytest.approx(spread, abs=4 * error)
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
+def test_a_block_slides_at_the_friction_it_was_drawn_with(model: str) -> None:
+    """Exact: λ = tan φ of each draw's one joint; and no last bit matters to a single block."""
+    scene, tolerance = block(block__young=1e12), 1e-3
+    found = Drawing(scene, MODELS[model], 4, "friction=0.2").run(tolerance, jobs=1)
+    for k, outcome in enumerate(found.outcomes):
+        drawn = Scatter(friction=0.2).draw(scene, k)
+        friction = drawn.joint_materials[int(drawn.material_of_joint[0])].friction
+        assert outcome.lower is not None
+        assert outcome.upper is not None
+        assert 0.999 * friction <= outcome.upper
+        assert outcome.lower <= 1.001 * friction
+    assert found.error is not None
+    assert found.error > 0.01
+    bits = Drawing(scene, MODELS[model], 2).run(tolerance, jobs=1)
+    assert bits.multipliers == pytest.approx(0.3, rel=2e-3)
+
+
+# --- what they come to ------------------------------------------------------------------------------------------
+
+
+def outcome(multiplier: float | None) -> Outcome:
+    status: Any = "undecided" if multiplier is None else "collapse"
+    return Outcome("wall", "fem", status, multiplier, multiplier, multiplier)
+
+
+def test_statistics_are_those_of_the_draws_that_collapse() -> None:
+    """Mean 3 and standard deviation √2.5 of 1 … 5; undecided draws are counted, and count for nothing."""
+    draws = Draws(tuple(map(outcome, (3.0, 1.0, None, 5.0, 2.0, 4.0))), Scatter())
+    assert (draws.lowest, draws.mean) == (1.0, 3.0)
+    assert draws.error == pytest.approx(np.sqrt(2.5 / 5))
+    assert draws.quantiles == pytest.approx({"5": 1.2, "25": 2.0, "50": 3.0, "75": 4.0, "95": 4.8})
+    said = draws.summary()
+    assert (said["number"], said["collapsed"], said["each"][2]["multiplier"]) == (6, 5, None)
+    assert "5 of 6 draws collapse: lowest 1.0000" in str(draws)
+    json.dumps(said, allow_nan=False)
+
+
+def test_draws_of_which_none_or_one_collapses_have_no_spread() -> None:
+    none, one = (Draws(tuple(map(outcome, found)), Scatter()) for found in ((None, None), (None, 2.0)))
+    assert (none.lowest, none.mean, none.error, none.quantiles) == (None, None, None, {})
+    assert (one.lowest, one.mean, one.error) == (2.0, 2.0, None)
+    assert str(none) == "0 of 2 draws collapse"
+    assert str(one) == "1 of 2 draws collapse, at 2.0000"
+
+
+# --- kept, gone on with, printed --------------------------------------------------------------------------------
+
+
+def test_draws_go_on_where_they_were(small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More of them are the old ones and new ones; another scatter's are others. Processes find what one does."""
+    wall, run_model, computed = rb.read(small), models.run_model, []
+
+    def counted(*arguments: Any) -> Outcome:
+        computed.append(arguments)
+        return run_model(*arguments)
+
+    monkeypatch.setattr(tasks, "run_model", counted)
+    three = wall.draws("dem-static", 3, folder=tmp_path / "kept", jobs=1)
+    five = wall.draws("dem-static", 5, folder=tmp_path / "kept", jobs=1)
+    assert len(computed) == 5
+    assert [x.multiplier for x in five.outcomes[:3]] == [x.multiplier for x in three.outcomes]
+    apart = wall.draws("dem-static", 3, jobs=2)
+    assert [x.multiplier for x in apart.outcomes] == [x.multiplier for x in three.outcomes]
+    wall.draws("dem-static", 3, scatter="friction=0.1", folder=tmp_path / "kept", jobs=1)
+    assert len(computed) == 7  # the first is the same wall
+
+
+def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A model ends with what it has, in this very process; that is kept under no draw, and no other is begun."""
+    begun = []
+
+    def cut_short(*_: Any) -> Outcome:
+        begun.append(1)
+        if len(begun) == 2:
+            with suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+        return outcome(1.0)
+
+    monkeypatch.setattr(tasks, "run_model", cut_short)
+    drawing = Drawing(block(), MODELS["dem-static"], 5)
+    with pytest.raises(Interrupted) as stopped:
+        drawing.run(folder=tmp_path, jobs=1)
+    assert (len(begun), stopped.value.campaign.kept) == (2, 1)
+    assert len(drawing.run(folder=tmp_path, jobs=1).outcomes) == 5
+    assert len(begun) == 6
+
+
+def test_one_run_is_among_the_draws(
+    small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The object of one run, with one key more; and what one run leaves in its folder."""
+    monkeypatch.setattr("runningbond.commands.run.can_draw", lambda: False)
+    line = ["run", small, "--model", "dem-static", "--json"]
+    assert command(line) == 0
+    once = json.loads(capsys.readouterr().out)
+    out = tmp_path / "out"
+    assert command([*line, "--draws", "3", "--jobs", "1", "--out", str(out)]) == 0
+    drawn = json.loads(capsys.readouterr().out)
+    assert tuple(drawn) == (*once, "draws")
+    assert [drawn[key] for key in ("status", "lower", "upper")] == [once[key] for key in ("status", "lower", "upper")]
+    assert drawn["draws"]["number"] == len(drawn["draws"]["each"]) == 3
+    assert drawn["draws"]["each"][0]["multiplier"] == once["multiplier"] >= drawn["draws"]["lowest"]
+    assert {"outcome.json", "draws.json", "curve.csv", "draws"} <= {path.name for path in out.iterdir()}
+    assert json.loads((out / "draws.json").read_text()) == drawn["draws"]
+    assert command([*line[:-1], "--draws", "3", "--jobs", "1", "--out", str(out)]) == 0
+    said = capsys.readouterr().out
+    assert "3 of 3 draws collapse: lowest" in said
+    assert "draws of bits" in said
+    assert command([*line, "--out", str(out)]) == 0
+    assert not (out / "draws.json").exists()
+
+
+# --- refusals ---------------------------------------------------------------------------------------------------
+
+WRONG = [
+    *(("--draws", text, []) for text in ("1", "0", "-3", "2.5", "x", "", "1e1", "10001", "nan")),
+    *(("--jobs", text, ["--draws", "2"]) for text in ("0", "-2", "x", "1.5")),
+    ("--jobs", "2", []),
+    ("--scatter", "bits", []),
+    *(
+        ("--scatter", text, ["--draws", "2"])
+        for text in (
+            *("size", "size=", "size=a", "size=0", "size=-0.01", "size=0.2", "size=nan", "size=inf", "=0.1", ","),
+            *("friction=0", "friction=0.6", "friction=-1", "sizes=0.01", "frction=0.1", "bits=1", "bits,size=0.01"),
+            *("size=0.01,size=0.02", "size=0.01,", "size 0.01", "SIZE=0.01"),
+        )
+    ),
+]
+
+
+@pytest.mark.parametrize(("option", "value", "others"), WRONG)
+def test_what_is_no_draw_is_refused(
+    option: str, value: str, others: list[str], small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    line = ["run", small, "--model", "dem-static", "--out", str(out), *others, f"{option}={value}"]
+    assert command(line) == 2
+    said = capsys.readouterr()
+    assert option in said.err
+    assert said.err.count("\n") == 1
+    assert said.out == ""
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("model", [model.name for model in MODELS.values() if model.kind != "history"])
+def test_models_without_a_path_have_no_draws(model: str, small: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["run", small, "--model", model, "--draws", "2"]) == 2
+    assert f"--draws = 2: is for models that follow a path, which {model} does not" in capsys.readouterr().err
+
+
+def test_misspelt_scatter_is_understood() -> None:
+    with pytest.raises(SceneError, match='did you mean "friction"'):
+        Scatter.read("frction=0.1")
+
+
+def test_blocks_of_an_arch_keep_their_sizes(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["run", ARCH, "--model", "dem-dynamic", "--draws", "2", "--scatter", "size=0.01"]) == 2
+    assert "size is taken by walls of level and upright joints alone" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("draws", [2.0, True, None, "3"])
+def test_a_number_of_draws_is_whole_in_python_too(draws: Any) -> None:
+    with pytest.raises(SceneError, match="--draws"):
+        Drawing(block(), MODELS["dem-static"], draws)
