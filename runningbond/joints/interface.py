@@ -16,7 +16,7 @@ from .compiled import kernel
 from .coulomb import PLASTIC_SLIP
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
-from .softening import DAMAGE, SLIPPED, softening_constants
+from .softening import DAMAGE, SLIPPED, damage_at, softening_constants, way_to
 from .softening import HISTORY as SOFTENING_HISTORY
 
 HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, "crushed")
@@ -31,9 +31,10 @@ STIFFEST = CURVE + 4
 
 
 def interface_constants(material: JointMaterial) -> tuple[float, ...]:
-    """Constants of `interface_kernel`: of softening, closure and crushing, and 1 where the last is sudden."""
-    curve = closure_curve(material)
-    return *softening_constants(material), *curve, *crushing_cap(material), float(breaks_suddenly(material, curve))
+    """Constants of `interface_kernel`: of softening, closure and crushing; whether that is sudden, and that curved."""
+    curve, exponential = closure_curve(material), material.softening == "exponential"
+    flags = float(breaks_suddenly(material, curve)), float(exponential)
+    return *softening_constants(material), *curve, *crushing_cap(material), *flags
 
 
 def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
@@ -88,21 +89,24 @@ def interface_kernel(
         curve = (of[9], of[10], of[11], of[12], of[13])
         cap = (of[14], of[15], of[16], of[17])
         crushes, cap_shear, sudden = of[14] < math.inf, of[15], of[18] > 0.0
+        exponential = of[19] > 0.0
         for i in range(segments[segment], segments[np.uint64(segment + 1)]):
             change_n, change_t = opening[i] - opening_before[i], slip[i] - slip_before[i]
             jump_n = opening[i] + seat[i]
             before = damage[i]
-            torn = min(1.0, max(0.0, (jump_n - first) / (last - first)))
-            sheared = min(1.0, slipped[i] * per_slip)
-            after = max(before, min(1.0, math.sqrt(torn * torn + sheared * sheared)))
+            torn, sheared = max(0.0, (jump_n - first) / (last - first)), slipped[i] * per_slip
+            after = before
+            if torn > 0.0 or sheared > 0.0:
+                after = max(before, damage_at(math.sqrt(torn * torn + sheared * sheared), exponential))
             sound = 1.0 - after
             trial = k_t * (slip[i] - plastic_slip[i])
             room = sound * (shear + friction * tension)
             viscous, pressure, closure = 0.0, 0.0, max(0.0, -jump_n)
             if jump_n > 0.0:
-                onset = first + before * (last - first)
+                onset = first + way_to(before, exponential) * (last - first)
                 secant_before = (1.0 - before) * tension / onset if tension > 0.0 else 0.0
-                secant = sound * tension / (first + after * (last - first)) if tension > 0.0 else 0.0
+                until = first + way_to(after, exponential) * (last - first)
+                secant = sound * tension / until if tension > 0.0 else 0.0
                 spent[i] += 0.5 * (secant_before - secant) * jump_n * min(jump_n, onset)
                 elastic = secant * jump_n
             else:
