@@ -50,23 +50,27 @@ def draw(axes: Axes, seen: LastLook) -> None:
         lines = LineCollection(list(ends[jump > least]), colors=colour, lw=1.8, label=label)
         axes.add_collection(lines)
     axes.set_aspect("equal")
-    axes.set(xlim=(-0.12, 1.12), ylim=(-0.06, 1.08))
+    axes.set(xlim=(-0.12, 1.12), ylim=(-0.05, 1.08))
     axes.axis("off")
 
 
 def main(path: Path, names: list[str]) -> None:
     """Draw some walls side by side."""
     walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
-    figure = Figure(figsize=(4.0 * len(names), 4.0), layout="constrained")
-    for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
+    figure = Figure(figsize=(3.6 * (len(names) + 1), 3.9), layout="constrained")
+    *maps, curves = figure.subplots(1, len(names) + 1)
+    for axes, name in zip(maps, names, strict=True):
         seen = LastLook()
         scene = scene_of(walls[name], LADDER["fem-small"].features)
-        outcome = fem(scene, cells=2, modes=20, observe=seen)
+        curve = fem(scene, cells=2, modes=20, observe=seen).curve
         draw(axes, seen)
-        peak = 1e-3 * outcome.curve[:, 1].max()
-        measured = 1e-3 * (walls[name].peak or np.nan)
-        axes.set_title(f"{name}: {peak:.0f} kN, {measured:.0f} measured; at 4 mm, × {SCALE:g}", fontsize=9)
-    figure.axes[0].legend(loc="lower left", fontsize=7, bbox_to_anchor=(0, -0.09), ncols=3, frameon=False)
+        axes.set_title(f"{name} at 4 mm, × {SCALE:g}", fontsize=9)
+        peak, measured = 1e-3 * curve[:, 1].max(), 1e-3 * (walls[name].peak or np.nan)
+        (line,) = curves.plot(1e3 * curve[:, 0], 1e-3 * curve[:, 1], label=f"{name}: {peak:.0f} kN")
+        curves.axhline(measured, color=line.get_color(), ls="--", lw=0.8, label=f"measured peak: {measured:.0f} kN")
+    curves.set(xlabel="displacement [mm]", ylabel="horizontal force [kN]", xlim=(0, None), ylim=(0, None))
+    curves.legend(fontsize=7, frameon=False)
+    figure.legend(*maps[0].get_legend_handles_labels(), loc="outside lower left", fontsize=8, ncols=3, frameon=False)
     figure.savefig(path, dpi=110)
 
 
