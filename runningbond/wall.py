@@ -22,7 +22,7 @@ TABLES = {
     "block": ("density", "young", "poisson"),
     "joint": (
         *("friction", "friction_angle", "cohesion", "tensile_strength", "mortar", "normal_stiffness"),
-        *("shear_stiffness", "inset", "fracture_energy_1", "fracture_energy_2", "law"),
+        *("shear_stiffness", "inset", "fracture_energy_1", "fracture_energy_2", "softening", "law"),
         *("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure", "closure"),
     ),
     "load": ("gravity", "live", "dead"),

@@ -22,7 +22,7 @@ DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
 CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
-SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2"}
+SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2", "joint.softening"}
 INTERFACE = SOFTENING | CRUSHING | {"joint.compressive_fracture_energy", "joint.peak_closure", "joint.closure"}
 ELASTIC = INTERFACE | {"block.young", "block.poisson"}
 

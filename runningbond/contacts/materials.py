@@ -14,7 +14,8 @@ from .search import Contacts
 
 def dry(material: JointMaterial) -> JointMaterial:
     """A material that is broken: without cohesion and tension, of the same friction, stiffness and crushing."""
-    return replace(material, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=None, fracture_energy_2=None)
+    still = replace(material, softening="linear", fracture_energy_2=None)
+    return replace(still, cohesion=0.0, tensile_strength=0.0, fracture_energy_1=None)
 
 
 class ContactMaterials:

@@ -189,7 +189,11 @@ class Run:
         system = self.system.held_late
         if system is self.system:
             return self
-        state.velocity[self.system.late] = 0.0
+        late = self.system.late
+        state.velocity[late] = 0.0
+        # What is held from now on has been damped; the ledger counts the damping of what moves.
+        state.absorbed += float(state.damped[late].sum())
+        state.damped[late] = 0.0
         return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
 
     def unaccounted(self, state: State, least: float = 0.0) -> float:

@@ -17,7 +17,7 @@ from .coulomb import PLASTIC_SLIP
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
 from .dry_points import CRUSHED, SEAT, SLIPPED, dry_points, dry_within, is_beyond
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
-from .softening import DAMAGE, softening_constants
+from .softening import DAMAGE, damage_at, softening_constants, way_to
 from .softening import HISTORY as SOFTENING_HISTORY
 
 HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, "crushed")
@@ -33,9 +33,10 @@ STIFFEST = CURVE + 4
 
 
 def interface_constants(material: JointMaterial) -> tuple[float, ...]:
-    """Constants of `interface_kernel`: of softening, closure and crushing, and 1 where the last is sudden."""
-    curve = closure_curve(material)
-    return *softening_constants(material), *curve, *crushing_cap(material), float(breaks_suddenly(material, curve))
+    """Constants of `interface_kernel`: of softening, closure and crushing; whether that is sudden, and that curved."""
+    curve, exponential = closure_curve(material), material.softening == "exponential"
+    flags = float(breaks_suddenly(material, curve)), float(exponential)
+    return *softening_constants(material), *curve, *crushing_cap(material), *flags
 
 
 def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
@@ -84,23 +85,24 @@ def any_points(
     first, last, per_slip = of[6], of[7], of[8]
     curve = (of[9], of[10], of[11], of[12], of[13])
     cap = (of[14], of[15], of[16], of[17])
-    crushes, cap_shear, sudden = of[14] < math.inf, of[15], of[18] > 0.0
+    crushes, cap_shear, sudden, exponential = of[14] < math.inf, of[15], of[18] > 0.0, of[19] > 0.0
     for i in range(rows[0], rows[1]):
         change_n, change_t = opening[i] - opening_before[i], slip[i] - slip_before[i]
         jump_n = opening[i] + seat[i]
         before = damage[i]
-        after, sheared = before, min(1.0, slipped[i] * per_slip)
+        after, sheared = before, slipped[i] * per_slip
         if jump_n > first or sheared > 0.0:
-            torn = min(1.0, max(0.0, (jump_n - first) / (last - first)))
-            after = max(before, min(1.0, math.sqrt(torn * torn + sheared * sheared)))
+            torn = max(0.0, (jump_n - first) / (last - first))
+            after = max(before, damage_at(math.sqrt(torn * torn + sheared * sheared), exponential))
         sound = 1.0 - after
         trial = k_t * (slip[i] - plastic_slip[i])
         room = sound * (shear + friction * tension)
         viscous, pressure, closure = 0.0, 0.0, max(0.0, -jump_n)
         if jump_n > 0.0:
-            onset = first + before * (last - first)
+            onset = first + way_to(before, exponential) * (last - first)
             secant_before = (1.0 - before) * tension / onset if tension > 0.0 else 0.0
-            secant = sound * tension / (first + after * (last - first)) if tension > 0.0 else 0.0
+            until = first + way_to(after, exponential) * (last - first)
+            secant = sound * tension / until if tension > 0.0 else 0.0
             spent[i] += 0.5 * (secant_before - secant) * jump_n * min(jump_n, onset)
             elastic = secant * jump_n
         else:

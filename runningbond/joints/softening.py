@@ -7,8 +7,15 @@ come back, to nothing at s_c = 2 G_II / c. Each encloses its fracture energy exa
 
     D_I = (δ − δ_e) / (δ_c − δ_e),    D_II = s_p / s_c,    D = max over time of (D_I² + D_II²)^{1/2} ≤ 1
 
-(Munjiza 2004, with a straight branch). A joint whose δ_c lies before δ_e breaks at once: it has stored more than G_I.
+(Munjiza 2004, with a straight branch). With x that mean, exponential branches of the same energies have
+
+    D = 1 − e^(−2x),    f_t (1 − D) = f_t exp(−(δ − δ_e) / (G_I / f_t − δ_e / 2)),    c (1 − D) = c exp(−c s_p / G_II)
+
+(Lourenço & Rots 1997; only `interface` follows them). A joint whose δ_c lies before δ_e breaks at once: it has stored
+more than G_I.
 """
+
+import math
 
 import numpy as np
 
@@ -30,6 +37,10 @@ NEVER = 1e30
 
 Damage on the way there is small, but must not vanish when it is squared; that of slip without end must.
 """
+
+
+LEFT = 1e-7
+"""Strength, in strengths, at which an exponential branch ends."""
 
 
 def softening_constants(material: JointMaterial) -> tuple[float, ...]:
@@ -54,6 +65,21 @@ def stored_by_secant(points: KernelLaw, opening: Array, normal: Array, tangentia
     closed = normal**2 / (2 * points.normal_stiffness)
     opened = normal * np.maximum(opening, 0.0) / 2
     return np.asarray(np.where(opening > 0, opened, closed) + tangential**2 / (2 * points.shear_stiffness))
+
+
+@kernel
+def damage_at(x: float, exponential: bool) -> float:
+    """D at some x, which ends a straight branch at 1."""
+    if not exponential:
+        return min(1.0, x)
+    left = math.exp(-2.0 * x)
+    return 1.0 - left if left > LEFT else 1.0
+
+
+@kernel
+def way_to(damage: float, exponential: bool) -> float:
+    """The x at some D."""
+    return -0.5 * math.log(max(LEFT, 1.0 - damage)) if exponential else damage
 
 
 @kernel

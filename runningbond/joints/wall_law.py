@@ -13,12 +13,13 @@ from .softening import SOFTENING
 
 
 def law_of(material: JointMaterial) -> Law:
-    """Law of a material: its own, or Coulomb's, which softens where there is a fracture energy; or it may crush."""
+    """Law of a material: its own, or Coulomb's, which softens where there is an energy; or the one with all else."""
     if isinstance(material.law, Law):
         return material.law
     if material.law is not None:
         raise SceneError("joint.law", "must be a runningbond.joints.Law", material.law)
-    if material.closure is not None or material.compressive_strength is not None:
+    further = material.closure is not None or material.compressive_strength is not None
+    if further or material.softening != "linear":
         return INTERFACE
     return COULOMB if material.fracture_energy_1 is None else SOFTENING
 

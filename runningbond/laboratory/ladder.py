@@ -93,6 +93,16 @@ LADDER: dict[str, Rung] = {
         _rung("rigid-finite", "rigid blocks", "dem-dynamic", CRUSHES, "#2a9d8f", "^", **FINITE),
         _rung("rigid-splitting", "rigid blocks that split", "dem-dynamic", SPLITS, "#c2410c", "P", **FINITE),
         _rung(
+            "fem-small",
+            "deformable blocks that split, small displacements",
+            "fem",
+            replace(SPLITS, deformable=True),
+            "#f59ab5",
+            "D",
+            cells=2,
+            modes=20,
+        ),
+        _rung(
             "fem-splitting",
             "deformable blocks that split",
             "fem",

@@ -133,6 +133,7 @@ def _joint_material(joint: Table) -> JointMaterial:
             elasticity=_elasticity(joint),
             closure=_closure(joint),
             law=joint.value("law"),
+            softening=joint.value("softening", "linear"),
             name=_material_name(joint),
             **joint.numbers(JointMaterial, "friction"),
         )

@@ -2,10 +2,13 @@
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal, TypeAlias, get_args
 
 from .errors import SceneError
-from .ranges import ABOVE_ZERO, NotNegative, Positive, Range, check_numbers
+from .ranges import ABOVE_ZERO, NotNegative, Positive, Range, check_numbers, one_of
+
+Softening: TypeAlias = Literal["linear", "exponential"]
+"""How strength falls with a jump: on a straight line, or exponentially (Lourenço & Rots 1997)."""
 
 LEAST_FRICTION = 1e-6
 """Least tan φ that is not 0: what is smaller is lost in a linear program's tolerance, cohesion / tan φ with it."""
@@ -112,6 +115,8 @@ class JointMaterial:
         Distance by which the contact points are moved in from the joint ends [m].
     fracture_energy_1, fracture_energy_2
         Fracture energies in opening and in shear [J/m²]; None is perfectly plastic.
+    softening
+        The branch along which these are spent.
     compressive_strength, cap_shear
         f_m [Pa] and C_ss of the cap on pressures, ``σ² + cap_shear τ² ≤ compressive_strength²`` (Lourenço & Rots 1997,
         eq. 19, with C_nn = 1, C_n = 0); None is a joint that never crushes.
@@ -140,6 +145,7 @@ class JointMaterial:
     inset: NotNegative = 0.0
     fracture_energy_1: NotNegative | None = None
     fracture_energy_2: NotNegative | None = None
+    softening: Softening = "linear"
     compressive_strength: Positive | None = None
     compressive_fracture_energy: Positive | None = None
     cap_shear: NotNegative = 9.0
@@ -161,6 +167,9 @@ class JointMaterial:
         if self.fracture_energy_1 is None and self.fracture_energy_2 is not None:
             what = "is missing; what a joint loses in slip it loses in opening as well"
             raise SceneError("joint.fracture_energy_1", what)
+        one_of("joint.softening", self.softening, get_args(Softening))
+        if self.softening != "linear" and self.fracture_energy_1 is None:
+            raise SceneError("joint.fracture_energy_1", "is missing; a joint that softens needs one")
         self._check_crushing()
         self._check_closure()
         if self.law is not None and not hasattr(self.law, "kernel"):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dem.dynamic import dem_dynamic, finite_pushover
+from dem.finite_system import finite_system
 from dem.rigid_system import rigid_system
 from dem.static import dem_static
 from fem_interface.cracks import pieces
@@ -203,6 +204,19 @@ def test_a_beam_of_fixed_height_makes_the_pier_a_strut() -> None:
     assert outcome.status in ("undecided", "unbounded")
     assert outcome.upper is None
     assert "still hardens at the displacement asked for" in outcome.message
+
+
+@pytest.mark.parametrize("system", [rigid_system, finite_system])
+def test_what_damped_a_beam_before_its_height_was_fixed_stays_in_the_ledger(system: Any) -> None:
+    """Of a sudden load half the work is damped, much of it in the beam's own fall."""
+    run = Run(system(under_beam("fixed-height", {"displacement": [1e-4, 0]})))
+    state = State.at_rest(run.system)
+    run.hold(state, 0.0, 4000)
+    spent, before = run.ledger(state).damped, run.unaccounted(state)
+    assert spent > 0.4 * run.dead_work(state)
+    held = run.held_late(state)
+    assert held.ledger(state).damped == pytest.approx(spent, rel=1e-12)
+    assert held.unaccounted(state) == pytest.approx(before, rel=1e-9)
 
 
 def test_the_rate_that_is_given_is_kept() -> None:

@@ -64,6 +64,20 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
         "joints.soft.compressive_strength = -1: must be a number above 0",
     ),
     (
+        {"joint__softening": "exponentail", "joint__fracture_energy_1": 10.0},
+        'joint.softening = \'exponentail\': must be one of "linear", "exponential"; did you mean "exponential"?',
+    ),
+    ({"joint__softening": True}, 'joint.softening = True: must be one of "linear", "exponential"'),
+    ({"joint__softening": "exponential"}, "joint.fracture_energy_1: is missing; a joint that softens needs one"),
+    (
+        {"joints": {"soft": {"friction": 0.5, "softening": 2}}},
+        'joints.soft.softening = 2: must be one of "linear", "exponential"',
+    ),
+    (
+        {"inner_joint": {"friction": 0.5, "softening": "exponential"}},
+        "inner_joint.fracture_energy_1: is missing; a joint that softens needs one",
+    ),
+    (
         {"inner_joint": {"friction": 0.5, "compressive_fracture_energy": 1.0}},
         "inner_joint.compressive_strength: is missing; a joint that crushes needs a strength",
     ),

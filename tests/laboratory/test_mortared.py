@@ -1,0 +1,60 @@
+"""Mortared walls between beams that are kept at their height, as interface elements have them."""
+
+import copy
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.rig import scene_of
+from runningbond.results import Outcome
+from runningbond.scene import scene_from_dict
+from runningbond.scene.file import read_description
+
+WALLS = {wall.name: wall for wall in read_folder(SHIPPED[1])}
+HEIGHT = 0.248
+
+
+def squat(softening: str) -> Outcome:
+    """Four courses of J7D, two bricks long, pushed by 0.6 mm."""
+    path = WALLS["J7D"].scene_file
+    assert path is not None
+    tables: dict[str, Any] = copy.deepcopy(read_description(path))
+    tables["wall"] |= {"length": 0.44, "height": HEIGHT}
+    tables["joint"]["softening"] = softening
+    tables["beam"] |= {
+        "force": [0, -44e3],
+        "drive": {"displacement": [6e-4, 0], "rate": 0.04, "at": HEIGHT},
+    }
+    return LADDER["fem-small"].model.solve(scene_from_dict(tables), 0.01)
+
+
+def test_a_wall_held_at_its_height_is_a_strut_whose_ledger_closes() -> None:
+    """All that pushes it goes into the ground, V H into the moments of ground and beam, and joints spend their work."""
+    outcomes = {softening: squat(softening) for softening in ("exponential", "linear")}
+    peaks = {}
+    for softening, outcome in outcomes.items():
+        assert outcome.status != "failed", outcome.message
+        known = dict(zip(outcome.path_columns, outcome.path.T, strict=True))
+        force = outcome.curve[:, 1]
+        late = slice(len(force) // 4, len(force) - 20)
+        assert -known["ground horizontal [N]"][late] == pytest.approx(force[late], rel=0.03)
+        peaks[softening] = float(force.max())
+        assert np.diff(known["work spent in joints [J]"]).min() > -1e-6
+    assert peaks["exponential"] < peaks["linear"] < 1.2 * peaks["exponential"]
+
+
+@pytest.mark.parametrize("name", ["J4D", "J5D", "J6D", "J7D"])
+def test_the_scenes_have_the_published_joints(name: str) -> None:
+    """c = 1.4 f_t, one apex of the potential cracks and the joints, and every load the pressure over the top."""
+    scene = scene_of(WALLS[name], LADDER["fem-small"].features)
+    joint, crack = scene.joint, scene.inner_joint
+    assert crack is not None
+    assert scene.beam is not None
+    assert joint.softening == crack.softening == "exponential"
+    assert joint.cohesion == pytest.approx(1.4 * joint.tension)
+    assert crack.cohesion == pytest.approx(1.4 * crack.tension)
+    pressure = {"J4D": 0.30e6, "J5D": 0.30e6, "J6D": 1.21e6, "J7D": 2.12e6}[name]
+    assert -scene.beam.force[1] == pytest.approx(pressure * 0.99 * 0.1)

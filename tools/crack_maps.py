@@ -1,0 +1,78 @@
+"""Draw the cracks of mortared walls at the end of their path, as `fem-small` sees them: docs/laboratory-j4d-j7d.png."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.figure import Figure
+
+from fem_interface.modal_wall import ModalWall
+from fem_interface.model import fem
+from runningbond.dynamics import Run, State
+from runningbond.joints.law import PLASTIC_CLOSURE
+from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.rig import scene_of
+from runningbond.scene import Array
+
+SCALE = 12.0
+KINDS = (("slipped by 0.1 mm", 1e-4, "#e0902f"), ("opened by 0.1 mm", 1e-4, "#c1121f"), ("crushed", 9e-5, "#5a189a"))
+"""What is drawn of a joint element's points, the last above the others; crushed is beyond the strength."""
+
+
+class LastLook:
+    """The last state that a run was seen in."""
+
+    def __init__(self) -> None:
+        self.jumps, self.motion = np.zeros((3, 0)), np.zeros(0)
+        self.wall: object = None
+
+    def __call__(self, run: Run, state: State, multiplier: float) -> None:
+        """Look at a run."""
+        if not run.led:
+            return
+        opening, slip, *_ = run.at_joints(state)
+        crushed = state.history[run.interface.law.law.row(PLASTIC_CLOSURE)]
+        self.jumps, self.motion, self.wall = np.array([np.abs(slip), opening, crushed]), state.motion, run.system.source
+
+
+def draw(axes: Axes, seen: LastLook) -> None:
+    """Deformed triangles, and the joint elements that slipped, opened or were crushed."""
+    wall = seen.wall
+    assert isinstance(wall, ModalWall)
+    at: Array = wall.mesh.points + SCALE * wall.displacement(seen.motion)
+    axes.add_collection(PolyCollection(list(at[wall.mesh.triangles]), facecolor="0.86", edgecolor="0.86", lw=0.3))
+    ends = at[wall.elements.nodes].reshape(-1, 2, 2, 2).mean(axis=1)
+    most = seen.jumps.reshape(3, -1, len(ends)).max(axis=1)
+    for (label, least, colour), jump in zip(KINDS, most, strict=True):
+        lines = LineCollection(list(ends[jump > least]), colors=colour, lw=1.8, label=label)
+        axes.add_collection(lines)
+    axes.set_aspect("equal")
+    axes.set(xlim=(-0.12, 1.12), ylim=(-0.05, 1.08))
+    axes.axis("off")
+
+
+def main(path: Path, names: list[str]) -> None:
+    """Draw some walls side by side."""
+    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    figure = Figure(figsize=(3.6 * (len(names) + 1), 3.9), layout="constrained")
+    *maps, curves = figure.subplots(1, len(names) + 1)
+    for axes, name in zip(maps, names, strict=True):
+        seen = LastLook()
+        scene = scene_of(walls[name], LADDER["fem-small"].features)
+        curve = fem(scene, cells=2, modes=20, observe=seen).curve
+        draw(axes, seen)
+        axes.set_title(f"{name} at 4 mm, × {SCALE:g}", fontsize=9)
+        peak, measured = 1e-3 * curve[:, 1].max(), 1e-3 * (walls[name].peak or np.nan)
+        (line,) = curves.plot(1e3 * curve[:, 0], 1e-3 * curve[:, 1], label=f"{name}: {peak:.0f} kN")
+        curves.axhline(measured, color=line.get_color(), ls="--", lw=0.8, label=f"measured peak: {measured:.0f} kN")
+    curves.set(xlabel="displacement [mm]", ylabel="horizontal force [kN]", xlim=(0, None), ylim=(0, None))
+    curves.legend(fontsize=7, frameon=False)
+    figure.legend(*maps[0].get_legend_handles_labels(), loc="outside lower left", fontsize=8, ncols=3, frameon=False)
+    figure.savefig(path, dpi=110)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), sys.argv[2:])
