@@ -18,11 +18,11 @@ from .equilibrium import Equilibrium
 
 @dataclass(frozen=True, eq=False)
 class Glued:
-    """The equations of a glued wall, and its motions ``(nd, 3 n_macro)`` as motions of the wall."""
+    """The equations of a glued wall, its motions ``(nd, 3 n_macro)`` as those of the wall, and which points are left."""
 
     system: Equilibrium
     motions: csc_array
-    kept: Indices
+    points: Indices
 
 
 def still_points(system: Equilibrium, motion: Array, least: float) -> Mask:
@@ -46,8 +46,8 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
     first, second = _pairs(system)
     n = len(place)
     pair = first * (n + 1) + second
-    _, which, points = np.unique(pair, return_inverse=True, return_counts=True)
-    holds = ((np.bincount(which, still) == points) & (points > 1))[which]
+    _, which, size = np.unique(pair, return_inverse=True, return_counts=True)
+    holds = ((np.bincount(which, still) == size) & (size > 1))[which]
     graph = coo_array((np.ones(holds.sum()), (first[holds], second[holds])), shape=(n + 1, n + 1))
     _, label = connected_components(graph, directed=False)
     moving = label[:n] != label[n]

@@ -11,7 +11,7 @@ import numpy as np
 from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
-from .force_program import ForceSolution, ProgramStatus, coulomb, force_program, solution_of
+from .force_program import Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
 from .interior_point import interior_point
 from .kinematics import movable_freedoms
 from .repair import admissible, balanced
@@ -67,6 +67,14 @@ def proved(system: Equilibrium, resting: Array | None) -> ForceSolution:
         system, forces, "budget" if point.interrupted else "optimal", found, motion, point.iterations
     )
     return replace(solution, motion=motion / (system.live @ motion))
+
+
+def nearly_extreme(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution | None:
+    """Forces of a set in balance, at nearly the largest or smallest multiplier; None if none were found."""
+    program = force_program(system, forces, aim)
+    point = interior_point(program, STOP[CLOSE])
+    found = balanced(program, point, None) if point.status == "optimal" else None
+    return None if found is None else solution_of(system, forces, "optimal", found, point.motion, point.iterations)
 
 
 def tolerance_of(system: Equilibrium) -> float:
