@@ -7,6 +7,7 @@ dilatancy friction that number is an upper bound.
 
 import time
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -301,7 +302,7 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _so_far(state: LimitState) -> dict[str, float]:
+def _so_far(state: LimitState) -> dict[str, Any]:
     """Bounds that forces and mechanism of an interrupted program prove; of a wall at rest, that it bears its load."""
     system, forces = state.system, state.forces
     if forces.status != "budget" or system.has_support:

@@ -1,4 +1,4 @@
-"""Macro-blocks: blocks that move as one are glued into one, which leaves fewer equations, and joint points between them.
+"""Macro-blocks: blocks that move as one are glued into one, which leaves fewer equations and joint points.
 
 Whatever moves in a wall so glued moves in the wall itself too: a mechanism of the one is a mechanism of the other, at
 the same load. Its forces are balanced macro-block by macro-block, and say nothing of those inside.
@@ -18,7 +18,7 @@ from .equilibrium import Equilibrium
 
 @dataclass(frozen=True, eq=False)
 class Glued:
-    """The equations of a glued wall, its motions ``(nd, 3 n_macro)`` as those of the wall, and which points are left."""
+    """The equations of a glued wall, its motions ``(nd, 3 n_macro)`` as those of the wall, and the points left."""
 
     system: Equilibrium
     motions: csc_array
@@ -82,7 +82,7 @@ def _pairs(system: Equilibrium) -> tuple[Indices, Indices]:
 
 
 def _motions(moving: Indices, macro: Indices, place: Array, scale: Array) -> csc_array:
-    """Displacements of each macro-block's middle and its rotation, in blocks' sizes, as scaled motions of the blocks."""
+    """Displacement of each macro-block's middle, and its rotation by its size, as scaled motions of the blocks."""
     members = np.bincount(macro)
     middle = np.column_stack([np.bincount(macro, place[moving, k]) / members for k in (0, 1)])
     arm = place[moving] - middle[macro]

@@ -50,7 +50,8 @@ def resting_forces(system: Equilibrium) -> Array | None:
 def proved(system: Equilibrium, resting: Array | None) -> ForceSolution:
     """Solve the associated limit analysis; the status is ``optimal`` for exact forces and mechanism only.
 
-    Ctrl-C leaves those that are near by then, if any are, and the status is ``budget``. `resting` are forces of the same system before its live load (`Equilibrium.under_dead_load`).
+    Ctrl-C leaves those that are near by then, if any are, and the status is ``budget``. `resting` are forces of
+    the same system before its live load (`Equilibrium.under_dead_load`).
     """
     forces = coulomb(system.strength)
     program = force_program(system, forces)
