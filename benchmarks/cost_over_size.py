@@ -100,7 +100,8 @@ def chart(table: dict[str, list[Run]], seconds: int) -> Figure:
                       color=looks.colour, linewidth=0.8, linestyle=":")  # fmt: skip
     axes.axhline(seconds, color="0.6", linewidth=0.8)
     axes.text(32, 1.06 * seconds, f"budget of a run, {seconds} s: arrows were ended by it", fontsize=8, color="0.35")
-    axes.set(xscale="log", yscale="log", xlabel="blocks of a running-bond panel", ylabel="processor seconds")
+    axes.set(xscale="log", yscale="log", xlim=(25, 2e5), ylim=(1e-3, 3 * seconds))
+    axes.set(xlabel="blocks of a running-bond panel", ylabel="processor seconds")
     axes.grid(which="major", color="0.9")
     axes.legend(fontsize=8, loc="lower right", frameon=False)
     return figure

@@ -1,5 +1,6 @@
 """Macro-blocks: what moves when blocks are glued, and what its load is worth for the wall itself."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,9 @@ from runningbond.limit.certificates import certify
 from runningbond.limit.force_program import coulomb, solve_forces
 from runningbond.limit.macro import glue, still_points
 from runningbond.limit.proved import WIDEST
+from runningbond.results import save_outcome
 from runningbond.scene import Scene
+from tests.checker import check
 from tests.walls import panel
 
 WALLS: dict[str, dict[str, Any]] = {
@@ -83,7 +86,7 @@ def test_a_wall_glued_to_the_ground_does_not_move() -> None:
 
 @pytest.mark.parametrize("name", WALLS)
 def test_glued_large_walls_collapse_at_certified_loads_below_the_associated_one(
-    name: str, monkeypatch: pytest.MonkeyPatch
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With the sizes from which walls are large and glued lowered; without a certificate that load is all there is."""
     monkeypatch.setattr("runningbond.limit.large.POINTS", 0)
@@ -97,6 +100,8 @@ def test_glued_large_walls_collapse_at_certified_loads_below_the_associated_one(
     if outcome.status == "collapse":
         assert outcome.lower is not None
         assert 0 < outcome.lower <= outcome.upper
+        save_outcome(outcome, tmp_path, "", scene)
+        assert check(tmp_path)
 
 
 def test_repaired_certificates_are_those_of_highs(monkeypatch: pytest.MonkeyPatch) -> None:
