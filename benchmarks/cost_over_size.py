@@ -3,18 +3,20 @@
     python benchmarks/cost_over_size.py [--seconds 60] [--models limit,fem] [--out docs/cost-over-size.png]
 
 Every run is a process of its own and is ended once it has taken so many processor seconds; what it would have taken is
-not known, and the chart's open arrow says so. Compiled kernels are loaded before anything is measured.
+not known, and the chart's open arrow says so. Compiled kernels are loaded before anything is measured. The table is
+kept beside the picture (CSV), and models that are not run again are drawn from it.
 """
 
 import argparse
+import csv
 import multiprocessing
 import resource
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-import matplotlib as mpl
+import numpy as np
 from limit_large import wall
 from matplotlib.figure import Figure
 
@@ -29,8 +31,9 @@ MORTAR = Mortar(1e9, 0.2, 0.01)
 
 @dataclass(frozen=True)
 class Run:
-    """A run of a model: processor seconds, largest memory [GB] and status, which is empty if its budget ended it."""
+    """A run: processor seconds, largest memory [GB] and status, which is empty if its budget of seconds ended it."""
 
+    model: str
     blocks: int
     seconds: float
     memory: float
@@ -54,12 +57,12 @@ def measured(model: str, scene: Scene, seconds: int) -> Run:
     except EOFError:
         spent, memory, status = float(seconds), float("nan"), ""
     process.join()
-    return Run(blocks, spent, memory, status)
+    return Run(model, blocks, spent, memory, status)
 
 
 def _run(model: str, scene: Scene, seconds: int, there: Connection) -> None:
     start = time.process_time()
-    most = int(start) + seconds + 1
+    most = int(start) + seconds
     resource.setrlimit(resource.RLIMIT_CPU, (most, most))
     status = run_model(model, scene).status
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
@@ -79,13 +82,13 @@ def every_size(model: str, seconds: int) -> list[Run]:
     return runs
 
 
-def chart(table: dict[str, list[Run]], seconds: int) -> Figure:
+def chart(table: list[Run]) -> Figure:
     """Both axes in powers of ten; open markers are runs without an answer, arrows those that the budget ended."""
-    mpl.rcParams["svg.hashsalt"] = "cost"
     figure = Figure(figsize=(7.2, 5.0), layout="constrained")
     axes = figure.add_subplot()
-    for name, runs in table.items():
-        looks, ended = MODELS[name], [run for run in runs if run.status]
+    for name, looks in MODELS.items():
+        runs = [run for run in table if run.model == name]
+        ended = [run for run in runs if run.status]
         done = ([run.blocks for run in ended], [max(run.seconds, 1e-3) for run in ended])
         (line,) = axes.plot(*done, color=looks.colour, linestyle=looks.line, marker=looks.marker, label=name)
         line.set_markevery([k for k, run in enumerate(ended) if run.status == "collapse"])
@@ -93,14 +96,14 @@ def chart(table: dict[str, list[Run]], seconds: int) -> Figure:
             if run.status != "collapse":
                 axes.plot(run.blocks, run.seconds, looks.marker, color=looks.colour, markerfacecolor="white")
         for run in runs[len(ended) :]:
-            at = (run.blocks, seconds)
-            axes.annotate("", (run.blocks, 1.7 * seconds), at, arrowprops={"arrowstyle": "->", "color": looks.colour})
-            axes.plot(*at, looks.marker, color=looks.colour, markerfacecolor="white")
-            axes.plot((done[0][-1:] or [run.blocks]) + [run.blocks], (done[1][-1:] or [seconds]) + [seconds],
-                      color=looks.colour, linewidth=0.8, linestyle=":")  # fmt: skip
-    axes.axhline(seconds, color="0.6", linewidth=0.8)
-    axes.text(32, 1.06 * seconds, f"budget of a run, {seconds} s: arrows were ended by it", fontsize=8, color="0.35")
-    axes.set(xscale="log", yscale="log", xlim=(25, 2e5), ylim=(1e-3, 3 * seconds))
+            arrow = {"arrowstyle": "->", "color": looks.colour}
+            axes.annotate("", (run.blocks, 2 * run.seconds), (run.blocks, run.seconds), arrowprops=arrow)
+            last = [*zip(*done, strict=True)][-1:]
+            path = np.array([*last, (run.blocks, run.seconds)]).T
+            axes.plot(*path, color=looks.colour, linewidth=0.8, linestyle=":")
+            axes.plot(run.blocks, run.seconds, looks.marker, color=looks.colour, markerfacecolor="white")
+    axes.set_title("arrows: ended by their budget, the true cost is not known", fontsize=8, color="0.35", loc="left")
+    axes.set(xscale="log", yscale="log", xlim=(25, 2e5), ylim=(1e-3, 4 * max(run.seconds for run in table)))
     axes.set(xlabel="blocks of a running-bond panel", ylabel="processor seconds")
     axes.grid(which="major", color="0.9")
     axes.legend(fontsize=8, loc="lower right", frameon=False)
@@ -114,8 +117,20 @@ def main() -> None:
     parser.add_argument("--models", default=",".join(MODELS))
     parser.add_argument("--out", type=Path, default=Path("docs/cost-over-size.png"))
     arguments = parser.parse_args()
-    table = {name: every_size(name, arguments.seconds) for name in arguments.models.split(",")}
-    chart(table, arguments.seconds).savefig(arguments.out, dpi=160)
+    kept, chosen = arguments.out.with_suffix(".csv"), arguments.models.split(",")
+    rows = list(csv.DictReader(kept.open(encoding="utf-8"))) if kept.exists() else []
+    table = [
+        Run(row["model"], int(row["blocks"]), float(row["seconds"]), float(row["memory"]), row["status"])
+        for row in rows
+        if row["model"] not in chosen
+    ]
+    for name in chosen:
+        table += every_size(name, arguments.seconds)
+    with kept.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, [field.name for field in fields(Run)], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(map(asdict, table))
+    chart(table).savefig(arguments.out, dpi=160)
 
 
 if __name__ == "__main__":
