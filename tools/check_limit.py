@@ -24,9 +24,12 @@ import numpy as np
 MOST = 1e-6
 """Most that a measure may be, relative to the largest force, motion or multiplier."""
 
-WIDEST, WIDEST_OF_LARGE, LARGE, LARGE_THAT_CRUSHES = 1e-6, 1e-4, 1500, 200
-"""Largest relative width of a bracket of the associated bounds, of walls of fewer blocks than so many, or than so many
-whose joints crush, and of larger ones; each end is checked by itself."""
+WIDEST = [(1500, 1e-6), (25_000, 1e-4), (math.inf, 1e-2)]
+"""Largest relative width of a bracket of the associated bounds, by fewer blocks than so many; each end is checked by
+itself."""
+
+LARGE_THAT_CRUSHES = 200
+"""Blocks from which walls whose joints crush count as if they were of `WIDEST[0]`'s."""
 
 GAUSS = [(part + shift) / 2 for part, shift in zip(np.polynomial.legendre.leggauss(6), (1, 0), strict=True)]
 """Nodes and weights on [0, 1]."""
@@ -406,7 +409,8 @@ class Result:
             spent += ties.yield_force @ self.longer.clip(min=0.0)
         else:
             spent = self.normal @ self.opening + self.tangential @ self.slip + self.pull @ self.longer
-        widest = WIDEST if free.sum() < (LARGE_THAT_CRUSHES if self.crushing else LARGE) else WIDEST_OF_LARGE
+        large = WIDEST[0][0] * (bool(self.crushing) and free.sum() >= LARGE_THAT_CRUSHES)
+        widest = next(width for blocks, width in WIDEST if max(free.sum(), large) < blocks)
         lower, upper, here = self.record["lower"], self.record["upper"], self.multiplier
         proved = here if not self.dilatant else lower if self.settles else upper
         found = {

@@ -38,6 +38,7 @@ from .terminal import (
     progress_bar,
     progress_line,
     remarks,
+    tell_cost,
 )
 
 CURVE_FILES = ("curve.csv", "curve.png")
@@ -92,6 +93,7 @@ def run(
         for observer in observers:
             observer(*seen)
 
+    tell_cost(chosen, wall, tolerance)
     with progress_line(chosen.name, progress.line if progress else None):
         outcome = run_model(chosen, wall, tolerance, observe if observers else None)
     for line in remarks(wall):  # not before: a scene that the model refuses is one line

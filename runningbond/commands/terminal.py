@@ -15,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from runningbond.compare.advice.costs import estimate
 from runningbond.compare.model import Model
 from runningbond.compare.table import Sheet
 from runningbond.pictures.offscreen import why_not_drawn
@@ -23,6 +24,9 @@ from runningbond.scene.plausibility import warnings
 
 DONE, BAD_INPUT, NO_ANSWER, STOPPED = 0, 2, 3, 130
 """Exit codes of every command."""
+
+LONG = 30.0
+"""Expected seconds of a run before which they are told."""
 
 PATIENCE, REFRESH = 2.0, 0.25
 """Seconds after which a computation says how far it has come, and between two lines."""
@@ -75,6 +79,17 @@ def remarks(scene: Scene) -> tuple[str, ...]:
     return (*(f"note: {line}" for line in scene.notes), *(f"warning: {line}" for line in warnings(scene)))
 
 
+def tell_cost(model: Model, scene: Scene, tolerance: float) -> None:
+    """Say on a terminal what a long run is expected to cost."""
+    if model.cost is None or not sys.stderr.isatty():
+        return
+    expected = estimate(model, scene, tolerance)
+    if expected.seconds >= LONG:
+        keeps = "what is proved by then" if model.kind in ("bound", "certificate") else "what it has reached by then"
+        hint = f"; Ctrl-C leaves {keeps}" if model.interruptible else ""
+        print(f"{model.name}: {expected}{hint}", file=sys.stderr, flush=True)
+
+
 @contextmanager
 def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]]:
     """A bar with what was done last, how much is done, and for how long; to be called with what is done."""
@@ -117,12 +132,14 @@ def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
 def interruptions(model: Model | None = None) -> list[int]:
     """Interruptions by Ctrl-C from here on: a model that can be interrupted ends with what it has reached so far.
 
-    A linear program does not look up from its work, and the program ends at once.
+    HiGHS does not look up from its work: the second one ends the program at once, as the first does where a model
+    cannot be interrupted.
     """
     signals: list[int] = []
 
     def stop(number: int, frame: object) -> None:
         signals.append(number)
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
         raise KeyboardInterrupt
 
     signal.signal(signal.SIGINT, stop if model is None or model.interruptible else signal.SIG_DFL)

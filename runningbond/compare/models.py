@@ -59,6 +59,7 @@ _EVERY_MODEL = (
     ),
     Model(
         *("limit", "limit analysis of the blocks", limit, CRUSHING, "bound"),
+        interruptible=True,
         takes=EXTRAS,
         cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
         colour="#0b559f",

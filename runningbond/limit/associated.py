@@ -7,6 +7,7 @@ dilatancy friction that number is an upper bound.
 
 import time
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -72,6 +73,14 @@ class LimitState:
         What they prove is as wide as the interior point of a large wall, or the facets of joints that crush, leave it.
         """
         width = max(SOUND, tolerance_of(self.system)) if self.system.crushing is None else np.inf
+        return self._within(width)
+
+    @property
+    def admissible(self) -> bool:
+        """Whether forces and mechanism prove a bracket, however wide."""
+        return self._within(np.inf)
+
+    def _within(self, width: float) -> bool:
         return all(value <= (width if name in WIDTHS else SOUND) for name, value in self.measures.items())
 
     @property
@@ -130,6 +139,8 @@ def limit_state(system: Equilibrium) -> LimitState:
     if weaker is system:
         return _solved(system)
     state = _solved(weaker)
+    if state.forces.status == "budget":  # the mechanism may break what was cut
+        return replace(state, forces=replace(state.forces, motion=np.zeros(0)))
     if (
         state.forces.status == "optimal"
         and state.sound
@@ -181,6 +192,8 @@ def _proved(system: Equilibrium) -> LimitState | None:
     state = LimitState(system, proved(system, resting), rests=None if resting is None else True)
     if state.forces.status == "optimal":
         return state if state.sound else None
+    if state.forces.status == "budget":
+        return state
     if state.forces.status == "infeasible" and stands_under_dead_load(dead) is False:
         return replace(state, rests=False)
     if state.forces.status == "unbounded" and _balances_any_multiple(system):
@@ -247,7 +260,7 @@ def judge(state: LimitState) -> tuple[Status, str]:
         message = "static and kinematic bound, associated joints; true friction may collapse earlier"
         return "collapse", message if system.crushing is None else f"{message}; {crushing_note(system, state.forces)}"
     if program == "budget":
-        return "undecided", "the linear program ran out of iterations"
+        return "undecided", "the linear program was interrupted, or ran out of iterations"
     if state.locks or _balances_any_multiple(system):
         if system.has_support:
             return "unbounded", JAMMED
@@ -282,8 +295,23 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
         steps=state.forces.iterations,
         message=remarks(scene, message + beyond_note(system)),
     )
-    outcome = _bracketed(outcome, state, tolerance) if status == "collapse" else replace(outcome, status=status)
+    if status == "collapse":
+        outcome = _bracketed(outcome, state, tolerance)
+    else:
+        outcome = replace(outcome, status=status, **_so_far(state))
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def _so_far(state: LimitState) -> dict[str, Any]:
+    """Bounds that forces and mechanism of an interrupted program prove; of a wall at rest, that it bears its load."""
+    system, forces = state.system, state.forces
+    if forces.status != "budget" or system.has_support:
+        return {}
+    if not len(forces.motion):
+        return {"lower": 0.0} if state.rests else {}
+    if not state.admissible:
+        return {}
+    return {"lower": system.load(forces.multiplier), "upper": system.load(state.kinematic_multiplier)}
 
 
 def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome:

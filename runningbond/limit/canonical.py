@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csc_array, diags_array
 
 from runningbond.joints import PointStrength
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array, Indices, Scene
 
 from .equilibrium import Equilibrium
 
@@ -66,7 +66,13 @@ class Order:
             tie_yield=_significant(system.tie_yield[self.ties]),
             dead=np.round(self.sign * system.dead[self.rows], ENTRY),
             live=np.round(self.sign * system.live[self.rows], ENTRY),
+            scale=system.scale[self.rows],
         )
+
+    def places(self, scene: Scene) -> Array:
+        """Centroids of the movable blocks ``(n, 2)`` [m] in this order, seen from this side."""
+        free = np.flatnonzero(~scene.fixed)
+        return np.asarray(scene.blocks.centroid[free[self.rows[: 3 * len(free) : 3] // 3]] * (self.side, 1.0))
 
     def restored(self, motion: Array) -> Array:
         """A motion ``(nd,)`` of the ordered equations as one of those they were made of."""

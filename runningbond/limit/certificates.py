@@ -13,13 +13,17 @@ import numpy as np
 from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
-from .force_program import ForceSet, ForceSolution, coulomb, solve_forces
+from .force_program import Aim, ForceSet, ForceSolution, coulomb, solve_forces
+from .proved import nearly_extreme
 
 NO_JUMP = 1e-7
 """Jump rate, relative to the mechanism's largest motion, that counts as none."""
 
 PENETRATION = 1e-6
 """Closing rate, relative to the mechanism's largest motion, that rules a mechanism out."""
+
+MANY = 3000
+"""Freedoms from which the loads that drive a mechanism are found by interior point and repair: HiGHS takes seconds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,13 +65,19 @@ def certify(system: Equilibrium, motion: Array) -> Certificate | None:
     forces = driving_forces(system, motion)
     if forces is None:
         return None
-    least = solve_forces(system, forces, "smallest")
+    least = _end(system, forces, "smallest")
     if least.status != "optimal":
         return None
-    most = solve_forces(system, forces, "largest")
+    most = _end(system, forces, "largest")
     if most.status == "unbounded":
         return Certificate(motion, least, least)
     return Certificate(motion, least, most) if most.status == "optimal" else None
+
+
+def _end(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution:
+    """Forces at an extreme load: those of large walls are near it, and proved all the same."""
+    found = nearly_extreme(system, forces, aim) if system.freedoms >= MANY else None
+    return solve_forces(system, forces, aim) if found is None else found
 
 
 def certified_loads(

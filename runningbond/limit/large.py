@@ -3,9 +3,11 @@
 From corner to corner a program of more than some thousand points takes longer than afresh, and the simplex method may
 never see that there are no forces. What only brings pressures up to date is solved by Clarabel to a rough tolerance;
 then HiGHS finds corners, whose mechanisms move few points, and Clarabel sees in a moment whether forces drive them.
+Of walls for which that takes minutes, blocks that hardly move against each other are glued first (`macro`).
 Nothing is searched further: neither other starts nor a descent.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from runningbond.scene import Array
@@ -23,10 +25,17 @@ from .force_program import (
     solve_forces,
 )
 from .interior_point import interior_point
+from .macro import glue, still_points
 from .search import Observer, Search, averaged
 
 POINTS = 4500
 """Joint points, six or so a block, from which a wall is searched so."""
+
+POINTS_TO_GLUE = 12_000
+"""Joint points from which a wall's blocks are glued before corners are looked for."""
+
+STILL = (1e-2, 1e-3, 1e-4)
+"""Jumps, relative to the largest motion, below which points count as still, in turn."""
 
 ROUGH = 1e-6
 """Relative tolerance of programs that only bring pressures up to date, and of whether there are forces."""
@@ -36,10 +45,6 @@ SETTLING = 4
 
 MOST = 40
 """Programs in all."""
-
-
-IN_A_ROW = 2
-"""Certificates in a row that end the sequence."""
 
 
 def takes_one_start(system: Equilibrium) -> bool:
@@ -53,23 +58,27 @@ def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSo
     return replace(solution_of(system, forces, "optimal", point.forces, point.motion, 0), status=point.status)
 
 
-def search_large(system: Equilibrium, observe: Observer) -> Search:
-    """Run the sequence from the associated pressures until certificates come twice in a row; loads are rough."""
-    found, in_a_row = Search(starts=1), 0
+def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search:
+    """Run the sequence from the associated pressures to its first certificate; loads are rough.
+
+    Movable blocks have their centroids at `place` ``(n, 2)`` [m].
+    """
+    found = Search(starts=1)
+    glues = len(system.points) >= POINTS_TO_GLUE and not system.has_support
     pressure = near(system, coulomb(system.strength)).pressure
     try:
         for k in range(MOST):
             forces, looked_at = frozen_friction(system.strength, pressure), k >= SETTLING
-            program = solve_forces(system, forces) if looked_at else near(system, forces)
+            program = solve_forces(system, forces) if looked_at and not glues else near(system, forces)
             found.programs += 1
             if program.status != "optimal":
                 found.frictionless = looked_at and program.status == "unbounded"
                 break
             if looked_at:
-                certificate = _driven(system, program.motion, found)
-                found.certificates += [] if certificate is None else [certificate]
-                in_a_row = 0 if certificate is None else in_a_row + 1
-                if in_a_row == IN_A_ROW:
+                motions = _glued(system, place, pressure, program.motion, found) if glues else [program.motion]
+                certificate = next(filter(None, (_driven(system, motion, found) for motion in motions)), None)
+                if certificate is not None:
+                    found.certificates.append(certificate)
                     break
             observe(found)
             pressure = averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
@@ -78,6 +87,19 @@ def search_large(system: Equilibrium, observe: Observer) -> Search:
             raise
         found.interrupted = True
     return found
+
+
+def _glued(system: Equilibrium, place: Array, pressure: Array, motion: Array, found: Search) -> Iterator[Array]:
+    """Corners ``(nd,)`` of the wall whose blocks are glued where a mechanism ``(nd,)`` hardly moves them."""
+    last = 0
+    for least in STILL:
+        glued = glue(system, place, still_points(system, motion, least))
+        if glued.system.freedoms > last:
+            last = glued.system.freedoms
+            found.programs += 1
+            program = solve_forces(glued.system, frozen_friction(glued.system.strength, pressure[glued.points]))
+            if program.status == "optimal":
+                yield glued.motions @ program.motion
 
 
 def _driven(system: Equilibrium, motion: Array, found: Search) -> Certificate | None:

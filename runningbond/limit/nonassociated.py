@@ -94,7 +94,9 @@ def _collapse(
     ordered = order.applied(cut)
     associated = None if takes_one_start(ordered) else solve_forces(ordered, coulomb(ordered.strength))
     result = (
-        search_large(ordered, observe) if associated is None else search(ordered, associated, starts, workers, observe)
+        search_large(ordered, order.places(cut.scene), observe)
+        if associated is None
+        else search(ordered, associated, starts, workers, observe)
     )
     proved = _proved_again(system, cut, order, result)
     outcome = replace(outcome, steps=1 + result.programs)

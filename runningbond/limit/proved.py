@@ -11,7 +11,7 @@ import numpy as np
 from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
-from .force_program import ForceSolution, coulomb, force_program, solution_of
+from .force_program import Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
 from .interior_point import interior_point
 from .kinematics import movable_freedoms
 from .repair import admissible, balanced
@@ -22,8 +22,14 @@ LARGE = 600
 VERY_LARGE = 4500
 """Freedoms from which the interior point is asked for less, and believed with a wider bracket."""
 
-CLOSE, WIDE = 1e-6, 1e-4
-"""Relative width of the bracket with which the answer for a large and a very large wall is believed."""
+HUGE = 75_000
+"""Freedoms from which the interior point is stopped as soon as the bracket is narrow enough for use."""
+
+CLOSE, WIDE, WIDEST = 1e-6, 1e-4, 1e-2
+"""Relative width of the bracket with which the answer for a large, a very large and a huge wall is believed."""
+
+STOP = {CLOSE: 1e-9, WIDE: 3e-7, WIDEST: 2e-5}
+"""Relative tolerance of the interior point that leads to such a bracket."""
 
 ROUGH = 1e-4
 """Relative tolerance with which forces of a wall at rest are looked for; they need not be extreme."""
@@ -44,25 +50,37 @@ def resting_forces(system: Equilibrium) -> Array | None:
 def proved(system: Equilibrium, resting: Array | None) -> ForceSolution:
     """Solve the associated limit analysis; the status is ``optimal`` for exact forces and mechanism only.
 
-    `resting` are forces of the same system before its live load (`Equilibrium.under_dead_load`).
+    Ctrl-C leaves those that are near by then, if any are, and the status is ``budget``. `resting` are forces of
+    the same system before its live load (`Equilibrium.under_dead_load`).
     """
     forces = coulomb(system.strength)
     program = force_program(system, forces)
-    point = interior_point(program, 1e-9 if tolerance_of(system) == CLOSE else 3e-7)
+    point = interior_point(program, STOP[tolerance_of(system)], unfinished=True)
     none = np.zeros(0)
     if point.status in ("infeasible", "unbounded"):
         return ForceSolution(point.status, np.nan, none, none, none, none, point.iterations)
     within = None if resting is None else loaded(system, program, resting)
     found, motion = balanced(program, point, within), admissible(program, point)
     if found is None or motion is None or system.live @ motion <= 0:
-        return ForceSolution("numerical", np.nan, none, none, none, none, point.iterations)
-    solution = solution_of(system, forces, "optimal", found, motion, point.iterations)
+        status: ProgramStatus = "budget" if point.interrupted else "numerical"
+        return ForceSolution(status, np.nan, none, none, none, none, point.iterations)
+    solution = solution_of(
+        system, forces, "budget" if point.interrupted else "optimal", found, motion, point.iterations
+    )
     return replace(solution, motion=motion / (system.live @ motion))
 
 
+def nearly_extreme(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution | None:
+    """Forces of a set in balance, at nearly the largest or smallest multiplier; None if none were found."""
+    program = force_program(system, forces, aim)
+    point = interior_point(program, STOP[CLOSE])
+    found = balanced(program, point, None) if point.status == "optimal" else None
+    return None if found is None else solution_of(system, forces, "optimal", found, point.motion, point.iterations)
+
+
 def tolerance_of(system: Equilibrium) -> float:
-    """Relative width of the bracket, `CLOSE` or `WIDE`, with which an answer is believed."""
-    return CLOSE if system.freedoms < VERY_LARGE else WIDE
+    """Relative width of the bracket, `CLOSE`, `WIDE` or `WIDEST`, with which an answer is believed."""
+    return CLOSE if system.freedoms < VERY_LARGE else WIDE if system.freedoms < HUGE else WIDEST
 
 
 def loaded(system: Equilibrium, program: dict[str, Any], resting: Array) -> Array:

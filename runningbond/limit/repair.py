@@ -39,7 +39,8 @@ def metric(program: dict[str, Any], weights: Array) -> Solve:
     The result maps right-hand sides ``(m,)`` to multipliers ``(m,)`` and the change of λ.
     """
     matrix = program["A_eq"]
-    stiffness = csc_array((matrix * weights[None]) @ matrix.T)
+    forces = matrix[:, :-1]  # the last column is full, and so would be the product
+    stiffness = csc_array((forces * weights[None, :-1]) @ forces.T)
     scale = 1 / np.sqrt(stiffness.diagonal() + np.finfo(float).tiny)
     stiffness = csc_array(stiffness * scale[:, None] * scale[None] + DAMPING * eye_array(len(scale)))
     fixed = program["bounds"][-1, 0] == program["bounds"][-1, 1]

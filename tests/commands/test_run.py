@@ -5,6 +5,7 @@ import json
 import os
 import pty
 import re
+import signal
 import subprocess
 import sys
 import threading
@@ -23,6 +24,7 @@ from runningbond.compare.published import published_scene
 from runningbond.pictures.curve import curve_figure
 from runningbond.results import load_outcome
 
+from ..limit.test_large_walls import SIZE, interrupt_at
 from ..walls import content, panel, write_toml
 
 STIFFNESS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
@@ -155,3 +157,36 @@ def test_json_is_pure_on_a_terminal_too(small: str) -> None:
     os.close(slave)
     os.close(master)
     assert json.loads(done.stdout)["status"] == "collapse"
+
+
+def test_ctrl_c_in_limit_leaves_the_proved_bracket_under_no_fingerprint(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Exit code 130, one JSON object, and no comparison takes it for the answer."""
+    scene, out = str(write_toml(content(**SIZE), tmp_path / "wall.toml")), tmp_path / "out"
+    interrupt_at(8, monkeypatch)
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        assert command(["run", scene, "--model", "limit", "--json", "--out", str(out)]) == 130
+    finally:
+        signal.signal(signal.SIGINT, before)
+    said = json.loads(capsys.readouterr().out)
+    assert said["status"] == "undecided"
+    assert said["multiplier"] is None
+    assert said["lower"] < said["upper"]
+    assert load_outcome(out)[1] == ""
+
+
+def test_what_a_long_run_costs_is_told_on_a_terminal_only(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = published_scene("panel-04")
+    monkeypatch.setattr(terminal, "LONG", 0.0)
+    terminal.tell_cost(MODELS["limit"], scene, 0.01)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    terminal.tell_cost(MODELS["limit"], scene, 0.01)
+    monkeypatch.setattr(terminal, "LONG", 1e9)
+    terminal.tell_cost(MODELS["limit"], scene, 0.01)
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert re.fullmatch(r"limit: about \S+ s \(×÷ \S+\); Ctrl-C leaves what is proved by then\n", said.err)

@@ -1,8 +1,14 @@
 """Walls that the interior point is asked for: exact forces and mechanism, beside HiGHS's vertex."""
 
+import signal
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from itertools import count
+from types import SimpleNamespace
 from typing import Any
 
+import clarabel
 import numpy as np
 import pytest
 
@@ -139,3 +145,70 @@ def test_a_wall_that_only_the_live_load_holds_up_rests_on_nothing() -> None:
     system = equilibrium(panel(**SIZE, support__kind="corners")).under_live_load()
     assert resting_forces(system.under_dead_load()) is None
     assert proved(system, None).status != "optimal"
+
+
+class Interrupted:
+    """Clarabel with Ctrl-C at its `at`-th iteration."""
+
+    def __init__(self, at: int, *program: Any) -> None:
+        self._at, self._solver = at, clarabel.DefaultSolver(*program)
+
+    def set_termination_callback(self, ended: Callable[[Any], bool]) -> None:
+        def watched(now: Any) -> bool:
+            if now.iterations == self._at:
+                signal.raise_signal(signal.SIGINT)
+            return ended(now)
+
+        self._solver.set_termination_callback(watched)
+
+    def solve(self) -> Any:
+        return self._solver.solve()
+
+
+def interrupt_at(iteration: int, monkeypatch: pytest.MonkeyPatch, program: int = 1) -> None:
+    """Press Ctrl-C in a program: that of rest is number 0, that of collapse number 1."""
+    made = count()
+    parts = {name: getattr(clarabel, name) for name in ("DefaultSettings", "ZeroConeT", "NonnegativeConeT")}
+
+    def solver(number: int) -> Callable[..., Any]:
+        return partial(Interrupted, iteration) if number == program else clarabel.DefaultSolver
+
+    changed = SimpleNamespace(**parts, DefaultSolver=lambda *given: solver(next(made))(*given))
+    monkeypatch.setattr("runningbond.limit.interior_point.clarabel", changed)
+
+
+@pytest.mark.parametrize("iteration", [3, 6, 8])
+@pytest.mark.parametrize("name", ["dry", "opening", "tied", "cohesive"])
+def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
+    name: str, iteration: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wide, never called a collapse, and with the multiplier in it; a bound that is not proved is not there."""
+    scene = wall(name)
+    exact = limit(scene).multiplier
+    assert exact is not None
+    interrupt_at(iteration, monkeypatch)
+    outcome = limit(scene)
+    assert outcome.status == "undecided"
+    assert "interrupted" in outcome.message
+    assert outcome.lower is not None
+    assert 0 <= outcome.lower <= exact
+    assert outcome.upper is None or outcome.upper > exact - 1e-9
+    assert outcome.multiplier is None
+    if iteration == 8:
+        assert outcome.upper is not None
+        assert outcome.upper - outcome.lower < 0.5 * exact
+
+
+def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """While forces of rest are looked for; the handler is there again afterwards."""
+    interrupt_at(2, monkeypatch, program=0)
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        limit(wall("dry"))
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_bounds_of_weaker_joints_are_not_taken_for_those_of_a_wall(monkeypatch: pytest.MonkeyPatch) -> None:
+    interrupt_at(6, monkeypatch)
+    outcome = limit(wall("glued for good"))
+    assert (outcome.status, outcome.lower, outcome.upper) == ("undecided", 0.0, None)

@@ -1,0 +1,95 @@
+"""Macro-blocks: blocks that move as one are glued into one, which leaves fewer equations and joint points.
+
+Whatever moves in a wall so glued moves in the wall itself too: a mechanism of the one is a mechanism of the other, at
+the same load. Its forces are balanced macro-block by macro-block, and say nothing of those inside.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.sparse import coo_array, csc_array
+from scipy.sparse.csgraph import connected_components
+
+from runningbond.joints import PointStrength
+from runningbond.scene import Array, Indices, Mask
+
+from .equilibrium import Equilibrium
+
+
+@dataclass(frozen=True, eq=False)
+class Glued:
+    """The equations of a glued wall, its motions ``(nd, 3 n_macro)`` as those of the wall, and the points left."""
+
+    system: Equilibrium
+    motions: csc_array
+    points: Indices
+
+
+def still_points(system: Equilibrium, motion: Array, least: float) -> Mask:
+    """Points ``(np,)`` that a mechanism ``(nd,)`` moves by less than a share of its largest motion."""
+    jump = np.maximum(np.abs(system.opening.T @ motion), np.abs(system.slip.T @ motion))
+    return np.asarray(jump < least * np.abs(motion).max(initial=0.0))
+
+
+def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
+    """Glue blocks that all their points, two at least, hold together.
+
+    Parameters
+    ----------
+    system
+        Equations of a wall without moving supports.
+    place : (n, 2) float
+        Centroids of the movable blocks [m].
+    still : (np,) bool
+        Points that do not move.
+    """
+    first, second = _pairs(system)
+    n = len(place)
+    pair = first * (n + 1) + second
+    _, which, size = np.unique(pair, return_inverse=True, return_counts=True)
+    holds = ((np.bincount(which, still) == size) & (size > 1))[which]
+    graph = coo_array((np.ones(holds.sum()), (first[holds], second[holds])), shape=(n + 1, n + 1))
+    _, label = connected_components(graph, directed=False)
+    moving = label[:n] != label[n]
+    _, macro = np.unique(label[:n][moving], return_inverse=True)
+    motions = _motions(np.flatnonzero(moving), macro, place, system.scale)
+    kept = np.flatnonzero(label[first] != label[second])
+    strength = system.strength
+    return Glued(
+        replace(
+            system,
+            points=system.points.part(kept),
+            strength=PointStrength(strength.friction[kept], strength.tension[kept], strength.shear[kept]),
+            opening=csc_array(motions.T @ system.opening[:, kept]),
+            slip=csc_array(motions.T @ system.slip[:, kept]),
+            tie=csc_array(motions.T @ system.tie),
+            reaction=csc_array(motions.T @ system.reaction),
+            dead=motions.T @ system.dead,
+            live=motions.T @ system.live,
+        ),
+        motions,
+        kept,
+    )
+
+
+def _pairs(system: Equilibrium) -> tuple[Indices, Indices]:
+    """Movable blocks on both sides of each point, in order; their number stands for what is fixed."""
+    pattern = csc_array(abs(system.opening) + abs(system.slip))
+    pattern.sort_indices()
+    begin, end = pattern.indptr[:-1], pattern.indptr[1:]
+    first, second = (np.asarray(pattern.indices[at] // 3, dtype=np.int64) for at in (begin, end - 1))
+    return first, np.where(first == second, system.freedoms // 3, second)
+
+
+def _motions(moving: Indices, macro: Indices, place: Array, scale: Array) -> csc_array:
+    """Displacement of each macro-block's middle, and its rotation by its size, as scaled motions of the blocks."""
+    members = np.bincount(macro)
+    middle = np.column_stack([np.bincount(macro, place[moving, k]) / members for k in (0, 1)])
+    arm = place[moving] - middle[macro]
+    spread = np.sqrt(np.bincount(macro, (arm**2).sum(axis=1)) / members)
+    ones, turn = np.ones(len(moving)), 1 / (spread + scale[0] / scale[2])[macro]
+    rows = 3 * moving[:, None] + [0, 1, 0, 1, 2]
+    columns = 3 * macro[:, None] + [0, 1, 2, 2, 2]
+    values = np.column_stack([ones, ones, -turn * arm[:, 1], turn * arm[:, 0], turn]) / scale[rows]
+    shape = len(scale), 3 * len(members)
+    return csc_array(coo_array((values.ravel(), (rows.ravel(), columns.ravel())), shape=shape))

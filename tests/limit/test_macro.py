@@ -1,0 +1,137 @@
+"""Macro-blocks: what moves when blocks are glued, and what its load is worth for the wall itself."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.limit import Equilibrium, equilibrium, limit, limit_nonassociated
+from runningbond.limit.certificates import certify
+from runningbond.limit.force_program import coulomb, solve_forces
+from runningbond.limit.macro import glue, still_points
+from runningbond.limit.proved import WIDEST
+from runningbond.results import save_outcome
+from runningbond.scene import Scene
+from tests.checker import check
+from tests.walls import panel
+
+WALLS: dict[str, dict[str, Any]] = {
+    "dry": {},
+    "toothed": {"wall__ends": "toothed"},
+    "cohesive": {"joint__cohesion": 2e3},
+    "rounded": {"joint__inset": 0.005},
+    "wedged": {"support__kind": "pinned-corners"},
+    "opening": {"wall__opening": [{"from": [0.5, 0.24], "to": [0.8, 0.42]}]},
+}
+
+
+def wall(name: str) -> Scene:
+    return panel(**{"wall__length": 1.2, "wall__height": 0.6, **WALLS[name]})
+
+
+def place(scene: Scene) -> np.ndarray:
+    return np.asarray(scene.blocks.centroid[~scene.fixed])
+
+
+def associated(system: Equilibrium) -> float:
+    return solve_forces(system, coulomb(system.strength)).multiplier
+
+
+@pytest.mark.parametrize("share", [0.1, 0.3, 0.5])
+@pytest.mark.parametrize("name", WALLS)
+def test_the_mechanism_of_a_glued_wall_is_one_of_the_wall_at_the_same_load(name: str, share: float) -> None:
+    """Glued anywhere: it obeys the flow rule everywhere, its load is an upper bound, and glued joints do not move."""
+    scene = wall(name)
+    system = equilibrium(scene).under_live_load()
+    joints = np.random.default_rng(0).random(len(scene.joints.block)) < share
+    still = joints[system.points.joint]
+    glued = glue(system, place(scene), still)
+    assert 0 < glued.system.freedoms < system.freedoms
+    found = solve_forces(glued.system, coulomb(glued.system.strength))
+    if found.status == "unbounded":  # glued fast to the ground
+        return
+    motion = glued.motions @ found.motion
+    assert system.live @ motion == pytest.approx(1.0)
+    opening, slip = system.opening.T @ motion, system.slip.T @ motion
+    rounding = 1e-9 * np.abs(motion).max()
+    assert (opening - system.strength.friction * np.abs(slip)).min() >= -1e2 * rounding
+    assert np.abs(np.concatenate([opening[still], slip[still]])).max() <= rounding
+    assert system.kinematic_multiplier(motion) == pytest.approx(found.multiplier, rel=1e-7)
+    assert found.multiplier >= associated(system) * (1 - 1e-9)
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_nothing_is_lost_where_only_what_moves_as_one_is_glued(name: str) -> None:
+    scene = wall(name)
+    system = equilibrium(scene).under_live_load()
+    found = solve_forces(system, coulomb(system.strength))
+    glued = glue(system, place(scene), still_points(system, found.motion, 1e-9))
+    assert glued.system.freedoms < system.freedoms
+    assert associated(glued.system) == pytest.approx(found.multiplier, rel=1e-8)
+
+
+def test_blocks_that_one_point_holds_are_not_glued() -> None:
+    scene = wall("dry")
+    system = equilibrium(scene).under_live_load()
+    still = np.arange(len(system.points)) % 2 == 0
+    assert glue(system, place(scene), still).system.freedoms == system.freedoms
+
+
+def test_a_wall_glued_to_the_ground_does_not_move() -> None:
+    scene = wall("dry")
+    system = equilibrium(scene).under_live_load()
+    assert glue(system, place(scene), np.ones(len(system.points), dtype=bool)).system.freedoms == 0
+
+
+@pytest.mark.parametrize("name", WALLS)
+def test_glued_large_walls_collapse_at_certified_loads_below_the_associated_one(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the sizes from which walls are large and glued lowered; without a certificate that load is all there is."""
+    monkeypatch.setattr("runningbond.limit.large.POINTS", 0)
+    monkeypatch.setattr("runningbond.limit.large.POINTS_TO_GLUE", 0)
+    scene = wall(name)
+    outcome, bound = limit_nonassociated(scene), limit(scene).multiplier
+    assert bound is not None
+    assert outcome.upper is not None
+    assert outcome.upper <= bound * (1 + 1e-6)
+    assert outcome.status in ("collapse", "undecided")
+    if outcome.status == "collapse":
+        assert outcome.lower is not None
+        assert 0 < outcome.lower <= outcome.upper
+        save_outcome(outcome, tmp_path, "", scene)
+        assert check(tmp_path)
+
+
+def test_repaired_certificates_are_those_of_highs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both ends to 1e-7, and no farther: forces near an extreme load are within it."""
+    scene = wall("dry")
+    system = equilibrium(scene).under_live_load()
+    motion = solve_forces(system, coulomb(system.strength)).motion
+    exact = certify(system, motion)
+    monkeypatch.setattr("runningbond.limit.certificates.MANY", 0)
+    near = certify(system, motion)
+    assert (exact is None) == (near is None)
+    if exact is not None and near is not None:
+        assert near.least.multiplier == pytest.approx(exact.least.multiplier, rel=1e-7)
+        assert near.most.multiplier == pytest.approx(exact.most.multiplier, rel=1e-7)
+
+
+@pytest.mark.parametrize("name", ["dry", "cohesive", "opening"])
+def test_the_bracket_of_a_huge_wall_is_wider_and_holds_the_multiplier(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the size from which walls are huge lowered."""
+    scene = wall(name)
+    exact = limit(scene).multiplier
+    assert exact is not None
+    for size in ("LARGE", "VERY_LARGE", "HUGE"):
+        monkeypatch.setattr(f"runningbond.limit.proved.{size}", 0)
+    outcome = limit(scene)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower <= exact * (1 + 1e-9)
+    assert outcome.upper >= exact * (1 - 1e-9)
+    assert 1e-9 * exact < outcome.upper - outcome.lower <= WIDEST * exact
