@@ -1,6 +1,7 @@
 """The deformed shape of a wall, as polygons of its blocks and of its joints' gaps: what every picture is drawn from."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -9,7 +10,7 @@ from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Indices, Scene
 
 from .joint_state import JointState
-from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, STATE_COLOURS, Colouring
+from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, SEEN, STATE_COLOURS, Colouring
 
 Extent: TypeAlias = tuple[float, float, float, float]
 """A part of the plane: left, right, bottom and top [m]."""
@@ -102,9 +103,28 @@ class DeformedShape:
         return left - air, right + air, bottom - air, top + air
 
     @property
+    def gaps(self) -> Array:
+        """How far the two ends of each joint are drawn apart, ``(nf, 2)`` [m]."""
+        faces = self.placed_faces
+        return np.asarray(np.hypot(*(faces[:, [3, 2]] - faces[:, [0, 1]]).transpose(2, 0, 1)))
+
+    @cached_property
+    def drawn_state(self) -> Indices:
+        """The state that each joint is drawn in, ``(nf,)``: it sticks where it opens by less than can be seen."""
+        unseen = (self.state == JointState.OPEN) & (self.gaps.max(axis=1) < SEEN * wall_size(self.scene))
+        return np.where(unseen, JointState.STICK, self.state)
+
+    @property
     def states(self) -> list[JointState]:
         """States of its joints that are drawn."""
-        return [state for state in STATE_COLOURS if state in self.state]
+        return [state for state in STATE_COLOURS if state in self.drawn_state]
+
+    @property
+    def hinges(self) -> Array:
+        """Closed ends about which joints that open turn, where they are drawn, ``(n, 2)`` [m]."""
+        closed = self.gaps.min(axis=1) < 0.5 * SEEN * wall_size(self.scene)
+        turns = closed & (self.drawn_state == JointState.OPEN)
+        return np.asarray(self.placed_faces[turns, self.gaps[turns].argmin(axis=1)])
 
     def drawn_displacement(self, block: Indices, at: Array) -> Array:
         """How far a point ``(2,)`` [m] of some blocks ``(n,)`` is drawn to have moved, ``(2,)`` [m]."""

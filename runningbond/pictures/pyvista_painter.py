@@ -95,7 +95,7 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
     plotter.add_mesh(edges, color=EDGE, line_width=0.8 * width, opacity=strength, **flat)
 
     for level, (state, colour) in enumerate(STATE_COLOURS.items()):
-        corners = shape.placed_faces[shape.state == state].reshape(-1, 2)
+        corners = shape.placed_faces[shape.drawn_state == state].reshape(-1, 2)
         if len(corners):
             gaps = _polygons(corners, np.arange(0, len(corners) + 1, 4), 2.0 + level)
             faces = _lines(corners, np.arange(len(corners)).reshape(-1, 2), 2.5 + level)

@@ -56,8 +56,8 @@ UNIT = 8.0
 TYPE, SMALL_TYPE = 7.5, 6.5
 """Sizes of type [pt]: titles and annotations, notes and keys."""
 
-DRAWN = 0.12
-"""How far the fastest corner is drawn to move, in sizes of the wall."""
+DRAWN, SEEN = 0.12, 0.004
+"""How far the fastest corner is drawn to move, and the least gap that can be seen as one, in sizes of the wall."""
 
 
 def tint(colour: str) -> Colour:
