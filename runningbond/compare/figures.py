@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 
 from homog import crack_slope, lateral_multiplier
 from runningbond.pictures.captions import to_png
@@ -22,6 +23,12 @@ TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # what to call b
 SLENDERNESS = (("0.5", 0.5), ("1", 1.0), ("2", 2.0))
 COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
 PRINTED = {"FEM/DEM": "P", "DEM": "X", "HOMO": "d"}
+TITLES = {
+    BARALDI: "Pushover curves of the twelve panels (cf. Baraldi et al., Fig. 7)",
+    CONCENTRATED: "Pushover curves under a concentrated load (cf. Baraldi et al., Fig. 11)",
+    FERRIS: "Pushover curves of Ferris & Tin-Loi's walls",
+}
+BORNE, BETWEEN = 0.25, 40  # share of its peak from which a curve is drawn, and points between two of its own
 MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
 
 
@@ -58,9 +65,10 @@ def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
 def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> Figure:
     figure = Figure(figsize=(7, 4.6), layout="constrained")
     axes = figure.add_subplot()
-    for (label, _), colour, column in zip(TEXTURES, COLOURS, multiplier.T, strict=True):
+    aside = ("bottom", "center", "top", "center")  # three end close together
+    for (label, _), colour, column, place in zip(TEXTURES, COLOURS, multiplier.T, aside, strict=True):
         axes.plot(slenderness, column, color=colour)
-        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va="center", color=colour, annotation_clip=False)
+        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va=place, color=colour, annotation_clip=False)
     for model in (model for model in comparison.models if model.kind == "bound"):
         for i, case in enumerate(cases_of(BARALDI)):
             outcome = comparison.outcome(case.name, model)
@@ -79,64 +87,81 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
 
 def table_2(comparison: Comparison) -> Figure:
     """Chart of the multipliers of Table 2: what is printed beside what each model gives."""
-    figure, columns = panel_figure(xlabel="block ratio b/a", ylabel="collapse multiplier λ", xlim=(-0.5, 3.7))
-    shifts = np.linspace(0.0, min(0.1 * (len(comparison.models) - 1), 0.5), len(comparison.models))
+    title = "Collapse multipliers of the twelve panels (cf. Baraldi et al., Table 2)"
+    figure, columns = panel_figure(title, xlabel="block ratio b/a", ylabel="collapse multiplier λ", xlim=(-0.5, 3.5))
+    shifts = np.linspace(-0.41, 0.41, len(PRINTED) + len(comparison.models))
     hollow = False
     for axes, cases in columns:
         for k, case in enumerate(cases):
-            for (label, marker), shift in zip(PRINTED.items(), (-0.3, -0.2, -0.1), strict=True):
-                axes.plot(k + shift, case.printed[label], marker, color="0.62", ms=5, ls="none")
-            for model, shift in zip(comparison.models, shifts, strict=True):
+            if k % 2:
+                axes.axvspan(k - 0.5, k + 0.5, color="0.955", lw=0, zorder=0)
+            for (label, marker), shift in zip(PRINTED.items(), shifts, strict=False):
+                axes.plot(k + shift, case.printed[label], marker, color="0.55", ms=5, ls="none")
+            for model, shift in zip(comparison.models, shifts[len(PRINTED) :], strict=True):
                 if (outcome := comparison.outcome(case.name, model)) is not None:
                     _mark(axes, k + float(shift), model, outcome)
                     hollow |= outcome.multiplier is None
         axes.set_xticks(range(4), [label for label, _ in TEXTURES])
-    looks = [(f"printed {label}", "0.62", marker) for label, marker in PRINTED.items()]
+        axes.tick_params(axis="x", length=0)
+    looks = [(f"printed {label}", "0.55", marker) for label, marker in PRINTED.items()]
     looks += [(model.name, model.colour, model.marker) for model in comparison.models]
     handles = [Line2D([], [], color=c, marker=m, ms=5, mew=1.5, ls="none", label=label) for label, c, m in looks]
     if hollow:
-        label = "hollow: a bound only, or none (at 0)"
+        label = "hollow: no collapse load found, what is known alone"
         handles.append(Line2D([], [], color="0.3", marker="o", mfc="white", ms=5, mew=1, ls="none", label=label))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     return figure
 
 
 def _mark(axes: Axes, x: float, model: Model, outcome: Outcome) -> None:
-    """A bar for the bracket and a mark on it; a hollow one, on a thin bar, where no collapse load was found."""
+    """A bar for the bracket and a mark on it; both hollow where no collapse load was found, and at 0 without any."""
     loads = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
-    place, width, face, edge = outcome.multiplier, 2.5, model.colour, 1.5
-    if place is None:
-        place, width, face, edge = loads[-1], 0.8, "white", 1.0
-    axes.plot([x, x], [loads[0], loads[-1]], color=model.colour, lw=width, solid_capstyle="butt")
-    axes.plot(x, place, model.marker, color=model.colour, mfc=face, ms=5, mew=edge, ls="none", clip_on=False)
+    found, colour = outcome.multiplier is not None, model.colour
+    bar = Rectangle((x - 0.025, loads[0]), 0.05, loads[-1] - loads[0], fc=colour if found else "white", ec=colour)
+    axes.add_patch(bar)
+    look = {"mfc": colour, "mew": 0.8, "mec": "white"} if found and model.marker != "_" else {"mfc": "white"}
+    place = outcome.multiplier if found else loads[-1]
+    axes.plot(x, place, model.marker, color=colour, ms=6, ls="none", clip_on=False, **look)
 
 
 def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Figure:
     """Curves of the walls of one source, each with a dot at its end; of loads in kN where λ is a load in newtons.
 
+    Displacements are logarithmic, from where a wall bears a share of its load: the elastic range is seen as well.
     A level line is drawn for each model that only estimates the multiplier of the twelve panels.
     """
     panels, point_load = source == BARALDI, source == CONCENTRATED
     where, load = ("under the load", "load [kN]") if point_load else ("of the upper corner", "load multiplier λ")
     labels = {"xlabel": f"displacement {where} [mm]", "ylabel": load}
+    curves = {
+        (case.name, model.name): _sampled(_curve(comparison, case, model)) * (1e3, 1e-3 if point_load else 1.0)
+        for case in cases_of(source)
+        for model in models
+    }
+    title = f"{TITLES[source]}; each begins at a quarter of its peak"
+    starts = [float(curve[0, 0]) for curve in curves.values() if len(curve)]
+    shown = min(starts) / 1.2, 1.4 * max(float(curve[-1, 0]) for curve in curves.values() if len(curve))
     estimates = [model for model in comparison.models if panels and model.kind == "estimate"]
     if panels:
-        figure, columns = panel_figure(xlim=(-0.3, 12), **labels)
+        figure, columns = panel_figure(title, xlim=shown, **labels)
     else:
         figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+        figure.suptitle(title, fontsize=11)
         columns = [(figure.add_subplot(**labels), cases_of(source))]
     for axes, cases in columns:
         for case, colour in zip(cases, COLOURS, strict=False):
             for model in models:
-                moved, multiplier = (_curve(comparison, case, model) * (1e3, 1e-3 if point_load else 1.0)).T
+                moved, multiplier = curves[case.name, model.name].T
                 axes.plot(moved, multiplier, ls=model.line, color=colour, lw=1.4)
                 axes.plot(moved[-1:], multiplier[-1:], ".", color=colour, ms=4)
             for model in estimates:
                 outcome = comparison.outcome(case.name, model)
                 if outcome is not None and outcome.multiplier is not None:
                     axes.axhline(outcome.multiplier, color=colour, lw=0.8, ls=model.line)
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
         if not panels:
-            axes.set_ylim(0, None)
+            axes.set(xlim=shown, ylim=(0, None))
             bare(axes)
     walls = [f"b/a = {label}" for label, _ in TEXTURES]
     if source == FERRIS:
@@ -154,11 +179,23 @@ def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:
     return np.zeros((0, 2)) if outcome is None else outcome.curve
 
 
+def _sampled(curve: Array) -> Array:
+    """A curve with points between those it has, without its beginning, where it bears less than `BORNE` of its peak."""
+    if len(curve) < 2:
+        return curve[:0]
+    at = np.arange(len(curve))
+    fine = np.linspace(0, len(curve) - 1, BETWEEN * (len(curve) - 1) + 1)
+    dense = np.column_stack([np.interp(fine, at, column) for column in curve.T])
+    borne = (dense[:, 1] >= BORNE * dense[:, 1].max()) & (dense[:, 0] > 0)
+    return dense[int(borne.argmax()) :][dense[int(borne.argmax()) :, 0] > 0]
+
+
 def panel_figure(
-    *, xlabel: str, ylabel: str, xlim: tuple[float, float]
+    title: str, *, xlabel: str, ylabel: str, xlim: tuple[float, float]
 ) -> tuple[Figure, list[tuple[Axes, tuple[PublishedCase, ...]]]]:
     """A figure of the twelve panels: axes for each slenderness, and the four panels that stand there."""
-    figure, panels = Figure(figsize=(10, 4.2), layout="constrained"), cases_of(BARALDI)
+    figure, panels = Figure(figsize=(11, 4.5), layout="constrained"), cases_of(BARALDI)
+    figure.suptitle(title, fontsize=11)
     columns = []
     for column, (label, _) in enumerate(SLENDERNESS):
         axes = figure.add_subplot(1, 3, column + 1)
