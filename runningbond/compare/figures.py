@@ -1,6 +1,6 @@
 """Charts of a comparison: the paper's Figures 6, 7 and 11, and the multipliers of its Table 2."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from homog import crack_slope, lateral_multiplier
-from runningbond.pictures.captions import to_png
+from runningbond.pictures.captions import is_force, to_png
 from runningbond.results import Outcome, write_atomically
 from runningbond.scene import Array
 
@@ -39,23 +39,29 @@ def figure_6_data(points: int = 120) -> tuple[Array, Array]:
     return slenderness, np.array([[lateral_multiplier(float(r), x, FRICTION) for x in slopes] for r in slenderness])
 
 
-def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
-    """Draw every chart that a comparison of published walls has something for, and write the data of Figure 6."""
-    written, charts = [], {}
+def charts_of(comparison: Comparison) -> dict[str, Figure]:
+    """Every chart that a comparison of published walls has something for, by the names of their files."""
+    charts = {}
     present = [any(comparison.outcome(case.name, x) for x in comparison.models) for case in cases_of(BARALDI)]
     if any(present):
-        slenderness, multiplier = figure_6_data()
-        rows = [["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]]
-        rows += [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True)]
-        written.append(folder / "figure-6.csv")
-        write_atomically(written[0], csv_lines(rows).encode())
-        charts["figure-6"] = _figure_6(comparison, slenderness, multiplier)
+        charts["figure-6"] = _figure_6(comparison, *figure_6_data())
     if all(present):
         charts["table-2"] = table_2(comparison)
     for name, source in (("figure-7", BARALDI), ("figure-11", CONCENTRATED), ("curves-ferris", FERRIS)):
         models = [x for x in comparison.models if any(len(_curve(comparison, case, x)) for case in cases_of(source))]
         if models:
             charts[name] = _curves(comparison, source, models)
+    return charts
+
+
+def draw_figures(charts: Mapping[str, Figure], folder: Path) -> list[Path]:
+    """Write charts, and with Figure 6 its data; the files."""
+    written = []
+    if "figure-6" in charts:
+        rows = [["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]]
+        rows += [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(*figure_6_data(), strict=True)]
+        written.append(folder / "figure-6.csv")
+        write_atomically(written[0], csv_lines(rows).encode())
     for name, figure in charts.items():
         written.append(folder / f"{name}.png")
         write_atomically(written[-1], to_png(figure, 160))
@@ -120,7 +126,7 @@ def _mark(axes: Axes, x: float, model: Model, outcome: Outcome) -> None:
     bar = Rectangle((x - 0.025, loads[0]), 0.05, loads[-1] - loads[0], fc=colour if found else "white", ec=colour)
     axes.add_patch(bar)
     look = {"mfc": colour, "mew": 0.8, "mec": "white"} if found and model.marker != "_" else {"mfc": "white"}
-    place = outcome.multiplier if found else loads[-1]
+    place = loads[-1] if outcome.multiplier is None else outcome.multiplier
     axes.plot(x, place, model.marker, color=colour, ms=6, ls="none", clip_on=False, **look)
 
 
@@ -170,6 +176,24 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
     widths = [(model, 0.8 if model.kind == "estimate" else 1.4) for model in (*estimates, *models)]
     handles += [Line2D([], [], color="0.3", ls=model.line, lw=width, label=model.name) for model, width in widths]
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
+    return figure
+
+
+def wall_curves(comparison: Comparison, name: str) -> Figure | None:
+    """Pushover curves of one wall by all models that follow its path, each to its end; None where there is none."""
+    found = {x: outcome.curve for x in comparison.models if (outcome := comparison.outcome(name, x)) is not None}
+    curves = {model: _sampled(curve) for model, curve in found.items() if len(curve) > 1}
+    if not any(map(len, curves.values())):
+        return None
+    figure, force = Figure(figsize=(6.4, 2.9), layout="constrained"), is_force(comparison.scenes[name])
+    axes = figure.add_subplot(xscale="log", xlabel="displacement of the control point [mm]")
+    for model, curve in curves.items():
+        axes.plot(1e3 * curve[:, 0], curve[:, 1], ls=model.line, color=model.colour, lw=1.4, label=model.name)
+        axes.plot(1e3 * curve[-1:, 0], curve[-1:, 1], model.marker, color=model.colour, ms=4)
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.set(ylim=(0, None), ylabel="load [N]" if force else "load multiplier λ")
+    axes.legend(frameon=False, fontsize=8)
+    bare(axes)
     return figure
 
 

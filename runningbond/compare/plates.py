@@ -2,7 +2,6 @@
 
 import textwrap
 from collections.abc import Sequence
-from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -10,12 +9,11 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from runningbond.pictures.captions import colour_key, multiplier_text, to_png
-from runningbond.pictures.deformed_shape import DeformedShape, Extent, undeformed_shape
+from runningbond.pictures.captions import colour_key, multiplier_text, show_extent, to_png
+from runningbond.pictures.deformed_shape import DeformedShape, Extent, common_extent, undeformed_shape
+from runningbond.pictures.flat import DASHES, line_width, paint_mechanism
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
-from runningbond.pictures.pyvista_figure import draw_painted
-from runningbond.pictures.pyvista_painter import Painter
 from runningbond.results import Outcome, write_atomically
 
 from .figures import SLENDERNESS, TEXTURES
@@ -26,7 +24,6 @@ from .table import Comparison
 WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
 TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
 LETTER, GAP = 0.06, 0.1  # width of a letter, and of a gap between walls [in]
-PIXELS = 640  # longer side of the image of one wall
 OWN_WALLS = 12  # largest number of walls on the plate of one's own
 
 
@@ -61,10 +58,9 @@ def plates(comparison: Comparison) -> list[Plate]:
 def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
     """Draw every plate that a comparison has anything for."""
     written = []
-    with closing(Painter(PIXELS)) as painter:
-        for plate in plates(comparison):
-            write_atomically(folder / f"{plate.name}.png", _draw(comparison, plate, painter))
-            written.append(folder / f"{plate.name}.png")
+    for plate in plates(comparison):
+        write_atomically(folder / f"{plate.name}.png", _draw(comparison, plate))
+        written.append(folder / f"{plate.name}.png")
     return written
 
 
@@ -74,7 +70,7 @@ def _models(comparison: Comparison, plate: Plate) -> list[Model]:
     return [model for model, own in outcomes.items() if any(x is not None and len(x.motion) for x in own)]
 
 
-def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
+def _draw(comparison: Comparison, plate: Plate) -> bytes:
     models = _models(comparison, plate)
     rows = [_row(comparison, name, models) for name in plate.walls]
     below = LINE * max(2, *(text.count("\n") + 1 for _, captions, _ in rows for text in captions)) + 0.08
@@ -89,12 +85,13 @@ def _draw(comparison: Comparison, plate: Plate, painter: Painter) -> bytes:
     grid = figure.subplots(len(rows), len(models), squeeze=False, height_ratios=ratios)
     for axes, model in zip(grid[0], models, strict=True):
         axes.set_title(model.name, fontsize=8)
-    for line, (shapes, captions, extent), label in zip(grid, rows, labels, strict=True):
+    for line, (shapes, captions, extent), label, ratio in zip(grid, rows, labels, ratios, strict=True):
         _write(line[0], -0.04, 0.5, "\n".join(label), ha="right", va="center", fontsize=7.5)
         for axes, shape, caption in zip(line, shapes, captions, strict=True):
-            draw_painted(axes, shape, painter, extent)
+            show_extent(axes, extent)
+            paint_mechanism(axes, shape, line_width(shape.scene, extent, (width, ratio * width)))
             _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
-    handles = colour_key((JointState.SLIDE, JointState.OPEN))
+    handles = colour_key((JointState.SLIDE, JointState.OPEN), dashes=DASHES)
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
     return to_png(figure, DPI)
 
@@ -115,6 +112,5 @@ def _row(comparison: Comparison, name: str, models: Sequence[Model]) -> tuple[li
     outcomes = [comparison.outcome(name, model) for model in models]
     mechanisms = [None if outcome is None else mechanism_shape(scene, outcome) for outcome in outcomes]
     shapes = [mechanism or undeformed_shape(scene) for mechanism in mechanisms]
-    lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
     captions = [comparison.cell(name, model, caption) for model in models]
-    return shapes, captions, (min(lefts), max(rights), min(bottoms), max(tops))
+    return shapes, captions, common_extent(shapes)

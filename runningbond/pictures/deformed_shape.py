@@ -1,5 +1,6 @@
 """The deformed shape of a wall, as polygons of its blocks and of its joints' gaps: what every picture is drawn from."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeAlias
@@ -155,6 +156,12 @@ def undeformed_shape(scene: Scene) -> DeformedShape:
     """The wall as it was built."""
     at_rest = np.zeros((len(scene.blocks), 3))
     return DeformedShape.of_rigid_blocks(scene, at_rest, np.zeros(len(scene.joints), np.int64), 0.0)
+
+
+def common_extent(shapes: Sequence[DeformedShape]) -> Extent:
+    """What shows all of several shapes of a wall."""
+    lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
+    return min(lefts), max(rights), min(bottoms), max(tops)
 
 
 def visible_scale(scene: Scene, displacement: Array) -> float:

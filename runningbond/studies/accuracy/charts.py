@@ -82,7 +82,9 @@ def _name(axes: Axes, points: Sequence[Named]) -> None:
             "va": "center",
         }
         size: dict[str, Any] = {"fontsize": 8, "color": placed.label.colour, "annotation_clip": False}
-        axes.annotate(placed.label.text, at, placed.middle, **where, **size, **far).set_in_layout(False)
+        axes.annotate(
+            placed.label.text, at, (float(placed.middle[0]), float(placed.middle[1])), **where, **size, **far
+        ).set_in_layout(False)
 
 
 def _against_seconds(axes: Axes, rows: Sequence[Row]) -> list[Named]:
