@@ -98,7 +98,11 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
         name = plain_stem(path)
         if name in walls:
             raise SceneError(scene, f'is the second scene called "{name}"; results are kept by file name')
-        walls[name] = read_scene(path)
+        try:
+            walls[name] = read_scene(path)
+        except SceneError as error:  # which of the files
+            key = error.key if error.key.startswith(str(path)) else f"{path}: {error.key}"
+            raise SceneError(key, error.remedy, error.value) from error
         case = published_case(path)
         if case is not None:
             published[name] = case
