@@ -9,9 +9,9 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from runningbond.pictures.captions import colour_key, multiplier_text, show_extent, to_png
+from runningbond.pictures.captions import multiplier_text, show_extent, to_png
 from runningbond.pictures.deformed_shape import DeformedShape, Extent, common_extent, undeformed_shape
-from runningbond.pictures.flat import DASHES, line_width, paint_mechanism
+from runningbond.pictures.flat import line_width, mechanism_key, paint_mechanism
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.results import Outcome, write_atomically
@@ -91,8 +91,8 @@ def _draw(comparison: Comparison, plate: Plate) -> bytes:
             show_extent(axes, extent)
             paint_mechanism(axes, shape, line_width(shape.scene, extent, (width, ratio * width)))
             _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
-    handles = colour_key((JointState.SLIDE, JointState.OPEN), dashes=DASHES)
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
+    handles = mechanism_key((JointState.SLIDE, JointState.OPEN), hinges=True)
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=7, handlelength=1.6)
     return to_png(figure, DPI)
 
 

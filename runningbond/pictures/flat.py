@@ -4,6 +4,7 @@
 What joints do is told apart by colour, and in grey print by solid, dashed and dotted lines.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -120,14 +121,21 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
 
     mechanism = mechanism_shape(scene, outcome)
     shape = mechanism or undeformed_shape(scene)
-    hinge = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if len(shape.hinges) else []
-    key = [*hinge, *colour_key(shape.states, dashes=DASHES)]
+    key = mechanism_key(shape.states, hinges=len(shape.hinges) > 0)
     lines, largest = resultants(shape, outcome)
     if len(lines) and mechanism and scene.block_size > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=f"force ≤ {readable(largest, 'N')}"))
     else:
         lines = lines[:0]
     return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None), lines
+
+
+def mechanism_key(states: Sequence[JointState], *, hinges: bool) -> list[Any]:
+    """What circles, dashes and colours of a mechanism stand for: handles of a legend."""
+    from matplotlib.lines import Line2D
+
+    circle = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if hinges else []
+    return [*circle, *colour_key(states, dashes=DASHES)]
 
 
 def line_width(scene: Scene, extent: Extent, size: tuple[float, float]) -> float:
@@ -158,12 +166,12 @@ def _draw_joints(axes: "Axes", shape: DeformedShape, state: JointState, width: f
     from matplotlib.collections import PolyCollection
 
     faces, colour = shape.placed_faces[shape.drawn_state == state], STATE_COLOURS[state]
-    gaps = PolyCollection(faces, facecolors=[tint(colour)], edgecolors="none", zorder=3)
+    gaps = PolyCollection(faces, facecolors=[tint(state)], edgecolors="none", zorder=3)
     axes.add_collection(gaps, autolim=False)
     # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.
     middle = (faces[:, :2] + faces[:, :1:-1]) / 2
     lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
-    _draw_lines(axes, lines, colour, (0.6 if state == JointState.OPEN else 1.0) * width, DASHES[state])
+    _draw_lines(axes, lines, colour, (0.75 if state == JointState.OPEN else 1.0) * width, DASHES[state])
 
 
 def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: Any) -> None:

@@ -9,7 +9,7 @@ from runningbond.scene import Array
 from .deformed_shape import DeformedShape, Extent, outline
 from .flat import line_width
 from .joint_state import JointState
-from .style import OUTLINE, STATE_COLOURS
+from .style import OUTLINE, STATE_COLOURS, tint
 
 WIDTH, UNITS, SHADES = 2.4, 700, 24
 """Width on paper [in], whole units that it is drawn in, and shades of a colour."""
@@ -40,11 +40,11 @@ def inline_mechanism(shape: DeformedShape, extent: Extent) -> str:
         parts.append(f'<path class="block" d="{path(own)}" fill="{_hex(colour)}"/>')
     for state in shape.states:
         faces, colour = shape.placed_faces[shape.drawn_state == state], STATE_COLOURS[state]
-        parts.append(f'<path d="{path(faces)}" fill="{colour}" fill-opacity=".45"/>')
+        parts.append(f'<path d="{path(faces)}" fill="{_hex(tint(state))}"/>')
         middle = (faces[:, :2] + faces[:, :1:-1]) / 2
         lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
         dashes = "" if state == JointState.OPEN else f' stroke-dasharray="{2.6 * width:.0f} {1.3 * width:.0f}"'
-        look = f'stroke="{colour}" stroke-width="{(0.6 if state == JointState.OPEN else 1) * width:.1f}"'
+        look = f'stroke="{colour}" stroke-width="{(0.75 if state == JointState.OPEN else 1) * width:.1f}"'
         parts.append(f'<path d="{path(lines, "")}" fill="none" {look}{dashes}/>')
     for x, y in np.rint(scale * (shape.hinges - [left, top]) * [1, -1]).astype(int):
         parts.append(f'<circle cx="{x}" cy="{y}" r="{1.2 * width:.1f}" fill="#fff" stroke="#404040"/>')

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgba
 from PIL import Image
 
 from runningbond.commands.command_line import command
@@ -233,6 +234,16 @@ def test_a_model_without_an_answer_is_drawn_hollow(comparison: Comparison) -> No
     limit, static = MODELS["limit"].colour, MODELS["dem-static"].colour
     assert hollow == [[(limit, [0.0])], [(static, [0.3])], []]
     assert any("hollow" in text.get_text() for text in figure.legends[0].get_texts())
+    bars = [patch for patch in figure.axes[1].patches if patch.get_edgecolor() == to_rgba(static)]
+    assert {patch.get_facecolor() for patch in bars} == {to_rgba("white"), to_rgba(static)}
+
+
+def test_groups_of_the_chart_of_table_2_stand_apart(comparison: Comparison) -> None:
+    """The marks of one texture end before those of the next begin, by more than they keep among themselves."""
+    for axes in table_2(comparison).axes:
+        places = np.sort(np.concatenate([line.get_xdata() for line in axes.lines]))
+        gaps = np.diff(np.unique(np.round(places, 6)))
+        assert len(gaps[gaps > 1.2 * gaps.min()]) == 3
 
 
 def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:

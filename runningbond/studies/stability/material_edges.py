@@ -130,7 +130,7 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {
 def answer(what: str, model: str) -> Row:
     """What a model answers about an extreme, what that is worth, and the message or the refusal."""
     build, exact = EXTREMES[what]
-    row: Row = {"exact": _in_words(exact)}
+    row: Row = {"exact": in_words(exact)}
     try:
         outcome = MODELS[model].solve(build(), TOLERANCE)
     except SceneError as error:
@@ -141,7 +141,7 @@ def answer(what: str, model: str) -> Row:
     lower, upper = outcome.lower, outcome.upper
     if said != outcome.status and lower is not None and upper is not None and upper - lower > 1e-6 * upper:
         said = lower, upper
-    row |= {"answer": _in_words(said), "worth": worth(outcome, exact), "λ": outcome.multiplier}
+    row |= {"answer": in_words(said), "worth": worth(outcome, exact), "λ": outcome.multiplier}
     return row | {"message": outcome.message}
 
 
@@ -149,7 +149,8 @@ def _length(size: float) -> str:
     return f"{1e6 * size:g} µm" if size < 1e-3 else f"{size:g} m"
 
 
-def _in_words(exact: Exact) -> str:
+def in_words(exact: Exact) -> str:
+    """An answer as a chart says it: an interval from nothing by its upper end, one of equal ends as a number."""
     if isinstance(exact, str):
         return exact
     ends = list(dict.fromkeys(_plain(x) for x in (exact if isinstance(exact, tuple) else (exact,))))
