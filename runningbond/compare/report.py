@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from runningbond.pictures.captions import is_force, load_symbol, multiplier_text
 from runningbond.pictures.deformed_shape import common_extent, undeformed_shape
-from runningbond.pictures.inline import inline_mechanism
+from runningbond.pictures.inline import inline_mechanism, inline_wall
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.pictures.quantities import counted
 from runningbond.results import Outcome
@@ -144,7 +144,11 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
     shapes = {model: shape for model, x in outcomes.items() if (shape := mechanism_shape(scene, x)) is not None}
     extent = common_extent([undeformed_shape(scene), *shapes.values()])
     mechanisms = [
-        (model, Markup(inline_mechanism(shape, extent)), " ".join(multiplier_text(scene, outcomes[model])).strip())
+        (
+            model,
+            Markup(inline_mechanism(shape, extent, f"rest-{name}")),
+            " ".join(multiplier_text(scene, outcomes[model])).strip(),
+        )
         for model, shape in shapes.items()
     ]
     figure = wall_curves(comparison, name)
@@ -161,6 +165,7 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
         "name": name,
         "title": scene.title,
         "mechanisms": mechanisms,
+        "rest": Markup(inline_wall(scene, extent, f"rest-{name}")),
         "curve": curve,
         "heads": heads,
         "rows": rows,

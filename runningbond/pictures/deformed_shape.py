@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from runningbond.results.mechanism import carried
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Indices, Mask, Scene
 
 from .joint_state import JointState
 from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, SEEN, STATE_COLOURS, Colouring
@@ -199,13 +199,14 @@ def outer_edges(corner: Indices, first: Indices) -> Indices:
     return np.column_stack([single, following[single]])
 
 
-def outline(scene: Scene) -> list[Array]:
-    """Outline of the undeformed wall, openings and all: closed lines, each ``(n, 2)`` [m]."""
+def outline(scene: Scene, which: Mask | None = None) -> list[Array]:
+    """Outline of the undeformed wall, or of blocks ``(nb,)`` of it, openings and all: closed lines ``(n, 2)`` [m]."""
     import shapely
 
     blocks = scene.blocks
-    own = scene.wall[blocks.owner]
-    number = np.cumsum(scene.wall) - 1
+    which = scene.wall if which is None else which
+    own = which[blocks.owner]
+    number = np.cumsum(which) - 1
     polygons = shapely.polygons(shapely.linearrings(blocks.vertices[own], indices=number[blocks.owner[own]]))
     # What touches in the scene may be as far apart as the tolerance.
     union = shapely.union_all(shapely.buffer(polygons, blocks.tolerance, join_style="mitre"))
