@@ -126,7 +126,8 @@ def _html(block: Block) -> str:
     for mark, tag in ((r"\*\*", "b"), (r"\*", "i"), ("`", "code")):  # Markdown's within a line
         text = re.sub(f"{mark}(.+?){mark}", rf"<{tag}>\1</{tag}>", text)
     level = len(block) - len(block.lstrip("#"))
-    return f'<h{level} id="{_identifier(text)}">{text}</h{level}>' if level else f"<p>{text}</p>"
+    mark = f' id="{_identifier(block[3:])}"' if level == 2 else ""
+    return f"<h{level}{mark}>{text}</h{level}>" if level else f"<p>{text}</p>"
 
 
 def _identifier(head: str) -> str:
