@@ -144,7 +144,7 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
         for case in cases_of(source)
         for model in models
     }
-    title = f"{TITLES[source]}; each begins at a quarter of its peak"
+    title = f"{TITLES[source]}\neach begins at a quarter of its peak"
     starts = [float(curve[0, 0]) for curve in curves.values() if len(curve)]
     shown = min(starts) / 1.2, 1.4 * max(float(curve[-1, 0]) for curve in curves.values() if len(curve))
     estimates = [model for model in comparison.models if panels and model.kind == "estimate"]

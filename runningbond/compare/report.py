@@ -84,6 +84,7 @@ def verdict(comparison: Comparison) -> list[str]:
     """What the campaign says as a whole: how many cases are decided, where models agree, where they differ most."""
     said = Counter(outcome.status for outcome in comparison.campaign.outcomes.values())
     rest = "".join(f", {count} {status}" for status, count in said.most_common() if status != "collapse")
+    rest += f", {k} have a model that does not apply" if (k := len(comparison.campaign.inapplicable)) else ""
     sizes = (len(comparison.campaign), "case"), (len(comparison.scenes), "wall"), (len(comparison.models), "model")
     cases, walls, models = (counted(*size) for size in sizes)
     sentences = [f"{cases}: {walls} by {models}. {said['collapse']} end in a collapse load{rest}."]
