@@ -16,6 +16,7 @@ from runningbond.scene import SceneError
 from .advise import advise
 from .compare import compare
 from .mesh import mesh
+from .new import new
 from .render import render
 from .run import run
 from .show import show
@@ -30,8 +31,9 @@ app = App(
     result_action="return_value",
     suppress_keyboard_interrupt=False,
 )
-for each in (run, show, advise, compare, stability, study, validate, mesh, render):
+for each in (new, run, show, advise, compare, stability, study, validate, mesh, render):
     app.command(each)
+app.register_install_completion_command()
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

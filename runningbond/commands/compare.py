@@ -10,7 +10,6 @@ from runningbond.compare.campaign import Interrupted, run_campaign
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model
 from runningbond.compare.published import PUBLISHED, PublishedCase, find_scene, published_case
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
-from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
@@ -109,7 +108,11 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
         name = plain_stem(path)
         if name in walls:
             raise SceneError(scene, f'is the second scene called "{name}"; results are kept by file name')
-        walls[name] = read_scene(path)
+        try:
+            walls[name] = read_scene(path)
+        except SceneError as error:  # which of the files
+            key = error.key if error.key.startswith(str(path)) else f"{path}: {error.key}"
+            raise SceneError(key, error.remedy, error.value) from error
         case = published_case(path)
         if case is not None:
             published[name] = case
@@ -117,7 +120,7 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
 
 
 def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
-    from runningbond.compare.figures import draw_figures
+    from runningbond.compare.figures import charts_of, draw_figures
     from runningbond.compare.plates import draw_plates
     from runningbond.compare.report import report_html
 
@@ -128,11 +131,8 @@ def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
     for sheet in sheets:
         print_table(sheet)
     print(f"{len(campaign)} cases, {len(campaign.reused)} of them already in {out}")
-    why_not = why_not_drawn()
-    charts = draw_figures(comparison.only_published(), out) + ([] if why_not else draw_plates(comparison, out))
-    pictures = [path for path in charts if path.suffix == ".png"]
-    write_atomically(out / "report.html", report_html(comparison, pictures, tolerance, why_not).encode())
+    charts = charts_of(comparison.only_published())
+    pictures = draw_figures(charts, out) + draw_plates(comparison, out)
+    write_atomically(out / "report.html", report_html(comparison, charts, tolerance).encode())
     tables = [out / name for name in ("table.csv", "table.md", "report.html")]
-    print(f"written: {', '.join(map(str, [*tables, *charts]))}")
-    if why_not:
-        print(f"runningbond: {why_not}", file=sys.stderr)
+    print(f"written: {', '.join(map(str, [*tables, *pictures]))}")

@@ -31,7 +31,6 @@ from .terminal import (
     SceneName,
     Tolerance,
     Whole,
-    can_draw,
     check_jobs,
     interruptions,
     print_table,
@@ -154,10 +153,10 @@ def _picture(wall: Scene, outcome: Outcome, out: Path, recorder: Recorder | None
 
 
 def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
-    """Write and draw the curve and the mechanism; a line says why there is no picture of the latter."""
+    """Write and draw the curve and the mechanism."""
     from runningbond.pictures.captions import to_png
     from runningbond.pictures.curve import curve_figure
-    from runningbond.pictures.render import remove_pictures, render_folder
+    from runningbond.pictures.render import draw_folder, remove_pictures
 
     remove_pictures(out)
     for name in CURVE_FILES:
@@ -168,13 +167,12 @@ def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
         write_atomically(out / CURVE_FILES[0], csv_lines([list(columns), *rows]).encode())
     if len(outcome.curve):
         write_atomically(out / CURVE_FILES[1], to_png(curve_figure(wall, outcome)))
-    if can_draw():
-        render_folder(out, moments=False)
+    draw_folder(out)
 
 
 def _written(out: Path) -> list[Path]:
     """What a run has left in its folder."""
-    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *(f"{kind}.pvd" for kind in KINDS), "mechanism.png")
+    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *(f"{kind}.pvd" for kind in KINDS), "mechanism.*")
     return [path for name in names for path in sorted(out.glob(name))]
 
 

@@ -7,15 +7,13 @@ from cyclopts import Parameter
 
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import Sheet
-from runningbond.pictures.captions import to_png, to_svg
 from runningbond.pictures.flat import figure_of
+from runningbond.pictures.render import VECTOR
 from runningbond.results import write_atomically
 from runningbond.scene import SceneError, read_scene
 
 from .inventory import rows
 from .terminal import DONE, Flag, SceneName, print_table, remarks
-
-WRITERS = {".svg": to_svg, ".png": to_png}
 
 
 def show(
@@ -34,13 +32,13 @@ def show(
     numbers
         Write into each block the number by which `assign` knows it.
     """
-    if out is not None and out.suffix.lower() not in WRITERS:
+    if out is not None and out.suffix.lower() not in VECTOR:
         raise SceneError("--out", "must end in .svg or .png", str(out))
     if numbers and out is None:
         raise SceneError("--numbers", "needs a picture to stand in; name one with --out")
     wall = read_scene(find_scene(scene))
     if out is not None:
-        write_atomically(out, WRITERS[out.suffix.lower()](figure_of(wall, numbers=numbers)))
+        write_atomically(out, VECTOR[out.suffix.lower()](figure_of(wall, numbers=numbers)))
     print_table(Sheet(wall.title, ("quantity", "value"), rows(wall)))
     if out is not None:
         print(out)

@@ -1,6 +1,6 @@
 """Charts of a comparison: the paper's Figures 6, 7 and 11, and the multipliers of its Table 2."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from homog import crack_slope, lateral_multiplier
-from runningbond.pictures.captions import to_png
+from runningbond.pictures.captions import is_force, to_png
 from runningbond.pictures.charts import COLOURS, bare, mark
 from runningbond.results import write_atomically
 from runningbond.scene import Array
@@ -22,6 +22,12 @@ FRICTION = 0.6
 TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # what to call b/a, block width to height, and b/a
 SLENDERNESS = (("0.5", 0.5), ("1", 1.0), ("2", 2.0))
 PRINTED = {"FEM/DEM": "P", "DEM": "X", "HOMO": "d"}
+TITLES = {
+    BARALDI: "Pushover curves of the twelve panels (cf. Baraldi et al., Fig. 7)",
+    CONCENTRATED: "Pushover curves under a concentrated load (cf. Baraldi et al., Fig. 11)",
+    FERRIS: "Pushover curves of Ferris & Tin-Loi's walls",
+}
+BORNE, BETWEEN = 0.25, 40  # share of its peak from which a curve is drawn, and points between two of its own
 MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
 
 
@@ -32,23 +38,29 @@ def figure_6_data(points: int = 120) -> tuple[Array, Array]:
     return slenderness, np.array([[lateral_multiplier(float(r), x, FRICTION) for x in slopes] for r in slenderness])
 
 
-def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
-    """Draw every chart that a comparison of published walls has something for, and write the data of Figure 6."""
-    written, charts = [], {}
+def charts_of(comparison: Comparison) -> dict[str, Figure]:
+    """Every chart that a comparison of published walls has something for, by the names of their files."""
+    charts = {}
     present = [any(comparison.outcome(case.name, x) for x in comparison.models) for case in cases_of(BARALDI)]
     if any(present):
-        slenderness, multiplier = figure_6_data()
-        rows = [["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]]
-        rows += [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(slenderness, multiplier, strict=True)]
-        written.append(folder / "figure-6.csv")
-        write_atomically(written[0], csv_lines(rows).encode())
-        charts["figure-6"] = _figure_6(comparison, slenderness, multiplier)
+        charts["figure-6"] = _figure_6(comparison, *figure_6_data())
     if all(present):
         charts["table-2"] = table_2(comparison)
     for name, source in (("figure-7", BARALDI), ("figure-11", CONCENTRATED), ("curves-ferris", FERRIS)):
         models = [x for x in comparison.models if any(len(_curve(comparison, case, x)) for case in cases_of(source))]
         if models:
             charts[name] = _curves(comparison, source, models)
+    return charts
+
+
+def draw_figures(charts: Mapping[str, Figure], folder: Path) -> list[Path]:
+    """Write charts, and with Figure 6 its data; the files."""
+    written = []
+    if "figure-6" in charts:
+        rows = [["H/L", *(f"lambda b/a = {label}" for label, _ in TEXTURES)]]
+        rows += [[f"{r:.6g}", *(f"{x:.8g}" for x in row)] for r, row in zip(*figure_6_data(), strict=True)]
+        written.append(folder / "figure-6.csv")
+        write_atomically(written[0], csv_lines(rows).encode())
     for name, figure in charts.items():
         written.append(folder / f"{name}.png")
         write_atomically(written[-1], to_png(figure, 160))
@@ -58,9 +70,10 @@ def draw_figures(comparison: Comparison, folder: Path) -> list[Path]:
 def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> Figure:
     figure = Figure(figsize=(7, 4.6), layout="constrained")
     axes = figure.add_subplot()
-    for (label, _), colour, column in zip(TEXTURES, COLOURS, multiplier.T, strict=True):
+    aside = ("bottom", "center", "top", "center")  # three end close together
+    for (label, _), colour, column, place in zip(TEXTURES, COLOURS, multiplier.T, aside, strict=True):
         axes.plot(slenderness, column, color=colour)
-        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va="center", color=colour, annotation_clip=False)
+        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va=place, color=colour, annotation_clip=False)
     for model in (model for model in comparison.models if model.kind == "bound"):
         for i, case in enumerate(cases_of(BARALDI)):
             outcome = comparison.outcome(case.name, model)
@@ -79,51 +92,70 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
 
 def table_2(comparison: Comparison) -> Figure:
     """Chart of the multipliers of Table 2: what is printed beside what each model gives."""
-    figure, columns = panel_figure(xlabel="block ratio b/a", ylabel="collapse multiplier λ", xlim=(-0.5, 3.7))
-    shifts = np.linspace(0.0, min(0.1 * (len(comparison.models) - 1), 0.5), len(comparison.models))
+    title = "Collapse multipliers of the twelve panels (cf. Baraldi et al., Table 2)"
+    figure, columns = panel_figure(title, xlabel="block ratio b/a", ylabel="collapse multiplier λ", xlim=(-0.5, 3.5))
+    shifts = np.linspace(-0.41, 0.41, len(PRINTED) + len(comparison.models))
     hollow = False
     for axes, cases in columns:
         for k, case in enumerate(cases):
-            for (label, marker), shift in zip(PRINTED.items(), (-0.3, -0.2, -0.1), strict=True):
-                axes.plot(k + shift, case.printed[label], marker, color="0.62", ms=5, ls="none")
-            for model, shift in zip(comparison.models, shifts, strict=True):
+            if k % 2:
+                axes.axvspan(k - 0.5, k + 0.5, color="0.955", lw=0, zorder=0)
+            for (label, marker), shift in zip(PRINTED.items(), shifts, strict=False):
+                axes.plot(k + shift, case.printed[label], marker, color="0.55", ms=5, ls="none")
+            for model, shift in zip(comparison.models, shifts[len(PRINTED) :], strict=True):
                 if (outcome := comparison.outcome(case.name, model)) is not None:
                     mark(axes, k + float(shift), outcome, model.colour, model.marker)
                     hollow |= outcome.multiplier is None
         axes.set_xticks(range(4), [label for label, _ in TEXTURES])
-    looks = [(f"printed {label}", "0.62", marker) for label, marker in PRINTED.items()]
+        axes.tick_params(axis="x", length=0)
+    looks = [(f"printed {label}", "0.55", marker) for label, marker in PRINTED.items()]
     looks += [(model.name, model.colour, model.marker) for model in comparison.models]
     handles = [Line2D([], [], color=c, marker=m, ms=5, mew=1.5, ls="none", label=label) for label, c, m in looks]
     if hollow:
-        label = "hollow: a bound only, or none (at 0)"
+        label = "hollow: no collapse load found, what is known alone"
         handles.append(Line2D([], [], color="0.3", marker="o", mfc="white", ms=5, mew=1, ls="none", label=label))
     figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=9)
     return figure
 
 
 def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Figure:
-    """Curves of one source's walls, loads in kN where λ is in newtons; level lines of models that only estimate λ."""
+    """Curves of the walls of one source, each with a dot at its end; of loads in kN where Î» is a load in newtons.
+
+    Displacements are logarithmic, from where a wall bears a share of its load: the elastic range is seen as well.
+    A level line is drawn for each model that only estimates the multiplier of the twelve panels.
+    """
     panels, point_load = source == BARALDI, source == CONCENTRATED
     where, load = ("under the load", "load [kN]") if point_load else ("of the upper corner", "load multiplier λ")
     labels = {"xlabel": f"displacement {where} [mm]", "ylabel": load}
+    curves = {
+        (case.name, model.name): _sampled(_curve(comparison, case, model)) * (1e3, 1e-3 if point_load else 1.0)
+        for case in cases_of(source)
+        for model in models
+    }
+    title = f"{TITLES[source]}\neach begins at a quarter of its peak"
+    starts = [float(curve[0, 0]) for curve in curves.values() if len(curve)]
+    shown = min(starts) / 1.2, 1.4 * max(float(curve[-1, 0]) for curve in curves.values() if len(curve))
     estimates = [model for model in comparison.models if panels and model.kind == "estimate"]
     if panels:
-        figure, columns = panel_figure(xlim=(-0.3, 12), **labels)
+        figure, columns = panel_figure(title, xlim=shown, **labels)
     else:
         figure = Figure(figsize=(6.4, 4.4), layout="constrained")
+        figure.suptitle(title, fontsize=11)
         columns = [(figure.add_subplot(**labels), cases_of(source))]
     for axes, cases in columns:
         for case, colour in zip(cases, COLOURS, strict=False):
             for model in models:
-                moved, multiplier = (_curve(comparison, case, model) * (1e3, 1e-3 if point_load else 1.0)).T
+                moved, multiplier = curves[case.name, model.name].T
                 axes.plot(moved, multiplier, ls=model.line, color=colour, lw=1.4)
                 axes.plot(moved[-1:], multiplier[-1:], ".", color=colour, ms=4)
             for model in estimates:
                 outcome = comparison.outcome(case.name, model)
                 if outcome is not None and outcome.multiplier is not None:
                     axes.axhline(outcome.multiplier, color=colour, lw=0.8, ls=model.line)
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter("{x:g}")
         if not panels:
-            axes.set_ylim(0, None)
+            axes.set(xlim=shown, ylim=(0, None))
             bare(axes)
     walls = [f"b/a = {label}" for label, _ in TEXTURES]
     if source == FERRIS:
@@ -135,17 +167,47 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
     return figure
 
 
+def wall_curves(comparison: Comparison, name: str) -> Figure | None:
+    """Pushover curves of one wall by all models that follow its path, each to its end; None where there is none."""
+    found = {x: outcome.curve for x in comparison.models if (outcome := comparison.outcome(name, x)) is not None}
+    curves = {model: _sampled(curve) for model, curve in found.items() if len(curve) > 1}
+    if not any(map(len, curves.values())):
+        return None
+    figure, force = Figure(figsize=(6.4, 2.9), layout="constrained"), is_force(comparison.scenes[name])
+    axes = figure.add_subplot(xscale="log", xlabel="displacement of the control point [mm]")
+    for model, curve in curves.items():
+        axes.plot(1e3 * curve[:, 0], curve[:, 1], ls=model.line, color=model.colour, lw=1.4, label=model.name)
+        axes.plot(1e3 * curve[-1:, 0], curve[-1:, 1], model.marker, color=model.colour, ms=4)
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.set(ylim=(0, None), ylabel="load [N]" if force else "load multiplier λ")
+    axes.legend(frameon=False, fontsize=8)
+    bare(axes)
+    return figure
+
+
 def _curve(comparison: Comparison, case: PublishedCase, model: Model) -> Array:
     """Pushover curve of a wall by a model, ``(n, 2)``; empty where there is none."""
     outcome = comparison.outcome(case.name, model)
     return np.zeros((0, 2)) if outcome is None else outcome.curve
 
 
+def _sampled(curve: Array) -> Array:
+    """A curve with points between those it has, without its beginning, where it bears less than `BORNE` of its peak."""
+    if len(curve) < 2:
+        return curve[:0]
+    at = np.arange(len(curve))
+    fine = np.linspace(0, len(curve) - 1, BETWEEN * (len(curve) - 1) + 1)
+    dense = np.column_stack([np.interp(fine, at, column) for column in curve.T])
+    borne = (dense[:, 1] >= BORNE * dense[:, 1].max()) & (dense[:, 0] > 0)
+    return dense[int(borne.argmax()) :][dense[int(borne.argmax()) :, 0] > 0]
+
+
 def panel_figure(
-    *, xlabel: str, ylabel: str, xlim: tuple[float, float]
+    title: str, *, xlabel: str, ylabel: str, xlim: tuple[float, float]
 ) -> tuple[Figure, list[tuple[Axes, tuple[PublishedCase, ...]]]]:
     """A figure of the twelve panels: axes for each slenderness, and the four panels that stand there."""
-    figure, panels = Figure(figsize=(10, 4.2), layout="constrained"), cases_of(BARALDI)
+    figure, panels = Figure(figsize=(11, 4.5), layout="constrained"), cases_of(BARALDI)
+    figure.suptitle(title, fontsize=11)
     columns = []
     for column, (label, _) in enumerate(SLENDERNESS):
         axes = figure.add_subplot(1, 3, column + 1)

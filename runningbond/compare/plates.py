@@ -2,7 +2,6 @@
 
 import textwrap
 from collections.abc import Sequence
-from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,7 +9,6 @@ from runningbond.pictures.captions import multiplier_text
 from runningbond.pictures.deformed_shape import undeformed_shape
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.pictures.plate import PlateRow, draw_plate
-from runningbond.pictures.pyvista_painter import Painter
 from runningbond.results import Outcome, write_atomically
 
 from .figures import SLENDERNESS, TEXTURES
@@ -18,7 +16,6 @@ from .model import Model
 from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
 from .table import Comparison
 
-PIXELS = 640  # longer side of the image of one wall
 OWN_WALLS = 12  # largest number of walls on the plate of one's own
 
 
@@ -53,12 +50,11 @@ def plates(comparison: Comparison) -> list[Plate]:
 def draw_plates(comparison: Comparison, folder: Path) -> list[Path]:
     """Draw every plate that a comparison has anything for."""
     written = []
-    with closing(Painter(PIXELS)) as painter:
-        for plate in plates(comparison):
-            models = _models(comparison, plate)
-            rows = [_row(comparison, name, label, models) for name, label in plate.walls.items()]
-            written.append(folder / f"{plate.name}.png")
-            write_atomically(written[-1], draw_plate(plate.title, [model.name for model in models], rows, painter))
+    for plate in plates(comparison):
+        models = _models(comparison, plate)
+        rows = [_row(comparison, name, label, models) for name, label in plate.walls.items()]
+        written.append(folder / f"{plate.name}.png")
+        write_atomically(written[-1], draw_plate(plate.title, [model.name for model in models], rows))
     return written
 
 

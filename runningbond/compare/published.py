@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from runningbond.scene import Scene, SceneError, read_scene
+from runningbond.scene.ranges import suggestion
 
 FOLDER = Path(__file__).parent / "published"
 
@@ -64,4 +65,5 @@ def find_scene(scene: str) -> Path:
         return PUBLISHED[names.index(scene)].path
     if path.exists():
         raise SceneError(scene, f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
-    raise SceneError(scene, f"there is no such file, nor a published scene of that name ({names[0]} … {names[-1]})")
+    what = f"there is no such file, nor a published scene of that name ({names[0]} … {names[-1]})"
+    raise SceneError(scene, what + suggestion(scene, names))

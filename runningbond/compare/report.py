@@ -1,84 +1,184 @@
-"""The report of a comparison: one HTML page that holds everything, and needs nothing from anywhere."""
+"""The report of a comparison: verdict, tables in colour, charts, a card a wall, and what was run."""
 
-import base64
-import html
 import platform
-from collections.abc import Sequence
+import statistics
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import version
-from pathlib import Path
+from typing import Any
 
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from runningbond.pictures.captions import is_force, load_symbol, multiplier_text
+from runningbond.pictures.deformed_shape import common_extent, undeformed_shape
+from runningbond.pictures.inline import inline_mechanism, inline_wall
+from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
+from runningbond.pictures.quantities import counted
+from runningbond.results import Outcome
+from runningbond.results.outcome import number
+
+from .figures import wall_curves
 from .fingerprint import LIBRARIES, code_digest
-from .table import Comparison, Sheet, cost_sheets, multiplier_sheets
+from .page import inline_svg, templates
+from .table import CORRECTED, Comparison, Sheet, answer, cost_sheets, multiplier_sheets
 
-STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; color: #222; max-width: 76rem; margin: 2rem auto; padding: 0 1rem; }
-h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
-.wide { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
-th, td { padding: 0.25rem 0.6rem; text-align: left; border-bottom: 1px solid #ddd; white-space: nowrap; }
-.wrapped th, .wrapped td { white-space: normal; vertical-align: top; }
-th { border-bottom: 2px solid #888; }
-figure { margin: 1.5rem 0; } img { max-width: 100%; height: auto; } figcaption { color: #555; font-size: 0.85rem; }
-"""
-HEAD = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<link rel="icon" href="data:,">
-<title>runningbond: {subject}</title>
-<style>{style}</style>
-</head>
-<body>
-"""
+DRAWN_WITH = ("pyvista", "vtk", "matplotlib", "jinja2")
+FULL, STRONGEST, AGREE, WORST = 0.3, 0.55, 0.05, 4
+"""Deviation of the strongest colour, how opaque it is, what counts as agreement, how many disagreements are told."""
+
+CONTENTS = (
+    ("verdict", "Verdict"),
+    ("multipliers", "Collapse multipliers"),
+    ("charts", "Charts"),
+    ("walls", "Wall by wall"),
+)
+CLOSING = ("cost", "Cost"), ("provenance", "What was run")
 
 
-def report_html(comparison: Comparison, pictures: Sequence[Path], tolerance: float, why_no_plates: str = "") -> str:
-    """Write the page, with the PNG files of charts and plates in their order, or why there are no plates."""
-    versions = [
+class Cell(str):
+    """An entry of a table: its words, the number to sort by, how far that is above a median, and where it leads."""
+
+    value: float | None
+    heat: float
+    link: str
+
+    def __new__(cls, text: str, value: float | None = None, heat: float = 0.0, link: str = "") -> "Cell":
+        """Words with what belongs to them."""
+        cell = super().__new__(cls, text)
+        cell.value, cell.heat, cell.link = value, heat, link
+        return cell
+
+
+def report_html(comparison: Comparison, charts: Mapping[str, Figure], tolerance: float) -> str:
+    """Write the page, with charts by the names of their files."""
+    drawn = {name: inline_svg(figure, name) for name, figure in charts.items()}
+    walls = [(f"wall-{name}", name) for name in comparison.scenes]
+    contents = [entry for entry in CONTENTS if entry[0] != "charts" or drawn]
+    return (
+        templates()
+        .get_template("report.html")
+        .render(
+            subject="comparison",
+            contents=[*contents, *walls, *CLOSING],
+            verdict=verdict(comparison),
+            full=f"{FULL:.0%}",
+            multipliers=[_coloured(comparison, sheet) for sheet in multiplier_sheets(comparison)],
+            charts=drawn,
+            cards=[_card(comparison, name) for name in comparison.scenes],
+            costs=cost_sheets(comparison),
+            provenance=Sheet("Versions", ("what", "which"), _versions(comparison, tolerance)),
+        )
+    )
+
+
+def loads(comparison: Comparison, name: str) -> dict[str, float]:
+    """Collapse loads of a wall by the models of its blocks that found one."""
+    outcomes = {x.name: comparison.outcome(name, x) for x in comparison.models if x.kind != "estimate"}
+    return {model: x.multiplier for model, x in outcomes.items() if x is not None and x.multiplier is not None}
+
+
+def verdict(comparison: Comparison) -> list[str]:
+    """What the campaign says as a whole: how many cases are decided, where models agree, where they differ most."""
+    said = Counter(outcome.status for outcome in comparison.campaign.outcomes.values())
+    rest = "".join(f", {count} {status}" for status, count in said.most_common() if status != "collapse")
+    rest += f", {k} have a model that does not apply" if (k := len(comparison.campaign.inapplicable)) else ""
+    sizes = (len(comparison.campaign), "case"), (len(comparison.scenes), "wall"), (len(comparison.models), "model")
+    cases, walls, models = (counted(*size) for size in sizes)
+    sentences = [f"{cases}: {walls} by {models}. {said['collapse']} end in a collapse load{rest}."]
+    found = {name: own for name in comparison.scenes if len(own := loads(comparison, name)) > 1 and min(own.values())}
+    spread = {name: max(own.values()) / min(own.values()) - 1 for name, own in found.items()}
+    if spread:
+        near = sum(x <= AGREE for x in spread.values())
+        sentences.append(f"Models of blocks agree within {AGREE:.0%} on {near} of {counted(len(spread), 'wall')}.")
+        worst = [_apart(found[x], x) for x in _largest(spread) if spread[x] > AGREE]
+        sentences[-1] += f" They differ most on {'; '.join(worst)}." if worst else ""
+    printed = {
+        f"{name}: {label} printed as {number(x)}, median {number(median)}": abs(x / median - 1)
+        for name, own in found.items()
+        for label, x in comparison.printed(name).items()
+        if label != CORRECTED and (median := statistics.median(own.values()))
+    }
+    if printed:
+        sentences.append(
+            f"Printed values lie farthest from the median of the models on {'; '.join(_largest(printed))}."
+        )
+    return sentences
+
+
+def _largest(sizes: Mapping[str, float]) -> list[str]:
+    return sorted(sizes, key=lambda name: -sizes[name])[:WORST]
+
+
+def _apart(found: Mapping[str, float], name: str) -> str:
+    low, high = min(found, key=lambda x: found[x]), max(found, key=lambda x: found[x])
+    return f"{name} ({low} {number(found[low])}, {high} {number(found[high])})"
+
+
+def _coloured(comparison: Comparison, sheet: Sheet) -> Sheet:
+    """A sheet of multipliers whose entries know their numbers, and how far these are from the median of a wall's."""
+    rows = []
+    for row in sheet.rows:
+        name, found = row[0], loads(comparison, row[0])
+        values = {x.name: o.multiplier for x in comparison.models if (o := comparison.outcome(name, x)) is not None}
+        values |= {x if x == CORRECTED else f"printed {x}": y for x, y in comparison.printed(name).items()}
+        median = statistics.median(found.values()) if found else 0.0
+        cells = [Cell(name, link=f"wall-{name}")]
+        for head, text in zip(sheet.heads[1:], row[1:], strict=True):
+            value = values.get(head)
+            off = (value / median - 1) / FULL if value is not None and median else 0.0
+            cells.append(Cell(text, value, max(-1.0, min(off, 1.0)) * STRONGEST))
+        rows.append(cells)
+    return replace(sheet, rows=rows)
+
+
+def _card(comparison: Comparison, name: str) -> dict[str, Any]:
+    """A wall: its mechanisms side by side, its curves, and what each model says and costs."""
+    scene = comparison.scenes[name]
+
+    def said(outcome: Outcome) -> str:
+        return "; ".join(filter(None, (outcome.message, mechanism_warning(scene, outcome))))
+
+    outcomes = {x.name: outcome for x in comparison.models if (outcome := comparison.outcome(name, x)) is not None}
+    shapes = {model: shape for model, x in outcomes.items() if (shape := mechanism_shape(scene, x)) is not None}
+    extent = common_extent([undeformed_shape(scene), *shapes.values()])
+    mechanisms = [
+        (
+            model,
+            Markup(inline_mechanism(shape, extent, f"rest-{name}")),
+            " ".join(multiplier_text(scene, outcomes[model])).strip(),
+        )
+        for model, shape in shapes.items()
+    ]
+    figure = wall_curves(comparison, name)
+    load = f"{load_symbol(scene)} [N]" if is_force(scene) else load_symbol(scene)
+    heads = ("model", load, "freedoms", "steps", "seconds", "message")
+    rows = [
+        (model, answer(x), *("–" if k is None else k for k in (x.dofs, x.steps)), f"{x.seconds:.2g}", said(x))
+        for model, x in outcomes.items()
+    ]
+    refused = [(model, why) for (wall, model), why in comparison.campaign.inapplicable.items() if wall == name]
+    rows += [(model, "n/a", "", "", "", why) for model, why in refused]
+    curve = inline_svg(figure, f"curves of {name}") if figure else ""
+    return {
+        "name": name,
+        "title": scene.title,
+        "mechanisms": mechanisms,
+        "rest": Markup(inline_wall(scene, extent, f"rest-{name}")),
+        "curve": curve,
+        "heads": heads,
+        "rows": rows,
+    }
+
+
+def _versions(comparison: Comparison, tolerance: float) -> list[tuple[str, str]]:
+    return [
         ("models", ", ".join(model.name for model in comparison.models)),
         ("tolerance", f"{tolerance:g}"),
         ("written", datetime.now(UTC).isoformat(timespec="seconds")),
         ("runningbond", f"{version('runningbond')}, sources {code_digest()[:16]}"),
         ("Python", f"{platform.python_version()} on {platform.system()} {platform.machine()}"),
-        *((name, version(name)) for name in (*LIBRARIES, "pyvista", "vtk", "matplotlib")),
+        *((name, version(name)) for name in (*LIBRARIES, *DRAWN_WITH)),
     ]
-    parts = [
-        "<h1>Masonry walls from their description to their collapse</h1>",
-        f"<p>{len(comparison.campaign)} cases: {len(comparison.scenes)} walls by {len(comparison.models)} models.</p>",
-        "<h2>Collapse multipliers</h2>",
-        *map(table_html, multiplier_sheets(comparison)),
-        "<h2>Charts and mechanisms</h2>",
-        *([f"<p>{html.escape(why_no_plates)}</p>"] if why_no_plates else []),
-        *map(figure_html, pictures),
-        "<h2>Cost</h2>",
-        *map(table_html, cost_sheets(comparison)),
-        "<h2>What was run</h2>",
-        table_html(Sheet("Versions", ("what", "which"), versions)),
-    ]
-    return page_html("comparison", parts)
-
-
-def page_html(subject: str, parts: Sequence[str]) -> str:
-    """One page of parts, which needs nothing from anywhere."""
-    return HEAD.format(subject=subject, style=STYLE) + "\n".join([*parts, "</body>\n</html>\n"])
-
-
-def table_html(sheet: Sheet, wrapped: bool = False) -> str:
-    """A table under its title; its cells hold sentences where it is `wrapped`."""
-    heads = "".join(f"<th>{html.escape(head)}</th>" for head in sheet.heads)
-    rows = "\n".join("<tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in row) + "</tr>" for row in sheet.rows)
-    title = html.escape(sheet.title)
-    kind = ' class="wrapped"' if wrapped else ""
-    return (
-        f'<h3>{title}</h3>\n<div class="wide"><table{kind} data-title="{title}">\n<thead><tr>{heads}</tr></thead>\n'
-        f"<tbody>\n{rows}\n</tbody>\n</table></div>"
-    )
-
-
-def figure_html(path: Path) -> str:
-    """A PNG file, in the page itself."""
-    data = base64.b64encode(path.read_bytes()).decode()
-    name = html.escape(path.stem)
-    return f'<figure><img alt="{name}" src="data:image/png;base64,{data}"><figcaption>{name}.png</figcaption></figure>'

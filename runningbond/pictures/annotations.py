@@ -9,7 +9,7 @@ from .loads import LoadDrawing
 from .numbers import block_numbers
 from .sketch import Sketch
 from .style import UNIT
-from .supports import draw_beam, draw_supports
+from .supports import draw_beam, draw_scale, draw_supports
 from .ties import draw_ties
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False) 
     draw_beam(sketch, shape)
     draw_ties(sketch, shape)
     LoadDrawing(sketch, shape).draw()
+    draw_scale(sketch, shape)
     return sketch
 
 

@@ -126,8 +126,9 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
     warning = mechanism_warning(scene, outcome)
     if not drawn:
         return Caption(title, load, [warning or "no mechanism"], [])
-    size = f"mechanism; the fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
-    return Caption(title, load, [size, warning] if warning else [size], key)
+    columns = 5 if sum(len(handle.get_label()) for handle in key) < 45 else 3
+    size = f"mechanism; its fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
+    return Caption(title, load, [size, warning] if warning else [size], key, columns)
 
 
 def wall_title(title: str) -> list[str]:

@@ -60,13 +60,17 @@ def bracket(axes: "Axes", x: float, row: Row, colour: str, **style: Any) -> None
 
 
 def mark(axes: "Axes", x: float, outcome: Outcome, colour: str, marker: str) -> None:
-    """A bar for a bracket and a mark on it; a hollow one, on a thin bar, where no collapse load was found."""
+    """A bar for the bracket and a mark on it; both hollow where no collapse load was found, and at 0 without any."""
+    from matplotlib.patches import Rectangle
+
     loads = [value for value in (outcome.lower, outcome.multiplier, outcome.upper) if value is not None] or [0.0]
-    place, width, face, edge = outcome.multiplier, 2.5, colour, 1.5
-    if place is None:
-        place, width, face, edge = loads[-1], 0.8, "white", 1.0
-    axes.plot([x, x], [loads[0], loads[-1]], color=colour, lw=width, solid_capstyle="butt")
-    axes.plot(x, place, marker, color=colour, mfc=face, ms=5, mew=edge, ls="none", clip_on=False)
+    found = outcome.multiplier is not None
+    axes.add_patch(
+        Rectangle((x - 0.025, loads[0]), 0.05, loads[-1] - loads[0], fc=colour if found else "white", ec=colour)
+    )
+    look = {"mfc": colour, "mew": 0.8, "mec": "white"} if found and marker != "_" else {"mfc": "white"}
+    place = loads[-1] if outcome.multiplier is None else outcome.multiplier
+    axes.plot(x, place, marker, color=colour, ms=6, ls="none", clip_on=False, **look)
 
 
 def in_units(unit: float) -> tuple[Callable[[ArrayLike], Array], Callable[[ArrayLike], Array]]:

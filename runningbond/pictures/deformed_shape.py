@@ -1,15 +1,17 @@
 """The deformed shape of a wall, as polygons of its blocks and of its joints' gaps: what every picture is drawn from."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
 
 from runningbond.results.mechanism import carried
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Indices, Mask, Scene
 
 from .joint_state import JointState
-from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, STATE_COLOURS, Colouring
+from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, SEEN, STATE_COLOURS, Colouring
 
 Extent: TypeAlias = tuple[float, float, float, float]
 """A part of the plane: left, right, bottom and top [m]."""
@@ -102,9 +104,28 @@ class DeformedShape:
         return left - air, right + air, bottom - air, top + air
 
     @property
+    def gaps(self) -> Array:
+        """How far the two ends of each joint are drawn apart, ``(nf, 2)`` [m]."""
+        faces = self.placed_faces
+        return np.asarray(np.hypot(*(faces[:, [3, 2]] - faces[:, [0, 1]]).transpose(2, 0, 1)))
+
+    @cached_property
+    def drawn_state(self) -> Indices:
+        """The state that each joint is drawn in, ``(nf,)``: it sticks where it opens by less than can be seen."""
+        unseen = (self.state == JointState.OPEN) & (self.gaps.max(axis=1) < SEEN * wall_size(self.scene))
+        return np.where(unseen, JointState.STICK, self.state)
+
+    @property
     def states(self) -> list[JointState]:
         """States of its joints that are drawn."""
-        return [state for state in STATE_COLOURS if state in self.state]
+        return [state for state in STATE_COLOURS if state in self.drawn_state]
+
+    @property
+    def hinges(self) -> Array:
+        """Closed ends about which joints that open turn, where they are drawn, ``(n, 2)`` [m]."""
+        closed = self.gaps.min(axis=1) < 0.5 * SEEN * wall_size(self.scene)
+        turns = closed & (self.drawn_state == JointState.OPEN)
+        return np.asarray(self.placed_faces[turns, self.gaps[turns].argmin(axis=1)])
 
     def drawn_displacement(self, block: Indices, at: Array) -> Array:
         """How far a point ``(2,)`` [m] of some blocks ``(n,)`` is drawn to have moved, ``(2,)`` [m]."""
@@ -135,6 +156,12 @@ def undeformed_shape(scene: Scene) -> DeformedShape:
     """The wall as it was built."""
     at_rest = np.zeros((len(scene.blocks), 3))
     return DeformedShape.of_rigid_blocks(scene, at_rest, np.zeros(len(scene.joints), np.int64), 0.0)
+
+
+def common_extent(shapes: Sequence[DeformedShape]) -> Extent:
+    """What shows all of several shapes of a wall."""
+    lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
+    return min(lefts), max(rights), min(bottoms), max(tops)
 
 
 def visible_scale(scene: Scene, displacement: Array) -> float:
@@ -172,13 +199,14 @@ def outer_edges(corner: Indices, first: Indices) -> Indices:
     return np.column_stack([single, following[single]])
 
 
-def outline(scene: Scene) -> list[Array]:
-    """Outline of the undeformed wall, openings and all: closed lines, each ``(n, 2)`` [m]."""
+def outline(scene: Scene, which: Mask | None = None) -> list[Array]:
+    """Outline of the undeformed wall, or of blocks ``(nb,)`` of it, openings and all: closed lines ``(n, 2)`` [m]."""
     import shapely
 
     blocks = scene.blocks
-    own = scene.wall[blocks.owner]
-    number = np.cumsum(scene.wall) - 1
+    which = scene.wall if which is None else which
+    own = which[blocks.owner]
+    number = np.cumsum(which) - 1
     polygons = shapely.polygons(shapely.linearrings(blocks.vertices[own], indices=number[blocks.owner[own]]))
     # What touches in the scene may be as far apart as the tolerance.
     union = shapely.union_all(shapely.buffer(polygons, blocks.tolerance, join_style="mitre"))

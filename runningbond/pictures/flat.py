@@ -4,6 +4,7 @@
 What joints do is told apart by colour, and in grey print by solid, dashed and dotted lines.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,11 +14,13 @@ from runningbond.scene import Array, Scene
 
 from .annotations import Room, annotate, axes_size, metres_of_point, room_for
 from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mechanism_caption, show_extent
-from .deformed_shape import DeformedShape, outline, undeformed_shape
-from .joint_state import VISIBLE, JointState
+from .deformed_shape import DeformedShape, Extent, outline, undeformed_shape
+from .joint_state import JointState
 from .legend import block_colours, joint_colour, used_joint_materials, wall_caption
 from .mechanism import mechanism_shape
 from .numbers import block_numbers
+from .quantities import readable
+from .resultants import resultants
 from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, tint
 
 if TYPE_CHECKING:
@@ -36,6 +39,9 @@ DASHES: dict[JointState, Any] = {
     JointState.DEBONDED: (0, (0.8, 1.2)),
 }
 
+THRUST, LEGIBLE = "#7b3294", 14.0
+"""Colour of the forces in joints, and how large blocks must be drawn for them [pt]."""
+
 HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DARK, "zorder": 5}
 
 
@@ -52,7 +58,8 @@ def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 
     Where there is none, or none that the loads drive, the undeformed wall is drawn and a note below says so.
     """
-    _draw(axes, *_mechanism(scene, outcome), is_mechanism=True)
+    shape, caption, thrust = _mechanism(scene, outcome)
+    _draw(axes, shape, caption, thrust=thrust)
 
 
 def figure_of(scene: Scene, outcome: Outcome | None = None, *, numbers: bool = False) -> "Figure":
@@ -60,14 +67,16 @@ def figure_of(scene: Scene, outcome: Outcome | None = None, *, numbers: bool = F
 
     With numbers of blocks it is as much larger as these need to be read.
     """
-    shape, caption = (undeformed_shape(scene), wall_caption(scene)) if outcome is None else _mechanism(scene, outcome)
+    shape, caption, thrust = undeformed_shape(scene), wall_caption(scene), None
+    if outcome is not None:
+        shape, caption, thrust = _mechanism(scene, outcome)
     room, enlarged = room_for([shape], shape.extent, (WIDTH, TALLEST), numbers=numbers), 1.0
     if numbers:
         smallest = min(one.label.size for one in block_numbers(scene, metres_of_point(room.extent, (WIDTH, TALLEST))))
         enlarged = float(np.clip(SMALLEST_NUMBER / smallest, 1.0, LARGEST_SHEET))
         room = room_for([shape], shape.extent, (enlarged * WIDTH, enlarged * TALLEST), numbers=numbers)
     figure, axes = figure_with_room(room.extent, caption, enlarged)
-    _draw(axes, shape, caption, room, is_mechanism=outcome is not None, numbers=numbers)
+    _draw(axes, shape, caption, room, thrust=thrust, numbers=numbers)
     return figure
 
 
@@ -77,21 +86,19 @@ def _draw(
     caption: Caption,
     room: Room | None = None,
     *,
-    is_mechanism: bool = False,
+    thrust: Array | None = None,
     numbers: bool = False,
 ) -> None:
+    """Draw a wall by its materials, or with its resultants the mechanism of one, into axes with room around it."""
     scene = shape.scene
     room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers)
     show_extent(axes, room.extent)
-    width = _line_width(axes, scene)
-    if is_mechanism:
-        _draw_ghost(axes, scene, width)
-    _draw_blocks(axes, shape, shape.block_colours() if is_mechanism else block_colours(scene), 0.5 * width)
-    if is_mechanism:
-        for state in shape.states:
-            _draw_joints(axes, shape, state, width)
-        axes.plot(*_hinges(shape).T, ms=2.2 * width, mew=0.4 * width, **HINGE)
+    width = line_width(scene, room.extent, axes_size(axes))
+    if thrust is not None:
+        paint_mechanism(axes, shape, width)
+        _draw_lines(axes, thrust, THRUST, 0.8, "solid")
     else:
+        _draw_blocks(axes, shape, block_colours(scene), 0.5 * width)
         for number in used_joint_materials(scene):
             lines, colour = scene.joints.ends[scene.material_of_joint == number], joint_colour(number)
             _draw_lines(axes, lines, colour, (1.0 if number else 0.6) * width, "solid")
@@ -99,21 +106,41 @@ def _draw(
     caption.write(axes)
 
 
-def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption]:
-    """What is drawn of an outcome, and its caption."""
+def paint_mechanism(axes: "Axes", shape: DeformedShape, width: float) -> None:
+    """Draw the blocks where they move to over the undeformed wall, what joints do, and hinges; lines so wide [pt]."""
+    _draw_ghost(axes, shape.scene, width)
+    _draw_blocks(axes, shape, shape.block_colours(), 0.5 * width)
+    for state in shape.states:
+        _draw_joints(axes, shape, state, width)
+    axes.plot(*shape.hinges.T, ms=2.4 * width, mew=0.5 * width, **HINGE)
+
+
+def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, Array]:
+    """What is drawn of an outcome: its shape, its caption, and its resultants where blocks are large enough."""
     from matplotlib.lines import Line2D
 
     mechanism = mechanism_shape(scene, outcome)
     shape = mechanism or undeformed_shape(scene)
-    hinge = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if len(_hinges(shape)) else []
-    key = [*hinge, *colour_key(shape.states, dashes=DASHES)]
-    return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None)
+    key = mechanism_key(shape.states, hinges=len(shape.hinges) > 0)
+    lines, largest = resultants(shape, outcome)
+    if len(lines) and mechanism and scene.block_size > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
+        key.append(Line2D([], [], color=THRUST, lw=0.8, label=f"force ≤ {readable(largest, 'N')}"))
+    else:
+        lines = lines[:0]
+    return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None), lines
 
 
-def _line_width(axes: "Axes", scene: Scene) -> float:
-    """Width of the lines of joints [pt]: a share of the smaller side of a block as it is drawn."""
-    points = 1 / metres_of_point((*axes.get_xlim(), *axes.get_ylim()), axes_size(axes))
-    return float(min(0.14 * scene.block_size * points, 1.2))
+def mechanism_key(states: Sequence[JointState], *, hinges: bool) -> list[Any]:
+    """What circles, dashes and colours of a mechanism stand for: handles of a legend."""
+    from matplotlib.lines import Line2D
+
+    circle = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if hinges else []
+    return [*circle, *colour_key(states, dashes=DASHES)]
+
+
+def line_width(scene: Scene, extent: Extent, size: tuple[float, float]) -> float:
+    """Width of the lines of joints [pt]: a share of the smaller side of a block drawn in so many inches."""
+    return float(min(0.14 * scene.block_size / metres_of_point(extent, size), 1.2))
 
 
 def _draw_ghost(axes: "Axes", scene: Scene, width: float) -> None:
@@ -138,13 +165,13 @@ def _draw_joints(axes: "Axes", shape: DeformedShape, state: JointState, width: f
     """The gaps and lines of joints in one state."""
     from matplotlib.collections import PolyCollection
 
-    faces, colour = shape.placed_faces[shape.state == state], STATE_COLOURS[state]
-    gaps = PolyCollection(faces, facecolors=[tint(colour)], edgecolors="none", zorder=3)
+    faces, colour = shape.placed_faces[shape.drawn_state == state], STATE_COLOURS[state]
+    gaps = PolyCollection(faces, facecolors=[tint(state)], edgecolors="none", zorder=3)
     axes.add_collection(gaps, autolim=False)
     # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.
     middle = (faces[:, :2] + faces[:, :1:-1]) / 2
     lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
-    _draw_lines(axes, lines, colour, width, DASHES[state])
+    _draw_lines(axes, lines, colour, (0.75 if state == JointState.OPEN else 1.0) * width, DASHES[state])
 
 
 def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: Any) -> None:
@@ -154,12 +181,3 @@ def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: A
     thin = {"lw": max(width, THINNEST), "alpha": float(np.clip(width / THINNEST, 0.25, 1.0))}
     drawn = LineCollection(list(lines), colors=[colour], linestyles=[dashes], capstyle="butt", zorder=4, **thin)
     axes.add_collection(drawn, autolim=False)
-
-
-def _hinges(shape: DeformedShape) -> Array:
-    """Ends about which joints that open turn, where they are drawn, ``(n, 2)`` [m]."""
-    faces = shape.placed_faces[shape.state == JointState.OPEN]
-    gaps = np.hypot(*(faces[:, [3, 2]] - faces[:, [0, 1]]).transpose(2, 0, 1))
-    least = VISIBLE * shape.scale * float(np.hypot(*shape.displacement.T).max(initial=0.0))
-    turns = (gaps.min(axis=1) < least) & (gaps.max(axis=1) > least)
-    return np.asarray(faces[turns, gaps[turns].argmin(axis=1)])

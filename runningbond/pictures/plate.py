@@ -7,11 +7,10 @@ from typing import Any, NamedTuple
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .captions import colour_key, to_png
-from .deformed_shape import DeformedShape
+from .captions import show_extent, to_png
+from .deformed_shape import DeformedShape, common_extent
+from .flat import line_width, mechanism_key, paint_mechanism
 from .joint_state import JointState
-from .pyvista_figure import draw_painted
-from .pyvista_painter import Painter
 
 WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
 TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
@@ -26,12 +25,9 @@ class PlateRow(NamedTuple):
     captions: Sequence[str]
 
 
-def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow], painter: Painter) -> bytes:
+def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> bytes:
     """Draw a plate as PNG; each row's extent shows all of its shapes."""
-    extents = []
-    for row in rows:
-        lefts, rights, bottoms, tops = zip(*(shape.extent for shape in row.shapes), strict=True)
-        extents.append((min(lefts), max(rights), min(bottoms), max(tops)))
+    extents = [common_extent(row.shapes) for row in rows]
     below = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
     ratios = [(top - bottom) / (right - left) for left, right, bottom, top in extents]
     room = TALLEST - TITLES - below * len(rows)
@@ -44,13 +40,14 @@ def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow], pai
     grid = figure.subplots(len(rows), len(columns), squeeze=False, height_ratios=ratios)
     for axes, column in zip(grid[0], columns, strict=True):
         axes.set_title(column, fontsize=8)
-    for line, row, extent, label in zip(grid, rows, extents, labels, strict=True):
+    for line, row, extent, label, ratio in zip(grid, rows, extents, labels, ratios, strict=True):
         _write(line[0], -0.04, 0.5, "\n".join(label), ha="right", va="center", fontsize=7.5)
         for axes, shape, caption in zip(line, row.shapes, row.captions, strict=True):
-            draw_painted(axes, shape, painter, extent)
+            show_extent(axes, extent)
+            paint_mechanism(axes, shape, line_width(shape.scene, extent, (width, ratio * width)))
             _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
-    handles = colour_key((JointState.SLIDE, JointState.OPEN))
-    figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=7, handlelength=1.6)
+    handles = mechanism_key((JointState.SLIDE, JointState.OPEN), hinges=True)
+    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=7, handlelength=1.6)
     return to_png(figure, DPI)
 
 

@@ -95,11 +95,11 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
     plotter.add_mesh(edges, color=EDGE, line_width=0.8 * width, opacity=strength, **flat)
 
     for level, (state, colour) in enumerate(STATE_COLOURS.items()):
-        corners = shape.placed_faces[shape.state == state].reshape(-1, 2)
+        corners = shape.placed_faces[shape.drawn_state == state].reshape(-1, 2)
         if len(corners):
             gaps = _polygons(corners, np.arange(0, len(corners) + 1, 4), 2.0 + level)
             faces = _lines(corners, np.arange(len(corners)).reshape(-1, 2), 2.5 + level)
-            plotter.add_mesh(gaps, color=tint(colour), **flat)
+            plotter.add_mesh(gaps, color=tint(state), **flat)
             thin = {"line_width": WIDTHS[state] * width * strength, "opacity": max(strength, FAINTEST)}
             plotter.add_mesh(faces, color=colour, **thin, **flat)
 

@@ -29,6 +29,12 @@ def millimetres(value: float) -> str:
     return f"{minus(1e3 * value)} mm"
 
 
+def round_length(most: float) -> float:
+    """The largest of 1, 2 and 5 times a power of ten that is not more than a length."""
+    power = 10.0 ** np.floor(np.log10(most))
+    return float(f"{max(k * power for k in (1, 2, 5) if k * power <= most * (1 + 1e-9)):g}")
+
+
 def minus(value: float) -> str:
     """A number with four digits and a true minus sign."""
     return f"{value + 0.0:.4g}".replace("-", "−")

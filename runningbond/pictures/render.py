@@ -9,8 +9,9 @@ from typing import Any
 
 from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
 
-from .captions import to_png
+from .captions import to_png, to_svg
 from .deformed_shape import DeformedShape, undeformed_shape
+from .flat import figure_of
 from .mechanism import has_mechanism, mechanism_shape
 from .pyvista_figure import frame_figure, mechanism_figure
 from .pyvista_painter import Painter, fill_plotter, look_at
@@ -23,7 +24,14 @@ FILM_DPI = 150
 FRAME_TIME, LAST_FRAME_TIME = 150, 2000
 """Milliseconds that a frame of a film is shown, and its last one."""
 
-PICTURES = ("mechanism.png", "last-moment.png", "film.gif")
+VECTOR = {".svg": to_svg, ".png": to_png}
+"""Writers of flat drawings, by the ending of their files."""
+
+DRAWN = tuple(f"mechanism{ending}" for ending in VECTOR)
+"""Drawings of a mechanism."""
+
+PICTURES = (*DRAWN, "rendering.png", "last-moment.png", "film.gif")
+"""What a folder can show, where it has a mechanism or a time series."""
 
 
 def remove_pictures(folder: Path) -> None:
@@ -32,10 +40,21 @@ def remove_pictures(folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
-def render_folder(folder: Path, colouring: Colouring = "displacement", *, moments: bool = True) -> list[Path]:
-    """Draw what a folder has to show: its mechanism, and of its time series the last moment and a film.
+def draw_folder(folder: Path) -> list[Path]:
+    """Draw the mechanism of a folder flat, ``mechanism.svg`` and ``mechanism.png``, if it has one; the files."""
+    outcome, scene = load_outcome(folder)[0], load_scene(folder)
+    if not has_mechanism(scene, outcome):
+        return []
+    figure = figure_of(scene, outcome)
+    for name, write in zip(DRAWN, VECTOR.values(), strict=True):
+        write_atomically(folder / name, write(figure))
+    return [folder / name for name in DRAWN]
 
-    It gives the files that it wrote: ``mechanism.png`` and, with `moments`, ``last-moment.png`` and ``film.gif``.
+
+def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[Path]:
+    """Paint what a folder has to show: its mechanism, and of its time series the last moment and a film.
+
+    It gives the files that it wrote: ``rendering.png``, ``last-moment.png`` and ``film.gif``.
 
     Raises
     ------
@@ -47,9 +66,9 @@ def render_folder(folder: Path, colouring: Colouring = "displacement", *, moment
     with closing(Painter()) as painter:
         if has_mechanism(scene, outcome):
             figure = mechanism_figure(scene, outcome, painter, colouring)
-            write_atomically(folder / "mechanism.png", to_png(figure))
-            written.append(folder / "mechanism.png")
-        return written + (_render_series(folder, colouring, painter) if moments else [])
+            write_atomically(folder / "rendering.png", to_png(figure))
+            written.append(folder / "rendering.png")
+        return written + _render_series(folder, colouring, painter)
 
 
 def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:

@@ -56,11 +56,16 @@ UNIT = 8.0
 TYPE, SMALL_TYPE = 7.5, 6.5
 """Sizes of type [pt]: titles and annotations, notes and keys."""
 
-DRAWN = 0.12
-"""How far the fastest corner is drawn to move, in sizes of the wall."""
+DRAWN, SEEN = 0.12, 0.004
+"""How far the fastest corner is drawn to move, and the least gap that can be seen as one, in sizes of the wall."""
 
 
-def tint(colour: str) -> Colour:
-    """A light shade of a colour ``#rrggbb``."""
-    red, green, blue = (1 - 0.45 * (1 - int(colour[i : i + 2], 16) / 255) for i in (1, 3, 5))
+TINTS = {JointState.SLIDE: 0.45, JointState.OPEN: 0.25, JointState.DEBONDED: 0.45}
+"""How much of their colour gaps are filled with: those that open are nearly white, in grey print too."""
+
+
+def tint(state: JointState) -> Colour:
+    """A light shade of a state's colour."""
+    colour = STATE_COLOURS[state]
+    red, green, blue = (1 - TINTS[state] * (1 - int(colour[i : i + 2], 16) / 255) for i in (1, 3, 5))
     return red, green, blue

@@ -8,9 +8,9 @@ from runningbond.scene import Array, Mask, Settlement
 
 from .deformed_shape import DeformedShape
 from .labels import Spot
-from .quantities import millimetres, minus
+from .quantities import millimetres, minus, round_length
 from .sketch import Sketch
-from .style import DARK, MOTION
+from .style import DARK, MOTION, SMALL_TYPE
 
 GREY = "0.45"
 
@@ -122,6 +122,18 @@ def draw_beam(sketch: Sketch, shape: DeformedShape) -> None:
         sketch.line(
             "beam guide", [(x[0] + a, high[1] + 2 * r + 0.14 * a), (x[1] - a, high[1] + 2 * r + 0.14 * a)], lw=0.5
         )
+
+
+def draw_scale(sketch: Sketch, shape: DeformedShape) -> None:
+    """A bar of a round length, below everything else."""
+    (left, base), (right, _) = shape.scene.blocks.extent(shape.scene.wall)
+    length, a = round_length((right - left) / 4), sketch.a
+    lowest = (sketch.room() or (0.0, 0.0, base))[2]
+    level = min(lowest, float(shape.placed[:, 1].min()), base - 0.55 * a) - 0.8 * a
+    for x in (left, left + length):
+        sketch.line("scale", [(x, level - 0.25 * a), (x, level + 0.25 * a)], lw=0.7)
+    sketch.line("scale", [(left, level), (left + length, level)], lw=0.7)
+    sketch.label(f"{length:g} m", [Spot(np.array([left + length, level]), (1.0, 0.0))], size=SMALL_TYPE)
 
 
 def _hatched(sketch: Sketch, name: str, surface: ArrayLike, depth: float, colour: str = GREY) -> None:

@@ -10,7 +10,7 @@ from typing import TypeAlias
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from runningbond.compare.report import figure_html, page_html, table_html
+from runningbond.compare.page import figure_html, page_html, table_html
 from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
 from runningbond.pictures.charts import bare
@@ -36,7 +36,9 @@ def write_page(subject: str, blocks: Sequence[Block], folder: Path, name: str) -
     """Write ``NAME.md`` and ``report.html``; returns the files of the page, its charts among them."""
     written = [folder / f"{name}.md", folder / "report.html"]
     write_atomically(written[0], "\n".join(map(_markdown, blocks)).encode())
-    write_atomically(written[1], page_html(subject, [_html(block) for block in blocks]).encode())
+    heads = [block[3:] for block in blocks if isinstance(block, str) and block.startswith("## ")]
+    contents = [(_identifier(head), head) for head in heads]
+    write_atomically(written[1], page_html(subject, [_html(block) for block in blocks], contents).encode())
     return [*written, *(block.path for block in blocks if isinstance(block, Picture))]
 
 
@@ -124,4 +126,9 @@ def _html(block: Block) -> str:
     for mark, tag in ((r"\*\*", "b"), (r"\*", "i"), ("`", "code")):  # Markdown's within a line
         text = re.sub(f"{mark}(.+?){mark}", rf"<{tag}>\1</{tag}>", text)
     level = len(block) - len(block.lstrip("#"))
-    return f"<h{level}>{text}</h{level}>" if level else f"<p>{text}</p>"
+    mark = f' id="{_identifier(block[3:])}"' if level == 2 else ""
+    return f"<h{level}{mark}>{text}</h{level}>" if level else f"<p>{text}</p>"
+
+
+def _identifier(head: str) -> str:
+    return re.sub(r"\W+", "-", head).strip("-").lower()

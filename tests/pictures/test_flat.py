@@ -15,10 +15,12 @@ from PIL import Image
 
 from runningbond.limit import limit
 from runningbond.pictures.captions import to_png, to_svg
+from runningbond.pictures.deformed_shape import DeformedShape
 from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.mechanism import mechanism_shape
-from runningbond.pictures.style import DRAWN, STATE_COLOURS
+from runningbond.pictures.resultants import resultants
+from runningbond.pictures.style import DRAWN, SEEN, STATE_COLOURS
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 from tests.walls import courses, panel
@@ -99,7 +101,38 @@ def test_what_joints_do_is_told_apart_without_colour() -> None:
     assert dashes[JointState.OPEN] is None
     assert dashes[JointState.SLIDE] is not None
     assert len(found[JointState.SLIDE].get_segments()) == (shape.state == JointState.SLIDE).sum()
-    assert len(found[JointState.OPEN].get_segments()) == 2 * (shape.state == JointState.OPEN).sum()
+    assert len(found[JointState.OPEN].get_segments()) == 2 * (shape.drawn_state == JointState.OPEN).sum()
+
+
+def test_a_gap_too_small_to_be_seen_is_not_painted() -> None:
+    """A stack of two: the upper block turns by the full size, or lifts off by just more or less than can be seen."""
+    scene = courses([[1], [1]], width=0.4, height=0.4)
+    upper = int(np.argmax(scene.blocks.centroid[:, 1] * scene.wall))
+    for share, states in ((0.9, []), (1.1, [JointState.OPEN])):
+        motion = np.zeros((len(scene.blocks), 3))
+        motion[scene.wall, 0] = 1.0
+        motion[upper, 1] = share * SEEN / DRAWN
+        opens = np.where((scene.joints.block == upper).any(axis=1), JointState.OPEN, JointState.STICK)
+        assert DeformedShape.of_rigid_blocks(scene, motion, opens, 0.0).states == states
+
+
+def test_forces_run_through_their_centres_of_pressure_and_balance_the_wall() -> None:
+    """A block 0.2 × 0.4 m toppling at λ = 1/2: its weight and half of that push on the ground through the toe."""
+    scene = courses([[1]], width=0.2, height=0.4)
+    outcome = limit(scene)
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    (line,), largest = resultants(shape, outcome)
+    weight = float(scene.mass[scene.wall].sum()) * 9.81
+    assert largest == pytest.approx(weight * np.hypot(1, 0.5), rel=1e-6)
+    assert line.mean(axis=0) == pytest.approx([0.2, 0.0], abs=1e-6)
+    run = line[1] - line[0]
+    assert abs(run[1] / run[0]) == pytest.approx(2.0, rel=1e-6)
+    assert run[0] * run[1] < 0
+    assert np.hypot(*run) == pytest.approx(scene.block_size, rel=1e-9)
+    assert "force ≤" in texts(figure_of(scene, outcome))
+    assert "force ≤" not in texts(figure_of(panel(), limit(panel())))
+    assert not len(resultants(shape, replace(outcome, force=np.zeros((0, 2))))[0])
 
 
 def test_a_hinge_is_marked_where_a_block_turns() -> None:

@@ -4,19 +4,22 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from matplotlib.figure import Figure
 from matplotlib.image import imread
+from matplotlib.text import Text
 
 from runningbond.commands.command_line import command
 from runningbond.compare import MODELS
 from runningbond.joints import joint_stiffness
 from runningbond.studies import Row, Rows
-from runningbond.studies.accuracy.charts import pareto_front
+from runningbond.studies.accuracy.charts import MARKS, pareto_front
 from runningbond.studies.accuracy.measure import machine, measure
 from runningbond.studies.accuracy.parameters import PARAMETERS, VARIED, settings_of
 from runningbond.studies.accuracy.questions import ask
@@ -319,6 +322,27 @@ def test_charts_are_not_blank(written: list[Path], tmp_path: Path) -> None:
         assert 0.01 < (image.min(axis=2) < 0.95).mean() < 0.5
         assert len(np.unique(image @ [1, 256, 65536])) > 100
     assert draw_charts(STUDY, {name: [] for name in STUDY.parts}, tmp_path / "none") == []
+
+
+def test_names_hide_neither_each_other_nor_marks(tmp_path: Path) -> None:
+    """Over degrees of freedom all settings of a model stand above each other; their errors lie close together."""
+    rows = table()
+    rows["accuracy"] = [
+        row | {"error": row["error"] * (1.0 + 2.0 * (k % 7)) if row["parameter"] else row["error"] / 50}
+        for k, row in enumerate(rows["accuracy"])
+        if row["error"]
+    ]
+    figure = Figure((8, 4.6), layout="constrained")
+    STUDY.charts[1].draw(figure, rows)
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        names = [Text.get_window_extent(text) for text in axes.texts]  # without the lines to marks
+        assert len(names) > 4
+        assert not any(one.overlaps(other) for one, other in combinations(names, 2))
+        marks = np.concatenate(
+            [axes.transData.transform(line.get_xydata()) for line in axes.lines if line.get_marker() in MARKS.values()]
+        )
+        assert not any(box.contains(*mark) for box in names for mark in marks)
 
 
 def test_the_page_tells_all_of_the_study(written: list[Path]) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from runningbond.compare.models import MODEL_LOOKS
 from runningbond.pictures.charts import in_units
+from runningbond.pictures.labels import Label, Spot, place_labels
 from runningbond.studies import Chart, Row, Rows
 
 from .measure import REFERENCE
@@ -18,8 +19,9 @@ from .parameters import VARIED
 from .tables import CHANGED, exponent, growth, stiffness
 
 FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and the end of the axis
-RIGID = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic")  # models with three freedoms a block,
-ASIDE = 1.1  # and the ratio by which they stand apart
+RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1  # with three freedoms; apart by
+
+Named: TypeAlias = tuple[float, float, str, str]  # a point of a chart, the name to write beside it, and its colour
 LEGEND_ROWS = 3
 DRIVEN = "driven, steps"
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
@@ -32,67 +34,102 @@ TITLES = {
 }
 
 
-def draw_errors(draw: Callable[[Axes, Sequence[Row]], None], cost: str, what: str, figure: Figure, rows: Rows) -> None:
+def draw_errors(
+    draw: Callable[[Axes, Sequence[Row]], "list[Named]"], cost: str, what: str, figure: Figure, rows: Rows
+) -> None:
     """Error against a cost, wall by wall."""
     drawn = [row for row in rows["accuracy"] if row.get(cost) and row["model"] != "homog"]  # which costs nothing
     judged = [row for row in drawn if row.get("error") is not None]
+    named: list[tuple[Axes, list[Named]]] = []
     for axes, wall in zip(np.ravel(figure.subplots(2, 2, sharey=True)), VARIED, strict=True):
         own = [row for row in judged if row["wall"] == wall]
         if own:
-            draw(axes, own)
+            named.append((axes, draw(axes, own)))
         axes.set_title(TITLES[wall], fontsize=11, loc="left", fontweight="bold")
         axes.set_xlabel(what)
         axes.set_ylabel("relative error of λ" if axes.get_subplotspec().is_first_col() else "")
     _legend(figure, judged)
+    figure.draw_without_rendering()  # marks have their places from here on
+    for axes, points in named:
+        _name(axes, points)
 
 
-def _against_seconds(axes: Axes, rows: Sequence[Row]) -> None:
+def _name(axes: Axes, points: Sequence[Named]) -> None:
+    """Write names beside their marks, where they hide neither marks nor each other, with a line from one to the other.
+
+    Points without a name are in the way only.
+    """
+    point = 72 / axes.figure.dpi
+    places = point * axes.transData.transform([(x, y) for x, y, *_ in points])
+    marks = np.stack([places - 5, places + 5], axis=1)
+    texts = [(at, text, colour) for at, (_, _, text, colour) in zip(places, points, strict=True) if text]
+    sides = ((1.0, 0.0), (1.0, 1.0), (1.0, -1.0), (-1.0, 0.0), (-1.0, 1.0), (-1.0, -1.0), (0.0, 1.0))
+    labels = [
+        Label(text, [Spot(at + 5 * np.sign(side), side) for side in sides], colour, 8) for at, text, colour in texts
+    ]
+    for (at, _, _), placed in zip(texts, place_labels(labels, marks, 1.0), strict=True):
+        near = np.clip(at, *placed.box)
+        leads = {"arrowprops": {"arrowstyle": "-", "lw": 0.6, "color": placed.label.colour, "shrinkA": 0, "shrinkB": 4}}
+        far: dict[str, Any] = leads if np.hypot(*(near - at)) > 9 else {}
+        where: dict[str, Any] = {
+            "xycoords": "figure points",
+            "textcoords": "figure points",
+            "ha": "center",
+            "va": "center",
+        }
+        size: dict[str, Any] = {"fontsize": 8, "color": placed.label.colour, "annotation_clip": False}
+        axes.annotate(
+            placed.label.text, at, (float(placed.middle[0]), float(placed.middle[1])), **where, **size, **far
+        ).set_in_layout(False)
+
+
+def _against_seconds(axes: Axes, rows: Sequence[Row]) -> list[Named]:
     """On the second axis in those of the limit program on the same wall."""
     seconds = [row["cpu_s"] for row in rows]
-    _draw_errors(axes, rows, seconds, seconds)
+    named = _draw_errors(axes, rows, seconds, seconds)
     unit = next((row["cpu_s"] for row in rows if row["model"] == REFERENCE), None)
     if unit:
         ratio = axes.secondary_xaxis("top", functions=in_units(unit))
         ratio.set_xlabel(f"times the {REFERENCE} program on the same wall", fontsize=9, color="0.35")
+    return named
 
 
-def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> None:
+def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> list[Named]:
     """Models with the same number of them stand side by side."""
     freedoms = [float(row["dofs"]) for row in rows]
     aside = {model: ASIDE ** (i - (len(RIGID) - 1) / 2) for i, model in enumerate(RIGID)}
     beside = [x * aside.get(row["model"], 1.0) for x, row in zip(freedoms, rows, strict=True)]
-    _draw_errors(axes, rows, freedoms, beside)
+    named = _draw_errors(axes, rows, freedoms, beside)
     ticks: list[float] = []
     for number in sorted(set(freedoms)):
         if not ticks or number > 1.35 * ticks[-1]:
             ticks.append(number)
     axes.set_xticks(ticks, [f"{number:,.0f}" for number in ticks])
     axes.minorticks_off()
+    return named
 
 
-def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequence[float]) -> None:
-    """Draw errors at `x`, next to their `cost`, and the front of those that nothing beats."""
+def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequence[float]) -> list[Named]:
+    """Draw errors at `x`, next to their `cost`, and the front of those that nothing beats; points with their names."""
     y, right = [max(row["error"], FLOOR) for row in rows], 3 * max(x)
     axes.set(xscale="log", yscale="log", xlim=(min(x) / 2, right), ylim=(FLOOR / 1.8, TOP))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
-    style: dict[str, Any] = {"ha": "right", "va": "center", "fontsize": 8, "color": "0.35"}
-    axes.annotate("0.01 % or less", (0.99, FLOOR / 1.35), xycoords=("axes fraction", "data"), **style)
+    axes.set_yticks([FLOOR, 1e-3, 1e-2, 0.1, 1.0], ["â¤ 0.01 %", "0.1 %", "1 %", "10 %", "100 %"])
     front = pareto_front(cost, y)
     ends = [x[front[0]], *(x[i] for i in front), right], [TOP, *(y[i] for i in front), y[front[-1]]]
     axes.step(*ends, where="post", color="0.55", lw=1.4, zorder=1)
     plain = {row["model"]: error for row, error in zip(rows, y, strict=True) if not row["parameter"]}
+    named: list[Named] = []
     for at, error, row in zip(x, y, rows, strict=True):
         (colour, _), driven = MODEL_LOOKS[row["model"]], row["parameter"] == DRIVEN
         hollow: dict[str, Any] = {"color": "none", "mec": colour, "mew": 1.5, "ms": 9 if driven else 7, "zorder": 2}
         filled: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.8, "ms": 11, "zorder": 3}
         axes.plot(at, error, MARKS[row["parameter"]], **(hollow if row["parameter"] else filled))
-        # A setting that changes the error is named, above its mark where those of others stand beside it.
-        if row["parameter"] and not 1 / CHANGED < error / plain.get(row["model"], error) < CHANGED:
-            above = driven and row["model"] != "fem"
-            aside: dict[str, Any] = {"xytext": (-3, 7), "va": "bottom"} if above else {"xytext": (7, 0), "va": "center"}
-            aside |= {"textcoords": "offset points", "ha": "left", "fontsize": 8}
-            axes.annotate(row["setting"], (at, error), color=colour, **aside)
+        # A setting that changes the error is named.
+        changed = row["parameter"] and not 1 / CHANGED < error / plain.get(row["model"], error) < CHANGED
+        named.append((at, error, row["setting"] if changed else "", colour))
     axes.grid(which="major", color="0.9", lw=0.7)
+    return named
 
 
 def pareto_front(cost: Sequence[float], error: Sequence[float]) -> list[int]:

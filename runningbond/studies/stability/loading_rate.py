@@ -9,8 +9,10 @@ too high by the rate to the power 2/3. Under displacement control inertia resist
 its speed; what is left, a soft start later, are the waves of that start.
 """
 
+from collections.abc import Mapping
 from functools import cache
 from itertools import product
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -32,6 +34,7 @@ PUSHES = tuple(1_000 * 2**k for k in range(12))  # steps in which a wall is push
 LOADINGS = (0, 1, 4, LOADING, 2 * LOADING, 8 * LOADING)  # times of the first load step, in times to rest
 DRY = ("panel-12", "point-load-4")  # published walls whose λ depends on their history; the second has no weight
 ORDER, LOOK, BRACKET = 2 / 3, 5, 0.005  # power of the rate in (2), steps between two looks, width of brackets
+FLOOR = 1e-4  # least difference that charts show [%]
 RAMPS, DRIVEN, STEPPED, OWN = "Ramps", "Displacement control", "Load steps", "The suite's own speeds"
 RATE, SPEED, OFF, LOADED = "rate [1/s]", "speed [mm/s]", "off by [%]", "first step in [times to rest]"
 
@@ -151,6 +154,11 @@ def fits(rows: Rows) -> list[Edge]:
     return edges
 
 
+def _above_floor(row: Mapping[str, Any]) -> float | None:
+    """How far λ is off [%]; None where that is no more than can be told from nothing."""
+    return abs(row[OFF]) if abs(row[OFF]) > FLOOR else None
+
+
 def _draw(figure: Figure, rows: Rows) -> None:
     left, middle, right = figure.subplots(1, 3, width_ratios=(1.2, 1.2, 0.8))
     looks = looks_of(WALLS)
@@ -163,10 +171,17 @@ def _draw(figure: Figure, rows: Rows) -> None:
     left.annotate("between the\nsuite's steps", (0.93 * between, 1.3), ha="right", color="0.4", fontsize=8)
     left.set(xscale="log", yscale="log", xlabel="rate of the ramp dλ/dt [1/s]", ylabel="λ too high by [%]")
     left.set(ylim=(1, 100), yticks=[1, 10, 100], yticklabels=["1", "10", "100"])
-    series(middle, rows[DRIVEN], SPEED, lambda row: max(abs(row[OFF]), 1e-4), "wall", looks, lw=1, ms=5)
+    series(middle, rows[DRIVEN], SPEED, _above_floor, "wall", looks, lw=1, ms=5)
+    below = [row for row in rows[DRIVEN] if _above_floor(row) is None]
+    floor = {name: (colour, "v") for name, (colour, _) in looks.items()}
+    series(middle, below, SPEED, lambda row: FLOOR, "wall", floor, ls="none", mfc="white", ms=5, label="_")
+    middle.axhspan(FLOOR / 2, 1.6 * FLOOR, color="0.93", lw=0, zorder=0)
+    middle.set_ylim(FLOOR / 2, None)
     level(middle, 1, "1 %")
     middle.set(xscale="log", yscale="log", xlabel="speed of the blocks [mm/s]", ylabel="peak of λ off by [%]")
-    middle.annotate("0.0001 and less", (0.03, 0.1), xycoords="axes fraction", color="0.4", fontsize=8)
+    middle.set_yticks(
+        [10.0**k for k in range(-4, 5)], ["▿ ≤ 0.0001", "0.001", "0.01", "0.1", "1", "10", "100", "1000", "10⁴"]
+    )
     for name, (colour, _), aside in zip((W1, *DRY), LOOKS[2:], (-0.2, 0, 0.2), strict=True):
         own, places = [row for row in rows[STEPPED] if row["wall"] == name], np.arange(len(LOADINGS)) + aside
         unit = own[-1]["λ"] if name in DRY else known_wall(name).multiplier  # of the slowest loading, or known

@@ -21,6 +21,7 @@ from runningbond.scene.blocks import CONTACT_TOLERANCE
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import Box, boxes
 
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 UNSEEN = 1e-4  # multiplier below which models in motion see no difference from zero
 SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of one and the same wall
 PART = "Answers"
@@ -92,18 +93,15 @@ GLUED = {"friction": 0.0, "cohesion": 300.0, "tensile_strength": 0.0}
 ON_SMALL = (0.01 * 0.005 * 0.01 + 1 * 0.005) / (0.01 * 0.01 * 0.005 + 1 * 0.51)
 EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may be refused, and what is true of them
     "tan φ = 0": (lambda: panel(joint=dry(friction=0.0)), 0.0),
-    "tan φ = 1e-9": (lambda: panel(joint=dry(friction=1e-9)), "refused"),
-    "tan φ = 1e-6": (lambda: panel(joint=dry(friction=1e-6)), 1e-6),
-    "tan φ = 1e-3": (lambda: panel(joint=dry(friction=1e-3)), 1e-3),
+    "tan φ = 10⁻⁹": (lambda: panel(joint=dry(friction=1e-9)), "refused"),
+    "tan φ = 10⁻⁶": (lambda: panel(joint=dry(friction=1e-6)), 1e-6),
+    "tan φ = 0.001": (lambda: panel(joint=dry(friction=1e-3)), 1e-3),
     "tan φ = 3, pier": (lambda: pier(0.24, 0.36, 3, friction=3.0), 2 / 3),
-    "tan φ = 1e6, pier": (lambda: pier(0.24, 0.36, 3, friction=1e6), 2 / 3),
-    "c, G → 0": (lambda: panel(joint=dry(cohesion=1e-3, fracture_energy_1=1e-9, fracture_energy_2=1e-9)), 0.6),
-    "G = 0, c = 1 kPa": (
-        lambda: panel(joint=dry(cohesion=1e3, **BRITTLE)),
-        (0.6, 0.836),
-    ),
-    "f_t = 0, c = 10 kPa": (lambda: pier(0.24, 0.36, 3, cohesion=1e4, tensile_strength=0.0), 2 / 3),
-    "tan φ = f_t = 0, c = 300 Pa": (lambda: pier(0.24, 0.12, 1, **GLUED), 300.0 / (1800.0 * 9.81 * 0.12)),
+    "tan Ï = 10â¶, pier": (lambda: pier(0.24, 0.36, 3, friction=1e6), 2 / 3),
+    "c, G â 0": (lambda: panel(joint=dry(cohesion=1e-3, fracture_energy_1=1e-9, fracture_energy_2=1e-9)), 0.6),
+    "G = 0, c = 1 kPa": (lambda: panel(joint=dry(cohesion=1e3, **BRITTLE)), (0.6, 0.836)),
+    "fâ = 0, c = 10 kPa": (lambda: pier(0.24, 0.36, 3, cohesion=1e4, tensile_strength=0.0), 2 / 3),
+    "tan Ï = fâ = 0, c = 300 Pa": (lambda: pier(0.24, 0.12, 1, **GLUED), 300.0 / (1800.0 * 9.81 * 0.12)),
     "self-locking: pressed": (lambda: pressed(0.24, [0.0, -1.0]), "unbounded"),
     "self-locking: one block pinned": (
         lambda: pressed(0.12, [1.0, -1.0], wall=BRICK, support={"kind": "pinned-corners"}),
@@ -119,7 +117,7 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may b
     "small on large, 1:100": (lambda: piled((0, 0, 1, 1), (0.495, 1, 0.01, 0.02)), 0.5),
     "large on small, 100:1": (lambda: piled((0.495, 0, 0.01, 0.01), (0, 0.01, 1, 1)), ON_SMALL),
     "1 µm wall, same mortar": (lambda: panel(SIZES[0] / 0.48), 0.6),
-    "1e-06 m wall, similar": (lambda: similar(SIZES[0] / 0.48), 0.6),
+    "1 µm wall, similar": (lambda: similar(SIZES[0] / 0.48), 0.6),
     "1 m wall, similar": (lambda: similar(SIZES[1] / 0.48), 0.6),
     "1000 m wall, similar": (lambda: similar(SIZES[2] / 0.48), 0.6),
 }
@@ -128,7 +126,7 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may b
 def answer(what: str, model: str) -> Row:
     """What a model answers about an extreme, what that is worth, and the message or the refusal."""
     build, exact = EXTREMES[what]
-    row: Row = {"exact": _in_words(exact)}
+    row: Row = {"exact": in_words(exact)}
     try:
         outcome = MODELS[model].solve(build(), TOLERANCE)
     except SceneError as error:
@@ -139,12 +137,28 @@ def answer(what: str, model: str) -> Row:
     lower, upper = outcome.lower, outcome.upper
     if said != outcome.status and lower is not None and upper is not None and upper - lower > 1e-6 * upper:
         said = lower, upper
-    row |= {"answer": _in_words(said), "worth": worth(outcome, exact), "λ": outcome.multiplier}
+    row |= {"answer": in_words(said), "worth": worth(outcome, exact), "λ": outcome.multiplier}
     return row | {"message": outcome.message}
 
 
-def _in_words(exact: Exact) -> str:
-    return exact if isinstance(exact, str) else "–".join(map(number, exact if isinstance(exact, tuple) else (exact,)))
+def _length(size: float) -> str:
+    return f"{1e6 * size:g} µm" if size < 1e-3 else f"{size:g} m"
+
+
+def in_words(exact: Exact) -> str:
+    """An answer as a chart says it: an interval from nothing by its upper end, one of equal ends as a number."""
+    if isinstance(exact, str):
+        return exact
+    ends = list(dict.fromkeys(_plain(x) for x in (exact if isinstance(exact, tuple) else (exact,))))
+    return f"≤ {ends[1]}" if len(ends) > 1 and ends[0] == "0" else " – ".join(ends)
+
+
+def _plain(value: float) -> str:
+    """A multiplier without an exponent in letters."""
+    if value == 0 or value >= 1e-4:
+        return number(value) if value else "0"
+    mantissa, power = f"{value:.2g}".split("e")
+    return ("" if mantissa == "1" else f"{mantissa} × ") + "10" + str(int(power)).translate(RAISED)
 
 
 def worth(outcome: Outcome, exact: Exact) -> str:
@@ -182,11 +196,11 @@ def fits(rows: Rows) -> list[Edge]:
     edges = []
     for model in MODELS:
         loads = {row["wall"]: row.get("λ") for row in rows[PART] if row["model"] == model}
-        usual = loads[f"{SIZES[1]:g} m wall, similar"]
+        usual = loads[f"{_length(SIZES[1])} wall, similar"]
         for size in (SIZES[0], SIZES[2]):
-            load = loads[f"{size:g} m wall, similar"]
+            load = loads[f"{_length(size)} wall, similar"]
             if load is not None and usual is not None:
-                edges.append(Edge(f"λ of a wall of {size:g} m, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
+                edges.append(Edge(f"λ of a wall of {_length(size)}, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
     count = Counter(row["worth"] for row in rows[PART])
     return edges + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
 

@@ -1,0 +1,60 @@
+"""HTML pages that hold everything and need nothing from anywhere, filled in from the templates beside this file."""
+
+import base64
+import io
+import re
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+from jinja2 import Environment, PackageLoader
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from .table import Sheet
+
+
+@cache
+def templates() -> Environment:
+    """The templates of pages, which escape what is filled in."""
+    return Environment(loader=PackageLoader("runningbond.compare"), autoescape=True, trim_blocks=True)
+
+
+def page_html(subject: str, parts: Sequence[str], contents: Sequence[tuple[str, str]] = ()) -> str:
+    """One page of parts, with contents: identifiers of headings, and what they are called there."""
+    marked = [Markup(part) for part in parts]
+    return templates().get_template("page.html").render(subject=subject, parts=marked, contents=contents)
+
+
+def table_html(sheet: Sheet, wrapped: bool = False) -> str:
+    """A table under its title; its cells hold sentences where it is `wrapped`."""
+    return str(_parts().table(sheet, wrapped))
+
+
+@cache
+def _parts() -> Any:
+    return templates().get_template("parts.html").module
+
+
+def figure_html(path: Path) -> str:
+    """A PNG file, in the page itself."""
+    data = base64.b64encode(path.read_bytes()).decode()
+    image = Markup('<img alt="{0}" src="data:image/png;base64,{1}">').format(path.stem, data)
+    return str(Markup("<figure>{}<figcaption>{}.png</figcaption></figure>").format(image, path.stem))
+
+
+def inline_svg(figure: Figure, title: str) -> Markup:
+    """A chart as an ``svg`` element: words as words, long lines in tenths of a point, no identifiers of groups."""
+    buffer = io.StringIO()
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": title}):
+        figure.savefig(buffer, format="svg", metadata={"Date": None}, transparent=True)
+    svg = buffer.getvalue()
+    svg = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", svg[svg.index("<svg") :], flags=re.DOTALL)
+    svg = re.sub(r'<g id="[^"]*">', "<g>", svg)
+    svg = re.sub(r' xmlns(:xlink)?="[^"]*"|<!DOCTYPE[^>]*>', "", svg).replace("xlink:href", "href")
+    svg = re.sub(r' d="[^"]{400,}"', lambda path: re.sub(r"(\.\d)\d+", r"\1", path[0]), svg)
+    svg = re.sub(r"\s*\n\s*", " ", svg)
+    name = Markup('<svg class="chart" role="img" aria-label="{}"').format(title)
+    return Markup(svg.replace("<svg", str(name), 1))

@@ -1,0 +1,79 @@
+"""A mechanism as a small drawing in a page: SVG of few bytes, blocks of one colour in one path."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from runningbond.scene import Array, Scene
+
+from .deformed_shape import DeformedShape, Extent, outline
+from .flat import line_width
+from .joint_state import JointState
+from .style import AT_REST, STATE_COLOURS, tint
+
+WIDTH, UNITS, SHADES, SEEN_AREA = 2.4, 700, 24, 30
+"""Width on paper [in], whole units that it is drawn in, shades of a colour, and least gap that is filled [units²]."""
+
+
+def inline_wall(scene: Scene, extent: Extent, name: str) -> str:
+    """The blocks of a wall at rest, which its mechanisms within the same extent refer to by a name."""
+    polygons = (scene.blocks.polygon(int(k)) for k in np.flatnonzero(scene.wall))
+    paths = {name: _path(polygons, extent), f"{name}-outline": _path(outline(scene), extent)}
+    defined = "".join(f'<path id="{key}" d="{path}"/>' for key, path in paths.items())
+    return f'<svg width="0" height="0"><defs>{defined}</defs></svg>'
+
+
+def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
+    """A shape within an extent, as an ``svg`` element of the class ``wall``, over its `inline_wall` of some name.
+
+    Gaps of what opens are filled, joints that slide dashed, hinges circles, and the undeformed outline is dashed.
+    """
+    left, right, bottom, top = extent
+    scale, rest = UNITS / (right - left), _hex(AT_REST)
+    height = round((top - bottom) * scale)
+    width = line_width(shape.scene, extent, (WIDTH, WIDTH * height / UNITS)) * UNITS / (72 * WIDTH)
+    moved = np.maximum.reduceat(np.hypot(*(shape.placed - shape.points).T), shape.first[:-1]) * scale > 0.5
+    away = np.zeros(len(shape.scene.blocks), np.bool_)
+    away[shape.block[moved]] = True
+    parts = [
+        f'<svg class="wall" viewBox="0 0 {UNITS} {height}" stroke-width="{0.5 * width:.1f}" aria-hidden="true">',
+        f'<use class="block" href="#{name}" fill="{rest}"/>',
+        f'<path class="void" d="{_path(outline(shape.scene, away) if away.any() else [], extent)}"/>',
+        f'<use class="ghost" href="#{name}-outline"/>',
+    ]
+    polygons = np.split(shape.placed, shape.first[1:-1])
+    colours, kind = np.unique(np.rint(shape.block_colours() * SHADES) / SHADES, axis=0, return_inverse=True)
+    for k, colour in enumerate(colours):
+        own = [polygon for polygon, one in zip(polygons, moved * (1 + kind.ravel()), strict=True) if one == k + 1]
+        if own:
+            parts.append(f'<path class="block" d="{_path(own, extent)}" fill="{_hex(colour)}"/>')
+    for state in shape.states:
+        faces, colour = shape.placed_faces[shape.drawn_state == state], STATE_COLOURS[state]
+        across, along = faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1]
+        area = np.abs(across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0]) / 2
+        parts.append(f'<path d="{_path(faces[area * scale**2 > SEEN_AREA], extent)}" fill="{_hex(tint(state))}"/>')
+        middle = (faces[:, :2] + faces[:, :1:-1]) / 2
+        lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
+        dashes = "" if state == JointState.OPEN else f' stroke-dasharray="{2.6 * width:.0f} {1.3 * width:.0f}"'
+        look = f'stroke="{colour}" stroke-width="{(0.75 if state == JointState.OPEN else 1) * width:.1f}"'
+        parts.append(f'<path d="{_path(lines, extent, "")}" fill="none" {look}{dashes}/>')
+    for x, y in np.rint(scale * (shape.hinges - [left, top]) * [1, -1]).astype(int):
+        parts.append(f'<circle cx="{x}" cy="{y}" r="{1.2 * width:.1f}" fill="#fff" stroke="#404040"/>')
+    return "".join([*parts, "</svg>"])
+
+
+def _path(lines: Iterable[Array], extent: Extent, close: str = "z") -> str:
+    left, right, _, top = extent
+    scale = UNITS / (right - left)
+    return "".join(f"M{_steps(scale * (line - [left, top]) * [1, -1])}{close}" for line in lines)
+
+
+def _steps(points: Array) -> str:
+    """A point and the steps from one to the next, in whole units; without spaces that a minus makes needless."""
+    whole = np.rint(points).astype(int)
+    start, steps = (" ".join(map(str, part.ravel())) for part in (whole[0], np.diff(whole, axis=0)))
+    return f"{start}l{steps}".replace(" -", "-")
+
+
+def _hex(colour: Iterable[float]) -> str:
+    return "#" + "".join(f"{round(255 * part):02x}" for part in colour)
