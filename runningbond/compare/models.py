@@ -36,7 +36,10 @@ EXTRAS = frozenset(
         "load.live settlement",
     }
 )
-"""All that a model may know of `Scene.extras`."""
+"""All that a static model may know of `Scene.extras`."""
+
+IN_MOTION = EXTRAS | {"load.history"}
+"""All that there is."""
 
 KERNELS = 3.0
 """Seconds until the kernels of blocks in motion are loaded."""
@@ -106,7 +109,7 @@ _EVERY_MODEL = (
         progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
         interruptible=True,
         cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
-        takes=EXTRAS,
+        takes=IN_MOTION,
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
         colour="#2a9d8f",
         marker="^",
@@ -119,7 +122,7 @@ _EVERY_MODEL = (
         progress=partial(_late, "runningbond.compare.progress", "MotionProgress"),
         interruptible=True,
         cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
-        takes=EXTRAS,
+        takes=IN_MOTION,
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),
         colour="#be185d",
         marker="D",

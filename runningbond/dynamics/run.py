@@ -144,6 +144,10 @@ class Run:
         """
         self._advance("held", state, dead * self.system.dead + multiplier * self.system.live, 0.0, steps, given)
 
+    def bear(self, state: State, load: Array, steps: int) -> None:
+        """Take steps under a constant load ``(nd,)`` [N]; as `hold` does without watching the energy."""
+        self._advance("held", state, load, 0.0, steps, math.inf)
+
     def drive(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
         """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier.
 

@@ -1,0 +1,7 @@
+"""Response of walls to motions of their ground."""
+
+from .follow import follow
+from .response import ENERGIES, Response
+from .resting import Resting
+
+__all__ = ["ENERGIES", "Response", "Resting", "follow"]
