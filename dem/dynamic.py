@@ -17,6 +17,7 @@ from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.limit.associated import is_self_locking
+from runningbond.response import critical_scale
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -34,7 +35,7 @@ def dem_dynamic(
     displacements: Displacements = "small",
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its rigid blocks.
+    """Collapse of a scene by the motion of its rigid blocks; where its ground moves, as `critical_scale` finds it.
 
     Parameters
     ----------
@@ -51,6 +52,8 @@ def dem_dynamic(
     Outcome
         As of `collapse_by_steps`.
     """
+    if scene.history:
+        return critical_scale(scene, "dem-dynamic", finite_system(scene), tolerance, observe=observe)
     start = time.perf_counter()
     finite = is_finite(displacements, "dem-dynamic", scene)
     points = contact_points(scene)

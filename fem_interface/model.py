@@ -16,6 +16,7 @@ from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
 from runningbond.limit.associated import is_self_locking
+from runningbond.response import critical_scale
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -49,7 +50,7 @@ def fem(
     budget: int = BUDGET,
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its deformable blocks.
+    """Collapse of a scene by the motion of its deformable blocks; where its ground moves, as `critical_scale` finds it.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def fem(
         `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
-    if is_finite(displacements, "fem", scene):
+    if scene.history or is_finite(displacements, "fem", scene):
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
             if value != only:
@@ -96,6 +97,9 @@ def fem(
         wall = modal_wall(scene, cells, modes, rule, points, cracks)
         run = Run(system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies))
     factor = largest_scaling(wall, run.system.mass)
+    note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
+    if scene.history:
+        return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(
         scene,
         "fem",
@@ -104,7 +108,7 @@ def fem(
         points=wall.elements.points,
         point_order=wall.elements.listing,
         is_self_locking=lambda: is_self_locking(scene),
-        note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",
+        note=note,
         collapse=collapse,
         first_step=first_step,
         budget=budget,

@@ -10,7 +10,7 @@ from .mohr_coulomb import truncated_cone
 from .point_law import PointLaw
 from .stiffness import joint_stiffness
 
-HISTORY = (*COMMON_ROWS, "plastic slip")
+HISTORY = (*COMMON_ROWS, "plastic slip", "viscous pull", "viscous shear")
 PLASTIC_SLIP = HISTORY.index("plastic slip")
 
 
@@ -47,6 +47,7 @@ def coulomb_kernel(
     segments, constants = parameters
     spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
     opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
+    pull_before, shear_before = history[5], history[6]
     for segment in range(constants.shape[0]):
         k_n, k_t, strength = constants[segment, 0], constants[segment, 1], constants[segment, 2]
         shear, friction, flexibility = constants[segment, 3], constants[segment, 4], constants[segment, 5]
@@ -72,7 +73,10 @@ def coulomb_kernel(
             slip_before[i] = jump_t
             plastic_slip[i] = plastic + slid
             spent[i] += held * slid
-            damped[i] += (n - elastic) * change_n + (t - held) * change_t
+            pull, shear_d = n - elastic, t - held
+            damped[i] += 0.5 * ((pull_before[i] + pull) * change_n + (shear_before[i] + shear_d) * change_t)
+            pull_before[i] = pull
+            shear_before[i] = shear_d
             normal[i] = n
             tangential[i] = t
 

@@ -22,11 +22,11 @@ from .resting import Resting
 TURNED = math.radians(60)
 """Rotation of a block that has fallen [rad]."""
 
-RISE = 1e-5
+RISE = 1e-4
 """Height, in sizes of a block, to which the kinetic energy of a wall that stands would lift it."""
 
 ROWS = 200
-"""Rows of a response in a second, and in a record that is shorter."""
+"""Rows of a response in a second, and in a record that is shorter; `follow` may be asked for fewer."""
 
 PATIENCE = 30
 """Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided."""
@@ -43,6 +43,7 @@ class _Log:
         self._outline, self._block = system.contacts.outline, np.array([rest.block_at(point) for point in points])
         self._size, self._movable = rest.scene.block_sizes[system.owner], ~rest.scene.fixed[system.owner]
         self._calm = RISE * rest.gravity * float(ground.inertia[0].sum()) * rest.scene.block_size
+        self._dead = ground.dead()
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
         self._motion, self._places, self._energies = state.motion.copy(), self._where(state), self._energy(state)
         self._momentum, self._time = ground.momentum(state), state.time
@@ -61,7 +62,7 @@ class _Log:
         self._momentum, self._time = momentum, state.time
         places = self._where(state) - self._places
         motion = (self.ground.acceleration(now), places, float(places[:, 0].mean() / self._height))
-        self.rows.append((now, *motion, pushed - self.ground.dead(), self._energy(state) - self._energies, len(self.first)))
+        self.rows.append((now, *motion, pushed - self._dead, self._energy(state) - self._energies, len(self.first)))
 
     def is_calm(self, since: float) -> bool:
         """Whether hardly any energy was in motion from a time on [s]."""
@@ -77,7 +78,13 @@ class _Log:
 
 
 def follow(
-    rest: Resting, scale: float, *, after: float = 0.0, points: Array | None = None, observe: Observer = no_observer
+    rest: Resting,
+    scale: float,
+    *,
+    after: float = 0.0,
+    points: Array | None = None,
+    rows: int = ROWS,
+    observe: Observer = no_observer,
 ) -> Response:
     """Follow a wall through the motion of its ground.
 
@@ -91,6 +98,8 @@ def follow(
         Time for which it is followed once a block has fallen [s].
     points : (k, 2) float, optional
         Points to follow [m], on the blocks with the nearest corners; without any the wall's upper corners.
+    rows
+        Rows in a second, and at least in the record.
     observe
         Called with the run, its state and λ at every row.
     """
@@ -100,17 +109,18 @@ def follow(
     ground = Ground(run, history, scale, state.time)
     log = _Log(rest, ground, state, rest.top if points is None else np.reshape(points, (-1, 2)))
     verdict: Verdict = "undecided"
-    fell, now, end = math.inf, 0.0, history.duration + PATIENCE * rest.swing
+    fell, now, swing = math.inf, 0.0, rest.swing
+    end = history.duration + PATIENCE * swing
     with threadpool_limits(limits=1, user_api="blas"):
         while verdict == "undecided" and now < end:
-            ground.bring(state, now + min(1.0, history.duration if now < history.duration else 1.0) / ROWS)
+            ground.bring(state, now + min(1.0, history.duration if now < history.duration else 1.0) / rows)
             log.look(state)
             observe(run, state, scale)
             now = ground.time(state)
             if log.first:
                 fell = min(fell, now)
                 verdict = "collapse" if now >= fell + after else "undecided"
-            elif now >= history.duration + rest.swing and log.is_calm(now - rest.swing):
+            elif now >= history.duration + swing and log.is_calm(now - swing):
                 verdict = "stands"
     return _response(rest, scale, log, run, state, (verdict, fell), time.perf_counter() - begin)
 
@@ -149,6 +159,7 @@ def _response(
         fallen=fallen,
         first=np.array(log.first, dtype=np.int64),
         motion=run.system.motion_of_blocks(state.motion),
+        velocity=run.system.motion_of_blocks(state.velocity),
         unaccounted=lost,
         steps=state.steps - rest.state.steps,
         seconds=seconds,

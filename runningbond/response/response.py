@@ -45,8 +45,8 @@ class Response:
         Blocks that have fallen.
     first : (m,) int
         Blocks that had fallen by the end, the first ones first.
-    motion : (nb, 3) float
-        Displacement of each block's centroid [m] and its rotation [rad] at the end.
+    motion, velocity : (nb, 3) float
+        Displacement of each block's centroid [m] and its rotation [rad] at the end, and their rates.
     unaccounted
         Largest share of the energy supplied that the ledger misses.
     steps
@@ -70,6 +70,7 @@ class Response:
     fallen: Indices
     first: Indices
     motion: Array
+    velocity: Array
     unaccounted: float
     steps: int
     seconds: float = 0.0

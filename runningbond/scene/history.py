@@ -5,10 +5,10 @@ what matters: the wall sees the ground's change of velocity over each of its tim
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline, make_interp_spline
@@ -37,6 +37,9 @@ PULSES = ("sine", "half-sine", "ricker", "ramp")
 SAMPLES = 1000
 """Samples of a pulse in its period: between them it is off by 5e-6 of its amplitude."""
 
+INTERVALS = 200
+"""Parts of the period over which the acceleration of a pulse may stand for its mean."""
+
 SECONDS = Range(above=0.0, most=1e4)
 FACTOR = Range(least=-1e6, most=1e6)
 
@@ -59,6 +62,8 @@ class History(Action):
         File or pulse that it was made of.
     holds
         Whether the last acceleration stays on.
+    interval
+        Time [s] over which an acceleration may stand for its mean; where none is given half the middling step.
     """
 
     time: Array
@@ -66,7 +71,8 @@ class History(Action):
     quantity: str = "acceleration"
     scale: float = 1.0
     source: str = ""
-    holds: bool = field(default=False)
+    holds: bool = False
+    interval: float | None = None
 
     def __post_init__(self) -> None:
         one_of(f"{KEY}.quantity", self.quantity, QUANTITIES)
@@ -84,10 +90,10 @@ class History(Action):
         """Time until the record ends [s]."""
         return float(self.time[-1])
 
-    @cached_property
+    @property
     def resolution(self) -> float:
-        """Time [s] over which an acceleration may stand for its mean: half the middling step between samples."""
-        return float(np.median(np.diff(self.time)) / 2)
+        """As `interval`."""
+        return self.interval or float(np.median(np.diff(self.time)) / 2)
 
     @cached_property
     def _velocity(self) -> Any:
@@ -139,12 +145,8 @@ class History(Action):
         return f"the ground is accelerated by up to {abs(multiplier) * np.hypot(*self.peak) / STANDARD_GRAVITY:.4g} g"
 
 
-Samples: TypeAlias = tuple[Array, Array]
-"""Times [s] and values, ``(n,)`` each."""
-
-
-def pulse(kind: str, amplitude: float, period: float) -> Samples:
-    """Samples of a pulse; half a sine lasts half its period, a Ricker wavelet three, a ramp one."""
+def pulse(kind: str, amplitude: float, period: float) -> tuple[Array, Array]:
+    """Times ``(n,)`` [s] and values ``(n, 2)`` of a horizontal pulse; half a sine lasts half its period, a Ricker wavelet three, a ramp one."""
     span = {"half-sine": 0.5, "ricker": 3.0}.get(kind, 1.0)
     share = np.linspace(0.0, span, round(span * SAMPLES) + 1)
     if kind == "ramp":
@@ -154,7 +156,7 @@ def pulse(kind: str, amplitude: float, period: float) -> Samples:
         shape = (1 - 2 * squared) * np.exp(-squared)
     else:
         shape = np.sin(2 * math.pi * share)
-    return period * share, amplitude * shape
+    return period * share, amplitude * np.column_stack([shape, np.zeros_like(shape)])
 
 
 def read_history(table: Table, folder: Path) -> History:
@@ -164,15 +166,14 @@ def read_history(table: Table, folder: Path) -> History:
     scale = table.optional_number("scale", FACTOR)
     given = table.choice("quantity", QUANTITIES, "") if "quantity" in table else None
     if "pulse" in table:
-        quantity = _required(table, given)
-        inner = table.table("pulse")
+        quantity, inner = _required(table, given), table.table("pulse")
         kind = inner.choice("kind", PULSES)
         amplitude, period = inner.number("amplitude", FACTOR), inner.number("period", SECONDS)
         inner.finish()
         if amplitude == 0:
             raise SceneError(inner.key("amplitude"), "must not be zero", amplitude)
-        time, horizontal = pulse(kind, amplitude, period)
-        values, source, holds = np.column_stack([horizontal, 0 * horizontal]), kind, kind == "ramp"
+        time, values = pulse(kind, amplitude, period)
+        source, holds, interval = kind, kind == "ramp", period / INTERVALS
     else:
         name = table.text("file")
         record = read_record(folder / name, table.key("file"))
@@ -180,9 +181,9 @@ def read_history(table: Table, folder: Path) -> History:
             what = f'must be left out or "{record.quantity}", as {Path(name).name} says itself'
             raise SceneError(table.key("quantity"), what, given)
         quantity = record.quantity or _required(table, given)
-        time, values, source, holds = record.time, record.values, Path(name).name, False
+        time, values, source, holds, interval = record.time, record.values, Path(name).name, False, None
     table.finish()
-    return History(time, values, quantity, 1.0 if scale is None else scale, source, holds)
+    return History(time, values, quantity, 1.0 if scale is None else scale, source, holds, interval)
 
 
 def _required(table: Table, quantity: str | None) -> str:
