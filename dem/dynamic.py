@@ -8,6 +8,7 @@ until a collapse looks like creep.
 
 import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.limit.associated import is_self_locking
-from runningbond.response import critical_scale
+from runningbond.response import Response, Resting, critical_scale, follow
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -71,6 +72,11 @@ def dem_dynamic(
         observe=observe,
     )
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
+    """Response of a scene's rigid blocks to the motion of its ground, λ times as large; settings as of `follow`."""
+    return follow(Resting.of(scene, "dem-dynamic", finite_system(scene)), scale, **settings)
 
 
 def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local: float = MOVING) -> Array:

@@ -7,6 +7,7 @@ lost and stiff deformations can be slowed down one by one.
 
 import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
 from runningbond.limit.associated import is_self_locking
-from runningbond.response import critical_scale
+from runningbond.response import Response, Resting, critical_scale, follow
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -115,6 +116,13 @@ def fem(
         observe=observe,
     )
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def fem_response(
+    scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
+) -> Response:
+    """Response of a scene's deformable blocks to the motion of its ground, λ times as large; settings as of `follow`."""
+    return follow(Resting.of(scene, "fem", finite_system(node_outline(scene, cells, modes))), scale, **settings)
 
 
 def fem_pushover(

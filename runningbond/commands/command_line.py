@@ -17,6 +17,7 @@ from .advise import advise
 from .compare import compare
 from .mesh import mesh
 from .render import render
+from .respond import respond
 from .run import run
 from .show import show
 from .studies import stability, study
@@ -30,7 +31,7 @@ app = App(
     result_action="return_value",
     suppress_keyboard_interrupt=False,
 )
-for each in (run, show, advise, compare, stability, study, validate, mesh, render):
+for each in (run, respond, show, advise, compare, stability, study, validate, mesh, render):
     app.command(each)
 
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from homog import homog
 from runningbond.limit import limit, limit_nonassociated
+from runningbond.response import Response
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import suggestion
@@ -111,6 +112,7 @@ _EVERY_MODEL = (
         cost=Cost(1.4, 1.23, 1.51, finer=0.06, start=KERNELS),
         takes=IN_MOTION,
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
+        respond=partial(_late, "dem.dynamic", "dem_response"),
         colour="#2a9d8f",
         marker="^",
         line=":",
@@ -124,6 +126,7 @@ _EVERY_MODEL = (
         cost=Cost(5.0, 1.05, 1.46, weightless=1.1, finer=0.06, start=KERNELS, cracked=6.0),
         takes=IN_MOTION,
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),
+        respond=partial(_late, "fem_interface.model", "fem_response"),
         colour="#be185d",
         marker="D",
         line=(0, (3, 1, 1, 1)),
@@ -211,3 +214,36 @@ def run_model(
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
     return replace(outcome, model=model.name, message="; ".join(filter(None, notes)))
+
+
+def check_response(
+    model: str | Model, scene: Scene, scale: float, model_key: str = "model", scale_key: str = "scale"
+) -> Callable[..., Response]:
+    """How a model follows a scene through the motion of its ground.
+
+    Raises
+    ------
+    SceneError
+        For a model that follows no motion of the ground, a scene that has none, or a scale that is no number.
+    """
+    model = find_model(model, model_key)
+    if model.respond is None:
+        able = ", ".join(name for name, each in MODELS.items() if each.respond)
+        raise SceneError(model_key, f"follows no motion of the ground; take {able}", model.name)
+    if scene.history is None:
+        raise SceneError("load.history", "is missing: the motion of the ground that the wall is to follow")
+    model.check(scene)
+    if not (math.isfinite(scale) and scale != 0):
+        raise SceneError(scale_key, "must be a finite number, not zero", scale)
+    return model.respond
+
+
+def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
+    """Follow a scene through the motion of its ground, `scale` times as large; settings as of `follow`.
+
+    Raises
+    ------
+    SceneError
+        As of `check_response`, and for a wall that does not rest under its dead load.
+    """
+    return check_response(model, scene, scale)(scene, scale, **settings)

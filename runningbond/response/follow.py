@@ -13,7 +13,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.dynamics import Observer, Run, State, no_observer
-from runningbond.scene import Array
+from runningbond.scene import Array, SceneError
 
 from .ground import Ground
 from .response import Response, Verdict, unaccounted
@@ -102,7 +102,15 @@ def follow(
         Rows in a second, and at least in the record.
     observe
         Called with the run, its state and λ at every row.
+
+    Raises
+    ------
+    SceneError
+        For a wall that does not rest under its dead load.
     """
+    if rest.verdict != "stable":
+        what = "falls under its dead load" if rest.verdict == "collapse" else "does not come to rest under its dead load"
+        raise SceneError(rest.scene.title, f"{what}: there is nothing to shake")
     begin, history = time.perf_counter(), rest.history
     run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, dt=rest.dt)
     run.led, state = True, rest.state.copy()

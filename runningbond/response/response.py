@@ -1,7 +1,7 @@
 """What a wall does when its ground moves: time series, blocks that fell, and a verdict."""
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
@@ -89,6 +89,13 @@ class Response:
     def peak_drift(self) -> float:
         """Largest drift, by its size."""
         return float(np.abs(self.drift).max())
+
+    def summary(self) -> dict[str, Any]:
+        """The scalars."""
+        names = ("scene", "model", "verdict", "scale", "peak_drift", "residual_drift", "unaccounted")
+        fallen = {"fallen": self.first.tolist(), "time": float(self.time[-1])}
+        last = {name: getattr(self, name) for name in ("steps", "seconds", "message")}
+        return {name: getattr(self, name) for name in names} | fallen | last
 
     def columns(self) -> dict[str, Array]:
         """The time series column by column, with units."""
