@@ -36,7 +36,7 @@ def response_figure(response: Response) -> "Figure":
     energy.plot(time, response.energy[:, :2].sum(axis=1), color=DARK, lw=0.9, label="input + weight")
     energy.set_ylabel("energy [J]", fontsize=SMALL_TYPE + 1)
     energy.set_xlabel("time [s]", fontsize=SMALL_TYPE + 1)
-    energy.legend(frameon=False, fontsize=SMALL_TYPE, ncols=5, loc="upper left")
+    energy.legend(frameon=False, fontsize=SMALL_TYPE, ncols=5, loc="lower left", bbox_to_anchor=(0.0, 0.98))
     for axes in (ground, drift, shear, energy):
         axes.tick_params(labelsize=SMALL_TYPE)
         axes.spines[["top", "right"]].set_visible(False)

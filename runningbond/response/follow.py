@@ -28,6 +28,9 @@ RISE = 1e-4
 ROWS = 200
 """Rows of a response in a second, and in a record that is shorter; `follow` may be asked for fewer."""
 
+PART = 0.8
+"""Time step, in stable ones: an impact makes up or loses energy by its square."""
+
 PATIENCE = 30
 """Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided."""
 
@@ -112,7 +115,7 @@ def follow(
         what = "falls under its dead load" if rest.verdict == "collapse" else "does not come to rest under its dead load"
         raise SceneError(rest.scene.title, f"{what}: there is nothing to shake")
     begin, history = time.perf_counter(), rest.history
-    run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, dt=rest.dt)
+    run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=PART)
     run.led, state = True, rest.state.copy()
     ground = Ground(run, history, scale, state.time)
     log = _Log(rest, ground, state, rest.top if points is None else np.reshape(points, (-1, 2)))

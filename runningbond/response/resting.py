@@ -28,8 +28,6 @@ class Resting:
         Where it is, and ``stable`` where it does rest there.
     viscous
         Damping ratio of its joints in motion.
-    dt
-        Time step [s]; the stable one where none is given.
     """
 
     scene: Scene
@@ -38,17 +36,14 @@ class Resting:
     state: State
     verdict: Verdict
     viscous: float = VISCOUS
-    dt: float | None = None
 
     @classmethod
-    def of(
-        cls, scene: Scene, model: str, system: BlockSystem, viscous: float = VISCOUS, dt: float | None = None
-    ) -> "Resting":
+    def of(cls, scene: Scene, model: str, system: BlockSystem, viscous: float = VISCOUS) -> "Resting":
         """Bring a wall to rest under its dead load."""
         state, sizes = State.at_rest(system), scene.block_sizes[system.owner]
         verdict = settle(Run(system, local=CALMING), state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True)
         state.velocity[:] = 0.0
-        return cls(scene, model, system, state, verdict, viscous, dt)
+        return cls(scene, model, system, state, verdict, viscous)
 
     @property
     def history(self) -> History:

@@ -82,8 +82,10 @@ class History(Action):
             raise SceneError(KEY, "must have two samples at least, finite, at times that ascend")
         object.__setattr__(self, "time", frozen(time - time[0]))
         object.__setattr__(self, "values", values)
-        if self.scale == 0 or not np.abs(self.acceleration(self.time)).max() > 0:
-            raise SceneError(f"{KEY}.scale" if self.scale == 0 else KEY, "does not move the ground", self.source or None)
+        if self.scale == 0:
+            raise SceneError(f"{KEY}.scale", "must not be zero", self.scale)
+        if not np.abs(self.acceleration(self.time)).max() > 0:
+            raise SceneError(KEY, "does not move the ground", self.source or None)
 
     @property
     def duration(self) -> float:
@@ -99,7 +101,7 @@ class History(Action):
     def _velocity(self) -> Any:
         values = self.scale * QUANTITIES[self.quantity] * self.values
         if self.quantity == "displacement":
-            return CubicSpline(self.time, values, bc_type="natural").derivative()
+            return CubicSpline(self.time, values).derivative()
         spline: Any = make_interp_spline(self.time, values, k=1)
         return spline if self.quantity == "velocity" else spline.antiderivative()
 

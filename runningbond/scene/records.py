@@ -53,9 +53,9 @@ def read_record(path: Path, key: str) -> Record:
     try:
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except OSError as error:
-        raise SceneError(key, f"cannot be read: {error.strerror or error}", str(path)) from error
+        raise SceneError(key, f"cannot be read: {error.strerror or error}", path.name) from error
     except UnicodeDecodeError as error:
-        raise SceneError(key, "is no record: it is not UTF-8 text", str(path)) from error
+        raise SceneError(key, "is no record: it is not UTF-8 text", path.name) from error
     return _peer(path, lines) if path.suffix.lower() in PEER else _columns(path, lines)
 
 
@@ -109,7 +109,7 @@ def _columns(path: Path, lines: Sequence[str]) -> Record:
     if len(wide) and len(values) >= FEWEST:
         number = rows[int(wide[0]) + 1][0]
         what = f"comes after a gap of {step[wide[0]]:.4g} s, the steps of the record are {np.median(step):.4g} s"
-        raise SceneError(_line(path, number), what, values[wide[0] + 1, 0])
+        raise SceneError(_line(path, number), what, float(values[wide[0] + 1, 0]))
     vertical = values[:, 2] if width == 3 else np.zeros(len(values))
     return Record(values[:, 0], np.column_stack([values[:, 1], vertical]))
 
