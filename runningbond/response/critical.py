@@ -147,10 +147,14 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
     outcome = replace(outcome, motion=fastest_corner_by_one(rest.scene.blocks, upper.velocity))
     doubtful = max((run for run in (lower, upper) if run), key=lambda run: run.unaccounted)
     if doubtful.unaccounted > MISSED:
-        message = f"{doubtful.unaccounted:.1%} of the energy supplied is unaccounted for at λ = {number(doubtful.scale)}"
+        message = (
+            f"{doubtful.unaccounted:.1%} of the energy supplied is unaccounted for at λ = {number(doubtful.scale)}"
+        )
         return replace(outcome, status="failed", message=message)
     if lower is None or lower.verdict != "stands":
-        return replace(outcome, message="no scale was found at which the wall comes to rest below one at which it falls")
+        return replace(
+            outcome, message="no scale was found at which the wall comes to rest below one at which it falls"
+        )
     again = [f"{number(low)} … {number(high)}" if high > low else number(low) for low, high in search.windows()]
     parts = (
         f"largest scale at which the wall stands below all falls, and smallest at which it falls: {upper.message}",

@@ -112,7 +112,9 @@ def follow(
         For a wall that does not rest under its dead load.
     """
     if rest.verdict != "stable":
-        what = "falls under its dead load" if rest.verdict == "collapse" else "does not come to rest under its dead load"
+        what = (
+            "falls under its dead load" if rest.verdict == "collapse" else "does not come to rest under its dead load"
+        )
         raise SceneError(rest.scene.title, f"{what}: there is nothing to shake")
     begin, history = time.perf_counter(), rest.history
     run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=PART)

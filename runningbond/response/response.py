@@ -78,7 +78,7 @@ class Response:
     @property
     def residual(self) -> Array:
         """Energy that the ledger misses ``(n,)`` [J]."""
-        return supplied(self.energy) - self.energy[:, 2:].sum(axis=1)
+        return np.asarray(supplied(self.energy) - self.energy[:, 2:].sum(axis=1))
 
     @property
     def residual_drift(self) -> float:

@@ -136,7 +136,9 @@ class History(Action):
         """Refuse what is not followed through time: walls on pins, and beams that are driven or held."""
         if len(scene.pins) or len(scene.late_pins):
             name = "support.kind" if scene.beam is None else "beam.condition"
-            raise SceneError(name, "does not go with load.history, which moves a wall on its ground that is free on top")
+            raise SceneError(
+                name, "does not go with load.history, which moves a wall on its ground that is free on top"
+            )
 
     def factor(self, time: float) -> float:
         """Acceleration along the largest one, as a share of it."""

@@ -91,7 +91,7 @@ def read_load(table: Table, folder: Path, *, driven: bool = False) -> Load:
     dead = _read_actions(table.key("dead"), table.value("dead", []), DEAD_KINDS)
     table.finish()
     if history:
-        return Load(gravity, history, dead)
+        return Load(gravity, (history,), dead)
     if not live and not driven:
         raise SceneError(table.key("live"), "must be a load, or some", given)
     return Load(gravity, live, dead)

@@ -133,7 +133,7 @@ def _peer(path: Path, lines: Sequence[str]) -> Record:
         what = f"ends a record of {len(values)} values; NPTS says {count}"
         raise SceneError(_line(path, len(lines)), what)
     scaled = known[1] * np.array(values)
-    return Record(step * np.arange(count), np.column_stack([scaled, np.zeros(count)]), known[0])
+    return Record(step * np.arange(count, dtype=float), np.column_stack([scaled, np.zeros(count)]), known[0])
 
 
 def _head(path: Path, line: str) -> tuple[int, float]:

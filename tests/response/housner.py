@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -57,7 +58,7 @@ class HousnerBlock:
             lands.terminal, lands.direction, lies.terminal = True, -1.0, True  # type: ignore[attr-defined]
             longest = period / 20 if t < end else np.inf
             start = [1e-14 * sense, rate]
-            found = solve_ivp(
+            found: Any = solve_ivp(
                 motion, (t, end + 12), start, events=(lands, lies), rtol=1e-9, atol=1e-12, max_step=longest
             )
             if len(found.t_events[1]):

@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -39,7 +40,7 @@ def rocking(share: float) -> tuple[Array, float]:
     time, theta = np.array(rows).T
     at = np.flatnonzero(np.diff(np.sign(theta)))
     passages = time[at] - theta[at] * (time[at + 1] - time[at]) / (theta[at + 1] - theta[at])
-    turns = [np.abs(theta[i:j]).max() / BLOCK.alpha for i, j in zip(at[:-1], at[1:], strict=True)]
+    turns = [np.abs(theta[i:j]).max() / BLOCK.alpha for i, j in pairwise(at)]
     return np.array([*passages, *turns]), run.unaccounted(state, float(system.mass[1]) * GRAVITY * 0.01)
 
 
@@ -127,4 +128,6 @@ def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None
     assert response.displacement[-1, 0, 0] == pytest.approx(-slid, rel=1e-3)
     assert response.unaccounted < 0.01
     most = friction * float(rest.scene.mass[0]) * GRAVITY
-    assert np.median(response.reaction[(response.time > 0.1) & (response.time < 0.2), 0]) == pytest.approx(most, rel=0.01)
+    assert np.median(response.reaction[(response.time > 0.1) & (response.time < 0.2), 0]) == pytest.approx(
+        most, rel=0.01
+    )
