@@ -18,7 +18,7 @@ from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.limit.associated import is_self_locking
-from runningbond.response import Response, Resting, critical_scale, follow
+from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -77,6 +77,11 @@ def dem_dynamic(
 def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
     """Response of a scene's rigid blocks to the motion of its ground, λ times as large; settings as of `follow`."""
     return follow(Resting.of(scene, "dem-dynamic", finite_system(scene)), scale, **settings)
+
+
+def dem_vibration(scene: Scene, count: int = 10) -> Vibration:
+    """Natural vibrations of a scene's rigid blocks at rest under their dead load."""
+    return vibration_at_rest(scene, Run(rigid_system(scene)), count)
 
 
 def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local: float = MOVING) -> Array:

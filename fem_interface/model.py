@@ -17,7 +17,7 @@ from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
 from runningbond.limit.associated import is_self_locking
-from runningbond.response import Response, Resting, critical_scale, follow
+from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -121,8 +121,14 @@ def fem(
 def fem_response(
     scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
 ) -> Response:
-    """Response of a scene's deformable blocks to the motion of its ground, λ times as large; settings as of `follow`."""
+    """Response of a scene's deformable blocks to the motion of its ground, λ times as large, as `follow` has it."""
     return follow(Resting.of(scene, "fem", finite_system(node_outline(scene, cells, modes))), scale, **settings)
+
+
+def fem_vibration(scene: Scene, count: int = 10, *, cells: int = 1, modes: ModeCount | None = None) -> Vibration:
+    """Natural vibrations of a scene's deformable blocks at rest under their dead load."""
+    system = system_of(modal_wall(scene, cells, modes), mass_scaling=False)
+    return vibration_at_rest(scene, Run(system), count)
 
 
 def fem_pushover(

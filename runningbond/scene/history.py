@@ -150,7 +150,10 @@ class History(Action):
 
 
 def pulse(kind: str, amplitude: float, period: float) -> tuple[Array, Array]:
-    """Times ``(n,)`` [s] and values ``(n, 2)`` of a horizontal pulse; half a sine lasts half its period, a Ricker wavelet three, a ramp one."""
+    """Times ``(n,)`` [s] and values ``(n, 2)`` of a horizontal pulse.
+
+    Half a sine lasts half its period, a Ricker wavelet three of them, all others one.
+    """
     span = {"half-sine": 0.5, "ricker": 3.0}.get(kind, 1.0)
     share = np.linspace(0.0, span, round(span * SAMPLES) + 1)
     if kind == "ramp":
