@@ -9,6 +9,7 @@ import runningbond as rb
 from runningbond.scene.history import pulse
 
 
+@pytest.mark.long
 def test_fragility_of_a_block_over_some_records(tmp_path: Path) -> None:
     """Half sines that differ in nothing but the unit they are written in bring it down at one peak acceleration."""
     time, values = pulse("half-sine", 1.0, 1.0)

@@ -76,6 +76,7 @@ def test_a_monolithic_cantilever_of_blocks_is_timoshenkos(number: int) -> None:
     assert found[number] == pytest.approx(timoshenko(n * height, width, (bending, shear), number), rel=0.02)
 
 
+@pytest.mark.long
 def test_blocks_that_deform_on_joints_that_do_not_are_timoshenkos_too() -> None:
     """E b³ t / 12 and κ = 5/6, in plane stress; cells of triangles lock a little."""
     n, width, height, young = 10, 0.4, 0.2, 1e9
