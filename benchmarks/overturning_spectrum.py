@@ -38,7 +38,8 @@ def edge(falls: Callable[[float], bool], about: float, width: float = 0.04, tole
 
 def spectrum() -> list[tuple[float, float, float, float]]:
     """Cycles, ω / p, and the edges of Housner's block and of ours, in g tan α."""
-    rest, found = resting(block(BLOCK.b, BLOCK.h, still())), []
+    rest = resting(block(BLOCK.b, BLOCK.h, still()))
+    found: list[tuple[float, float, float, float]] = []
     for cycles, edges in EDGES.items():
         for ratio, about in edges:
             period = 2 * math.pi / (ratio * BLOCK.p)

@@ -97,9 +97,7 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
 def stiffness_matrix(system: BlockSystem, closed: Mask) -> csr_array:
     """Stiffness ``(nd, nd)`` [N/m] of the bodies and of closed joint points ``(np,)``, read off their kernels."""
     interface, units = system.interface, np.eye(len(system.mass))
-    per_mode = vstack(
-        [csr_array(np.concatenate(interface.jumps(system.unrestrained(unit)))[None]) for unit in units]
-    )
+    per_mode = vstack([csr_array(np.concatenate(interface.jumps(system.unrestrained(unit)))[None]) for unit in units])
     spring = np.concatenate([interface.law.normal_stiffness, interface.law.shear_stiffness])
     weight = diags_array(np.tile(closed * interface.area, 2) * spring)
     return csr_array(per_mode @ weight @ per_mode.T + diags_array(system.stiffness))

@@ -32,7 +32,7 @@ def test_fragility_of_a_block_over_some_records(tmp_path: Path) -> None:
     assert found.left_out == 0
     assert found.intensity[1] == pytest.approx(found.intensity[0], rel=0.05)
     assert found.interval[0] <= found.median <= found.interval[1]
-    assert found.probability([found.median / 2, found.median, 2 * found.median]) == pytest.approx([0, 0.5, 1], abs=1e-3)
+    assert found.probability(found.median * np.array([0.5, 1.0, 2.0])) == pytest.approx([0, 0.5, 1], abs=1e-3)
     again = rb.fragility(wall, records, "dem-dynamic", tolerance=0.05, folder=tmp_path / "kept", jobs=1)
     assert np.array_equal(again.intensity, found.intensity)
 
