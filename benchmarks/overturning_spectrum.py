@@ -59,31 +59,43 @@ def spectrum() -> list[tuple[float, float, float, float]]:
     return found
 
 
-def curves() -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
-    """Housner's verdicts on a grid of ω / p and scales for both pulses."""
-    ratio, scale = np.linspace(0.8, 8.2, 21), np.linspace(1.0, 11.0, 51)
-    verdicts = [
-        np.array([[BLOCK.overturns(s * UNIT, 2 * math.pi / (r * BLOCK.p), cycles) for r in ratio] for s in scale])
-        for cycles in EDGES
-    ]
-    return ratio, verdicts, scale
+def curves(cycles: float) -> list[tuple[float, float, bool]]:
+    """ω / p and scales at which the verdict on Housner's block changes, and whether it falls above."""
+    found = []
+    for ratio in np.linspace(1.0, 8.0, 15):
+        period = 2 * math.pi / (ratio * BLOCK.p)
+
+        def falls(scale: float, period: float = period) -> bool:
+            return BLOCK.overturns(scale * UNIT, period, cycles)
+
+        scales = 1.02 * 1.05 ** np.arange(49)
+        verdicts = [falls(scale) for scale in scales]
+        for k in np.flatnonzero(np.diff(verdicts)):
+            middle = edge(falls, float(np.sqrt(scales[k] * scales[k + 1])), 0.025, 5e-3)
+            if middle:
+                found.append((float(ratio), middle, verdicts[k + 1]))
+    return found
 
 
 def chart(found: list[tuple[float, float, float, float]], path: str) -> None:
     """Draw ours on Housner's."""
     figure = Figure(figsize=(8.4, 3.8), layout="constrained", dpi=160)
-    ratio, verdicts, scale = curves()
-    for axes, cycles, verdict in zip(figure.subplots(1, 2, sharey=True), EDGES, verdicts, strict=True):
-        axes.contourf(ratio, scale, verdict, levels=[0.5, 1.5], colors=["#f2c879"], alpha=0.7)
-        axes.contour(ratio, scale, verdict, levels=[0.5], colors="#c2410c", linewidths=1.0)
+    for axes, cycles in zip(figure.subplots(1, 2, sharey=True), EDGES, strict=True):
+        edges = curves(cycles)
+        first = {ratio: min(scale for r, scale, _ in edges if r == ratio) for ratio, _, _ in edges}
+        axes.plot(list(first), list(first.values()), color="#c2410c", lw=1.2, label="Housner: falls above")
+        again = [(r, scale, falls) for r, scale, falls in edges if scale > first[r]]
+        for falls, style, name in ((False, "--", "stands again above"), (True, "-.", "falls without impact above")):
+            line = [(r, scale) for r, scale, above in again if above == falls]
+            if line:
+                axes.plot(*zip(*line, strict=True), style, color="#c2410c", lw=1.2, label=name)
         rows = np.array([row for row in found if row[0] == cycles])
-        axes.plot(rows[:, 1], rows[:, 3], "o", ms=5, color="#0b559f", label="dem-dynamic: edge of falling")
-        axes.fill_between([], [], color="#f2c879", alpha=0.7, label="Housner's block falls")
+        axes.plot(rows[:, 1], rows[:, 3], "o", ms=5, color="#0b559f", label="dem-dynamic")
         axes.set_title(f"{NAMES[cycles]} of acceleration")
         axes.set_xlabel("frequency of the pulse ω / p")
         axes.spines[["top", "right"]].set_visible(False)
+        axes.legend(frameon=False, loc="upper left")
     figure.axes[0].set_ylabel("amplitude / (g tan α)")
-    figure.axes[0].legend(frameon=False, loc="upper left")
     figure.savefig(path)
 
 
