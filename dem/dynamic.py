@@ -8,6 +8,7 @@ until a collapse looks like creep.
 
 import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.limit import is_self_locking, limit
+from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -34,7 +36,7 @@ def dem_dynamic(
     displacements: Displacements = "small",
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its rigid blocks.
+    """Collapse of a scene by the motion of its rigid blocks; where its ground moves, as `critical_scale` finds it.
 
     Parameters
     ----------
@@ -51,6 +53,8 @@ def dem_dynamic(
     Outcome
         As of `collapse_by_steps`.
     """
+    if scene.history:
+        return critical_scale(scene, "dem-dynamic", finite_system(scene), tolerance, observe=observe)
     start = time.perf_counter()
     finite = is_finite(displacements, "dem-dynamic", scene)
     points = contact_points(scene)
@@ -69,6 +73,16 @@ def dem_dynamic(
         observe=observe,
     )
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
+    """Response of a scene's rigid blocks to the motion of its ground, λ times as large; settings as of `follow`."""
+    return follow(Resting.of(scene, "dem-dynamic", finite_system(scene)), scale, **settings)
+
+
+def dem_vibration(scene: Scene, count: int = 10) -> Vibration:
+    """Natural vibrations of a scene's rigid blocks at rest under their dead load."""
+    return vibration_at_rest(scene, Run(rigid_system(scene)), count)
 
 
 def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local: float = MOVING) -> Array:

@@ -7,6 +7,7 @@ lost and stiff deformations can be slowed down one by one.
 
 import time
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
 from runningbond.limit import is_self_locking, limit
+from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
@@ -49,7 +51,7 @@ def fem(
     budget: int = BUDGET,
     observe: Observer = no_observer,
 ) -> Outcome:
-    """Collapse of a scene by the motion of its deformable blocks.
+    """Collapse of a scene by the motion of its deformable blocks; where its ground moves, as `critical_scale` finds it.
 
     Parameters
     ----------
@@ -85,7 +87,7 @@ def fem(
         `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
-    if is_finite(displacements, "fem", scene):
+    if scene.history or is_finite(displacements, "fem", scene):
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
             if value != only:
@@ -96,6 +98,9 @@ def fem(
         wall = modal_wall(scene, cells, modes, rule, points, cracks)
         run = Run(system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies))
     factor = largest_scaling(wall, run.system.mass)
+    note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
+    if scene.history:
+        return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(
         scene,
         "fem",
@@ -105,13 +110,26 @@ def fem(
         point_order=wall.elements.listing,
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: limit(scene).upper,
-        note=f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else "",
+        note=note,
         collapse=collapse,
         first_step=first_step,
         budget=budget,
         observe=observe,
     )
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def fem_response(
+    scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
+) -> Response:
+    """Response of a scene's deformable blocks to the motion of its ground, λ times as large, as `follow` has it."""
+    return follow(Resting.of(scene, "fem", finite_system(node_outline(scene, cells, modes))), scale, **settings)
+
+
+def fem_vibration(scene: Scene, count: int = 10, *, cells: int = 1, modes: ModeCount | None = None) -> Vibration:
+    """Natural vibrations of a scene's deformable blocks at rest under their dead load."""
+    system = system_of(modal_wall(scene, cells, modes), mass_scaling=False)
+    return vibration_at_rest(scene, Run(system), count)
 
 
 def fem_pushover(

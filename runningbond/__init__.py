@@ -6,6 +6,7 @@ Everything here is imported when it is first used, so that the import itself cos
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from .fragility import Fragility, fragility
     from .path_states import PathState
     from .run_result import Result
     from .scene import SceneError
@@ -13,9 +14,11 @@ if TYPE_CHECKING:
     from .wall import Wall, read
 else:
     _MODULES = {
+        "Fragility": "fragility",
         "PathState": "path_states",
         "Result": "run_result",
         "SceneError": "scene",
+        "fragility": "fragility",
         "Wall": "wall",
         "read": "wall",
         "sweep": "sweeps",
@@ -34,4 +37,4 @@ else:
         return sorted({*globals(), *_MODULES})
 
 
-__all__ = ["PathState", "Result", "SceneError", "Wall", "read", "sweep"]
+__all__ = ["Fragility", "PathState", "Result", "SceneError", "Wall", "fragility", "read", "sweep"]

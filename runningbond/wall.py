@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from .compare.draws import Draws
     from .compare.model import Model
+    from .response import Response
     from .run_result import Result
 
 TABLES = {
@@ -25,7 +26,7 @@ TABLES = {
         *("shear_stiffness", "inset", "fracture_energy_1", "fracture_energy_2", "softening", "law"),
         *("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure", "closure"),
     ),
-    "load": ("gravity", "live", "dead"),
+    "load": ("gravity", "live", "dead", "history"),
 }
 """Keys of a scene file's tables that `Wall.running_bond` and `Wall.courses` take as keywords of their own."""
 
@@ -121,7 +122,7 @@ class Wall:
                 raise SceneError(key, f"is not a key of a wall{hint}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             description = _merged(description, {table_of[key]: {key: named}} if key in table_of else {key: named})
-        if "drive" in keys.get("beam", {}) and "live" not in keys:
+        if ("drive" in keys.get("beam", {}) or "history" in keys) and "live" not in keys:
             description = _merged(description, {"load": {"live": None}})
         return cls(description)
 
@@ -217,6 +218,23 @@ class Wall:
         drawing = Drawing(self.scene, find_model(model), number, scatter)
         return drawing.run(tolerance, None if folder is None else Path(folder), jobs)
 
+    def respond(self, model: "str | Model", scale: float = 1.0, **settings: Any) -> "Response":
+        """Follow the wall through the motion of its ground, ``load.history``.
+
+        Parameters
+        ----------
+        model
+            Name of a model in motion.
+        scale
+            Factor on the record, λ.
+        settings
+            ``points``, to be followed instead of the upper corners (m, ``(k, 2)``), and ``after``, the time for which
+            the wall is followed once a block has fallen [s].
+        """
+        from .compare.models import respond
+
+        return respond(model, self.scene, scale, **settings)
+
     def plot(self, axes: "Axes | None" = None) -> "Axes":
         """Draw the wall with its support and loads into axes, new ones where none are given."""
         from .pictures.flat import draw_wall
@@ -239,6 +257,8 @@ class Wall:
         description, path = self.description, Path(path)
         if "drawing" in description["wall"]:
             description["wall"]["drawing"] = relpath(self.folder / description["wall"]["drawing"], path.parent)
+        if "file" in (history := description["load"].get("history", {})):
+            history["file"] = relpath(self.folder / history["file"], path.parent)
         write_atomically(path, toml(description).encode())
 
     def __repr__(self) -> str:

@@ -18,6 +18,7 @@ from .compare import compare
 from .mesh import mesh
 from .new import new
 from .render import render
+from .respond import respond
 from .run import run
 from .show import show
 from .studies import stability, study
@@ -31,7 +32,7 @@ app = App(
     result_action="return_value",
     suppress_keyboard_interrupt=False,
 )
-for each in (new, run, show, advise, compare, stability, study, validate, mesh, render):
+for each in (new, run, respond, show, advise, compare, stability, study, validate, mesh, render):
     app.command(each)
 app.register_install_completion_command()
 

@@ -18,7 +18,7 @@ from runningbond.scene import Action, Scene
 from .model import Model
 
 COMPUTING_ROOMS = (  # packages in which a change can change a number
-    *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics")),
+    *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics", "response")),
     *("meshing", "fem_interface", "dem", "homog"),
 )
 LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, Literal, Protocol, TypeAlias
 
 from runningbond.pictures.frame import Discretisation, Frame
+from runningbond.response import Response
 from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Mortar, Scene, SceneError, table_of
 
@@ -77,6 +78,7 @@ class Model:
     cost: Cost | None = None  # `advise` runs no model without
     takes: frozenset[str] = frozenset()  # what it can do of `Scene.extras`; scenes with others it refuses by name
     pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed
+    respond: Callable[..., Response] | None = None  # response to a motion of the ground, of scene, scale
     colour: str = "0.35"  # how charts draw it,
     marker: str = "*"
     line: str | tuple[int, tuple[int, ...]] = "-"  # and its pushover curve

@@ -12,6 +12,7 @@ from typing import Any
 
 from homog import homog
 from runningbond.limit import limit, limit_nonassociated
+from runningbond.response import Response
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import suggestion
@@ -27,7 +28,7 @@ INTERFACE = SOFTENING | CRUSHING | {"joint.compressive_fracture_energy", "joint.
 ELASTIC = INTERFACE | {"block.young", "block.poisson"}
 
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
-EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # all that a model may know of `Scene.extras`
+EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # all of `Scene.extras` that a static model may know
 KERNELS = 3.0  # seconds until the kernels of blocks in motion are loaded
 TOLERANCE = 0.01  # relative width of the bracket where none is asked for
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
@@ -46,8 +47,8 @@ def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
 _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(_late, "dem.dynamic", "dem_dynamic")
 _RECORDER = partial(_late, "runningbond.pictures.recording")
 _PROGRESS = partial(_late, "runningbond.pictures.progress")
-_IN_MOTION: dict[str, Any] = {"interruptible": True, "takes": EXTRAS, "observer": partial(_RECORDER, "MotionRecorder")}
-_IN_MOTION["progress"] = partial(_PROGRESS, "MotionProgress")
+_IN_MOTION: dict[str, Any] = {"interruptible": True, "takes": EXTRAS | {"load.history"}}
+_IN_MOTION |= {"observer": partial(_RECORDER, "MotionRecorder"), "progress": partial(_PROGRESS, "MotionProgress")}
 
 _EVERY_MODEL = (
     Model(
@@ -92,6 +93,7 @@ _EVERY_MODEL = (
         parameters=(*IN_STEPS, "displacements"),
         cost=Cost(1.6, 1.23, 1.51, weightless=0.88, finer=0.06, start=KERNELS),
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
+        respond=partial(_late, "dem.dynamic", "dem_response"),
         **_IN_MOTION,
         colour="#2a9d8f",
         marker="^",
@@ -102,6 +104,7 @@ _EVERY_MODEL = (
         parameters=(*IN_STEPS, *OF_BLOCKS, "displacements"),
         cost=Cost(5.7, 1.05, 1.46, weightless=0.97, finer=0.06, start=KERNELS, cracked=6.0),
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),
+        respond=partial(_late, "fem_interface.model", "fem_response"),
         **_IN_MOTION,
         colour="#be185d",
         marker="D",
@@ -177,3 +180,36 @@ def run_model(
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
     return replace(outcome, model=model.name, message="; ".join(filter(None, notes)))
+
+
+def check_response(
+    model: str | Model, scene: Scene, scale: float, model_key: str = "model", scale_key: str = "scale"
+) -> Callable[..., Response]:
+    """How a model follows a scene through the motion of its ground.
+
+    Raises
+    ------
+    SceneError
+        For a model that follows no motion of the ground, a scene that has none, or a scale that is no number.
+    """
+    model = find_model(model, model_key)
+    if model.respond is None:
+        able = ", ".join(name for name, each in MODELS.items() if each.respond)
+        raise SceneError(model_key, f"follows no motion of the ground; take {able}", model.name)
+    if scene.history is None:
+        raise SceneError("load.history", "is missing: the motion of the ground that the wall is to follow")
+    model.check(scene)
+    if not (math.isfinite(scale) and scale != 0):
+        raise SceneError(scale_key, "must be a finite number, not zero", scale)
+    return model.respond
+
+
+def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
+    """Follow a scene through the motion of its ground, `scale` times as large; settings as of `follow`.
+
+    Raises
+    ------
+    SceneError
+        As of `check_response`, and for a wall that does not rest under its dead load.
+    """
+    return check_response(model, scene, scale)(scene, scale, **settings)

@@ -14,8 +14,8 @@ from .system import BlockSystem, ContactSearch, Interface
 SPEED_FACTOR = 2
 """Times the speed that bodies have, and that loads alone would give them, with which they are taken to move on."""
 
-STEPS_AHEAD = 16
-"""Steps of the fastest body within which sides count as near at least."""
+STEPS_AHEAD = 128
+"""Steps of the fastest body within which sides count as near at least: a search takes as long as hundreds of them."""
 
 HELD = 1.1
 """Margin in openings of joints that are not broken yet."""

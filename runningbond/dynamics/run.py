@@ -79,13 +79,21 @@ class Run:
     viscous
         Damping ratio of the stiffness-proportional viscosity of the joints, at the highest frequency.
     dt
-        Time step [s]; the stable one where none is given.
+        Time step [s]; where none is given a part of the stable one.
+    part
+        That part.
     """
 
     def __init__(
-        self, system: BlockSystem, *, local: float = LOCAL, viscous: float = VISCOUS, dt: float | None = None
+        self,
+        system: BlockSystem,
+        *,
+        local: float = LOCAL,
+        viscous: float = VISCOUS,
+        dt: float | None = None,
+        part: float = 1.0,
     ) -> None:
-        self.system, self.local, self.viscous = system, local, viscous
+        self.system, self.local, self.viscous, self._part = system, local, viscous, part
         self._given_step, self._tied = dt, len(system.ties) > 0
         self._rig = () if system.rig is None else tuple(system.rig)
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
@@ -99,7 +107,7 @@ class Run:
         self.interface, self._contacts = interface, contacts
         square = self.system.ties.frequency_squared(interface.frequency_squared, self.system.mass)
         self.safe_step = stable_step(square, self.viscous, self.local)
-        self.dt = self._given_step or self.safe_step
+        self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
         self._step = {control: stepper(*kernels, control, self._tied, bool(self._rig)) for control in CONTROLS}
@@ -143,6 +151,10 @@ class Run:
             As soon as the energy that is watched does not add up; the state is left as it is then.
         """
         self._advance("held", state, dead * self.system.dead + multiplier * self.system.live, 0.0, steps, given)
+
+    def bear(self, state: State, load: Array, steps: int) -> None:
+        """Take steps under a constant load ``(nd,)`` [N]; as `hold` does without watching the energy."""
+        self._advance("held", state, load, 0.0, steps, math.inf)
 
     def drive(self, state: State, speed: float, steps: int, *, given: float = math.inf) -> float:
         """Take steps with the live load's power ``f_live · v`` kept at `speed` [W]; returns the mean multiplier.
@@ -194,7 +206,7 @@ class Run:
         # What is held from now on has been damped; the ledger counts the damping of what moves.
         state.absorbed += float(state.damped[late].sum())
         state.damped[late] = 0.0
-        return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step)
+        return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step, part=self._part)
 
     def unaccounted(self, state: State, least: float = 0.0) -> float:
         """Share of the work of the loads, or of a least one [J], that the energy ledger misses.

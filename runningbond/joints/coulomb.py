@@ -10,8 +10,8 @@ from .mohr_coulomb import truncated_cone
 from .point_law import PointLaw
 from .stiffness import joint_stiffness
 
-HISTORY = (*COMMON_ROWS, "plastic slip")
-PLASTIC_SLIP = HISTORY.index("plastic slip")
+HISTORY = (*COMMON_ROWS, "plastic slip", "viscous pull", "viscous shear")
+PLASTIC_SLIP, PULL_BEFORE, SHEAR_BEFORE = (HISTORY.index(name) for name in HISTORY[4:])
 
 
 def coulomb_constants(material: JointMaterial) -> tuple[float, ...]:
@@ -42,11 +42,13 @@ def coulomb_kernel(
 
     Stiffness-proportional viscosity β acts on the jumps' rates: `viscosity` = β / Δt times their change over the
     last step. It never lets a joint pull or slide beyond its strength, so it has no part in a mechanism, but takes
-    out the chatter of sliding contacts, on which local damping would otherwise drag.
+    out the chatter of sliding contacts, on which local damping would otherwise drag. Its work is that of the mean of
+    two steps' tractions, as central differences do it: that of one alone is several percent too large in an impact.
     """
     segments, constants = parameters
     spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
     opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
+    pull_before, shear_before = history[PULL_BEFORE], history[SHEAR_BEFORE]
     for segment in range(constants.shape[0]):
         k_n, k_t, strength = constants[segment, 0], constants[segment, 1], constants[segment, 2]
         shear, friction, flexibility = constants[segment, 3], constants[segment, 4], constants[segment, 5]
@@ -72,7 +74,10 @@ def coulomb_kernel(
             slip_before[i] = jump_t
             plastic_slip[i] = plastic + slid
             spent[i] += held * slid
-            damped[i] += (n - elastic) * change_n + (t - held) * change_t
+            pull, drag = n - elastic, t - held
+            damped[i] += 0.5 * ((pull_before[i] + pull) * change_n + (shear_before[i] + drag) * change_t)
+            pull_before[i] = pull
+            shear_before[i] = drag
             normal[i] = n
             tangential[i] = t
 

@@ -25,6 +25,9 @@ from runningbond.scene import Array, Scene
 FALL_FRAMES = 12
 """Largest number of moments of a fall that are kept."""
 
+RESPONSE_FRAMES = 30
+"""Moments of a motion of the ground that are kept, besides those of the free motion after it."""
+
 MECHANISM_FRAMES = 8
 """Moments in which a mechanism, where there is nothing else, grows to a size that is seen."""
 
@@ -155,6 +158,23 @@ class MotionRecorder(SeriesRecorder):
             return frame
         displacement = self._wall.displacement(state.motion)
         return replace(frame, displacement=displacement, stress=stresses(self._wall, state.motion))
+
+
+class ResponseRecorder(MotionRecorder):
+    """Writes moments of a wall whose ground moves, evenly spaced."""
+
+    def __init__(self, scene: Scene, folder: Path | None) -> None:
+        super().__init__(scene, folder)
+        self._spacing = scene.history.duration / RESPONSE_FRAMES if scene.history else 0.0
+        self._next = -np.inf
+
+    def __call__(self, run: Run, state: State, multiplier: float) -> None:
+        """Write a moment if it is time."""
+        if isinstance(run.system.source, ModalWall) and run.system.source is not self._wall:
+            self._observe(run.system.source)
+        if state.time >= self._next:
+            self.keep(self._frame(run, state, multiplier))
+            self._next = state.time + self._spacing
 
 
 def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:

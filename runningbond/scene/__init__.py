@@ -8,6 +8,7 @@ from .bond import Bond, course_pattern, running_bond
 from .errors import SceneError
 from .file import read_description, read_scene, scene_from_dict
 from .forces import Arrow, Forces
+from .history import History
 from .loads import Load
 from .mass_loads import Body, Lateral, Tilt
 from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Stiffness
@@ -35,6 +36,7 @@ __all__ = [
     "Drive",
     "Forces",
     "GivenForces",
+    "History",
     "Indices",
     "JointMaterial",
     "Joints",

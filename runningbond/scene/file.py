@@ -85,7 +85,7 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     beam = read_beam(beam_table, joint_names) if beam_table else None
     kind = cast(SupportKind, support.choice("kind", SUPPORT_KINDS))
     support.finish()
-    loads = read_load(load, driven=beam is not None and beam.drive is not None)
+    loads = read_load(load, folder, driven=beam is not None and beam.drive is not None)
     thickness = wall.number("thickness", ABOVE_ZERO)
     outlines = read_outlines(wall, folder, block_names)
     wall.finish()

@@ -6,11 +6,13 @@ it (`KINDS`). One of a user's own is a subclass of `Action` too, and an object o
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from .actions import Action
 from .beam import BeamLoad
 from .errors import SceneError, keys_of
+from .history import KEY, History, read_history
 from .mass_loads import Body, Lateral, Tilt
 from .point_loads import LineLoad, Moment, PointLoad
 from .ranges import AT_LEAST_ZERO, vector
@@ -50,9 +52,10 @@ class Load:
         groups = (("load.live", self.live), ("load.dead", self.dead))
         named: list[tuple[str, Action]] = []
         for name, loads in groups:
-            listed = [load for load in loads if not isinstance(load, BeamLoad)]
+            listed = [load for load in loads if not isinstance(load, (BeamLoad, History))]
             named += [(f"{name}[{k}]" if len(listed) > 1 else name, load) for k, load in enumerate(listed)]
             named += [(load.key, load) for load in loads if isinstance(load, BeamLoad)]
+            named += [(KEY, load) for load in loads if isinstance(load, History)]
         return named
 
 
@@ -72,22 +75,36 @@ DEAD_KINDS = [kind for kind in KINDS if kind not in ("tilt", "settlement")]
 """Kinds of loads that λ need not multiply."""
 
 
-def read_load(table: Table, *, driven: bool = False) -> Load:
+def read_load(table: Table, folder: Path, *, driven: bool = False) -> Load:
     """The loads of a file; in Python an object may stand in place of the table of one.
 
-    Without a live one only where the wall is driven otherwise, by its beam.
+    Without a live one only where the wall is driven otherwise, by its beam or by its ground, whose record is looked up
+    in a folder.
     """
     if isinstance(table.peek("gravity"), (list, tuple)):
         gravity = table.vector("gravity")
     else:
         gravity = (0.0, -table.number("gravity", AT_LEAST_ZERO))
-    given = table.value("live", []) if driven else table.required("live", "a table")
+    history = _history(table, folder, driven=driven)
+    given = table.value("live", []) if driven or history else table.required("live", "a table")
     live = _read_actions(table.key("live"), given, list(KINDS))
     dead = _read_actions(table.key("dead"), table.value("dead", []), DEAD_KINDS)
     table.finish()
+    if history:
+        return Load(gravity, (history,), dead)
     if not live and not driven:
         raise SceneError(table.key("live"), "must be a load, or some", given)
     return Load(gravity, live, dead)
+
+
+def _history(table: Table, folder: Path, *, driven: bool) -> History | None:
+    given = table.value("history")
+    if given is None:
+        return None
+    if driven or "live" in table:
+        what = "does not go with load.history, which is what λ multiplies; leave one out"
+        raise SceneError("beam.drive" if driven else table.key("live"), what)
+    return given if isinstance(given, History) else read_history(Table(KEY, given), folder)
 
 
 def _read_actions(key: str, content: Any, kinds: list[str]) -> tuple[Action, ...]:

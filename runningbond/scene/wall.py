@@ -18,6 +18,7 @@ from .bond import Bond
 from .cracks import cut_in_half
 from .errors import SceneError, keys_of
 from .forces import Forces
+from .history import KEY, History
 from .loads import Load
 from .materials import BlockMaterial, JointMaterial
 from .ranges import ABOVE_ZERO, one_of
@@ -152,6 +153,11 @@ class Scene:
         """The live load that moves a support; None where there is none."""
         return next((load for load in self.load.live if isinstance(load, Settlement)), None)
 
+    @cached_property
+    def history(self) -> History | None:
+        """The motion of the ground; None where it stays."""
+        return next((load for load in self.load.live if isinstance(load, History)), None)
+
     @property
     def is_led(self) -> bool:
         """Whether displacements are prescribed to it, not loads."""
@@ -178,6 +184,7 @@ class Scene:
             "beam.drive.displacement": len(path) == 1,
             "beam.drive.displacement, cyclic": len(path) > 1,
             "load.live settlement": self.settlement is not None,
+            KEY: self.history is not None,
         }
         return tuple(key for key, there in given.items() if there)
 
@@ -394,6 +401,8 @@ def _check(scene: Scene) -> None:
         raise SceneError("load.live", "is missing: nothing is multiplied by λ")
     if scene.is_led and len(scene.load.live) > 1:
         raise SceneError("load.live", "must be alone where a support or the beam is moved by a displacement")
+    if scene.history and len(scene.load.live) > 1:
+        raise SceneError("load.live", "does not go with load.history, which is what λ multiplies; leave one out")
     for key, load in scene.load.named():
         load.check(scene, key)
         if isinstance(load, Settlement):

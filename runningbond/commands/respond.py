@@ -1,0 +1,70 @@
+"""``runningbond respond``."""
+
+import json as to_json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+from cyclopts import Parameter
+
+from runningbond.compare.models import MODELS, check_response
+from runningbond.compare.models import respond as respond_with
+from runningbond.compare.published import find_scene
+from runningbond.compare.table import csv_lines
+from runningbond.pictures.time_series import KINDS
+from runningbond.results import Outcome, make_folder, write_atomically
+from runningbond.scene import read_scene
+
+from .terminal import DONE, NO_ANSWER, Json, SceneName, remarks
+
+AFTER = 0.5
+"""Time [s] for which a wall that falls is filmed."""
+
+SERIES, CHART = "response.csv", "response.png"
+
+
+def respond(
+    scene: SceneName,
+    /,
+    *,
+    model: Annotated[str, Parameter(help=f"One of {', '.join(name for name, one in MODELS.items() if one.respond)}.")],
+    scale: Annotated[float, Parameter(help="Factor on the record, λ.")] = 1.0,
+    json: Json = False,
+    out: Path | None = None,
+) -> int:
+    """Follow a wall through the motion of its ground, and say whether it stands.
+
+    Parameters
+    ----------
+    model
+        Name of the model.
+    out
+        Folder in which to keep the response as a table and as a chart, and its time series for ParaView.
+    """
+    wall = read_scene(find_scene(scene))
+    check_response(model, wall, scale, "--model", "--scale")
+    recorder, observed = None, dict[str, Any]()
+    if out is not None:
+        from runningbond.pictures.recording import ResponseRecorder
+
+        make_folder(out)
+        recorder = ResponseRecorder(wall, out)
+        observed = {"observe": recorder, "after": AFTER}
+    response = respond_with(model, wall, scale, **observed)
+    for line in remarks(wall):
+        print(line, file=sys.stderr)
+    summary = response.summary()
+    text = f"{response.scene}: {response.model}, λ {scale:g}\n  {response.message}\n  {response.steps} steps, "
+    print(to_json.dumps(summary, allow_nan=False) if json else f"{text}{response.seconds:.3g} s", flush=True)
+    if out is not None and recorder is not None:
+        from runningbond.pictures.captions import to_png
+        from runningbond.pictures.response import response_figure
+
+        recorder.finish(Outcome(wall.title, response.model, "undecided"))
+        columns = response.columns()
+        rows = [[float(x) for x in row] for row in zip(*columns.values(), strict=True)]
+        write_atomically(out / SERIES, csv_lines([list(columns), *rows]).encode())
+        write_atomically(out / CHART, to_png(response_figure(response)))
+        if not json:
+            print("\n".join(str(out / name) for name in (SERIES, CHART, *(f"{kind}.pvd" for kind in KINDS))))
+    return NO_ANSWER if response.verdict == "undecided" else DONE

@@ -1,0 +1,48 @@
+"""The response of a wall to a motion of its ground as a chart: ground, drift, base shear and energies over time."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from runningbond.response import ENERGIES, Response
+
+from .style import DARK, SMALL_TYPE, TYPE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+COLOURS = dict(zip(ENERGIES, ("#0b559f", "0.6", "#2a9d8f", "#e9a23b", "#c2410c", "#7c3aed"), strict=True))
+SPENT = ("kinetic", "stored", "friction", "damped")
+
+
+def response_figure(response: Response) -> "Figure":
+    """Draw the acceleration of the ground, the drift of the top, the base shear, and what became of the energy."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 6.4), layout="constrained", dpi=200)
+    ground, drift, shear, energy = figure.subplots(4, 1, sharex=True, height_ratios=(1, 1.5, 1, 1.7))
+    time = response.time
+    lines = (
+        (ground, response.ground[:, 0], "ground [m/s²]"),
+        (drift, response.drift, "drift"),
+        (shear, response.reaction[:, 0] / 1e3, "base shear [kN]"),
+    )
+    for axes, values, name in lines:
+        axes.plot(time, values, color=DARK, lw=0.9)
+        axes.axhline(0.0, color="0.7", lw=0.5, zorder=0)
+        axes.set_ylabel(name, fontsize=SMALL_TYPE + 1)
+    parts = [response.energy[:, ENERGIES.index(name)] for name in SPENT]
+    energy.stackplot(time, np.maximum(parts, 0.0), colors=[COLOURS[name] for name in SPENT], labels=SPENT, lw=0)
+    energy.plot(time, response.energy[:, :2].sum(axis=1), color=DARK, lw=0.9, label="input + weight")
+    energy.set_ylabel("energy [J]", fontsize=SMALL_TYPE + 1)
+    energy.set_xlabel("time [s]", fontsize=SMALL_TYPE + 1)
+    energy.legend(frameon=False, fontsize=SMALL_TYPE, ncols=5, loc="lower left", bbox_to_anchor=(0.0, 0.98))
+    for axes in (ground, drift, shear, energy):
+        axes.tick_params(labelsize=SMALL_TYPE)
+        axes.spines[["top", "right"]].set_visible(False)
+    fallen = np.flatnonzero(response.fallen)
+    if len(fallen):
+        drift.axvline(time[fallen[0]], color=COLOURS["friction"], lw=0.9, ls="--")
+    title = f"{response.scene}: λ = {response.scale:g}, {response.message.split(';')[0]}"
+    figure.suptitle(title, fontsize=TYPE)
+    return figure

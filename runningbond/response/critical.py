@@ -1,0 +1,165 @@
+"""The critical scale of a record: the smallest λ tried that brings a wall down, and the largest below it that does not.
+
+Scales are tried upwards in steps of `RATIO` until the wall falls, and the last step is bisected. What falls at one
+scale may stand at a larger one: rocking blocks overturn in more than one way (Zhang & Makris 2001). So scales go on in
+the same steps to `BEYOND` times the first fall, and each window in which the wall stands again is told of.
+"""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from runningbond.dynamics import BlockSystem, Observer, no_observer
+from runningbond.results import Outcome, fastest_corner_by_one
+from runningbond.results.outcome import number
+from runningbond.results.reactions import AT_REST
+from runningbond.scene import Scene
+from runningbond.scene.history import STANDARD_GRAVITY
+
+from .follow import follow
+from .response import Response
+from .resting import Resting
+
+START, MOST = 0.05, 50.0
+"""Peak acceleration of the ground, in g, at the first scale that is tried, and beyond which no fall is looked for."""
+
+RATIO, BEYOND = 1.25, 2.0
+"""From scale to scale; and how far beyond the first fall windows are looked for."""
+
+MISSED = 0.01
+"""Share of the energy supplied that the ledger may miss before a run is not believed."""
+
+ROWS = 50
+"""Rows of a response in a second, of a search."""
+
+
+@dataclass(eq=False)
+class Search:
+    """Responses at the scales that were tried."""
+
+    respond: Callable[[float], Response]
+    tried: dict[float, Response]
+
+    def falls(self, scale: float) -> bool:
+        """Whether the wall falls at a scale."""
+        if scale not in self.tried:
+            self.tried[scale] = self.respond(scale)
+        return self.tried[scale].verdict == "collapse"
+
+    @property
+    def in_order(self) -> list[Response]:
+        """Responses by their scales, ascending."""
+        return [self.tried[scale] for scale in sorted(self.tried)]
+
+    def windows(self) -> list[tuple[float, float]]:
+        """Scales above the first fall between which the wall was seen to stand."""
+        found: list[list[float]] = []
+        fallen = inside = False
+        for response in self.in_order:
+            stands = response.verdict == "stands"
+            if fallen and stands:
+                found[-1].append(response.scale) if inside else found.append([response.scale])
+            inside, fallen = stands, fallen or response.verdict == "collapse"
+        return [(window[0], window[-1]) for window in found]
+
+
+def critical_scale(
+    scene: Scene, model: str, system: BlockSystem, tolerance: float, *, note: str = "", observe: Observer = no_observer
+) -> Outcome:
+    """Find the smallest multiple of a record that brings a wall down.
+
+    Parameters
+    ----------
+    scene, model
+        The wall, with a motion of its ground, and the name of the model.
+    system
+        Its blocks at finite displacements.
+    tolerance
+        Relative width of the bracket.
+    note
+        What the message is to say besides.
+    observe
+        As of `follow`, of every run.
+
+    Returns
+    -------
+    Outcome
+        `curve` has the largest displacement of the upper corners, and λ, of every scale tried; `path` whether the wall
+        stood there, and its drift in the end.
+    """
+    start, rest = time.perf_counter(), Resting.of(scene, model, system)
+    outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=rest.state.steps)
+    if rest.verdict == "collapse":
+        return replace(outcome, status="infeasible", message="collapses under its dead load")
+    if rest.verdict == "undecided":
+        return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+    search, stopped = Search(lambda scale: follow(rest, scale, rows=ROWS, observe=observe), {}), False
+    unit = STANDARD_GRAVITY / float(np.hypot(*rest.history.peak))
+    try:
+        _bracket(search, START * unit, MOST * unit, tolerance)
+    except KeyboardInterrupt:
+        stopped = True
+    outcome = _judged(outcome, rest, search, tolerance, stopped)
+    message = "; ".join(filter(None, (outcome.message, note)))
+    return replace(outcome, message=message, seconds=time.perf_counter() - start)
+
+
+def _bracket(search: Search, scale: float, most: float, tolerance: float) -> None:
+    """Try scales up to the first fall, bisect it, and go on beyond it."""
+    while search.falls(scale) and scale > most * 1e-9:
+        scale /= RATIO
+    while not search.falls(scale):
+        if scale > most:
+            return
+        scale *= RATIO
+    for beyond in scale * RATIO ** np.arange(1, math.floor(math.log(BEYOND) / math.log(RATIO)) + 1):
+        search.falls(float(beyond))
+    lower, upper = scale / RATIO, scale
+    search.falls(lower)
+    while upper - lower > tolerance * upper and search.tried[lower].verdict == "stands":
+        middle = (lower + upper) / 2
+        lower, upper = (lower, middle) if search.falls(middle) else (middle, upper)
+
+
+def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, stopped: bool) -> Outcome:
+    runs = search.in_order
+    first = next((k for k, run in enumerate(runs) if run.verdict == "collapse"), len(runs))
+    upper = runs[first] if first < len(runs) else None
+    lower = runs[first - 1] if first else None
+    points = rest.top
+    height = float(points[:, 1].mean() - rest.scene.blocks.extent(rest.scene.wall)[0][1])
+    outcome = replace(
+        outcome,
+        lower=lower.scale if lower and lower.verdict == "stands" else None,
+        upper=upper.scale if upper else None,
+        steps=(outcome.steps or 0) + sum(run.steps for run in runs),
+        curve=np.array([(height * run.peak_drift, run.scale) for run in runs]).reshape(-1, 2),
+        path=np.array([(run.verdict == "stands", run.residual_drift) for run in runs], dtype=float).reshape(-1, 2),
+        path_columns=(AT_REST, "drift at the end"),
+    )
+    if stopped:
+        return replace(outcome, message="interrupted: the bracket so far")
+    if upper is None:
+        return replace(outcome, message=f"stands at every scale tried, up to {number(runs[-1].scale)}")
+    outcome = replace(outcome, motion=fastest_corner_by_one(rest.scene.blocks, upper.velocity))
+    doubtful = max((run for run in (lower, upper) if run), key=lambda run: run.unaccounted)
+    if doubtful.unaccounted > MISSED:
+        message = (
+            f"{doubtful.unaccounted:.1%} of the energy supplied is unaccounted for at λ = {number(doubtful.scale)}"
+        )
+        return replace(outcome, status="failed", message=message)
+    if lower is None or lower.verdict != "stands":
+        return replace(
+            outcome, message="no scale was found at which the wall comes to rest below one at which it falls"
+        )
+    again = [f"{number(low)} … {number(high)}" if high > low else number(low) for low, high in search.windows()]
+    parts = (
+        f"largest scale at which the wall stands below all falls, and smallest at which it falls: {upper.message}",
+        f"it stands again at {', '.join(again)}" if again else "",
+        f"scales were tried in steps of {RATIO:g} up to {number(runs[-1].scale)}; narrower windows are not seen",
+    )
+    middle = (lower.scale + upper.scale) / 2
+    return replace(outcome, status="collapse", multiplier=middle, message="; ".join(filter(None, parts)))

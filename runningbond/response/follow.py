@@ -1,0 +1,179 @@
+"""A wall followed through a motion of its ground: the record, then free motion until it rests or has fallen.
+
+A block has fallen once it is lower by half its smaller side, or turned by more than `TURNED`, than under its weight.
+The wall stands once no more kinetic energy is in it, for as long as it takes to rock to and fro, than would lift it by
+`RISE` of a block.
+"""
+
+import math
+import time
+from dataclasses import replace
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from runningbond.dynamics import Observer, Run, State, no_observer
+from runningbond.scene import Array, SceneError
+
+from .ground import Ground
+from .response import Response, Verdict, unaccounted
+from .resting import Resting
+
+TURNED = math.radians(60)
+"""Rotation of a block that has fallen [rad]."""
+
+RISE = 1e-4
+"""Height, in sizes of a block, to which the kinetic energy of a wall that stands would lift it."""
+
+ROWS = 200
+"""Rows of a response in a second, and in a record that is shorter; `follow` may be asked for fewer."""
+
+PART = 0.8
+"""Time step, in stable ones: an impact makes up or loses energy by its square."""
+
+PATIENCE = 30
+"""Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided."""
+
+
+class _Log:
+    """Rows of a response as they come, and the blocks that have fallen."""
+
+    def __init__(self, rest: Resting, ground: Ground, state: State, points: Array) -> None:
+        system = ground.run.system
+        if system.contacts is None:
+            raise TypeError("a wall follows its ground at finite displacements")
+        self.ground, self._run, self.points = ground, ground.run, points
+        self._outline, self._block = system.contacts.outline, np.array([rest.block_at(point) for point in points])
+        self._size, self._movable = rest.scene.block_sizes[system.owner], ~rest.scene.fixed[system.owner]
+        self._calm = RISE * rest.gravity * float(ground.inertia[0].sum()) * rest.scene.block_size
+        self._dead = ground.dead()
+        self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
+        self._motion, self._places, self._energies = state.motion.copy(), self._where(state), self._energy(state)
+        self._momentum, self._time = ground.momentum(state), state.time
+        self.rows: list[tuple[float, Array, Array, float, Array, Array, int]] = []
+        self.first: list[int] = []
+        self.look(state)
+
+    def look(self, state: State) -> None:
+        """Add a row."""
+        system, now = self._run.system, self.ground.time(state)
+        moved = system.motion_of_bodies(state.motion - self._motion)
+        fell = self._movable & ((-moved[:, 1] > self._size / 2) | (np.abs(moved[:, 2]) > TURNED))
+        self.first += [block for block in dict.fromkeys(system.owner[fell].tolist()) if block not in self.first]
+        momentum, span = self.ground.momentum(state), state.time - self._time
+        pushed = (momentum - self._momentum) / span if span else np.zeros(2)
+        self._momentum, self._time = momentum, state.time
+        places = self._where(state) - self._places
+        motion = (self.ground.acceleration(now), places, float(places[:, 0].mean() / self._height))
+        self.rows.append((now, *motion, pushed - self._dead, self._energy(state) - self._energies, len(self.first)))
+
+    def is_calm(self, since: float) -> bool:
+        """Whether hardly any energy was in motion from a time on [s]."""
+        return all(row[5][2] <= self._calm for row in self.rows if row[0] >= since)
+
+    def _where(self, state: State) -> Array:
+        return self._outline.points(self._block, self.points, state.motion[self._run.system.rigid].ravel())
+
+    def _energy(self, state: State) -> Array:
+        ledger, dead = self._run.ledger(state), self._run.dead_work(state)
+        stored = ledger.elastic + ledger.joint + ledger.ties
+        return np.array([ledger.external - dead, dead, ledger.kinetic, stored, ledger.friction, ledger.damped])
+
+
+def follow(
+    rest: Resting,
+    scale: float,
+    *,
+    after: float = 0.0,
+    points: Array | None = None,
+    rows: int = ROWS,
+    observe: Observer = no_observer,
+) -> Response:
+    """Follow a wall through the motion of its ground.
+
+    Parameters
+    ----------
+    rest
+        The wall at rest.
+    scale
+        Factor on the record, λ.
+    after
+        Time for which it is followed once a block has fallen [s].
+    points : (k, 2) float, optional
+        Points to follow [m], on the blocks with the nearest corners; without any the wall's upper corners.
+    rows
+        Rows in a second, and at least in the record.
+    observe
+        Called with the run, its state and λ at every row.
+
+    Raises
+    ------
+    SceneError
+        For a wall that does not rest under its dead load.
+    """
+    if rest.verdict != "stable":
+        what = (
+            "falls under its dead load" if rest.verdict == "collapse" else "does not come to rest under its dead load"
+        )
+        raise SceneError(rest.scene.title, f"{what}: there is nothing to shake")
+    begin, history = time.perf_counter(), rest.history
+    run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=PART)
+    run.led, state = True, rest.state.copy()
+    ground = Ground(run, history, scale, state.time)
+    log = _Log(rest, ground, state, rest.top if points is None else np.reshape(points, (-1, 2)))
+    verdict: Verdict = "undecided"
+    fell, now, swing = math.inf, 0.0, rest.swing
+    end = history.duration + PATIENCE * swing
+    with threadpool_limits(limits=1, user_api="blas"):
+        while verdict == "undecided" and now < end:
+            ground.bring(state, now + min(1.0, history.duration if now < history.duration else 1.0) / rows)
+            log.look(state)
+            observe(run, state, scale)
+            now = ground.time(state)
+            if log.first:
+                fell = min(fell, now)
+                verdict = "collapse" if now >= fell + after else "undecided"
+            elif now >= history.duration + swing and log.is_calm(now - swing):
+                verdict = "stands"
+    return _response(rest, scale, log, run, state, (verdict, fell), time.perf_counter() - begin)
+
+
+def _response(
+    rest: Resting,
+    scale: float,
+    log: _Log,
+    run: Run,
+    state: State,
+    end: tuple[Verdict, float],
+    seconds: float,
+) -> Response:
+    times, ground, places, drift, reaction, energy, fallen = map(np.array, zip(*log.rows, strict=True))
+    verdict, fell = end
+    names = ", ".join(rest.scene.blocks.name(block) for block in log.first[:3])
+    message = {
+        "stands": f"stands, with a residual drift of {drift[-1]:.3g}",
+        "collapse": f"falls: {names} at {fell:.3g} s" + (" first" if len(log.first) > 3 else ""),
+        "undecided": f"neither rests nor falls within {times[-1]:.3g} s",
+    }[verdict]
+    lost = unaccounted(energy)
+    return Response(
+        scene=rest.scene.title,
+        model=rest.model,
+        scale=scale,
+        verdict=verdict,
+        message=f"{message}; peak drift {np.abs(drift).max():.3g}; energy accounted for to {max(lost, 1e-6):.0e}",
+        points=log.points,
+        time=times,
+        ground=ground,
+        displacement=places,
+        drift=drift,
+        reaction=reaction,
+        energy=energy,
+        fallen=fallen,
+        first=np.array(log.first, dtype=np.int64),
+        motion=run.system.motion_of_blocks(state.motion),
+        velocity=run.system.motion_of_blocks(state.velocity),
+        unaccounted=lost,
+        steps=state.steps - rest.state.steps,
+        seconds=seconds,
+    )

@@ -1,0 +1,63 @@
+"""Motion of the ground as a run sees it: in the ground's frame every mass m bears −m a.
+
+The load of each few time steps is the mean over them, taken from the ground's velocity: whatever steps are taken, the
+wall has been given the velocity that the record has there, to rounding.
+"""
+
+import numpy as np
+
+from runningbond.dynamics import Run, State
+from runningbond.scene import Array, History
+
+
+class Ground:
+    """The ground under a run, from the time of a state on.
+
+    Parameters
+    ----------
+    run
+        The wall, at finite displacements.
+    history, scale
+        The record, and the factor on it.
+    start
+        Time of the state from which the record counts [s].
+    """
+
+    def __init__(self, run: Run, history: History, scale: float, start: float) -> None:
+        self.run, self.history, self.scale, self.start = run, history, scale, start
+        self.velocity = np.zeros(2)  # that the wall has been given so far [m/s]
+        # (2, nd) mass that each mode moves along x and along y [kg]; none where it is held
+        self.inertia = np.zeros((2, len(run.system.mass)))
+        for axis in (0, 1):
+            modes = run.system.rigid[:, axis]
+            mass = run.system.mass[modes]
+            self.inertia[axis, modes] = np.where(np.isfinite(mass), mass, 0.0)
+
+    def time(self, state: State) -> float:
+        """Time since the record began [s]."""
+        return state.time - self.start
+
+    def acceleration(self, time: float) -> Array:
+        """Acceleration of the ground ``(2,)`` [m/s²]."""
+        return self.scale * self.history.acceleration(time)
+
+    def bring(self, state: State, until: float) -> None:
+        """Bring a state forward to a time of the record [s], to within half a time step."""
+        run, history = self.run, self.history
+        while (left := until - (now := self.time(state))) > run.dt / 2:
+            span = min(left, max(history.resolution, run.dt)) if now < history.duration else left
+            steps = max(1, round(span / run.dt))
+            aim = self.scale * history.velocity(now + steps * run.dt)
+            acceleration = (aim - self.velocity) / (steps * run.dt)
+            before = state.time
+            run.bear(state, run.system.dead - acceleration @ self.inertia, steps)
+            # New contacts may have changed the step; what is missing is made up for in the next ones.
+            self.velocity += acceleration * (state.time - before)
+
+    def momentum(self, state: State) -> Array:
+        """Momentum of the wall in space ``(2,)`` [kg m/s]."""
+        return np.asarray(self.inertia @ state.velocity + self.inertia.sum(axis=1) * self.velocity)
+
+    def dead(self) -> Array:
+        """Resultant of the dead load on what moves ``(2,)`` [N]."""
+        return np.asarray((self.inertia > 0) @ np.nan_to_num(self.run.system.dead))

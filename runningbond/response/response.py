@@ -1,0 +1,134 @@
+"""What a wall does when its ground moves: time series, blocks that fell, and a verdict."""
+
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+
+from runningbond.scene import Array, Indices
+
+Verdict: TypeAlias = Literal["stands", "collapse", "undecided"]
+"""Whether a wall has come to rest, a block of it has fallen, or neither within the time that was followed."""
+
+ENERGIES = ("input", "weight", "kinetic", "stored", "friction", "damped")
+"""Works of the ground's motion, in its frame, and of the dead load; energies; what is spent on friction and crushing
+or cracking, and on impacts and damping [J]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Response:
+    """Response of a wall to a motion of its ground, in the frame of the ground.
+
+    Parameters
+    ----------
+    scene, model, scale
+        Title of the scene, name of the model, and the factor on the record, λ.
+    verdict
+        What became of the wall.
+    message
+        That in a line.
+    points : (k, 2) float
+        Points of the undeformed wall that are followed [m].
+    time : (n,) float
+        Time since the record began [s].
+    ground : (n, 2) float
+        Acceleration of the ground [m/s²].
+    displacement : (n, k, 2) float
+        Of the points since the wall was at rest [m].
+    drift : (n,) float
+        Mean horizontal displacement of the points over their mean height above the base.
+    reaction : (n, 2) float
+        Mean of the force of the ground on the wall since the last row [N]: base shear, and pressure.
+    energy : (n, 6) float
+        `ENERGIES` since the wall was at rest [J].
+    fallen : (n,) int
+        Blocks that have fallen.
+    first : (m,) int
+        Blocks that had fallen by the end, the first ones first.
+    motion, velocity : (nb, 3) float
+        Displacement of each block's centroid [m] and its rotation [rad] at the end, and their rates.
+    unaccounted
+        Largest share of the energy supplied that the ledger misses.
+    steps
+        Time steps taken.
+    seconds
+        Wall-clock time.
+    """
+
+    scene: str
+    model: str
+    scale: float
+    verdict: Verdict
+    message: str
+    points: Array
+    time: Array
+    ground: Array
+    displacement: Array
+    drift: Array
+    reaction: Array
+    energy: Array
+    fallen: Indices
+    first: Indices
+    motion: Array
+    velocity: Array
+    unaccounted: float
+    steps: int
+    seconds: float = 0.0
+
+    @property
+    def residual(self) -> Array:
+        """Energy that the ledger misses ``(n,)`` [J]."""
+        return np.asarray(supplied(self.energy) - self.energy[:, 2:].sum(axis=1))
+
+    @property
+    def residual_drift(self) -> float:
+        """Drift at the end."""
+        return float(self.drift[-1])
+
+    @property
+    def peak_drift(self) -> float:
+        """Largest drift, by its size."""
+        return float(np.abs(self.drift).max())
+
+    def summary(self) -> dict[str, Any]:
+        """The scalars."""
+        names = ("scene", "model", "verdict", "scale", "peak_drift", "residual_drift", "unaccounted")
+        fallen = {"fallen": self.first.tolist(), "time": float(self.time[-1])}
+        last = {name: getattr(self, name) for name in ("steps", "seconds", "message")}
+        return {name: getattr(self, name) for name in names} | fallen | last
+
+    def columns(self) -> dict[str, Array]:
+        """The time series column by column, with units."""
+        moved = {
+            f"point {k + 1} {axis} [m]": self.displacement[:, k, number]
+            for k in range(len(self.points))
+            for number, axis in enumerate("xy")
+        }
+        return {
+            "time [s]": self.time,
+            "ground x [m/s²]": self.ground[:, 0],
+            "ground y [m/s²]": self.ground[:, 1],
+            **moved,
+            "drift": self.drift,
+            "base shear [N]": self.reaction[:, 0],
+            "base pressure [N]": self.reaction[:, 1],
+            **{f"{name} [J]": column for name, column in zip(ENERGIES, self.energy.T, strict=True)},
+            "residual [J]": self.residual,
+            "fallen": self.fallen,
+        }
+
+
+def supplied(energy: Array) -> Array:
+    """Energy that the loads have supplied, ``(n,)`` [J]."""
+    return np.asarray(energy[:, 0] + energy[:, 1])
+
+
+def unaccounted(energy: Array) -> float:
+    """Largest share of the energy supplied at any time that the ledger misses.
+
+    Works of the ground and of the weight each count, by how far they have gone: on the way through its middle a wall
+    that rocks has been supplied with next to nothing in sum.
+    """
+    missing = np.abs(supplied(energy) - energy[:, 2:].sum(axis=1))
+    gone = np.ptp(energy[:, :2], axis=0).sum()
+    return float(missing.max(initial=0.0) / gone) if gone else 0.0

@@ -1,0 +1,83 @@
+"""A wall at rest under its weight, ready to be shaken any number of times."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics.collapse import Verdict
+from runningbond.dynamics.run import CALMING
+from runningbond.scene import Array, History, Scene, SceneError
+
+VISCOUS = 1.0
+"""Damping ratio of joints at the highest frequency: corners that strike do not bounce, and lose what Housner's lose."""
+
+
+@dataclass(frozen=True, eq=False)
+class Resting:
+    """A wall that has been brought to rest.
+
+    Parameters
+    ----------
+    scene, model
+        The wall, with a motion of its ground, and the name of the model.
+    system
+        Its blocks at finite displacements.
+    state, verdict
+        Where it is, and ``stable`` where it does rest there.
+    viscous
+        Damping ratio of its joints in motion.
+    """
+
+    scene: Scene
+    model: str
+    system: BlockSystem
+    state: State
+    verdict: Verdict
+    viscous: float = VISCOUS
+
+    @classmethod
+    def of(cls, scene: Scene, model: str, system: BlockSystem, viscous: float = VISCOUS) -> "Resting":
+        """Bring a wall to rest under its dead load."""
+        state, sizes = State.at_rest(system), scene.block_sizes[system.owner]
+        verdict = settle(Run(system, local=CALMING), state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True)
+        state.velocity[:] = 0.0
+        return cls(scene, model, system, state, verdict, viscous)
+
+    @property
+    def history(self) -> History:
+        """The motion of its ground; a scene without is refused."""
+        if self.scene.history is None:
+            raise SceneError("load.history", "is missing: the motion of the ground that the wall is to follow")
+        return self.scene.history
+
+    @property
+    def height(self) -> float:
+        """Height of the wall [m]."""
+        low, high = self.scene.blocks.extent(self.scene.wall)
+        return float(high[1] - low[1])
+
+    @property
+    def gravity(self) -> float:
+        """Gravity [m/s²]."""
+        return float(np.hypot(*self.scene.load.gravity))
+
+    @property
+    def swing(self) -> float:
+        """Time [s] in which a wall that rocks comes through its middle, unless it hardly moves."""
+        return 2 * math.sqrt(self.height / (self.gravity or 1.0))
+
+    @property
+    def top(self) -> Array:
+        """Upper corners of the wall, left and right, ``(2, 2)`` [m]."""
+        blocks = self.scene.blocks
+        corners = blocks.vertices[self.scene.wall[blocks.owner]]
+        highest = corners[corners[:, 1] >= corners[:, 1].max() - blocks.tolerance]
+        return np.asarray(highest[[highest[:, 0].argmin(), highest[:, 0].argmax()]])
+
+    def block_at(self, point: Array) -> int:
+        """Block of the wall with the corner nearest a point ``(2,)`` [m]."""
+        blocks = self.scene.blocks
+        corners = np.flatnonzero(~self.scene.fixed[blocks.owner])
+        return int(blocks.owner[corners[np.hypot(*(blocks.vertices[corners] - point).T).argmin()]])

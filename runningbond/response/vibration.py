@@ -1,0 +1,103 @@
+"""Natural vibrations of a wall about its rest: joints that are closed are springs, those that are open are none.
+
+With closed points of opening rows b_n, slip rows b_t and areas w,
+
+    K = diag(k) + B_nᵀ diag(w k_n) B_n + B_tᵀ diag(w k_t) B_t,    K φ = ω² M φ.
+
+The weight closes the joints; of what it does besides, the moment of a block that leans, nothing is in K.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.sparse import csr_array, diags_array, vstack
+from scipy.sparse.linalg import eigsh
+
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
+from runningbond.scene import Array, Mask, Scene, SceneError
+
+DENSE = 200
+"""Freedoms up to which all modes are computed at once."""
+
+LOOSE = 1e-6
+"""ω of a motion that no closed joint holds, in largest ones."""
+
+
+@dataclass(frozen=True, eq=False)
+class Vibration:
+    """Natural vibrations, the slowest first.
+
+    Parameters
+    ----------
+    frequency : (n,) float
+        Natural frequencies [Hz].
+    shape : (n, nb, 3) float
+        Translation of each block's centroid and its rotation [m, m, rad], for a modal mass of 1 kg.
+    share : (n, 2) float
+        Share of the moving mass that goes along in a motion of the ground, horizontally and vertically.
+    loose
+        How many motions no closed joint holds; they are left out.
+    """
+
+    frequency: Array
+    shape: Array
+    share: Array
+    loose: int = 0
+
+
+def vibration_at_rest(scene: Scene, run: Run, count: int = 10) -> Vibration:
+    """Natural vibrations of a wall under its dead load, at small displacements, `count` at most.
+
+    Raises
+    ------
+    SceneError
+        For a wall that does not come to rest, or is not pressed together.
+    """
+    state, sizes = State.at_rest(run.system), scene.block_sizes[run.system.owner]
+    if settle(run, state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True) != "stable":
+        raise SceneError(scene.title, "does not come to rest under its dead load")
+    return vibration(run, state, count)
+
+
+def vibration(run: Run, state: State, count: int = 10) -> Vibration:
+    """Natural vibrations of a wall about a state at rest, at small displacements."""
+    system = run.system
+    _, _, normal, _ = run.tractions(state)
+    law, damage = run.interface.law, run.interface.law.damage(state.history)
+    closed = (normal < 0) | ((law.tension > 0) & (damage < 1) & (normal < law.tension))
+    moving = np.flatnonzero(np.isfinite(system.mass))
+    stiffness = stiffness_matrix(system, closed)[moving][:, moving]
+    root = 1 / np.sqrt(system.mass[moving])
+    scaled = diags_array(root) @ stiffness @ diags_array(root)
+    count = min(count, len(moving))
+    if not closed.any():
+        raise SceneError("load.gravity", "closes no joint: a wall that is not pressed together does not vibrate")
+    if len(moving) <= max(DENSE, 3 * count):
+        square, vectors = eigh(scaled.toarray())
+    else:
+        shift = -(LOOSE**2) * float(scaled.diagonal().max())
+        square, vectors = eigsh(scaled.tocsc(), k=min(count + 6, len(moving) - 1), sigma=shift, which="LM")
+        order = np.argsort(square)
+        square, vectors = square[order], vectors[:, order]
+    held = square > LOOSE**2 * float(scaled.diagonal().max())
+    loose = int((~held).sum())
+    square, vectors = square[held][:count], vectors[:, held][:, :count]
+    modes = np.zeros((len(square), len(system.mass)))
+    modes[:, moving] = (root[:, None] * vectors).T
+    ground = np.zeros((2, len(system.mass)))
+    for axis in (0, 1):
+        held_mass = system.mass[system.rigid[:, axis]]
+        ground[axis, system.rigid[:, axis]] = np.where(np.isfinite(held_mass), held_mass, 0.0)
+    share = (modes @ ground.T) ** 2 / ground.sum(axis=1)
+    shape = np.array([system.motion_of_blocks(mode) for mode in modes])
+    return Vibration(np.sqrt(square) / (2 * np.pi), shape.reshape(len(square), -1, 3), share, loose)
+
+
+def stiffness_matrix(system: BlockSystem, closed: Mask) -> csr_array:
+    """Stiffness ``(nd, nd)`` [N/m] of the bodies and of closed joint points ``(np,)``, read off their kernels."""
+    interface, units = system.interface, np.eye(len(system.mass))
+    per_mode = vstack([csr_array(np.concatenate(interface.jumps(system.unrestrained(unit)))[None]) for unit in units])
+    spring = np.concatenate([interface.law.normal_stiffness, interface.law.shear_stiffness])
+    weight = diags_array(np.tile(closed * interface.area, 2) * spring)
+    return csr_array(per_mode @ weight @ per_mode.T + diags_array(system.stiffness))

@@ -1,0 +1,201 @@
+"""Motion of the ground: a record or a pulse, which the wall is to follow through time.
+
+Between samples an acceleration or a velocity changes evenly, and a displacement as a cubic spline. Its velocity is
+what matters: the wall sees the ground's change of velocity over each of its time steps, which nothing of it is lost in.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline, make_interp_spline
+
+from .actions import Action
+from .arrays import Array, frozen
+from .errors import SceneError
+from .forces import Forces
+from .ranges import Range, one_of
+from .records import read_record
+from .table import Table
+
+if TYPE_CHECKING:
+    from .wall import Scene
+
+KEY = "load.history"
+
+STANDARD_GRAVITY = 9.80665
+"""One g [m/s²]."""
+
+QUANTITIES = {"acceleration": 1.0, "g": STANDARD_GRAVITY, "velocity": 1.0, "displacement": 1.0}
+"""What a record may be of, and its unit in m/s², m/s or m."""
+
+PULSES = ("sine", "half-sine", "ricker", "ramp")
+
+SAMPLES = 1000
+"""Samples of a pulse in its period: between them it is off by 5e-6 of its amplitude."""
+
+INTERVALS = 200
+"""Parts of the period over which the acceleration of a pulse may stand for its mean."""
+
+SECONDS = Range(above=0.0, most=1e4)
+FACTOR = Range(least=-1e6, most=1e6)
+
+
+@dataclass(frozen=True, eq=False)
+class History(Action):
+    """Motion of the ground; as a live load at λ = 1, the inertia of the blocks when it is largest.
+
+    Parameters
+    ----------
+    time : (n,) float
+        Times of the samples [s], from 0.
+    values : (n, 2) float
+        Horizontal and vertical motion there, in the quantity's unit.
+    quantity
+        ``"acceleration"`` [m/s²], ``"g"``, ``"velocity"`` [m/s] or ``"displacement"`` [m].
+    scale
+        Factor on the record; λ multiplies it.
+    source
+        File or pulse that it was made of.
+    holds
+        Whether the last acceleration stays on.
+    interval
+        Time [s] over which an acceleration may stand for its mean; where none is given half the middling step.
+    """
+
+    time: Array
+    values: Array
+    quantity: str = "acceleration"
+    scale: float = 1.0
+    source: str = ""
+    holds: bool = False
+    interval: float | None = None
+
+    def __post_init__(self) -> None:
+        one_of(f"{KEY}.quantity", self.quantity, QUANTITIES)
+        object.__setattr__(self, "scale", FACTOR.take(f"{KEY}.scale", self.scale))
+        time, values = frozen(self.time), frozen(np.reshape(self.values, (len(self.time), 2)))
+        if len(time) < 2 or not (np.isfinite(values).all() and (np.diff(time) > 0).all()):
+            raise SceneError(KEY, "must have two samples at least, finite, at times that ascend")
+        object.__setattr__(self, "time", frozen(time - time[0]))
+        object.__setattr__(self, "values", values)
+        if self.scale == 0:
+            raise SceneError(f"{KEY}.scale", "must not be zero", self.scale)
+        if not np.abs(self.acceleration(self.time)).max() > 0:
+            raise SceneError(KEY, "does not move the ground", self.source or None)
+
+    @property
+    def duration(self) -> float:
+        """Time until the record ends [s]."""
+        return float(self.time[-1])
+
+    @property
+    def resolution(self) -> float:
+        """As `interval`."""
+        return self.interval or float(np.median(np.diff(self.time)) / 2)
+
+    @cached_property
+    def _velocity(self) -> Any:
+        values = self.scale * QUANTITIES[self.quantity] * self.values
+        if self.quantity == "displacement":
+            return CubicSpline(self.time, values).derivative()
+        spline: Any = make_interp_spline(self.time, values, k=1)
+        return spline if self.quantity == "velocity" else spline.antiderivative()
+
+    @cached_property
+    def _acceleration(self) -> Any:
+        return self._velocity.derivative()
+
+    def velocity(self, time: Array | float) -> Array:
+        """Velocity of the ground ``(…, 2)`` at some times [s], less that at the start [m/s]."""
+        time = np.asarray(time, dtype=float)
+        start, now = self._velocity(0.0), self._velocity(np.clip(time, 0.0, self.duration))
+        beyond = np.maximum(0.0, time - self.duration)[..., None] * self._acceleration(self.duration)
+        return np.asarray(now - start + (beyond if self.holds else 0.0))
+
+    def acceleration(self, time: Array | float) -> Array:
+        """Acceleration of the ground ``(…, 2)`` at some times [m/s²]."""
+        time = np.asarray(time, dtype=float)
+        there = (time >= 0) & ((time <= self.duration) | self.holds)
+        return np.asarray(np.where(there[..., None], self._acceleration(np.clip(time, 0.0, self.duration)), 0.0))
+
+    @cached_property
+    def peak(self) -> Array:
+        """Acceleration ``(2,)`` at the sample where it is largest [m/s²]."""
+        every = self.acceleration(self.time)
+        return np.asarray(every[np.hypot(*every.T).argmax()])
+
+    def forces(self, scene: "Scene") -> Forces:
+        """Inertia of the blocks in the frame of the ground, where its acceleration is largest."""
+        return Forces.on(scene, -self.peak)
+
+    def check(self, scene: "Scene", key: str) -> None:
+        """Refuse what is not followed through time: walls on pins, and beams that are driven or held."""
+        if len(scene.pins) or len(scene.late_pins):
+            name = "support.kind" if scene.beam is None else "beam.condition"
+            raise SceneError(
+                name, "does not go with load.history, which moves a wall on its ground that is free on top"
+            )
+
+    def factor(self, time: float) -> float:
+        """Acceleration along the largest one, as a share of it."""
+        return float(self.acceleration(time) @ self.peak / (self.peak @ self.peak))
+
+    def note(self, multiplier: float) -> str:
+        """The largest acceleration."""
+        return f"the ground is accelerated by up to {abs(multiplier) * np.hypot(*self.peak) / STANDARD_GRAVITY:.4g} g"
+
+
+def pulse(kind: str, amplitude: float, period: float) -> tuple[Array, Array]:
+    """Times ``(n,)`` [s] and values ``(n, 2)`` of a horizontal pulse.
+
+    Half a sine lasts half its period, a Ricker wavelet three of them, all others one.
+    """
+    span = {"half-sine": 0.5, "ricker": 3.0}.get(kind, 1.0)
+    share = np.linspace(0.0, span, round(span * SAMPLES) + 1)
+    if kind == "ramp":
+        shape = share = np.array([0.0, 1.0])
+    elif kind == "ricker":
+        squared = (math.pi * (share - span / 2)) ** 2
+        shape = (1 - 2 * squared) * np.exp(-squared)
+    else:
+        shape = np.sin(2 * math.pi * share)
+    return period * share, amplitude * np.column_stack([shape, np.zeros_like(shape)])
+
+
+def read_history(table: Table, folder: Path) -> History:
+    """The motion of the ground that a table describes; files are looked up in a folder."""
+    if ("file" in table) == ("pulse" in table):
+        raise SceneError(table.name, "must have one of file and pulse")
+    scale = table.optional_number("scale", FACTOR)
+    given = table.choice("quantity", QUANTITIES, "") if "quantity" in table else None
+    if "pulse" in table:
+        quantity, inner = _required(table, given), table.table("pulse")
+        kind = inner.choice("kind", PULSES)
+        amplitude, period = inner.number("amplitude", FACTOR), inner.number("period", SECONDS)
+        inner.finish()
+        if amplitude == 0:
+            raise SceneError(inner.key("amplitude"), "must not be zero", amplitude)
+        time, values = pulse(kind, amplitude, period)
+        source, holds, interval = kind, kind == "ramp", period / INTERVALS
+    else:
+        name = table.text("file")
+        record = read_record(folder / name, table.key("file"))
+        if record.quantity is not None and given not in (None, record.quantity):
+            what = f'must be left out or "{record.quantity}", as {Path(name).name} says itself'
+            raise SceneError(table.key("quantity"), what, given)
+        quantity = record.quantity or _required(table, given)
+        time, values, source, holds, interval = record.time, record.values, Path(name).name, False, None
+    table.finish()
+    return History(time, values, quantity, 1.0 if scale is None else scale, source, holds, interval)
+
+
+def _required(table: Table, quantity: str | None) -> str:
+    """The quantity, which is the unit."""
+    if quantity is None:
+        units = '"acceleration" (m/s²), "g", "velocity" (m/s) or "displacement" (m)'
+        raise SceneError(table.key("quantity"), f"is missing; without it the record has no unit: {units}")
+    return quantity

@@ -1,0 +1,133 @@
+"""A block that rocks beside Housner's, and one that slides beside Newmark's."""
+
+import math
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from dem.finite_system import finite_system
+from runningbond.dynamics import Run, State
+from runningbond.response import Resting, follow
+from runningbond.response.resting import VISCOUS
+from runningbond.scene import Array
+
+from .housner import GRAVITY, HousnerBlock
+from .walls import block, resting, shaken, still
+
+BLOCK = HousnerBlock()
+
+
+@cache
+def rocking(share: float) -> tuple[Array, float]:
+    """Times of two passages through the middle and the turning points between them, in α; energy left unaccounted for.
+
+    Let go about its right corner at a share of the angle at which it would fall.
+    """
+    system = finite_system(block(BLOCK.b, BLOCK.h, still()))
+    angle = -share * BLOCK.alpha
+    motion, arm = np.zeros(len(system.mass)), np.array([-BLOCK.b, BLOCK.h])
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    motion[:3] = *(turn @ arm - arm), angle
+    run, state = Run(system, local=0.0, viscous=VISCOUS), State.at_rest(system, motion)
+    rows, passed = [(0.0, angle)], 0
+    while passed < 3:
+        run.bear(state, system.dead, 10)
+        rows.append((state.time, state.motion[2]))
+        passed += rows[-1][1] * rows[-2][1] < 0
+    time, theta = np.array(rows).T
+    at = np.flatnonzero(np.diff(np.sign(theta)))
+    passages = time[at] - theta[at] * (time[at + 1] - time[at]) / (theta[at + 1] - theta[at])
+    turns = [np.abs(theta[i:j]).max() / BLOCK.alpha for i, j in pairwise(at)]
+    return np.array([*passages, *turns]), run.unaccounted(state, float(system.mass[1]) * GRAVITY * 0.01)
+
+
+def quarter(share: float) -> float:
+    """Time from rest at a share of α to the middle, from the energy, without small angles."""
+    alpha, start = BLOCK.alpha, share * BLOCK.alpha
+
+    def rate(u: float) -> float:  # θ = θ0 (1 − u²) takes the root out of the turning point
+        theta = start * (1 - u * u)
+        return 2 * start * u / math.sqrt(2 * BLOCK.p**2 * (math.cos(alpha - start) - math.cos(alpha - theta)))
+
+    return float(quad(rate, 0, 1)[0])
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_free_rocking_has_housners_period(share: float) -> None:
+    """A quarter of it from the start to the middle, to 1e-3; for slender blocks arccosh(1 / (1 − θ0/α)) / p."""
+    found, _ = rocking(share)
+    assert found[0] == pytest.approx(quarter(share), rel=1e-3)
+    assert found[0] == pytest.approx(math.acosh(1 / (1 - share)) / BLOCK.p, rel=0.01)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
+def test_an_impact_takes_what_housners_takes(share: float) -> None:
+    """Two turning points from the energy before them; the ratio of rates is Housner's to 1 %.
+
+    Corners are springs with dashpots that do not pull: what is left of the bounce makes up the difference.
+    """
+    found, _ = rocking(share)
+    alpha = BLOCK.alpha
+
+    def height(of: float) -> float:
+        return math.cos(alpha - of * alpha) - math.cos(alpha)
+
+    for before, after in ((share, found[3]), (found[3], found[4])):
+        assert math.sqrt(height(after) / height(before)) == pytest.approx(BLOCK.restitution, rel=0.01)
+    assert found[1] - found[0] == pytest.approx(2 * quarter(found[3]), rel=1e-2)
+
+
+SPECTRUM = [
+    # cycles, ω / p, smallest amplitude in g tan α above which it falls (or, −, stands again)
+    (0.5, 1.0, 1.3214),
+    (0.5, 6.0, 3.8021),
+    (1.0, 2.0, 1.2230),
+    (1.0, 4.0, -5.0215),
+    (1.0, 4.0, 5.3174),
+    (1.0, 6.0, 4.5724),
+]
+"""Overturning spectrum, with both modes: after an impact, and, of stronger pulses, without one."""
+
+
+@cache
+def at_rest() -> Resting:
+    return resting(block(BLOCK.b, BLOCK.h, still()))
+
+
+@pytest.mark.parametrize(("cycles", "ratio", "edge"), SPECTRUM)
+def test_pulses_overturn_a_block_where_housners_falls(cycles: float, ratio: float, edge: float) -> None:
+    """To 2 %, both ways: Housner's equation and ours fall on one side of the edge and stand on the other."""
+    period = 2 * math.pi / (ratio * BLOCK.p)
+    scene = block(BLOCK.b, BLOCK.h, shaken("sine" if cycles == 1 else "half-sine", GRAVITY * BLOCK.b / BLOCK.h, period))
+    rest = Resting(scene, "dem-dynamic", at_rest().system, at_rest().state, "stable")
+    for factor, falls in ((0.98, edge < 0), (1.02, edge > 0)):
+        amplitude = factor * abs(edge)
+        assert BLOCK.overturns(amplitude * GRAVITY * BLOCK.b / BLOCK.h, period, cycles) == falls
+        response = follow(rest, amplitude, rows=50)
+        assert response.verdict == ("collapse" if falls else "stands")
+        assert response.unaccounted < 0.01
+
+
+@pytest.mark.parametrize(("friction", "peak"), [(0.3, 1.0), (0.5, 0.8)])
+def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None:
+    """Under half a sine, to 1e-3: a = μ g from where the ground is faster until the velocities are one."""
+    period = 0.4
+    rest = resting(block(0.5, 0.1, shaken("half-sine", peak * GRAVITY, period), friction, stiffness=1e11))
+    response = follow(rest, 1.0)
+    time = np.linspace(0, 3, 300_001)
+    ground = np.where(time < period / 2, peak * GRAVITY * np.sin(2 * math.pi * time / period), 0.0)
+    first = int(np.argmax(ground > friction * GRAVITY))
+    step = time[1]
+    apart = np.concatenate([[0.0], np.cumsum((ground[first:-1] + ground[first + 1 :]) / 2 - friction * GRAVITY)]) * step
+    stop = int(np.argmax(apart[1:] <= 0)) + 1
+    slid = float(np.trapezoid(apart[:stop], dx=step))
+    assert response.verdict == "stands"
+    assert response.displacement[-1, 0, 0] == pytest.approx(-slid, rel=1e-3)
+    assert response.unaccounted < 0.01
+    most = friction * float(rest.scene.mass[0]) * GRAVITY
+    assert np.median(response.reaction[(response.time > 0.1) & (response.time < 0.2), 0]) == pytest.approx(
+        most, rel=0.01
+    )

@@ -1,0 +1,86 @@
+"""Natural vibrations of stacks of blocks beside closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from dem.dynamic import dem_vibration
+from fem_interface.model import fem_vibration
+from runningbond.response import Vibration
+from runningbond.scene import Scene, Stiffness, scene_from_dict
+from tests.walls import content
+
+THICKNESS, DENSITY = 0.12, 1800.0
+
+
+def stack(n: int, width: float, height: float, normal: float, shear: float, **changes: object) -> Scene:
+    """So many blocks on one another, pressed together by their weight."""
+    size = {"wall__length": None, "wall__height": None, "wall__courses": [[1]] * n}
+    block = {"wall__block_width": width, "wall__block_height": height}
+    scene = scene_from_dict(content(**size, **block, **changes))
+    return scene.with_joint(elasticity=Stiffness(normal, shear))
+
+
+def swaying(found: Vibration) -> list[float]:
+    """Frequencies of modes that move the wall sideways [Hz]."""
+    return [f for f, share in zip(found.frequency, found.share, strict=True) if share[0] > 10 * share[1]]
+
+
+def test_a_shear_column_has_the_frequencies_of_its_closed_form() -> None:
+    """N flat blocks on N joints that are soft in shear: ω_j = 2 √(k/m) sin((2 j − 1) π / (2 (2 N + 1)))."""
+    n, width, height, shear = 8, 1.0, 0.05, 1e6
+    found = swaying(dem_vibration(stack(n, width, height, 1e10, shear), 24))
+    mass, spring = DENSITY * THICKNESS * width * height, shear * THICKNESS * width
+    j = np.arange(1, n + 1)
+    exact = 2 * math.sqrt(spring / mass) * np.sin((2 * j - 1) * np.pi / (2 * (2 * n + 1))) / (2 * np.pi)
+    assert found[:4] == pytest.approx(exact[:4], rel=1e-3)
+
+
+def test_all_mass_goes_along_with_the_ground() -> None:
+    found = dem_vibration(stack(3, 0.4, 0.2, 1e9, 1e9), 9)
+    assert found.loose == 0
+    assert found.share.sum(axis=0) == pytest.approx([1.0, 1.0], rel=1e-9)
+
+
+def timoshenko(length: float, depth: float, stiff: tuple[float, float], number: int) -> float:
+    """Natural frequency [Hz] of a cantilever with EI and κGA, rotary inertia included (Timoshenko 1922; Huang 1961)."""
+    bending, shear = stiff
+    mass, inertia = DENSITY * THICKNESS * depth, DENSITY * THICKNESS * depth**3 / 12
+
+    def determinant(omega: float) -> float:
+        # Solutions e^(s x) of w and ψ: from κGA (w'' − ψ') + m ω² w = 0, EI ψ'' + κGA (w' − ψ) + ρI ω² ψ = 0.
+        a, b = mass * omega**2 / shear, inertia * omega**2 / bending
+        roots = np.roots([1.0, 0.0, a + b, 0.0, a * b - mass * omega**2 / bending]).astype(complex)
+        ratio = (roots**2 + a) / roots  # ψ = ratio w
+        at_end = np.exp(roots * length)
+        rows = [np.ones(4), ratio, ratio * roots * at_end, (roots - ratio) * at_end]
+        value = np.linalg.det(np.array(rows)) / np.prod(np.exp(np.abs(roots.real) * length / 2))
+        order = np.array(np.sort_complex(roots))
+        return float((value / np.prod([y - x for k, x in enumerate(order) for y in order[k + 1 :]])).real)
+
+    guess = [1.875104, 4.694091][number] ** 2 / length**2 * math.sqrt(bending / mass)
+    grid = np.linspace(0.2 * guess, 1.1 * guess, 60)
+    values = [determinant(omega) for omega in grid]
+    at = max(k for k in range(59) if values[k] * values[k + 1] < 0)
+    return float(brentq(determinant, grid[at], grid[at + 1])) / (2 * math.pi)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_monolithic_cantilever_of_blocks_is_timoshenkos(number: int) -> None:
+    """Blocks that do not deform on joints that do: a joint's two points turn as EI = k_n t b³ / 4 · a."""
+    n, width, height, k = 64, 0.4, 0.03125, 1e10
+    found = swaying(dem_vibration(stack(n, width, height, k, 0.4 * k), 8))
+    bending, shear = k * THICKNESS * width**3 / 4 * height, 0.4 * k * THICKNESS * width * height
+    assert found[number] == pytest.approx(timoshenko(n * height, width, (bending, shear), number), rel=0.02)
+
+
+@pytest.mark.long
+def test_blocks_that_deform_on_joints_that_do_not_are_timoshenkos_too() -> None:
+    """E b³ t / 12 and κ = 5/6, in plane stress; cells of triangles lock a little."""
+    n, width, height, young = 10, 0.4, 0.2, 1e9
+    scene = stack(n, width, height, 1e12, 1e12, block__young=young, block__poisson=0.0)
+    found = swaying(fem_vibration(scene, 4, cells=3, modes="all"))
+    stiff = (young * THICKNESS * width**3 / 12, 5 / 6 * young / 2 * THICKNESS * width)
+    assert found[0] == pytest.approx(timoshenko(n * height, width, stiff, 0), rel=0.02)

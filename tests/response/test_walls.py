@@ -1,0 +1,104 @@
+"""Walls whose ground moves: balances, the static limit, and windows in which a wall stands again."""
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dem.finite_system import finite_system
+from runningbond.compare.models import respond, run_model
+from runningbond.response import critical_scale, follow
+from runningbond.response.critical import Search
+from runningbond.scene import History, Lateral, Load, Scene, SceneError, Stiffness
+from runningbond.scene.history import pulse
+from tests.walls import panel
+
+from .housner import GRAVITY, HousnerBlock
+from .walls import block, resting, shaken
+
+SOFT = {"normal_stiffness": 1e9, "shear_stiffness": 1e9}
+
+
+def wall(history: History | None, **changes: Any) -> Scene:
+    """Four courses of two blocks."""
+    size = {"wall__length": 0.48, "wall__height": 0.48, "wall__block_height": 0.12}
+    scene = panel(**size, **{f"joint__{key}": value for key, value in SOFT.items()}, **changes)
+    return scene if history is None else replace(scene, load=Load(live=(history,)))
+
+
+def test_momentum_and_energy_are_balanced_at_every_sample() -> None:
+    """Momentum that the ground gives the wall comes to nothing in the end, but for what bears its weight."""
+    rest = resting(wall(shaken("sine", 12.0, 0.2)))
+    response = follow(rest, 1.0)
+    assert response.verdict == "stands"
+    assert response.unaccounted < 0.01
+    assert response.energy[:, 4:].min() > -1e-6
+    mass = float(rest.scene.mass[~rest.scene.fixed].sum())
+    # Over the whole motion the wall is given no momentum but the ground's, and bears its weight.
+    step = np.diff(response.time, prepend=0.0)
+    assert (response.reaction[:, 0] * step).sum() == pytest.approx(0.0, abs=1e-3 * mass)
+    assert (response.reaction[:, 1] * step).sum() == pytest.approx(mass * GRAVITY * response.time[-1], rel=1e-3)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_ground_that_moves_as_slowly_as_can_be_leaves_the_static_bracket(sense: float) -> None:
+    """An acceleration that grows for 20 s and stays on brings a wall down 3 % above the static load, not 3 % below."""
+    static = run_model(
+        "dem-dynamic", replace(wall(None, joint__friction=0.9), load=Load(live=(Lateral((-sense, 0.0)),)))
+    )
+    assert static.multiplier is not None
+    time, values = pulse("ramp", sense * GRAVITY, 4.0)
+    rest = resting(wall(History(time, values, holds=True, interval=0.02), joint__friction=0.9))
+    assert follow(rest, 0.97 * static.multiplier, rows=50).verdict == "stands"
+    falls = follow(rest, 1.03 * static.multiplier, rows=50)
+    assert falls.verdict == "collapse"
+    assert falls.drift[-1] * sense < 0
+
+
+def test_a_mirrored_motion_has_a_mirrored_response() -> None:
+    to, fro = (follow(resting(wall(shaken("sine", sense * 8.0, 0.3))), 1.0, rows=50) for sense in (1.0, -1.0))
+    assert to.verdict == fro.verdict == "stands"
+    assert to.peak_drift == pytest.approx(fro.peak_drift, rel=0.02)
+
+
+def test_windows_are_told_of() -> None:
+    """A block under a sine falls after an impact, stands under a stronger one, and falls without impact under more."""
+    housner = HousnerBlock()
+    scale = GRAVITY * housner.b / housner.h
+    rest = resting(block(housner.b, housner.h, shaken("sine", scale, 2 * math.pi / (4 * housner.p))))
+    search = Search(lambda factor: follow(rest, factor, rows=50), {})
+    assert [search.falls(factor) for factor in (1.7, 1.9, 5.15, 5.6)] == [False, True, False, True]
+    assert search.windows() == [(5.15, 5.15)]
+
+
+def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
+    housner = HousnerBlock()
+    unit = GRAVITY * housner.b / housner.h
+    scene = block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (2 * housner.p)))
+    outcome = critical_scale(scene, "dem-dynamic", finite_system(scene), 0.02)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower * 0.98 < 1.801 < outcome.upper * 1.02
+    assert outcome.upper - outcome.lower <= 0.02 * outcome.upper
+    assert abs(outcome.motion[0, 2]) > 0
+
+
+def test_deformable_blocks_follow_the_ground_as_rigid_ones() -> None:
+    """Blocks whose deformations are left out, in stiff joints; theirs have contacts at middles of sides besides."""
+    scene = wall(shaken("sine", 8.0, 0.3), block__young=1e10, block__poisson=0.2)
+    scene = scene.with_joint(elasticity=Stiffness(1e11, 1e11))
+    rigid, deformable = respond("dem-dynamic", scene, rows=50), respond("fem", scene, rows=50, modes=3)
+    assert rigid.verdict == deformable.verdict == "stands"
+    assert deformable.peak_drift == pytest.approx(rigid.peak_drift, rel=0.02)
+    assert deformable.unaccounted < 0.01
+
+
+def test_a_wall_that_falls_by_itself_is_not_shaken() -> None:
+    scene = wall(shaken("sine", 8.0, 0.3), load__gravity=9.81)
+    pushed = replace(scene, load=replace(scene.load, gravity=(9.0, -3.0)))
+    with pytest.raises(SceneError, match="there is nothing to shake"):
+        respond("dem-dynamic", pushed)
+    assert critical_scale(pushed, "dem-dynamic", finite_system(pushed), 0.1).status == "infeasible"

@@ -1,0 +1,223 @@
+"""Motions of the ground: what records and pulses come to, and which are refused, and how."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from runningbond.commands.command_line import command
+from runningbond.compare import MODELS
+from runningbond.compare.models import run_model
+from runningbond.scene import History, Scene, SceneError, scene_from_dict
+from runningbond.scene.history import STANDARD_GRAVITY, pulse
+from runningbond.scene.records import read_record
+from tests.walls import content, write_toml
+
+SINE = {"kind": "sine", "amplitude": 2.0, "period": 0.5}
+PULSE = {"pulse": SINE, "quantity": "acceleration"}
+ROWS = "".join(f"{0.01 * k:.2f}, {k % 3 - 1}\n" for k in range(20))
+PEER = "head\nevent\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=  7, DT=   .0050 SEC,\n .1 .2 -.1 .0 1.E-1\n .1 .0\n"
+
+
+def scene(history: Any, folder: Path = Path(), **changes: Any) -> Scene:
+    return scene_from_dict(content(load__live=None, load__history=history, **changes), folder=folder)
+
+
+def of(history: Any, folder: Path = Path()) -> History:
+    read = scene(history, folder).history
+    assert read is not None
+    return read
+
+
+# --- what they come to ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("kind", "span"), [("sine", 1.0), ("half-sine", 0.5), ("ricker", 3.0), ("ramp", 1.0)])
+def test_the_velocity_of_a_pulse_is_the_integral_of_its_acceleration(kind: str, span: float) -> None:
+    history = of({"pulse": {**SINE, "kind": kind}, "quantity": "acceleration"})
+    assert history.duration == pytest.approx(0.5 * span)
+    assert np.hypot(*history.peak) == pytest.approx(2.0, rel=1e-5)
+    time = np.linspace(0, history.duration, 7)
+    exact = {
+        "sine": lambda t: 2 * np.sin(4 * np.pi * t),
+        "half-sine": lambda t: 2 * np.sin(4 * np.pi * t),
+        "ramp": lambda t: 2 * t / 0.5,
+        "ricker": lambda t: 2 * (1 - 2 * (2 * np.pi * (t - 0.75)) ** 2) * np.exp(-((2 * np.pi * (t - 0.75)) ** 2)),
+    }[kind]
+    integral = [quad(exact, 0, t, limit=200)[0] for t in time]
+    assert history.velocity(time)[:, 0] == pytest.approx(integral, abs=3e-6)
+    assert not history.velocity(time)[:, 1].any()
+    after = history.velocity(history.duration + 1.0)[0] - history.velocity(history.duration)[0]
+    assert after == pytest.approx(2.0 if kind == "ramp" else 0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(("quantity", "order"), [("acceleration", 0), ("velocity", 1), ("displacement", 2)])
+def test_a_record_of_any_quantity_has_the_same_velocity(quantity: str, order: int) -> None:
+    """Of x = A sin² ω t, finely sampled."""
+    time = np.linspace(0, 1, 2001)
+    w = np.pi
+    motions = (2 * w**2 * np.cos(2 * w * time), w * np.sin(2 * w * time), np.sin(w * time) ** 2)
+    history = History(time, np.column_stack([motions[order], 0 * time]), quantity)
+    assert history.velocity(time)[:, 0] == pytest.approx(motions[1], abs=2e-3)
+
+
+def test_units_and_scale(tmp_path: Path) -> None:
+    (tmp_path / "record.csv").write_text("# made up\ntime,x,y\n0,0,0\n0.5, 0.3,-0.1\n1,0,0\n")
+    (tmp_path / "record.AT2").write_text(PEER)
+    one = of({"file": "record.csv", "quantity": "g", "scale": 2.0}, tmp_path)
+    assert one.acceleration(0.5) == pytest.approx(np.array([0.6, -0.2]) * STANDARD_GRAVITY)
+    assert one.factor(0.25) == pytest.approx(0.5)
+    forces = scene({"file": "record.csv", "quantity": "g"}, tmp_path).live_forces
+    assert forces.acceleration[0] == pytest.approx(-np.array([0.3, -0.1]) * STANDARD_GRAVITY)
+    peer = of({"file": "record.AT2"}, tmp_path)
+    assert peer.acceleration(0.005)[0] == pytest.approx(0.2 * STANDARD_GRAVITY)
+    assert peer.duration == pytest.approx(0.03)
+
+
+def test_an_older_head_and_blanks(tmp_path: Path) -> None:
+    old = PEER.replace("NPTS=  7, DT=   .0050 SEC,", "    7   .0050   NPTS, DT")
+    (tmp_path / "old.vt2").write_text(old.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S"))
+    record = read_record(tmp_path / "old.vt2", "file")
+    assert record.quantity == "velocity"
+    assert record.values[1, 0] == pytest.approx(0.002)
+    (tmp_path / "blank.txt").write_text("% t a\n  0.0\t1e-2  \n\n 0.1   -2E-2\n")
+    assert read_record(tmp_path / "blank.txt", "file").values[:, 0].tolist() == [0.01, -0.02]
+
+
+def test_a_pulse_has_the_length_of_its_kind() -> None:
+    assert [pulse(kind, 1.0, 2.0)[0][-1] for kind in ("sine", "half-sine", "ricker", "ramp")] == [2.0, 1.0, 6.0, 2.0]
+
+
+@pytest.mark.parametrize("name", [name for name, model in MODELS.items() if not model.respond])
+def test_models_without_time_refuse_it_by_name(name: str) -> None:
+    with pytest.raises(SceneError, match=f"load.history: is not taken by model {name}"):
+        run_model(name, scene(PULSE))
+
+
+# --- what is refused -----------------------------------------------------------------------------------------
+
+
+def record(text: str, **keys: Any) -> tuple[dict[str, Any], str]:
+    return {"file": "record.csv", "quantity": "g", **keys}, text
+
+
+def peer(old: str, new: str) -> tuple[dict[str, Any], str]:
+    return {"file": "record.at2"}, PEER.replace(old, new)
+
+
+REFUSED: list[tuple[Any, str]] = [
+    ({}, "load.history: must have one of file and pulse"),
+    ({"file": "record.csv", **PULSE}, "load.history: must have one of file and pulse"),
+    (3, "load.history = 3: must be a table"),
+    ({"pulse": SINE}, "load.history.quantity: is missing; without it the record has no unit"),
+    ({**PULSE, "quantity": "speed"}, "load.history.quantity = 'speed': must be one of"),
+    ({**PULSE, "quantity": "m/s2"}, "load.history.quantity = 'm/s2': must be one of"),
+    ({**PULSE, "scale": 0}, "load.history.scale = 0.0: must not be zero"),
+    ({**PULSE, "scale": "big"}, "load.history.scale = 'big': must be a number"),
+    ({**PULSE, "scale": float("nan")}, "load.history.scale = nan: must be a number"),
+    ({**PULSE, "skale": 1}, 'load.history.skale = 1: is not a key of [load.history]; did you mean "scale"?'),
+    ({**PULSE, "pulse": "sine"}, "load.history.pulse = 'sine': must be a table"),
+    ({**PULSE, "pulse": {**SINE, "kind": "cosine"}}, "load.history.pulse.kind = 'cosine': must be one of"),
+    ({**PULSE, "pulse": {"kind": "sine", "period": 1}}, "load.history.pulse.amplitude: is missing"),
+    ({**PULSE, "pulse": {"kind": "sine", "amplitude": 1}}, "load.history.pulse.period: is missing"),
+    ({**PULSE, "pulse": {**SINE, "amplitude": 0}}, "load.history.pulse.amplitude = 0.0: must not be zero"),
+    ({**PULSE, "pulse": {**SINE, "period": 0}}, "load.history.pulse.period = 0: must be a number above 0"),
+    ({**PULSE, "pulse": {**SINE, "period": -1}}, "load.history.pulse.period = -1: must be a number above 0"),
+    ({**PULSE, "pulse": {**SINE, "period": "1 s"}}, "load.history.pulse.period = '1 s': must be a number"),
+    ({**PULSE, "pulse": {**SINE, "phase": 1}}, "load.history.pulse.phase = 1: is not a key of [load.history.pulse]"),
+    ({"file": "no.csv", "quantity": "g"}, "no.csv': cannot be read"),
+    ({"file": 3, "quantity": "g"}, "load.history.file = 3: must be a string"),
+    (record("", quantity="speed"), "load.history.quantity = 'speed': must be one of"),
+    (record(""), "record.csv, line 1: ends a record of 0 rows"),
+    (record("# nothing\n\n"), "record.csv, line 2: ends a record of 0 rows"),
+    (record("0, 1\n"), "record.csv, line 1: ends a record of 1 rows"),
+    (record("0, 1\n0.1, nan\n0.2, 0\n"), "record.csv, line 2 = 'nan': must be a finite number"),
+    (record("0, 1\n0.1, inf\n"), "record.csv, line 2 = 'inf': must be a finite number"),
+    (record("0, 1\n0.1, 1e9\n"), "record.csv, line 2 = '1e9': must be a finite number, at most 1e+06"),
+    (record("0, 1\n0.1,\n0.2, 1\n"), "record.csv, line 2: has a gap where a number must be"),
+    (record("0, 1, 2\n0.1,,1\n"), "record.csv, line 2: has a gap where a number must be"),
+    (record("0, 1\n0.1, high\n"), "record.csv, line 2 = 'high': must be a number"),
+    (record("# t a\n0, 1\n0.2, 2\n0.1, 1\n"), "record.csv, line 4 = 0.1: must be later than the row before, at 0.2 s"),
+    (record("0, 1\n0.2, 2\n0.2, 1\n"), "record.csv, line 3 = 0.2: must be later than the row before"),
+    (record("0\n1\n"), "record.csv, line 1 = '0': must have two or three columns"),
+    (record("0, 1, 2, 3\n1, 2, 3, 4\n"), "record.csv, line 1 = '0 1 2 3': must have two or three columns"),
+    (record("0, 1\n0.1, 1, 2\n"), "record.csv, line 2 = '0.1 1 2': must have 2 columns, as the first row"),
+    (record("0, 1, 2\n0.1, 1\n"), "record.csv, line 2 = '0.1 1': must have 3 columns, as the first row"),
+    (record("0 1\n0.1 1;2\n"), "record.csv, line 2 = '0.1 1 2': must have 2 columns"),
+    (record(ROWS + "0.40, 1\n"), "record.csv, line 21 = 0.4: comes after a gap of 0.21 s, the steps of the record are"),
+    (record("0, 0\n1, 0\n"), "load.history = 'record.csv': does not move the ground"),
+    (peer("OF G", "OF FURLONGS"), "record.at2, line 3 = 'ACCELERATION TIME SERIES IN UNITS OF FURLONGS': must name"),
+    (peer(" IN UNITS OF G", ""), "record.at2, line 3 = 'ACCELERATION TIME SERIES': must name the unit"),
+    (peer("NPTS=  7", "NPTS=  9"), "record.at2, line 6: ends a record of 7 values; NPTS says 9"),
+    (peer("NPTS=  7", "NPTS=  1"), "record.at2, line 4 = 'NPTS= 1, DT= .0050 SEC,': must say how many values"),
+    (peer("DT=   .0050", "DT=   0.0"), "record.at2, line 4 = 'NPTS= 7, DT= 0.0 SEC,': must say how many values"),
+    (peer("NPTS=  7, DT=   .0050 SEC,", "seven"), "record.at2, line 4 = 'seven': must say how many values"),
+    (peer("-.1", "***"), "record.at2, line 5 = '***': must be a number"),
+    (peer("-.1", "NaN"), "record.at2, line 5 = 'NaN': must be a finite number"),
+    (({"file": "record.at2"}, "one\ntwo\n"), "record.at2, line 2: ends a file of PEER, which has four lines"),
+    (({"file": "record.at2", "quantity": "velocity"}, PEER), "load.history.quantity = 'velocity': must be left out or"),
+]
+
+
+@pytest.mark.parametrize(("given", "said"), REFUSED, ids=range(len(REFUSED)))
+def test_a_history_that_is_none(given: Any, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """One line with the file's name and the number of its line; exit code 2, nothing written."""
+    history, text = given if isinstance(given, tuple) else (given, None)
+    if text is not None:
+        (tmp_path / history["file"]).write_text(text)
+    path = write_toml(content(load__live=None, load__history=history), tmp_path / "wall.toml")
+    for name in ("run", "respond"):
+        assert command([name, str(path), "--model", "dem-dynamic", "--out", str(tmp_path / "out")]) == 2
+        printed = capsys.readouterr()
+        assert printed.out == ""
+        assert said in printed.err
+        assert printed.err.count("\n") == 1
+        assert not (tmp_path / "out").exists()
+
+
+def test_text_that_is_no_text(tmp_path: Path) -> None:
+    (tmp_path / "record.csv").write_bytes(b"\xff\xfe0,1")
+    with pytest.raises(SceneError, match="is no record: it is not UTF-8 text"):
+        of({"file": "record.csv", "quantity": "g"}, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"load__live": {"kind": "lateral"}}, "load.live: does not go with load.history"),
+        ({"support__kind": "corners"}, "support.kind: does not go with load.history"),
+        ({"beam": {"height": 0.1, "condition": "level"}}, "beam.condition: does not go with load.history"),
+        ({"beam": {"height": 0.1, "drive": {"force": [1, 0]}}}, "beam.drive: does not go with load.history"),
+    ],
+)
+def test_what_does_not_go_with_it(changes: dict[str, Any], said: str) -> None:
+    with pytest.raises(SceneError, match=said):
+        scene_from_dict(content(**{"load__live": None, "load__history": PULSE, **changes}))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--model", "limit"], "--model = 'limit': follows no motion of the ground; take dem-dynamic, fem"),
+        (["--model", "dem-dynamc"], 'did you mean "dem-dynamic"?'),
+        (["--model", "dem-dynamic", "--scale", "0"], "--scale = 0.0: must be a finite number, not zero"),
+        (["--model", "dem-dynamic", "--scale", "nan"], "--scale = nan: must be a finite number"),
+        (["--model", "dem-dynamic", "--scale", "large"], "--scale"),
+    ],
+)
+def test_a_response_that_cannot_be(
+    arguments: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = write_toml(content(load__live=None, load__history=PULSE), tmp_path / "wall.toml")
+    assert command(["respond", str(path), *arguments, "--out", str(tmp_path / "out")]) == 2
+    printed = capsys.readouterr()
+    assert said in printed.err
+    assert printed.err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_wall_whose_ground_stays_has_no_response(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["respond", "panel-01", "--model", "dem-dynamic"]) == 2
+    assert "load.history: is missing" in capsys.readouterr().err
