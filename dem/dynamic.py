@@ -17,6 +17,7 @@ from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_ob
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
+from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import is_self_locking, limit
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
@@ -54,7 +55,7 @@ def dem_dynamic(
         As of `collapse_by_steps`.
     """
     if scene.history:
-        return critical_scale(scene, "dem-dynamic", finite_system(scene), tolerance, observe=observe)
+        return critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), tolerance, observe=observe)
     start = time.perf_counter()
     finite = is_finite(displacements, "dem-dynamic", scene)
     points = contact_points(scene)
@@ -77,7 +78,7 @@ def dem_dynamic(
 
 def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
     """Response of a scene's rigid blocks to the motion of its ground, λ times as large; settings as of `follow`."""
-    return follow(Resting.of(scene, "dem-dynamic", finite_system(scene)), scale, **settings)
+    return follow(Resting.of(scene, "dem-dynamic", finite_system(with_impacts(scene))), scale, **settings)
 
 
 def dem_vibration(scene: Scene, count: int = 10) -> Vibration:

@@ -16,6 +16,7 @@ from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
+from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import is_self_locking, limit
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
@@ -92,7 +93,7 @@ def fem(
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
             if value != only:
                 raise SceneError(f"model fem: {name}", "is not taken at finite displacements; leave it out", value)
-        blocks = node_outline(scene, cells, modes)
+        blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
         wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
     else:
         wall = modal_wall(scene, cells, modes, rule, points, cracks)
@@ -123,7 +124,9 @@ def fem_response(
     scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
 ) -> Response:
     """Response of a scene's deformable blocks to the motion of its ground, λ times as large, as `follow` has it."""
-    return follow(Resting.of(scene, "fem", finite_system(node_outline(scene, cells, modes))), scale, **settings)
+    return follow(
+        Resting.of(scene, "fem", finite_system(node_outline(with_impacts(scene), cells, modes))), scale, **settings
+    )
 
 
 def fem_vibration(scene: Scene, count: int = 10, *, cells: int = 1, modes: ModeCount | None = None) -> Vibration:

@@ -1,5 +1,7 @@
 """Perfectly plastic joint points as a compiled kernel; `point_law` is the same law with its tangent."""
 
+from typing import Any
+
 import numpy as np
 
 from runningbond.scene import Array, JointMaterial
@@ -10,8 +12,9 @@ from .mohr_coulomb import truncated_cone
 from .point_law import PointLaw
 from .stiffness import joint_stiffness
 
-HISTORY = (*COMMON_ROWS, "plastic slip", "viscous pull", "viscous shear")
-PLASTIC_SLIP, PULL_BEFORE, SHEAR_BEFORE = (HISTORY.index(name) for name in HISTORY[4:])
+HISTORY = (*COMMON_ROWS, "plastic slip")
+PLASTIC_SLIP = HISTORY.index("plastic slip")
+PULL_BEFORE, SHEAR_BEFORE = len(HISTORY), len(HISTORY) + 1
 
 
 def coulomb_constants(material: JointMaterial) -> tuple[float, ...]:
@@ -28,58 +31,79 @@ def stored_uncut(points: KernelLaw, opening: Array, normal: Array, tangential: A
     return np.asarray(elastic + points.tension * torn)
 
 
-@kernel
-def coulomb_kernel(
-    opening: Array,
-    slip: Array,
-    parameters: Parameters,
-    history: Array,
-    viscosity: float,
-    normal: Array,
-    tangential: Array,
-) -> None:
-    """Tractions of perfectly plastic points with a tension cut-off and without dilatancy, from their jumps.
+def _coulomb(of_mean: bool) -> Any:
+    """The kernel; with viscous work of the mean of two steps' tractions, as central differences do it, or of the last.
 
-    Stiffness-proportional viscosity β acts on the jumps' rates: `viscosity` = β / Δt times their change over the
-    last step. It never lets a joint pull or slide beyond its strength, so it has no part in a mechanism, but takes
-    out the chatter of sliding contacts, on which local damping would otherwise drag. Its work is that of the mean of
-    two steps' tractions, as central differences do it: that of one alone is several percent too large in an impact.
+    The latter is several percent too large in an impact, and takes two rows less.
     """
-    segments, constants = parameters
-    spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
-    opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
-    pull_before, shear_before = history[PULL_BEFORE], history[SHEAR_BEFORE]
-    for segment in range(constants.shape[0]):
-        k_n, k_t, strength = constants[segment, 0], constants[segment, 1], constants[segment, 2]
-        shear, friction, flexibility = constants[segment, 3], constants[segment, 4], constants[segment, 5]
-        viscous_n, viscous_t = viscosity * k_n, viscosity * k_t
-        # Each array is read once and then written, and minima are spelt out: so the loop runs in vector registers.
-        for i in range(segments[segment], segments[np.uint64(segment + 1)]):
-            jump_n, jump_t = opening[i], slip[i]
-            change_n, change_t = jump_n - opening_before[i], jump_t - slip_before[i]
-            elastic = k_n * jump_n
-            elastic = elastic if elastic < strength else strength
-            n = elastic + (viscous_n * change_n if elastic < strength else 0.0)
-            n = n if n < strength else strength
-            most = shear + friction * (strength - n)
-            plastic = plastic_slip[i]
-            trial = k_t * (jump_t - plastic)
-            held = trial if trial < most else most
-            held = held if held > -most else -most
-            t = held + viscous_t * change_t
-            t = t if t < most else most
-            t = t if t > -most else -most
-            slid = (trial - held) * flexibility
-            opening_before[i] = jump_n
-            slip_before[i] = jump_t
-            plastic_slip[i] = plastic + slid
-            spent[i] += held * slid
-            pull, drag = n - elastic, t - held
-            damped[i] += 0.5 * ((pull_before[i] + pull) * change_n + (shear_before[i] + drag) * change_t)
-            pull_before[i] = pull
-            shear_before[i] = drag
-            normal[i] = n
-            tangential[i] = t
+
+    @kernel
+    def coulomb_kernel(
+        opening: Array,
+        slip: Array,
+        parameters: Parameters,
+        history: Array,
+        viscosity: float,
+        normal: Array,
+        tangential: Array,
+    ) -> None:
+        """Tractions of perfectly plastic points with a tension cut-off and without dilatancy, from their jumps.
+
+        Stiffness-proportional viscosity β acts on the jumps' rates: `viscosity` = β / Δt times their change over the
+        last step. It never lets a joint pull or slide beyond its strength, so it has no part in a mechanism, but takes
+        out the chatter of sliding contacts, on which local damping would otherwise drag.
+        """
+        segments, constants = parameters
+        spent, damped, plastic_slip = history[FRICTION_WORK], history[DAMPED_WORK], history[PLASTIC_SLIP]
+        opening_before, slip_before = history[OPENING_BEFORE], history[SLIP_BEFORE]
+        pull_before, shear_before = damped, damped
+        if of_mean:
+            pull_before, shear_before = history[PULL_BEFORE], history[SHEAR_BEFORE]
+        for segment in range(constants.shape[0]):
+            k_n, k_t, strength = constants[segment, 0], constants[segment, 1], constants[segment, 2]
+            shear, friction, flexibility = constants[segment, 3], constants[segment, 4], constants[segment, 5]
+            viscous_n, viscous_t = viscosity * k_n, viscosity * k_t
+            # Each array is read once and then written, and minima are spelt out: so the loop runs in vector registers.
+            for i in range(segments[segment], segments[np.uint64(segment + 1)]):
+                jump_n, jump_t = opening[i], slip[i]
+                change_n, change_t = jump_n - opening_before[i], jump_t - slip_before[i]
+                elastic = k_n * jump_n
+                elastic = elastic if elastic < strength else strength
+                n = elastic + (viscous_n * change_n if elastic < strength else 0.0)
+                n = n if n < strength else strength
+                most = shear + friction * (strength - n)
+                plastic = plastic_slip[i]
+                trial = k_t * (jump_t - plastic)
+                held = trial if trial < most else most
+                held = held if held > -most else -most
+                t = held + viscous_t * change_t
+                t = t if t < most else most
+                t = t if t > -most else -most
+                slid = (trial - held) * flexibility
+                opening_before[i] = jump_n
+                slip_before[i] = jump_t
+                plastic_slip[i] = plastic + slid
+                spent[i] += held * slid
+                pull, drag = n - elastic, t - held
+                if of_mean:
+                    damped[i] += 0.5 * ((pull_before[i] + pull) * change_n + (shear_before[i] + drag) * change_t)
+                    pull_before[i] = pull
+                    shear_before[i] = drag
+                else:
+                    damped[i] += pull * change_n + drag * change_t
+                normal[i] = n
+                tangential[i] = t
+
+    return coulomb_kernel
 
 
+coulomb_kernel = _coulomb(of_mean=False)
 COULOMB = Law("Coulomb", coulomb_constants, coulomb_kernel, HISTORY, stored_uncut, response=PointLaw)
+
+IMPACTS = Law(
+    *("Coulomb, impacts", coulomb_constants, _coulomb(of_mean=True)),
+    (*HISTORY, "viscous pull", "viscous shear"),
+    stored_uncut,
+    response=PointLaw,
+)
+"""Coulomb's law with the ledger that impacts need."""

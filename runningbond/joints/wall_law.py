@@ -1,12 +1,13 @@
 """Which law the joint points of a wall have, and that law over all of them, with its compiled kernel."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from runningbond.scene import Indices, JointMaterial, SceneError
+from runningbond.scene import Indices, JointMaterial, Scene, SceneError
 
-from .coulomb import COULOMB
+from .coulomb import COULOMB, IMPACTS
 from .interface import INTERFACE
 from .law import KernelLaw, Law
 from .softening import SOFTENING
@@ -35,6 +36,13 @@ def common_law(materials: Sequence[JointMaterial]) -> Law:
         names = " and ".join(f'"{name}"' for name in laws)
         raise SceneError("joint.law", f"the joints of a wall have one law, and these are of {names}")
     return laws[nested[-1]] if nested else next(iter(laws.values()))
+
+
+def with_impacts(scene: Scene) -> Scene:
+    """A scene whose joints, where they are all Coulomb's, keep a ledger that is exact in impacts too."""
+    if common_law(scene.joint_materials) is not COULOMB:
+        return scene
+    return replace(scene, joint_materials=tuple(replace(each, law=IMPACTS) for each in scene.joint_materials))
 
 
 def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelLaw:

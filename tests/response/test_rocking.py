@@ -10,6 +10,7 @@ from scipy.integrate import quad
 
 from dem.finite_system import finite_system
 from runningbond.dynamics import Run, State
+from runningbond.joints.wall_law import with_impacts
 from runningbond.response import Resting, follow
 from runningbond.response.resting import VISCOUS
 from runningbond.scene import Array
@@ -26,7 +27,7 @@ def rocking(share: float) -> tuple[Array, float]:
 
     Let go about its right corner at a share of the angle at which it would fall.
     """
-    system = finite_system(block(BLOCK.b, BLOCK.h, still()))
+    system = finite_system(with_impacts(block(BLOCK.b, BLOCK.h, still())))
     angle = -share * BLOCK.alpha
     motion, arm = np.zeros(len(system.mass)), np.array([-BLOCK.b, BLOCK.h])
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])

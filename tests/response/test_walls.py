@@ -9,6 +9,7 @@ import pytest
 
 from dem.finite_system import finite_system
 from runningbond.compare.models import respond, run_model
+from runningbond.joints.wall_law import with_impacts
 from runningbond.response import critical_scale, follow
 from runningbond.response.critical import Search
 from runningbond.scene import History, Lateral, Load, Scene, SceneError, Stiffness
@@ -77,7 +78,7 @@ def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
     housner = HousnerBlock()
     unit = GRAVITY * housner.b / housner.h
     scene = block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (2 * housner.p)))
-    outcome = critical_scale(scene, "dem-dynamic", finite_system(scene), 0.02)
+    outcome = critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), 0.02)
     assert outcome.status == "collapse"
     assert outcome.lower is not None
     assert outcome.upper is not None
@@ -101,4 +102,4 @@ def test_a_wall_that_falls_by_itself_is_not_shaken() -> None:
     pushed = replace(scene, load=replace(scene.load, gravity=(9.0, -3.0)))
     with pytest.raises(SceneError, match="there is nothing to shake"):
         respond("dem-dynamic", pushed)
-    assert critical_scale(pushed, "dem-dynamic", finite_system(pushed), 0.1).status == "infeasible"
+    assert critical_scale(pushed, "dem-dynamic", finite_system(with_impacts(pushed)), 0.1).status == "infeasible"

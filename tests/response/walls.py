@@ -3,6 +3,7 @@
 import numpy as np
 
 from dem.finite_system import finite_system
+from runningbond.joints.wall_law import with_impacts
 from runningbond.response import Resting
 from runningbond.scene import BlockMaterial, History, JointMaterial, Load, Scene, Stiffness, build_scene
 from runningbond.scene.history import pulse
@@ -27,7 +28,7 @@ def block(b: float, h: float, history: History, friction: float = 2.0, stiffness
 
 
 def resting(scene: Scene) -> Resting:
-    return Resting.of(scene, "dem-dynamic", finite_system(scene))
+    return Resting.of(scene, "dem-dynamic", finite_system(with_impacts(scene)))
 
 
 def still() -> History:
