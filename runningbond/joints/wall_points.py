@@ -10,8 +10,8 @@ from .point_law import PointLaw
 from .points import JointPoints, Rule, joint_points, lobatto
 from .stiffness import joint_stiffness, stiffest
 
-BETWEEN = 5
-"""Points of a joint along which pressures are spread."""
+BETWEEN = 9
+"""Points of a joint along which pressures are spread: with five a toe that crushes bears 3 % more, with 17 as much."""
 
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:

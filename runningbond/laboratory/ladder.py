@@ -28,12 +28,20 @@ class Rung:
     base: str = ""  # the model of the package that it is; empty for what is worked out by hand
     is_finite: bool = False
     is_by_hand: bool = False
-    is_one_way: bool = False  # too dear for walls that are pushed to and fro
 
     @property
     def name(self) -> str:
         """What tables call it."""
         return self.model.name
+
+    def leaves_out(self, scene: Scene, *, is_cyclic: bool) -> str:
+        """Why a wall is not predicted with it; empty where it is."""
+        if self.base != "fem":
+            return ""
+        if is_cyclic:
+            return "left out: walls that are pushed to and fro take it too long"
+        rocks = scene.beam is not None and scene.beam.condition == "free"
+        return "left out: a wall that rocks goes beyond small displacements" if rocks and not self.is_finite else ""
 
 
 def by_hand(scene: Scene) -> dict[str, float]:
@@ -75,7 +83,7 @@ def _hand(name: str, title: str) -> Rung:
 def _rung(name: str, title: str, base: str, features: Features, colour: str, marker: str, **settings: Any) -> Rung:
     solve = partial(_run, base=base, settings=settings)
     model = replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker)
-    return Rung(model, features, base, settings == FINITE, is_one_way=base == "fem")
+    return Rung(model, features, base, settings == FINITE)
 
 
 FINITE: dict[str, Any] = {"displacements": "finite"}

@@ -162,16 +162,20 @@ def predict(
     Parameters and errors as of `runningbond.compare.run_campaign`.
     """
     cells = [(wall, rung) for rung in rungs for wall in sorted(walls, key=lambda wall: not wall.is_cyclic)]
-    left_out = {(wall.name, rung.name) for wall, rung in cells if wall.is_cyclic and rung.is_one_way}
+    reasons = {
+        (wall.name, rung.name): rung.leaves_out(scenes[wall.name, rung.name], is_cyclic=wall.is_cyclic)
+        for wall, rung in cells
+    }
     tasks = [
         Task(wall.name, scenes[wall.name, rung.name], rung.model, TOLERANCE)
         for wall, rung in cells
-        if (wall.name, rung.name) not in left_out
+        if not reasons[wall.name, rung.name]
     ]
     campaign = run_tasks(tasks, folder=folder, jobs=jobs, fresh=fresh, progress=progress)
-    for cell in sorted(left_out):
-        campaign.inapplicable[cell] = "left out: walls that are pushed to and fro take it too long"
-        progress(cell)
+    for cell, reason in reasons.items():
+        if reason:
+            campaign.inapplicable[cell] = reason
+            progress(cell)
     predictions = []
     for wall in walls:
         for rung in rungs:

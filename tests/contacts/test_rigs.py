@@ -13,6 +13,7 @@ from dem.finite_system import finite_system
 from runningbond.compare import run_model
 from runningbond.dynamics import Carried, Run, State
 from runningbond.dynamics.contact_update import contacts_of
+from runningbond.joints import wall_rule
 from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, scene_from_dict
@@ -124,13 +125,17 @@ def test_five_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str,
 
 
 def test_a_toe_that_crushes_shortens_the_lever() -> None:
-    """The first two points share N = f_m A / 10, of which the first one bears f_m A / 20 and the second the rest.
+    """The toe's points carry their area's strength, the last of them the rest of N = f_m A / 10.
 
-    The latter lies (1 − √(3/7)) / 2 of the length inside, so V = N (b − half of that) / h, under a line that is fixed.
+    Their resultant lies at x from the toe, so V = N (b − x) / h, under a line that is fixed.
     """
     joint: dict[str, Any] = {"joint__compressive_strength": 2.5e6, "joint__cap_shear": 0.0}
     scene = rig(**joint, beam__force_line="fixed", beam__drive={"displacement": [0.02, 0], "at": 0.6})
-    exact = 2e4 * (0.2 - 0.4 * (1 - math.sqrt(3 / 7)) / 4) / 0.6
+    rule, share = wall_rule(scene), 0.1
+    full = rule.weights / 2
+    carried = np.minimum(full, np.maximum(0.0, share - (np.cumsum(full) - full)))
+    inside = 0.4 * float(carried @ (1 + rule.nodes)) / 2 / share
+    exact = 2e4 * (0.2 - inside) / 0.6
     assert force_at(finite(scene), 0.018) == pytest.approx(exact, rel=0.01)
 
 

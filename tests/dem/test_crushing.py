@@ -70,15 +70,15 @@ def test_a_block_settles_as_its_joint_closes() -> None:
 def test_the_ledger_balances_while_a_toe_is_crushed(joint: dict[str, object]) -> None:
     """Work of the loads is in motion, in springs, spent on the joint and damped, to 1 %, while a toe is crushed.
 
-    The block is struck by its load: a quarter of the safe step, at which a plain joint's ledger is as good.
+    The block is struck by its load: an eighth of the safe step, for what the ledger misses is of first order in it.
     """
     system = rigid_system(block(**joint))
-    run = Run(system, dt=Run(system).safe_step / 4)
+    run = Run(system, dt=Run(system).safe_step / 8)
     state = State.at_rest(run.system)
     assert settle(run, state, 0.0, Criteria(collapse=1.0)) == "stable"
     crushed, spent = run.interface.law.law.row("crushed"), 0.0
     for k in range(20):
-        run.hold(state, 0.35 if "cohesion" not in joint else 0.6, 800 + k)
+        run.hold(state, 0.35 if "cohesion" not in joint else 0.6, 1600 + k)
         ledger = run.ledger(state)
         assert ledger.friction >= spent
         spent = ledger.friction
@@ -88,13 +88,14 @@ def test_the_ledger_balances_while_a_toe_is_crushed(joint: dict[str, object]) ->
 
 
 def test_forces_are_listed_at_the_points_along_each_joint() -> None:
-    """Five a joint, joint by joint along its tangent: resultants, reactions and pictures are those of the whole."""
+    """Nine a joint, joint by joint along its tangent: resultants, reactions and pictures are those of the whole."""
     scene = courses([[1, 1], [0.5, 1, 0.5]], joint={"friction": 0.6, **STIFF, "compressive_strength": 1e7})
     rule, outcome = wall_rule(scene), dem_dynamic(scene)
     points = wall_points(scene, rule)
     order = contact_points(scene)
-    assert len(rule.nodes) == 5
-    assert len(order) == len(points) == len(outcome.force) == 5 * len(scene.joints)
+    count = len(rule.nodes)
+    assert count == 9
+    assert len(order) == len(points) == len(outcome.force) == count * len(scene.joints)
     sorted_ = order.part(np.argsort(order.joint, kind="stable"))
     assert np.array_equal(sorted_.position, points.position)
     assert sorted_.area == pytest.approx(points.area)
@@ -108,14 +109,14 @@ def test_forces_are_listed_at_the_points_along_each_joint() -> None:
     assert reaction[1] == pytest.approx(weight, rel=1e-3)
     frame = mechanism_frame(scene, outcome)
     assert frame is not None
-    ends = np.isin(np.arange(len(points)) % 5, [0, 4])
+    ends = np.isin(np.arange(len(points)) % count, [0, count - 1])
     assert frame.normal == pytest.approx((outcome.force[:, 0] / points.area)[ends])
     plain = dem_dynamic(courses([[1, 1], [0.5, 1, 0.5]], joint={"friction": 0.6, **STIFF}))
     assert outcome.multiplier == pytest.approx(plain.multiplier, rel=0.02)
 
 
 def test_deformable_blocks_crush_as_rigid_ones_do() -> None:
-    """Stiff blocks in triangles, five points on each joint element of half the base, against five on all of it."""
+    """Stiff blocks in triangles, nine points on each joint element of half the base, against nine on all of it."""
     joint = {"compressive_strength": 5 * WEIGHT, "cap_shear": 0.0}
     outcome = fem(block(**joint).with_block(young=1e12), 5e-3)
     exact = 0.8 * WIDTH / HEIGHT
