@@ -114,7 +114,7 @@ def _draw_errors(axes: Axes, rows: Sequence[Row], cost: Sequence[float], x: Sequ
     y, right = [max(row["error"], FLOOR) for row in rows], 3 * max(x)
     axes.set(xscale="log", yscale="log", xlim=(min(x) / 2, right), ylim=(FLOOR / 1.8, TOP))
     axes.axhspan(FLOOR / 1.8, FLOOR * 1.25, color="0.93", zorder=0)
-    axes.set_yticks([FLOOR, 1e-3, 1e-2, 0.1, 1.0], ["â¤ 0.01 %", "0.1 %", "1 %", "10 %", "100 %"])
+    axes.set_yticks([FLOOR, 1e-3, 1e-2, 0.1, 1.0], ["≤ 0.01 %", "0.1 %", "1 %", "10 %", "100 %"])
     front = pareto_front(cost, y)
     ends = [x[front[0]], *(x[i] for i in front), right], [TOP, *(y[i] for i in front), y[front[-1]]]
     axes.step(*ends, where="post", color="0.55", lw=1.4, zorder=1)
