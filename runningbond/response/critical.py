@@ -92,6 +92,7 @@ def critical_scale(
     """
     start, rest = time.perf_counter(), Resting.of(scene, model, system)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=rest.state.steps)
+    outcome = replace(outcome, seconds=time.perf_counter() - start)
     if rest.verdict == "collapse":
         return replace(outcome, status="infeasible", message="collapses under its dead load")
     if rest.verdict == "undecided":

@@ -180,7 +180,7 @@ def read_history(table: Table, folder: Path) -> History:
         if amplitude == 0:
             raise SceneError(inner.key("amplitude"), "must not be zero", amplitude)
         time, values = pulse(kind, amplitude, period)
-        source, holds, interval = kind, kind == "ramp", period / INTERVALS
+        source, holds, interval = kind, kind == "ramp" and quantity != "velocity", period / INTERVALS
     else:
         name = table.text("file")
         record = read_record(folder / name, table.key("file"))
