@@ -158,7 +158,7 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
         )
     again = [f"{number(low)} … {number(high)}" if high > low else number(low) for low, high in search.windows()]
     parts = (
-        f"largest scale at which the wall stands below all falls, and smallest at which it falls: {upper.message}",
+        f"the wall stands at the lower scale and at all tried below it; at the upper one it {upper.message}",
         f"it stands again at {', '.join(again)}" if again else "",
         f"scales were tried in steps of {RATIO:g} up to {number(runs[-1].scale)}; narrower windows are not seen",
     )

@@ -69,7 +69,7 @@ def test_units_and_scale(tmp_path: Path) -> None:
     (tmp_path / "record.AT2").write_text(PEER)
     one = of({"file": "record.csv", "quantity": "g", "scale": 2.0}, tmp_path)
     assert one.acceleration(0.5) == pytest.approx(np.array([0.6, -0.2]) * STANDARD_GRAVITY)
-    assert one.factor(0.25) == pytest.approx(0.5)
+    assert one.acceleration(0.25) == pytest.approx(np.array([0.3, -0.1]) * STANDARD_GRAVITY)
     forces = scene({"file": "record.csv", "quantity": "g"}, tmp_path).live_forces
     assert forces.acceleration[0] == pytest.approx(-np.array([0.3, -0.1]) * STANDARD_GRAVITY)
     peer = of({"file": "record.AT2"}, tmp_path)
