@@ -7,7 +7,20 @@ import numpy as np
 from runningbond.joints import wall_points
 from runningbond.pictures.legend import CONDITIONS, is_bed, strength, used_block_materials, used_joint_materials
 from runningbond.pictures.quantities import counted, millimetres, minus, pair, readable
-from runningbond.scene import ANCHOR, Action, Array, Beam, BeamLoad, Forces, LineLoad, Moment, Scene, Settlement, Tilt
+from runningbond.scene import (
+    ANCHOR,
+    Action,
+    Array,
+    Beam,
+    BeamLoad,
+    Forces,
+    History,
+    LineLoad,
+    Moment,
+    Scene,
+    Settlement,
+    Tilt,
+)
 from runningbond.scene.loads import KINDS
 
 Row = tuple[str, str]
@@ -136,6 +149,8 @@ def _kind(scene: Scene, load: Action) -> str:
             return f"{readable(float(np.hypot(*load.force)), 'N/m')} along {length:.4g} m"
         case Moment():
             return f"on {_body(scene, int(np.flatnonzero(load.forces(scene).moment)[0]))}"
+        case History():
+            return f"{load.source}, {load.duration:.4g} s, {load.note(1.0)} at λ = 1; inertia then"
         case Tilt():
             return "tilt of the ground, λ = tan α"
         case _:

@@ -81,6 +81,7 @@ def run(
     wall = read_scene(find_scene(scene))
     if draws is not None:
         return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
+    chosen.check(wall)
     if out is not None:
         make_folder(out)
     stopped = interruptions(chosen)

@@ -119,7 +119,7 @@ def table_2(comparison: Comparison) -> Figure:
 
 
 def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Figure:
-    """Curves of the walls of one source, each with a dot at its end; of loads in kN where Î» is a load in newtons.
+    """Curves of the walls of one source, each with a dot at its end; of loads in kN where λ is a load in newtons.
 
     Displacements are logarithmic, from where a wall bears a share of its load: the elastic range is seen as well.
     A level line is drawn for each model that only estimates the multiplier of the twelve panels.

@@ -144,10 +144,11 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
     outcomes = {x.name: outcome for x in comparison.models if (outcome := comparison.outcome(name, x)) is not None}
     shapes = {model: shape for model, x in outcomes.items() if (shape := mechanism_shape(scene, x)) is not None}
     extent = common_extent([undeformed_shape(scene), *shapes.values()])
+    rest = f"rest-{list(comparison.scenes).index(name)}"  # a wall may have any name
     mechanisms = [
         (
             model,
-            Markup(inline_mechanism(shape, extent, f"rest-{name}")),
+            Markup(inline_mechanism(shape, extent, rest)),
             " ".join(multiplier_text(scene, outcomes[model])).strip(),
         )
         for model, shape in shapes.items()
@@ -166,7 +167,7 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
         "name": name,
         "title": scene.title,
         "mechanisms": mechanisms,
-        "rest": Markup(inline_wall(scene, extent, f"rest-{name}")),
+        "rest": Markup(inline_wall(scene, extent, rest)),
         "curve": curve,
         "heads": heads,
         "rows": rows,

@@ -45,7 +45,8 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
         fontsize=TYPE,
         color=DARK,
     )
-    axes.plot(moved[rests], load[rests], ".-", color=CURVE, lw=1.2, ms=4, label="at rest")
+    held = "stands" if scene.history else "at rest"
+    axes.plot(moved[rests], load[rests], ".-", color=CURVE, lw=1.2, ms=4, label=held)
     if not rests.all():
         last = np.flatnonzero(~rests)[0]
         axes.plot(moved[last - 1 :], load[last - 1 :], ":", color=FALL, lw=1.0)
@@ -61,7 +62,8 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
             spot: dict[str, Any] = {"textcoords": "offset points", "ha": align, "fontsize": SMALL_TYPE}
             axes.annotate(word, (linear, 0.0), (place, 3), **spot)
     axes.set_ylim(min(0.0, load.min()), 1.12 * max(load.max(), level) or 1.0)
-    axes.set_xlabel("displacement of the control point along the live load [mm]", fontsize=TYPE + 1)
+    point = "displacement of the control point along the live load"
+    axes.set_xlabel(f"{'largest displacement of the top' if scene.history else point} [mm]", fontsize=TYPE + 1)
     axes.set_ylabel(f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}", fontsize=TYPE + 1)
     axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2)
     axes.tick_params(labelsize=TYPE)

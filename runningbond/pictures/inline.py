@@ -42,8 +42,9 @@ def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
         f'<use class="ghost" href="#{name}-outline"/>',
     ]
     polygons = np.split(shape.placed, shape.first[1:-1])
-    colours, kind = np.unique(np.rint(shape.block_colours() * SHADES) / SHADES, axis=0, return_inverse=True)
-    for k, colour in enumerate(colours):
+    colours = shape.block_colours()  # those of one shade have that of their first: a rounded one is of another hue
+    _, first, kind = np.unique(np.rint(colours * SHADES), axis=0, return_index=True, return_inverse=True)
+    for k, colour in enumerate(colours[first]):
         own = [polygon for polygon, one in zip(polygons, moved * (1 + kind.ravel()), strict=True) if one == k + 1]
         if own:
             parts.append(f'<path class="block" d="{_path(own, extent)}" fill="{_hex(colour)}"/>')

@@ -39,6 +39,7 @@ def response_figure(response: Response) -> "Figure":
     energy.legend(frameon=False, fontsize=SMALL_TYPE, ncols=5, loc="lower left", bbox_to_anchor=(0.0, 0.98))
     for axes in (ground, drift, shear, energy):
         axes.tick_params(labelsize=SMALL_TYPE)
+        axes.yaxis.get_offset_text().set_fontsize(SMALL_TYPE)
         axes.spines[["top", "right"]].set_visible(False)
     fallen = np.flatnonzero(response.fallen)
     if len(fallen):

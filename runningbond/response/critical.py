@@ -92,6 +92,7 @@ def critical_scale(
     """
     start, rest = time.perf_counter(), Resting.of(scene, model, system)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=rest.state.steps)
+    outcome = replace(outcome, seconds=time.perf_counter() - start)
     if rest.verdict == "collapse":
         return replace(outcome, status="infeasible", message="collapses under its dead load")
     if rest.verdict == "undecided":
@@ -157,7 +158,7 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
         )
     again = [f"{number(low)} … {number(high)}" if high > low else number(low) for low, high in search.windows()]
     parts = (
-        f"largest scale at which the wall stands below all falls, and smallest at which it falls: {upper.message}",
+        f"the wall stands at the lower scale and at all tried below it; at the upper one it {upper.message}",
         f"it stands again at {', '.join(again)}" if again else "",
         f"scales were tried in steps of {RATIO:g} up to {number(runs[-1].scale)}; narrower windows are not seen",
     )

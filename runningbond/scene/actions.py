@@ -27,10 +27,6 @@ class Action:
     def check(self, scene: "Scene", key: str) -> None:
         """Refuse a scene that the load cannot act on, in a `SceneError` under its key."""
 
-    def factor(self, time: float) -> float:
-        """What multiplies the load at a time [s]; only models that follow a history of loads read it."""
-        return 1.0
-
     def note(self, multiplier: float) -> str:
         """What an outcome's message is to say of a multiplier, beside its number."""
         return ""

@@ -140,10 +140,6 @@ class History(Action):
                 name, "does not go with load.history, which moves a wall on its ground that is free on top"
             )
 
-    def factor(self, time: float) -> float:
-        """Acceleration along the largest one, as a share of it."""
-        return float(self.acceleration(time) @ self.peak / (self.peak @ self.peak))
-
     def note(self, multiplier: float) -> str:
         """The largest acceleration."""
         return f"the ground is accelerated by up to {abs(multiplier) * np.hypot(*self.peak) / STANDARD_GRAVITY:.4g} g"
@@ -180,7 +176,7 @@ def read_history(table: Table, folder: Path) -> History:
         if amplitude == 0:
             raise SceneError(inner.key("amplitude"), "must not be zero", amplitude)
         time, values = pulse(kind, amplitude, period)
-        source, holds, interval = kind, kind == "ramp", period / INTERVALS
+        source, holds, interval = kind, kind == "ramp" and quantity != "velocity", period / INTERVALS
     else:
         name = table.text("file")
         record = read_record(folder / name, table.key("file"))

@@ -59,6 +59,8 @@ OF_MORTAR = {
 OF_TIES = Plausible(1e8, 1e12, "Pa", PRESSURES)
 SIZE = Plausible(0.05, 200.0, "m", {"mm": 1e-3, "cm": 1e-2, "km": 1e3})
 GRAVITY = Plausible(9.3, 10.3, "m/s²")
+SHAKING = Plausible(0.01, 50.0, "m/s²", {"cm/s²": 1e-2})
+SAMPLING = Plausible(1e-5, 0.5, "s", {"ms": 1e-3})
 FRICTION = (0.1, 1.5)
 ANGLES = (5.0, 60.0)
 """Numbers that are rather an angle in degrees than its tangent."""
@@ -136,6 +138,14 @@ def _sizes(scene: Scene) -> Iterator[str]:
         yield f"load.live.by = {moved:g}: moves a support by more than a tenth of the wall's size; are mm meant?"
 
 
+def _shaking(scene: Scene) -> Iterator[str]:
+    """Peak acceleration of the ground, and the steps of a record."""
+    if scene.history is not None:
+        yield from SHAKING.doubts("load.history, peak acceleration", float(np.hypot(*scene.history.peak)))
+        if scene.history.interval is None:
+            yield from SAMPLING.doubts("load.history, time step", float(np.median(np.diff(scene.history.time))))
+
+
 def _own_blocks(scene: Scene) -> Mask:
     """Blocks of the wall but for a beam on top, ``(nb,)``."""
     own = scene.wall.copy()
@@ -207,4 +217,4 @@ def _head_joints(scene: Scene) -> Iterator[str]:
         yield f"wall: no head joint: blocks that stand side by side are up to {gap} apart, and nowhere touch"
 
 
-CHECKS = (_sizes, _materials, _courses, _head_joints)
+CHECKS = (_sizes, _materials, _shaking, _courses, _head_joints)

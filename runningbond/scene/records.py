@@ -25,6 +25,9 @@ PEER_UNITS = {
 }
 """Quantity of a history and the factor into its unit, by what the third line of a file of PEER says."""
 
+NAMES = re.compile(r"[\"']?(?!(nan|inf)\b)[^\W\d_]", re.IGNORECASE)
+"""How a first row begins that names the columns."""
+
 GAP, FEWEST = 5.0, 8
 """Time step, in middling ones, that is a gap; and rows of a file below which none is one."""
 
@@ -51,6 +54,8 @@ def read_record(path: Path, key: str) -> Record:
         the line that is wrong.
     """
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe, which may never end
+            raise SceneError(key, "cannot be read: it is no regular file", path.name)
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except OSError as error:
         raise SceneError(key, f"cannot be read: {error.strerror or error}", path.name) from error
@@ -88,7 +93,7 @@ def _rows(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
 
 def _columns(path: Path, lines: Sequence[str]) -> Record:
     rows = list(_rows(lines))
-    if rows and not any(re.search(r"\d", word) for word in rows[0][1]):  # the columns' names
+    if rows and NAMES.match(rows[0][1][0]):
         del rows[0]
     if len(rows) < 2:
         where = _line(path, rows[0][0] if rows else max(1, len(lines)))
@@ -138,7 +143,7 @@ def _peer(path: Path, lines: Sequence[str]) -> Record:
 
 def _head(path: Path, line: str) -> tuple[int, float]:
     """Number of values and time step [s] of a file of PEER."""
-    number = r"([0-9.]+(?:[eE][+-]?\d+)?)"
+    number = r"((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(?![\d.])"
     found = re.search(rf"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*{number}", line, re.IGNORECASE)
     found = found or re.match(rf"\s*(\d+)\s+{number}\s+NPTS", line, re.IGNORECASE)
     if found is None or int(found[1]) < 2 or not 0 < float(found[2]) < 1:

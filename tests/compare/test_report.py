@@ -285,10 +285,11 @@ def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:
 
 
 def test_compare_writes_a_report_of_walls_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = write_toml(content(wall__length=0.48, wall__height=0.24, title="<mine> & yours"), tmp_path / "mine.toml")
+    path = write_toml(content(wall__length=0.48, wall__height=0.24, title="<mine> & yours"), tmp_path / "a & b.toml")
     out = tmp_path / "out"
     assert command(["compare", str(path), "--models", "homog,limit", "--out", str(out), "--jobs", "1"]) == 0
     capsys.readouterr()
-    assert read(out / "report.html").tables["Your scenes"][1][:2] == ["mine", "<mine> & yours"]
-    assert len(drawings(out / "report.html", "wall")) == 1
+    assert read(out / "report.html").tables["Your scenes"][1][:2] == ["a & b", "<mine> & yours"]
+    (drawing,) = drawings(out / "report.html", "wall")
+    assert f'<path id="{drawing[0].attrib["href"][1:]}"' in (out / "report.html").read_text(encoding="utf-8")
     assert (out / "mechanisms.png").is_file()

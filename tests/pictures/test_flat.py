@@ -1,6 +1,7 @@
 """Flat drawings hold what they are of, as vectors, without VTK."""
 
 import io
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
@@ -10,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -17,10 +19,11 @@ from runningbond.limit import limit
 from runningbond.pictures.captions import to_png, to_svg
 from runningbond.pictures.deformed_shape import DeformedShape
 from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of
+from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.resultants import resultants
-from runningbond.pictures.style import DRAWN, SEEN, STATE_COLOURS
+from runningbond.pictures.style import AT_REST, DRAWN, FASTEST, SEEN, STATE_COLOURS
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 from tests.walls import courses, panel
@@ -198,3 +201,15 @@ def test_flat_drawings_do_without_vtk() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_blocks_in_a_page_are_of_one_hue() -> None:
+    """Shades lie between those of blocks at rest and of the fastest, whatever is spared."""
+    scene = panel(wall__length=0.48, wall__height=1.44)
+    shape = mechanism_shape(scene, limit(scene))
+    assert shape is not None
+    blocks = re.findall(r'class="block" d="[^"]*" fill="(#\w+)"', inline_mechanism(shape, shape.extent, "wall"))
+    assert len(blocks) > 5
+    way = np.subtract(FASTEST, AT_REST)
+    shades = np.array([to_rgb(colour) for colour in blocks]) - AT_REST
+    assert shades == pytest.approx(np.outer(shades @ way / (way @ way), way), abs=1.5 / 255)

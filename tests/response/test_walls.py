@@ -45,7 +45,7 @@ def test_momentum_and_energy_are_balanced_at_every_sample() -> None:
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_ground_that_moves_as_slowly_as_can_be_leaves_the_static_bracket(sense: float) -> None:
-    """An acceleration that grows for 20 s and stays on brings a wall down 3 % above the static load, not 3 % below."""
+    """An acceleration that grows for 4 s and stays on brings a wall down 3 % above the static load, not 3 % below."""
     static = run_model(
         "dem-dynamic", replace(wall(None, joint__friction=0.9), load=Load(live=(Lateral((-sense, 0.0)),)))
     )

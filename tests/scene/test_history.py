@@ -1,5 +1,6 @@
 """Motions of the ground: what records and pulses come to, and which are refused, and how."""
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -68,12 +69,26 @@ def test_units_and_scale(tmp_path: Path) -> None:
     (tmp_path / "record.AT2").write_text(PEER)
     one = of({"file": "record.csv", "quantity": "g", "scale": 2.0}, tmp_path)
     assert one.acceleration(0.5) == pytest.approx(np.array([0.6, -0.2]) * STANDARD_GRAVITY)
-    assert one.factor(0.25) == pytest.approx(0.5)
+    assert one.acceleration(0.25) == pytest.approx(np.array([0.3, -0.1]) * STANDARD_GRAVITY)
     forces = scene({"file": "record.csv", "quantity": "g"}, tmp_path).live_forces
     assert forces.acceleration[0] == pytest.approx(-np.array([0.3, -0.1]) * STANDARD_GRAVITY)
     peer = of({"file": "record.AT2"}, tmp_path)
     assert peer.acceleration(0.005)[0] == pytest.approx(0.2 * STANDARD_GRAVITY)
     assert peer.duration == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize("names", ["time [s],acceleration [m/s2]", "t,a1", '"time";"x 2"', "T a_x"])
+def test_a_first_row_that_names_the_columns_may_have_digits(names: str, tmp_path: Path) -> None:
+    (tmp_path / "record.csv").write_text(f"{names}\n{ROWS}")
+    assert len(read_record(tmp_path / "record.csv", "file").time) == ROWS.count("\n")
+
+
+def test_a_ramp_stays_on_whatever_it_is_of() -> None:
+    """An acceleration goes on; a ground that has come to its velocity is accelerated no more."""
+    of_velocity = of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "velocity"})
+    assert of_velocity.velocity(np.array([0.5, 9.0]))[:, 0] == pytest.approx(2.0)
+    assert of_velocity.acceleration(0.6)[0] == 0
+    assert of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "acceleration"}).acceleration(0.6)[0] == 2
 
 
 def test_an_older_head_and_blanks(tmp_path: Path) -> None:
@@ -153,6 +168,10 @@ REFUSED: list[tuple[Any, str]] = [
     (peer("NPTS=  7", "NPTS=  9"), "record.at2, line 6: ends a record of 7 values; NPTS says 9"),
     (peer("NPTS=  7", "NPTS=  1"), "record.at2, line 4 = 'NPTS= 1, DT= .0050 SEC,': must say how many values"),
     (peer("DT=   .0050", "DT=   0.0"), "record.at2, line 4 = 'NPTS= 7, DT= 0.0 SEC,': must say how many values"),
+    (peer("DT=   .0050", "DT= 1..1"), "record.at2, line 4 = 'NPTS= 7, DT= 1..1 SEC,': must say how many values"),
+    (peer("DT=   .0050", "DT= ."), "record.at2, line 4 = 'NPTS= 7, DT= . SEC,': must say how many values"),
+    (record("nan, nan\n0, 1\n0.1, 1\n"), "record.csv, line 1 = 'nan': must be a finite number"),
+    (record("inf 1\n0 1\n0.1 1\n"), "record.csv, line 1 = 'inf': must be a finite number"),
     (peer("NPTS=  7, DT=   .0050 SEC,", "seven"), "record.at2, line 4 = 'seven': must say how many values"),
     (peer("-.1", "***"), "record.at2, line 5 = '***': must be a number"),
     (peer("-.1", "NaN"), "record.at2, line 5 = 'NaN': must be a finite number"),
@@ -180,6 +199,13 @@ def test_a_history_that_is_none(given: Any, said: str, tmp_path: Path, capsys: p
 def test_text_that_is_no_text(tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_bytes(b"\xff\xfe0,1")
     with pytest.raises(SceneError, match="is no record: it is not UTF-8 text"):
+        of({"file": "record.csv", "quantity": "g"}, tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in its folders")
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "record.csv")
+    with pytest.raises(SceneError, match="cannot be read: it is no regular file"):
         of({"file": "record.csv", "quantity": "g"}, tmp_path)
 
 

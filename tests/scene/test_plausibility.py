@@ -10,7 +10,7 @@ import pytest
 from runningbond.commands.command_line import command
 from runningbond.commands.terminal import remarks
 from runningbond.compare.published import PUBLISHED, published_scene
-from runningbond.scene import BlockMaterial, JointMaterial, Load, Scene, build_scene
+from runningbond.scene import BlockMaterial, History, JointMaterial, Load, Scene, build_scene
 from runningbond.scene.plausibility import warnings
 from runningbond.studies.accuracy.walls import all_walls
 from runningbond.studies.walls import KNOWN, known_wall
@@ -183,3 +183,28 @@ def test_a_plain_wall_is_shown_without_a_warning(capsys: pytest.CaptureFixture[s
 def test_what_a_drawing_healed_is_said_with_the_warnings() -> None:
     scene = replace(panel(block__density=18.0), notes=("2 gaps of up to 0.1 mm closed",))
     assert remarks(scene) == ("note: 2 gaps of up to 0.1 mm closed", *(f"warning: {x}" for x in warnings(scene)))
+
+
+@pytest.mark.parametrize(
+    ("step", "peak", "says"),
+    [
+        (0.01, 300.0, "load.history, peak acceleration = 300: * is 300 cm/s² meant, which is 3 m/s²?"),
+        (0.01, 1e-3, "load.history, peak acceleration = 0.001: is not within 0.01 … 50 m/s²"),
+        (10.0, 3.0, "load.history, time step = 10: * is 10 ms meant, which is 0.01 s?"),
+        (0.01, 3.0, ""),
+    ],
+)
+def test_records_in_another_unit(step: float, peak: float, says: str) -> None:
+    history = History(step * np.arange(9.0), peak * np.column_stack([np.sin(np.arange(9.0) * np.pi / 2), np.zeros(9)]))
+    found = warnings(replace(panel(), load=Load(live=(history,))))
+    assert len(found) == bool(says)
+    assert all(part in "".join(found) for part in says.split(" * "))
+
+
+def test_a_wall_whose_ground_moves_is_shown_with_its_motion(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shaken = {"pulse": {"kind": "sine", "amplitude": 0.3, "period": 0.5}, "quantity": "g"}
+    path = write_toml(content(load__live=None, load__history=shaken), tmp_path / "wall.toml")
+    assert command(["show", str(path)]) == 0
+    printed = " ".join(capsys.readouterr().out.replace("│", " ").split())
+    assert "sine, 0.5 s, the ground is accelerated by up to 0.3 g" in printed
+    assert "warning" not in printed
