@@ -12,7 +12,8 @@ import clarabel
 import numpy as np
 import pytest
 
-from runningbond.limit import LimitState, equilibrium, limit, limit_state
+from dem.dynamic import dem_dynamic
+from runningbond.limit import LimitState, equilibrium, limit, limit_state, proved_bound
 from runningbond.limit.associated import judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
 from runningbond.limit.interior_point import interior_point
@@ -206,6 +207,16 @@ def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.Monke
     with pytest.raises(KeyboardInterrupt):
         limit(wall("dry"))
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_ctrl_c_in_the_bound_of_a_model_in_motion_ends_that_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`limit` ends with what it has proved; whoever asked for a bound on the way to something else is to stop."""
+    scene = panel(**SIZE, joint={"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 5e9})
+    assert proved_bound(scene) == limit(scene).upper
+    interrupt_at(6, monkeypatch)
+    outcome = dem_dynamic(scene)
+    assert (outcome.status, outcome.steps) == ("undecided", 0)
+    assert outcome.message.startswith("interrupted before")
 
 
 def test_bounds_of_weaker_joints_are_not_taken_for_those_of_a_wall(monkeypatch: pytest.MonkeyPatch) -> None:
