@@ -299,7 +299,7 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     if status == "collapse":
         outcome = _bracketed(outcome, state, tolerance)
     else:
-        outcome = replace(outcome, status=status, **_so_far(state))
+        outcome = replace(outcome, status=status, **so_far(state))
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
@@ -311,7 +311,7 @@ def proved_bound(scene: Scene) -> float | None:
     return outcome.upper
 
 
-def _so_far(state: LimitState) -> dict[str, Any]:
+def so_far(state: LimitState) -> dict[str, Any]:
     """Bounds that forces and mechanism of an interrupted program prove; of a wall at rest, that it bears its load."""
     system, forces = state.system, state.forces
     if forces.status != "budget" or system.has_support:

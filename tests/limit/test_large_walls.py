@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from dem.dynamic import dem_dynamic
-from runningbond.limit import LimitState, equilibrium, limit, limit_state, proved_bound
+from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state, proved_bound
 from runningbond.limit.associated import judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
 from runningbond.limit.interior_point import interior_point
@@ -198,6 +198,22 @@ def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
     if iteration == 8:
         assert outcome.upper is not None
         assert outcome.upper - outcome.lower < 0.5 * exact
+
+
+def test_ctrl_c_leaves_limit_nonassociated_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the associated program as far as it came, and of its end while one start is made."""
+    scene, after = wall("dry"), [8, 4]
+    exact = limit(scene).multiplier
+    assert exact is not None
+    monkeypatch.setattr("runningbond.limit.large.POINTS", 0)
+    for number, iteration in enumerate(after, start=1):
+        with monkeypatch.context() as patch:
+            interrupt_at(iteration, patch, program=number)
+            outcome = limit_nonassociated(scene)
+        assert (outcome.status, outcome.lower, outcome.multiplier) == ("undecided", None, None)
+        assert outcome.upper is not None
+        assert exact - 1e-9 <= outcome.upper < 1.5 * exact
+        assert "interrupted" in outcome.message
 
 
 def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
