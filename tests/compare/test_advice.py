@@ -168,6 +168,7 @@ def test_a_history_that_fits_leaves_the_certified_loads_or_widens_them(
     assert (found.evidence, bracket_of(found)) == ("certificate", (lower, 1.0))
     assert not found.contradicted
     assert found.lowest == min(0.97, history[1])
+    assert found.meaning().startswith("collapse is certified from 0.9700 to 0.9900, and a history agrees; smaller")
     step = next_step(found, Step(HISTORY, ""), found.outcomes[-1])
     assert step.model is None or step.finite
 
