@@ -169,11 +169,8 @@ def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.M
     assert len(begun) == 6
 
 
-def test_one_run_is_among_the_draws(
-    small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_one_run_is_among_the_draws(small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The object of one run, with one key more; and what one run leaves in its folder."""
-    monkeypatch.setattr("runningbond.commands.run.can_draw", lambda: False)
     line = ["run", small, "--model", "dem-static", "--json"]
     assert command(line) == 0
     once = json.loads(capsys.readouterr().out)
