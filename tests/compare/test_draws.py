@@ -170,6 +170,15 @@ def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.M
     assert len(begun) == 6
 
 
+def test_ctrl_c_reaches_a_script(small: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(tasks, "run_model", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        rb.read(small).draws("dem-static", 2, jobs=1)
+
+
 def test_one_run_is_among_the_draws(small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The object of one run, with one key more; and what one run leaves in its folder."""
     line = ["run", small, "--model", "dem-static", "--json"]
