@@ -94,9 +94,8 @@ def dem_static(
         `lower` is the largest load in equilibrium, `upper` the smallest under which the wall fell; where paths in
         other load steps disagree, both are those of the path that ends lowest and of the one that ends highest.
         `curve` has the states at rest of the lowest, past the largest load under prescribed displacements; `force` is
-        of `lower`. Of a wall that is
-        led `curve` has its whole way and `force` is of the answer, and `lower` and `upper` are the answers in the last
-        steps and in those twice as long. Ctrl-C ends it with the result so far.
+        of `lower`. Of a wall that is led `curve` has its whole way and `force` is of the answer, and `lower` and
+        `upper` are the answers in the last steps and in those twice as long. Ctrl-C ends it with the result so far.
     """
     start = time.perf_counter()
     system = static_system(scene)
@@ -140,10 +139,10 @@ def _window(path: LoadPath) -> str:
 def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, tolerance: float, past: int) -> Outcome:
     """Outcome of a wall that is loaded from its rest under its weight, and if it collapses in other steps too."""
     rest, left = first.rests[:1], first.budget
-    found = [(_along(result, first, first_step, tolerance, past), first)]
-    steps, told = budget - first.budget, [_loads(found[0][0])]
-    for factor in OTHER_STEPS if found[0][0].status == "collapse" else ():
-        if len(found) > 1 and _apart(found) <= tolerance:
+    outcome = _along(result, first, first_step, tolerance, past)
+    found, steps, told = [(outcome, first)], budget - first.budget, [_loads(outcome)]
+    for factor in OTHER_STEPS if outcome.status == "collapse" else ():
+        if outcome.message.endswith(INTERRUPTED) or (len(found) > 1 and _apart(found) <= tolerance):
             break
         path = LoadPath(first.system, first.far, left, rest)
         outcome = _along(result, path, factor * first_step, tolerance, past)
@@ -151,8 +150,6 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
         told.append(f"with load steps {factor:g} times as long {_loads(outcome)}")
         if outcome.status == "collapse":
             found.append((outcome, path))
-        elif outcome.message.endswith(INTERRUPTED):
-            break
     outcome, path = found[0]
     if len(found) > 1 and _apart(found):
         outcome, path = min(found, key=lambda each: each[0].lower or 0.0)
@@ -180,23 +177,18 @@ def _loads(outcome: Outcome) -> str:
 
 
 def _along(result: Outcome, path: LoadPath, first_step: float, tolerance: float, past: int) -> Outcome:
-    """Outcome of a path."""
-    undecided = _climb(path, first_step, tolerance, past)
+    """Outcome of a wall that is loaded until it has fallen, close enough to the last load at rest, and followed."""
+    undecided, cut = INTERRUPTED, ""
+    with suppress(KeyboardInterrupt):
+        undecided = _bracket(path, first_step, tolerance)
+        if past and not undecided:  # the bracket is found, and stands
+            cut = f"; its curve was {INTERRUPTED}"
+            _look_closer(path, tolerance, past)
+            cut = ""
     for state in path.past:
         path.observe(path, state)
-    return _judge(result, path, undecided)
-
-
-def _climb(path: LoadPath, first_step: float, tolerance: float, past: int) -> str:
-    """Load a wall until it has fallen, close enough to the last load at rest, and follow it; why it is undecided."""
-    try:
-        undecided = _bracket(path, first_step, tolerance)
-    except KeyboardInterrupt:
-        return INTERRUPTED
-    if past and not undecided:
-        with suppress(KeyboardInterrupt):  # the bracket is found, and stands
-            _look_closer(path, tolerance, past)
-    return undecided
+    outcome = _judge(result, path, undecided)
+    return replace(outcome, message=outcome.message + cut)
 
 
 def _bracket(path: LoadPath, first_step: float, tolerance: float) -> str:

@@ -17,7 +17,7 @@ from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints import Rule
 from runningbond.joints.wall_law import with_impacts
-from runningbond.limit import is_self_locking, limit
+from runningbond.limit import is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
@@ -110,7 +110,7 @@ def fem(
         points=wall.elements.points,
         point_order=wall.elements.listing,
         is_self_locking=lambda: is_self_locking(scene),
-        bound=lambda: limit(scene).upper,
+        bound=lambda: proved_bound(scene),
         note=note,
         collapse=collapse,
         first_step=first_step,

@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from .compare.campaign import Campaign, Interrupted, run_campaign
+from .compare.campaign import Campaign, ctrl_c_passed_on, run_campaign
 from .compare.fingerprint import fingerprint
 from .compare.model import Model
 from .compare.models import TOLERANCE, find_model
@@ -81,9 +81,5 @@ def _campaign(
 ) -> Campaign:
     with ExitStack() as stack:
         where = Path(folder if folder is not None else stack.enter_context(TemporaryDirectory()))
-        try:
+        with ctrl_c_passed_on():
             return run_campaign(scenes, [model], folder=where, tolerance=tolerance, jobs=jobs)
-        except Interrupted as stopped:
-            if stopped.reason:
-                raise
-            raise KeyboardInterrupt from None

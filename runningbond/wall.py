@@ -212,11 +212,13 @@ class Wall:
         SceneError
             For a model that follows no path, or no number of draws; and as of `run`.
         """
+        from .compare.campaign import ctrl_c_passed_on
         from .compare.draws import Drawing
         from .compare.models import find_model
 
         drawing = Drawing(self.scene, find_model(model), number, scatter)
-        return drawing.run(tolerance, None if folder is None else Path(folder), jobs)
+        with ctrl_c_passed_on():
+            return drawing.run(tolerance, None if folder is None else Path(folder), jobs)
 
     def respond(self, model: "str | Model", scale: float = 1.0, **settings: Any) -> "Response":
         """Follow the wall through the motion of its ground, ``load.history``.

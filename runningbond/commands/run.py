@@ -137,7 +137,7 @@ def _draws(
         save_outcome(outcome, out, fingerprint(wall, model, tolerance), wall)
         write_atomically(out / f"{DRAWS}.json", (to_json.dumps(found.summary(), indent=2) + "\n").encode())
         _picture(wall, outcome, out, None, json)
-    return DONE if len(found.multipliers) else NO_ANSWER
+    return NO_ANSWER if all(each.status in UNDECIDED for each in found.outcomes) else DONE
 
 
 def _picture(wall: Scene, outcome: Outcome, out: Path, recorder: Recorder | None, json: bool) -> None:

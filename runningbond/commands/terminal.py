@@ -132,8 +132,8 @@ def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
 def interruptions(model: Model | None = None) -> list[int]:
     """Interruptions by Ctrl-C from here on: a model that can be interrupted ends with what it has reached so far.
 
-    HiGHS does not look up from its work: the second one ends the program at once, as the first does where a model
-    cannot be interrupted.
+    The second one ends the program at once, as the first does where a model cannot be interrupted; while HiGHS is at
+    work neither is heard before its linear program is done.
     """
     signals: list[int] = []
 

@@ -4,8 +4,8 @@ Processes and the workers of a cluster compute and hand over; the campaign alone
 """
 
 import warnings
-from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import closing
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -40,6 +40,17 @@ class Interrupted(Exception):
     def __init__(self, campaign: Campaign, reason: str = "") -> None:
         super().__init__(reason or "interrupted")
         self.campaign, self.reason = campaign, reason
+
+
+@contextmanager
+def ctrl_c_passed_on() -> Iterator[None]:
+    """Raise KeyboardInterrupt, as scripts expect it, for a campaign that Ctrl-C has `Interrupted`."""
+    try:
+        yield
+    except Interrupted as stopped:
+        if stopped.reason:
+            raise
+        raise KeyboardInterrupt from None
 
 
 def run_campaign(

@@ -101,10 +101,14 @@ def collapse_by_steps(
                 )
                 return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
             most, farthest = LARGEST_LOAD * first, LARGEST_DISPLACEMENT * sizes
-            above = bound()
-            result = load_steps(
-                run, first, tolerance, criteria, most=most, farthest=farthest, bound=above, observe=observe
-            )
+            try:
+                above = bound()
+            except KeyboardInterrupt:
+                result = LoadSteps(interrupted=True)
+            else:
+                result = load_steps(
+                    run, first, tolerance, criteria, most=most, farthest=farthest, bound=above, observe=observe
+                )
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     if result.rests:

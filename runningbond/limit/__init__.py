@@ -1,7 +1,16 @@
 """Limit analysis of rigid blocks: programs for forces, their dual mechanisms, and what the two prove."""
 
-from .associated import LimitState, is_self_locking, limit, limit_state
+from .associated import LimitState, is_self_locking, limit, limit_state, proved_bound
 from .equilibrium import Equilibrium, equilibrium
 from .nonassociated import limit_nonassociated
 
-__all__ = ["Equilibrium", "LimitState", "equilibrium", "is_self_locking", "limit", "limit_nonassociated", "limit_state"]
+__all__ = [
+    "Equilibrium",
+    "LimitState",
+    "equilibrium",
+    "is_self_locking",
+    "limit",
+    "limit_nonassociated",
+    "limit_state",
+    "proved_bound",
+]

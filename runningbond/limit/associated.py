@@ -23,6 +23,7 @@ from .proved import is_large, proved, resting_forces, tolerance_of
 from .remarks import remarks
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
+INTERRUPTED = "the linear program was interrupted, or ran out of iterations"
 ZERO = 1e-6
 """Multiplier, in units of the live load, below which a bracket need not be relatively narrow: zero is an answer."""
 
@@ -260,7 +261,7 @@ def judge(state: LimitState) -> tuple[Status, str]:
         message = "static and kinematic bound, associated joints; true friction may collapse earlier"
         return "collapse", message if system.crushing is None else f"{message}; {crushing_note(system, state.forces)}"
     if program == "budget":
-        return "undecided", "the linear program was interrupted, or ran out of iterations"
+        return "undecided", INTERRUPTED
     if state.locks or _balances_any_multiple(system):
         if system.has_support:
             return "unbounded", JAMMED
@@ -276,7 +277,7 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     scene, tolerance
         The scene, and the relative width of the bracket asked for; a vertex closes it to about 1e-9,
         the repaired interior point of a large wall, and facets of joints that crush, to 1e-6, of a very large wall, or
-        a large one whose joints crush, to 1e-4.
+        a large one whose joints crush, to 1e-4, of a huge wall to 1e-2. What is wider than asked for is ``undecided``.
 
     Returns
     -------
@@ -298,11 +299,19 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     if status == "collapse":
         outcome = _bracketed(outcome, state, tolerance)
     else:
-        outcome = replace(outcome, status=status, **_so_far(state))
+        outcome = replace(outcome, status=status, **so_far(state))
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _so_far(state: LimitState) -> dict[str, Any]:
+def proved_bound(scene: Scene) -> float | None:
+    """Multiplier above which nothing stands, if `limit` proves one; Ctrl-C, with which `limit` ends, is raised."""
+    outcome = limit(scene)
+    if outcome.message.startswith(INTERRUPTED):
+        raise KeyboardInterrupt
+    return outcome.upper
+
+
+def so_far(state: LimitState) -> dict[str, Any]:
     """Bounds that forces and mechanism of an interrupted program prove; of a wall at rest, that it bears its load."""
     system, forces = state.system, state.forces
     if forces.status != "budget" or system.has_support:

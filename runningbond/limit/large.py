@@ -59,14 +59,14 @@ def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSo
 
 
 def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search:
-    """Run the sequence from the associated pressures to its first certificate; loads are rough.
+    """Run the sequence from the associated pressures to its first certificate, or Ctrl-C; loads are rough.
 
     Movable blocks have their centroids at `place` ``(n, 2)`` [m].
     """
     found = Search(starts=1)
     glues = len(system.points) >= POINTS_TO_GLUE and not system.has_support
-    pressure = near(system, coulomb(system.strength)).pressure
     try:
+        pressure = near(system, coulomb(system.strength)).pressure
         for k in range(MOST):
             forces, looked_at = frozen_friction(system.strength, pressure), k >= SETTLING
             program = solve_forces(system, forces) if looked_at and not glues else near(system, forces)
@@ -83,8 +83,6 @@ def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search
             observe(found)
             pressure = averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
     except KeyboardInterrupt:
-        if not found.certificates:
-            raise
         found.interrupted = True
     return found
 

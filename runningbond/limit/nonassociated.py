@@ -12,7 +12,7 @@ from typing import Any
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene
 
-from .associated import LimitState, judge, limit_state, spends_cut_strength
+from .associated import LimitState, judge, limit_state, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify
 from .equilibrium import Equilibrium, equilibrium
@@ -74,7 +74,7 @@ def limit_nonassociated(
     if status in ("collapse", "unbounded"):
         outcome = _collapse(outcome, system, state, tolerance, starts, workers, observe)
     else:
-        outcome = replace(outcome, status=status)
+        outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
 
 
@@ -183,12 +183,16 @@ def _message(loads: list[tuple[float, float]], result: Search, tolerance: float,
         message += "; wider than the tolerance because the load of these mechanisms is not unique"
     extreme = "largest" if falling else "lowest"
     dry = f", the last {result.dry} of them in vain" if result.dry else ""
-    stopped = ", interrupted" if result.interrupted else ""
-    return f"{message}; {extreme} of {len(result.certificates)} certificates from {_effort(result)}{dry}{stopped}"
+    found = f"{extreme} of {len(result.certificates)} certificates from {_effort(result)}{dry}{_stopped(result)}"
+    return f"{message}; {found}"
 
 
 def _effort(result: Search) -> str:
     return f"{result.starts} starts, {result.programs} linear programs"
+
+
+def _stopped(result: Search) -> str:
+    return ", interrupted" if result.interrupted else ""
 
 
 def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
@@ -199,7 +203,7 @@ def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
 
 def _uncertified(outcome: Outcome, result: Search, system: Equilibrium, bound: float | None) -> Outcome:
     """Outcome of a wall without a certified collapse, under the associated multiplier if there is one."""
-    programs = f"no collapse certified from {_effort(result)}"
+    programs = f"no collapse certified from {_effort(result)}{_stopped(result)}"
     if result.frictionless:
         message = JAMMED if system.has_support else "self-locking: normal forces carry any multiple of the live load"
         return replace(outcome, status="unbounded", message=message)
@@ -212,7 +216,7 @@ def _uncertified(outcome: Outcome, result: Search, system: Equilibrium, bound: f
         message = f"{programs}; upper is the associated bound"
         return replace(outcome, upper=system.live_unit * bound, message=message)
     message = "forces within Coulomb's law balance any multiple of the live load"
-    if result.growing:
+    if result.growing and not result.interrupted:
         message = f"self-locking: {message}; {programs}, which does not exclude one"
         return replace(outcome, status="unbounded", message=message)
     return replace(outcome, message=f"{programs}; {message}")

@@ -4,6 +4,7 @@ import json
 import signal
 from collections import Counter
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -169,11 +170,17 @@ def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.M
     assert len(begun) == 6
 
 
-def test_one_run_is_among_the_draws(
-    small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ctrl_c_reaches_a_script(small: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(tasks, "run_model", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        rb.read(small).draws("dem-static", 2, jobs=1)
+
+
+def test_one_run_is_among_the_draws(small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The object of one run, with one key more; and what one run leaves in its folder."""
-    monkeypatch.setattr("runningbond.commands.run.can_draw", lambda: False)
     line = ["run", small, "--model", "dem-static", "--json"]
     assert command(line) == 0
     once = json.loads(capsys.readouterr().out)
@@ -192,6 +199,25 @@ def test_one_run_is_among_the_draws(
     assert "draws of bits" in said
     assert command([*line, "--out", str(out)]) == 0
     assert not (out / "draws.json").exists()
+
+
+@pytest.mark.parametrize(
+    ("statuses", "code"),
+    [
+        (("infeasible", "infeasible"), 0),
+        (("unbounded", "undecided"), 0),
+        (("undecided", "collapse"), 0),
+        (("undecided", "failed"), 3),
+    ],
+)
+def test_draws_end_without_an_answer_where_each_of_them_does(
+    statuses: tuple[Any, ...], code: int, small: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As one run does: that a wall falls under its weight, or locks, is an answer."""
+    draws = (outcome(1.0) if each == "collapse" else replace(outcome(None), status=each) for each in statuses)
+    found = Draws(tuple(draws), Scatter())
+    monkeypatch.setattr(Drawing, "run", lambda *_: found)
+    assert command(["run", small, "--model", "dem-static", "--draws", "2"]) == code
 
 
 # --- refusals ---------------------------------------------------------------------------------------------------

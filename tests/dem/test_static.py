@@ -409,6 +409,7 @@ def test_ctrl_c_past_the_largest_load_leaves_the_bracket(monkeypatch: pytest.Mon
     assert outcome.status == "collapse"
     lower, upper = bracket(outcome)
     assert 0.99 * upper <= lower <= 0.5856 <= upper * 1.001
+    assert outcome.message.endswith("its curve was interrupted")  # and no other load steps are begun
 
 
 def interrupt(*arguments: object) -> None:

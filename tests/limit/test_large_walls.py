@@ -12,7 +12,8 @@ import clarabel
 import numpy as np
 import pytest
 
-from runningbond.limit import LimitState, equilibrium, limit, limit_state
+from dem.dynamic import dem_dynamic
+from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state, proved_bound
 from runningbond.limit.associated import judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
 from runningbond.limit.interior_point import interior_point
@@ -199,6 +200,22 @@ def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
         assert outcome.upper - outcome.lower < 0.5 * exact
 
 
+def test_ctrl_c_leaves_limit_nonassociated_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of the associated program as far as it came, and of its end while one start is made."""
+    scene, after = wall("dry"), [8, 4]
+    exact = limit(scene).multiplier
+    assert exact is not None
+    monkeypatch.setattr("runningbond.limit.large.POINTS", 0)
+    for number, iteration in enumerate(after, start=1):
+        with monkeypatch.context() as patch:
+            interrupt_at(iteration, patch, program=number)
+            outcome = limit_nonassociated(scene)
+        assert (outcome.status, outcome.lower, outcome.multiplier) == ("undecided", None, None)
+        assert outcome.upper is not None
+        assert exact - 1e-9 <= outcome.upper < 1.5 * exact
+        assert "interrupted" in outcome.message
+
+
 def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """While forces of rest are looked for; the handler is there again afterwards."""
     interrupt_at(2, monkeypatch, program=0)
@@ -206,6 +223,16 @@ def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.Monke
     with pytest.raises(KeyboardInterrupt):
         limit(wall("dry"))
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_ctrl_c_in_the_bound_of_a_model_in_motion_ends_that_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`limit` ends with what it has proved; whoever asked for a bound on the way to something else is to stop."""
+    scene = panel(**SIZE, joint={"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 5e9})
+    assert proved_bound(scene) == limit(scene).upper
+    interrupt_at(6, monkeypatch)
+    outcome = dem_dynamic(scene)
+    assert (outcome.status, outcome.steps) == ("undecided", 0)
+    assert outcome.message.startswith("interrupted before")
 
 
 def test_bounds_of_weaker_joints_are_not_taken_for_those_of_a_wall(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -138,7 +138,7 @@ def test_any_load_is_lower_than_none_at_all() -> None:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_an_interrupt_keeps_what_was_found(workers: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of a walk that is broken off, and of all starts of a round; without a certificate there is nothing to keep."""
+    """Of a walk that is broken off, and of all starts of a round; without a certificate the associated bound."""
 
     def interrupted(*arguments: object) -> None:
         raise KeyboardInterrupt
@@ -148,8 +148,10 @@ def test_an_interrupt_keeps_what_was_found(workers: int, monkeypatch: pytest.Mon
     assert outcome.status == "collapse"
     assert outcome.message.endswith("interrupted")
     monkeypatch.setattr(Descent, "least", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        limit_nonassociated(rubble(3), workers=workers)
+    outcome = limit_nonassociated(rubble(3), workers=workers)
+    assert (outcome.status, outcome.lower) == ("undecided", None)
+    assert outcome.upper == pytest.approx(limit(rubble(3)).upper, rel=1e-9)
+    assert "interrupted; upper is the associated bound" in outcome.message
 
 
 def test_what_is_found_does_not_depend_on_how_many_starts_are_made_at_a_time() -> None:

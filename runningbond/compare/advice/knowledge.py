@@ -136,11 +136,19 @@ class Knowledge:
             return self.answer.message + (above and f"{above} at small displacements")
         if self.evidence == "certificate":
             seen = ", and a history agrees" if self.draws else ""
-            return f"loads at which collapse is certified{seen}; smaller ones are not excluded{above}"
+            return f"{self._certified(self.answer)}{seen}; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
         told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"
         wide = "" if _within(self.answer, self.tolerance) else ", which lie further apart than the tolerance"
         return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
+
+    def _certified(self, answer: Outcome) -> str:
+        """At which loads of the answer collapse is certified: not where the bound or a history has widened it."""
+        own = next(each for each in reversed(self.outcomes) if each.model == answer.model)
+        if (own.lower, own.upper) == (answer.lower, answer.upper):
+            return "loads at which collapse is certified"
+        first, last = (number(end or 0.0) for end in (own.lower, own.upper))
+        return f"collapse is certified {f'at {first}' if first == last else f'from {first} to {last}'}"
 
 
 def _within(outcome: Outcome, tolerance: float) -> bool:
