@@ -186,7 +186,9 @@ def _search(
             result.verdict = "undecided"
             return
         trial = _next_trial(result, step, undecided, tolerance)
-        if not undecided.loads and result.lower < (edge := bound * (1 + tolerance / 2)) < trial:
+        # Just above the bound a wall falls ever so slowly: not where the first step alone is beyond it.
+        searches = result.upper is None and not undecided.loads
+        if searches and 0 < result.lower < (edge := bound * (1 + tolerance / 2)) < trial:
             trial = edge
         if trial > most:
             return

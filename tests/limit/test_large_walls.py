@@ -1,7 +1,7 @@
 """Walls that the interior point is asked for: exact forces and mechanism, beside HiGHS's vertex."""
 
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import count
@@ -146,6 +146,14 @@ def test_a_wall_that_only_the_live_load_holds_up_rests_on_nothing() -> None:
     system = equilibrium(panel(**SIZE, support__kind="corners")).under_live_load()
     assert resting_forces(system.under_dead_load()) is None
     assert proved(system, None).status != "optimal"
+
+
+@pytest.fixture(autouse=True)
+def _listens_for_ctrl_c() -> Iterator[None]:
+    """Whoever runs the tests in the background may have left it ignored."""
+    listener = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, listener)
 
 
 class Interrupted:
