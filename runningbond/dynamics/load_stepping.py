@@ -21,8 +21,9 @@ to bear more, or less.
 FAR, FASTER = 1 / 3, 8
 """Part of a bound of the load up to which a wall with a weight is loaded faster, and how much faster."""
 
-GIVES_WAY, STRETCH = 1.0, 1000
-"""Motion, in units of collapse, at which a load grows no more, and the time steps between two looks at it."""
+GIVES_WAY, LOOKS = 1.0, 8
+"""Motion, in units of collapse, at which a load grows no more, and looks at it in a step of the load: at those loads
+that bisection would try, so that models that see the same wall find the same bracket."""
 
 PAUSES, NEARLY_AT_REST = 10, 1e-3
 """How often the load of a wall without weight pauses in a step, and the unbalanced force at which it grows again.
@@ -232,11 +233,10 @@ def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, toler
 def _raise(run: Run, state: State, start: float, stop: float, steps: float, far: float, criteria: Criteria) -> float:
     """Raise the multiplier in some steps, in place, faster up to `far`, until the wall gives way; what it reached."""
     motion, reached = state.motion.copy(), start
-    while reached < stop:
-        end, faster = (min(far, stop), FASTER) if reached < far else (stop, 1)
-        slope = faster * (stop - start) / max(1.0, steps)
-        before, reached = reached, min(reached + slope * STRETCH, end)
-        ramp(run, state, before, reached, max(20, round((reached - before) / slope)))
+    for look in range(1, LOOKS + 1):
+        before, reached = reached, stop if look == LOOKS else start + (stop - start) * look / LOOKS
+        faster = FASTER if reached <= far else 1
+        ramp(run, state, before, reached, max(1, round(steps / (LOOKS * faster))))
         if run.system.farthest(state.motion - motion, criteria.collapse) > GIVES_WAY:
             break
     return reached

@@ -31,6 +31,27 @@ def stored_uncut(points: KernelLaw, opening: Array, normal: Array, tangential: A
     return np.asarray(elastic + points.tension * torn)
 
 
+@kernel
+def shear_within(trial: float, drag: float, most: float) -> tuple[float, float]:
+    """Shear of a point's spring and of spring and dashpot [Pa], neither beyond a strength."""
+    # Minima are spelt out: so the loop that this stands in runs in vector registers.
+    held = trial if trial < most else most
+    held = held if held > -most else -most
+    t = held + drag
+    t = t if t < most else most
+    return held, t if t > -most else -most
+
+
+@kernel
+def work_of_slip(before: float, held: float, slid: float) -> float:
+    """Work [J/m²] of a slip [m] under the mean of a spring's shear before and after it, as central differences do it.
+
+    None where the shear turned round: it slid under the latter.
+    """
+    work = 0.5 * (before + held) * slid
+    return work if work > 0.0 else 0.0
+
+
 def _coulomb(of_mean: bool) -> Any:
     """The kernel; with viscous work of the mean of two steps' tractions, as central differences do it, or of the last.
 
@@ -63,7 +84,7 @@ def _coulomb(of_mean: bool) -> Any:
             k_n, k_t, strength = constants[segment, 0], constants[segment, 1], constants[segment, 2]
             shear, friction, flexibility = constants[segment, 3], constants[segment, 4], constants[segment, 5]
             viscous_n, viscous_t = viscosity * k_n, viscosity * k_t
-            # Each array is read once and then written, and minima are spelt out: so the loop runs in vector registers.
+            # Each array is read once and then written: see `shear_within`.
             for i in range(segments[segment], segments[np.uint64(segment + 1)]):
                 jump_n, jump_t = opening[i], slip[i]
                 change_n, change_t = jump_n - opening_before[i], jump_t - slip_before[i]
@@ -74,16 +95,12 @@ def _coulomb(of_mean: bool) -> Any:
                 most = shear + friction * (strength - n)
                 plastic = plastic_slip[i]
                 trial = k_t * (jump_t - plastic)
-                held = trial if trial < most else most
-                held = held if held > -most else -most
-                t = held + viscous_t * change_t
-                t = t if t < most else most
-                t = t if t > -most else -most
+                held, t = shear_within(trial, viscous_t * change_t, most)
                 slid = (trial - held) * flexibility
+                spent[i] += work_of_slip(trial - k_t * change_t, held, slid)
                 opening_before[i] = jump_n
                 slip_before[i] = jump_t
                 plastic_slip[i] = plastic + slid
-                spent[i] += held * slid
                 pull, drag = n - elastic, t - held
                 if of_mean:
                     damped[i] += 0.5 * ((pull_before[i] + pull) * change_n + (shear_before[i] + drag) * change_t)

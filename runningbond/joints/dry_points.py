@@ -11,7 +11,7 @@ from runningbond.scene import Array
 
 from .closure import closure_at
 from .compiled import kernel
-from .coulomb import PLASTIC_SLIP
+from .coulomb import PLASTIC_SLIP, shear_within, work_of_slip
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE
 from .softening import HISTORY, NEVER
 
@@ -104,17 +104,13 @@ def dry_points(
         most = -friction * n
         plastic = plastic_slip[i]
         trial = k_t * (jump_t - plastic)
-        held = trial if trial < most else most
-        held = held if held > -most else -most
-        t = held + viscous_t * change_t
-        t = t if t < most else most
-        t = t if t > -most else -most
+        held, t = shear_within(trial, viscous_t * change_t, most)
         slid = (trial - held) * flexibility
+        spent[i] += work_of_slip(trial - k_t * change_t, held, slid)
         opening_before[i] = jump_n
         slip_before[i] = jump_t
         plastic_slip[i] = plastic + slid
         slipped[i] += abs(slid)
-        spent[i] += held * slid
         damped[i] += (n + pressure) * change_n + (t - held) * change_t
         normal[i] = n
         tangential[i] = t

@@ -13,7 +13,7 @@ from runningbond.scene import Array, JointMaterial
 
 from .closure import Curve, closure_curve, pressure_at, stiffness_at, stored_at
 from .compiled import kernel
-from .coulomb import PLASTIC_SLIP
+from .coulomb import PLASTIC_SLIP, work_of_slip
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
 from .dry_points import CRUSHED, SEAT, SLIPPED, dry_points, dry_within, is_beyond
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
@@ -128,10 +128,11 @@ def any_points(
                 slid = (trial - held) * flexibility
                 flowed = cap_shear * mu * held
                 kappa = crushed[i] + mu * math.sqrt(p * p + cap_shear * t * t)
-                work = work_until(kappa, cap) - work_until(crushed[i], cap) - flowed * held
+                work = work_until(kappa, cap) - work_until(crushed[i], cap)
                 if sudden:
                     was = (max(0.0, -opening_before[i] - seat[i]), k_t * (slip_before[i] - plastic_slip[i]))
-                    work = snapped(was, (p, held), (change_n, change_t), curve, flexibility) - held * slid
+                    work = snapped(was, (p, held), (change_n, change_t), curve, flexibility)
+                    work -= work_of_slip(was[1], held, slid - flowed)
                 spent[i] += work
                 crushed[i] = kappa
                 seat[i] += p * mu
@@ -148,7 +149,7 @@ def any_points(
             t = max(-most, min(most, held + viscosity * k_t * change_t))
         plastic_slip[i] += slid
         slipped[i] += abs(slid - flowed)
-        spent[i] += held * slid
+        spent[i] += work_of_slip(trial - k_t * change_t, held, slid - flowed)
         damped[i] += (n - elastic) * change_n + (t - held) * change_t
         damage[i] = after
         opening_before[i] = opening[i]

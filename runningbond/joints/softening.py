@@ -23,7 +23,7 @@ from runningbond.scene import Array, JointMaterial
 
 from .compiled import kernel
 from .coulomb import HISTORY as PLASTIC_HISTORY
-from .coulomb import PLASTIC_SLIP, coulomb_constants
+from .coulomb import PLASTIC_SLIP, coulomb_constants, work_of_slip
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE, KernelLaw, Law, Parameters
 from .point_law import PointLaw
 
@@ -129,7 +129,7 @@ def softening_kernel(
             slid = (trial - held) * flexibility
             plastic_slip[i] += slid
             slipped[i] += abs(slid)
-            spent[i] += held * slid
+            spent[i] += work_of_slip(trial - k_t * change_t, held, slid)
             damped[i] += (n - elastic) * change_n + (t - held) * change_t
             damage[i] = after
             opening_before[i] = jump_n

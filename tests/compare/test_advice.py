@@ -250,17 +250,14 @@ def test_deformability_is_of_no_account_where_the_certificates_suffice() -> None
 
 
 def test_rigid_enough_blocks_lose_their_modes_and_keep_the_answer() -> None:
-    """W3 of 1000 GPa, where `advise` leaves fem out: no deformable mode moves what is borne.
-
-    A load grows no more where the wall is seen to give way, and looks are as far apart as time steps are long.
-    """
+    """W3 of 1000 GPa, where `advise` leaves fem out: no deformable mode moves the bracket by more than a trial."""
     scene = published_scene("wall-w3")
     assert block_compliance(scene) < TOLERANCE
     rigid, all_modes = dem_dynamic(scene, TOLERANCE), fem(scene, TOLERANCE, modes="all")
     none = fem(scene, TOLERANCE, modes=3)
     for outcome in (all_modes, none):
         assert outcome.lower == pytest.approx(rigid.lower, rel=1e-9)
-        assert outcome.upper == pytest.approx(rigid.upper, rel=TOLERANCE / 10)
+        assert outcome.upper == pytest.approx(rigid.upper, rel=1e-9)
 
 
 def test_curve_past_the_peak_is_no_part_of_the_bracket() -> None:

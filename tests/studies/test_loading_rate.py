@@ -47,7 +47,7 @@ def test_a_ramp_overshoots_by_its_rate_to_two_thirds(wall: str, local: float) ->
 
 def test_ramps_of_masonry_come_down_to_the_certified_load() -> None:
     """W1 with rounded corners falls at one load: never below it, and at no speed within three standard errors."""
-    rate, multiplier = ramped(W1, (1.0, 0.464, 0.215, 0.1, 0.0464))
+    rate, multiplier = ramped(W1, (0.464, 0.215, 0.1, 0.0464, 0.0215))
     known = known_wall(W1).multiplier
     assert (multiplier > known).all()
     assert (np.diff(multiplier) < 0).all()
@@ -84,17 +84,17 @@ def test_load_steps_do_not_mind_how_fast_the_load_comes_where_it_is_unique(loadi
 
 
 def test_a_slender_dry_wall_bears_another_load_in_haste() -> None:
-    """Panel-12, loaded eight times as fast: more than 5 % more."""
-    hasty, slow = step_row("panel-12", LOADING / 8), step_row("panel-12", LOADING)
+    """Panel-12, loaded four times as fast: more than 5 % more."""
+    hasty, slow = step_row("panel-12", LOADING / 4), step_row("panel-12", LOADING)
     assert hasty["λ lower"] > 1.05 * slow["λ upper"]
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("first_step", [0.8 * FIRST_STEP, FIRST_STEP, 1.4 * FIRST_STEP])
 def test_a_slender_dry_wall_loaded_slower_still_bears_one_load(first_step: float) -> None:
-    """Panel-12 at half the suite's speed, in any load steps: 0.077 to 2 %."""
+    """Panel-12 at a quarter of the suite's speed, in any load steps: 0.077 to 2 %."""
     scene = published_scene("panel-12")
     run = Run(rigid_system(scene))
     first, criteria = first_step / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
-    result = load_steps(run, first, BRACKET, criteria, loading=2 * LOADING)
+    result = load_steps(run, first, BRACKET, criteria, loading=4 * LOADING)
     assert result.lower == pytest.approx(0.077, rel=0.02)
