@@ -1,4 +1,4 @@
-"""How far the scores of `rigid-splitting` move with half the step, half the speed and twice the points along a joint.
+"""How far the scores of `rigid-splitting` move with half the step, half the speed and more or fewer points a joint.
 
     python -m benchmarks.laboratory_convergence [WALL …]
 
@@ -29,8 +29,8 @@ from runningbond.scene import Scene
 RATE = 0.04
 """Speed of the beam [m/s], about that at which the shipped walls settle."""
 
-POINTS = (9, 17)
-"""Points along a joint, for 5."""
+POINTS = (5, 17)
+"""Points along a joint, in place of `BETWEEN`."""
 
 
 def follow(scene: Scene, step: float, points: int | None) -> tuple[Marks, float]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from runningbond.contacts.search import Contacts, position_of
-from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
+from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
 from runningbond.scene import Array
 
 from .state import PLASTIC_SLIP, State, history_free_of_shear
@@ -97,6 +97,9 @@ class ContactUpdate:
         state.history[plastic_slip, moved] += new[moved] - slip[corner[moved]]
         state.history[:, kept >= 0] = history[:, kept[kept >= 0]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
+        share = np.ones(len(kept))  # of its area that a point had before
+        share[kept >= 0] = np.minimum(1.0, interface.area[kept[kept >= 0]] / renewed.area[kept >= 0])
+        state.friction += _spread(renewed, state, share)
         return renewed
 
     def _left(self, state: State) -> float:
@@ -111,6 +114,34 @@ class ContactUpdate:
     def _reach(self, rigid: Array) -> float:
         u, v, spin = rigid.reshape(-1, 3).T
         return float((np.hypot(u, v) + np.abs(spin) * self._search.outline.reach).max())
+
+
+def _spread(interface: Interface, state: State, share: Array) -> float:
+    """Spread what points bear over more area than they had a `share` of, in place; the energy that is lost [J].
+
+    What has come to overlap meets as it lies, without pressure or shear: a point's force goes on and not its traction,
+    else springs would be pressed by nobody. Points of a law that knows no plastic closure go on with their traction.
+    """
+    law, history = interface.law, state.history
+    if PLASTIC_CLOSURE not in law.law.history:
+        return 0.0
+    opening, slip = interface.jumps(state.motion)
+    seat, rest = history[law.law.row(PLASTIC_CLOSURE)], history[law.law.row(PLASTIC_SLIP)]
+    grown = (share < 1) & (-opening > seat)
+    before = _stored(interface, opening, slip, history)[grown]
+    part = share[grown]
+    seat[grown] = part * seat[grown] - (1 - part) * opening[grown]
+    rest[grown] = part * rest[grown] + (1 - part) * slip[grown]
+    after = _stored(interface, opening, slip, history)[grown]
+    return float(interface.area[grown] @ (part * before - after))
+
+
+def _stored(interface: Interface, opening: Array, slip: Array, history: Array) -> Array:
+    """Energy that points would give back ``(np,)`` [J/m²]."""
+    law = interface.law
+    normal, tangential = np.zeros((2, law.points))
+    law.kernel(opening, slip, law.parameters, history.copy(), 0.0, normal, tangential)
+    return law.energy(opening, normal, tangential, history)
 
 
 def contacts_of(state: State) -> Contacts:

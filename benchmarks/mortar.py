@@ -1,0 +1,95 @@
+"""Why models of the mortared walls bear more than was measured: what they leave out, added one after the other.
+
+    python -m benchmarks.mortar [WALL …]
+
+Largest force [kN] at small displacements, its part of the measured one, and processor seconds. Rows below the last
+feature change one thing of the scene that is shipped, in rigid blocks that split.
+"""
+
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from dem.dynamic import dem_dynamic
+from fem_interface.model import fem
+from runningbond.compare.models import TOLERANCE
+from runningbond.joints import joint_stiffness
+from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory.rig import Features, scene_of
+from runningbond.laboratory.scores import marks_of
+from runningbond.results import Outcome
+from runningbond.scene import Scene, Stiffness
+
+CRUSHES = Features(closes=True, crushes=True)
+SPLITS = replace(CRUSHES, splits=True)
+
+
+def same(scene: Scene) -> Scene:
+    """The scene as it is shipped."""
+    return scene
+
+
+def straight(scene: Scene) -> Scene:
+    """Softening on straight branches of the same energies, in the joints and in the bricks."""
+    return replace(scene, joint_materials=tuple(replace(each, softening="linear") for each in scene.joint_materials))
+
+
+def unhardened(scene: Scene) -> Scene:
+    """A cap that does not harden, and straight branches."""
+    return straight(scene).with_joint(peak_closure=0.0)
+
+
+def softer(scene: Scene) -> Scene:
+    """With a quarter of the joints' stiffness."""
+    stiffness = joint_stiffness(scene.joint)
+    return scene.with_joint(elasticity=Stiffness(stiffness.normal / 4, stiffness.shear / 4))
+
+
+@dataclass(frozen=True)
+class Case:
+    """A model, what it takes of the wall, and what is changed of that."""
+
+    what: str
+    solve: Callable[..., Outcome] = dem_dynamic
+    features: Features = SPLITS
+    change: Callable[[Scene], Scene] = same
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+CASES = (
+    Case(
+        "rigid blocks that crush", features=CRUSHES, change=lambda s: s.with_joint(softening="linear", peak_closure=0.0)
+    ),
+    Case("… and split", change=unhardened),
+    Case("deformable blocks, one cell in half a brick, 10 modes", fem, SPLITS, unhardened),
+    Case("… two cells, 20 modes", fem, SPLITS, unhardened, {"cells": 2, "modes": 20}),
+    Case("… a cap that hardens up to κ_p", fem, SPLITS, straight, {"cells": 2, "modes": 20}),
+    Case("… exponential softening: `fem-small`", fem, SPLITS, same, {"cells": 2, "modes": 20}),
+    Case("rigid blocks that split, as shipped"),
+    Case("f_m 5 MPa", change=lambda s: s.with_joint(compressive_strength=5e6)),
+    Case("G_II 20 J/m²", change=lambda s: s.with_joint(fracture_energy_2=20.0)),
+    Case("a quarter of the joints' stiffness", change=softer),
+)
+
+
+def main(names: list[str]) -> None:
+    """Print a row a case of each wall."""
+    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    print("| wall | what | V [kN] | ΔV | CPU s |\n| --- | --- | --- | --- | --- |")
+    for name in names:
+        for case in CASES:
+            scene = case.change(scene_of(walls[name], case.features))
+            start = time.process_time()
+            outcome = case.solve(scene, TOLERANCE, **case.settings)
+            seconds, marks = time.process_time() - start, marks_of(outcome.curve, cyclic=False)
+            measured = walls[name].peak
+            if marks is None or measured is None:
+                raise SystemExit(f"{name}: {outcome.status}: {outcome.message}")
+            numbers = f"{marks.strength / 1e3:.1f} | {marks.strength / measured - 1:+.1%}"
+            print(f"| {name} | {case.what} | {numbers} | {seconds:.0f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:] or ["J4D", "J6D", "J7D"])
