@@ -114,7 +114,7 @@ def test_small_drifts_are_those_of_small_displacements() -> None:
 
 
 @pytest.mark.parametrize(("joint", "arm"), [({}, 4), ({"compressive_strength": 1e12}, 12)])
-def test_five_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str, float], arm: int) -> None:
+def test_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str, float], arm: int) -> None:
     """A block on springs, before it lifts off: d = 2 V / (k A) + V h² / (k t L³ / 12), L³ / 4 with but its ends."""
     changes: dict[str, Any] = {f"joint__{name}": value for name, value in joint.items()}
     outcome = finite(rig(**changes, beam__drive={"displacement": [1e-5, 0], "at": 0.6}))
