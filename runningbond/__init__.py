@@ -6,7 +6,7 @@ Everything here is imported when it is first used, so that the import itself cos
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .fragility import Fragility, fragility
+    from .fragilities import Fragility, fragility
     from .path_states import PathState
     from .run_result import Result
     from .scene import SceneError
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from .wall import Wall, read
 else:
     _MODULES = {
-        "Fragility": "fragility",
+        "Fragility": "fragilities",
         "PathState": "path_states",
         "Result": "run_result",
         "SceneError": "scene",
-        "fragility": "fragility",
+        "fragility": "fragilities",
         "Wall": "wall",
         "read": "wall",
         "sweep": "sweeps",

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 from scipy.special import ndtr
+from scipy.stats import CensoredData, lognorm
 
 from .compare.model import Model
 from .compare.models import TOLERANCE
-from .scene import Array, SceneError
+from .scene import Array, Mask, SceneError
 from .scene.history import STANDARD_GRAVITY
 from .sweeps import sweep
 from .tables import Table
@@ -26,10 +27,14 @@ class Fragility:
     ----------
     intensity : (n,) float
         Peak acceleration of the ground at which each record brings the wall down, ascending [g].
+    stood : (m,) float
+        Largest one tried of records that never bring it down, ascending [g].
     median, dispersion
-        Of the log-normal distribution that fits them: exp of the mean, and standard deviation, of their logarithms.
+        Of the log-normal distribution that fits them by maximum likelihood, `stood` as bounds from below (censored on
+        the right): median, and standard deviation of the logarithm.
     interval
-        Of the median, at 90 %, from records drawn again and again with a seed.
+        Of the median, at 90 %, from records drawn again and again with a seed; without an upper end (infinite) where
+        too few of them bring the wall down.
     runs
         A row a record: its bracket of λ, and what became of it.
     left_out
@@ -37,6 +42,7 @@ class Fragility:
     """
 
     intensity: Array
+    stood: Array
     median: float
     dispersion: float
     interval: tuple[float, float]
@@ -81,15 +87,33 @@ def fragility(
         raise SceneError("load.history.file", "is missing: the record that others are to take the place of")
     names = [str(record) for record in records]
     runs = sweep(wall, {"load.history.file": names}, model, tolerance=tolerance, folder=folder, jobs=jobs)
-    found = []
-    for name, scale in zip(names, np.asarray(runs["multiplier"], dtype=object), strict=True):
-        if scale is not None and not math.isnan(scale):
+    levels: dict[bool, list[float]] = {True: [], False: []}  # by whether the wall fell
+    for name, *answer in zip(names, *(runs[key] for key in ("status", "multiplier", "lower", "upper")), strict=True):
+        status, scale, lower, upper = answer[0], *(math.nan if x is None else float(x) for x in answer[1:])
+        fell = status == "collapse"
+        if fell or (status == "undecided" and lower > 0 and math.isnan(upper)):
             history: Any = wall.with_({"load.history.file": name}).scene.history
-            found.append(float(scale) * float(np.hypot(*history.peak)) / STANDARD_GRAVITY)
-    if len(found) < 2:
-        raise SceneError("records", "must be two at least that bring the wall down", len(found))
-    logs = np.log(np.sort(found))
-    again = np.random.default_rng(seed).choice(logs, (draws, len(logs))).mean(axis=1)
-    low, high = np.exp(np.quantile(again, [0.05, 0.95])).tolist()
-    left_out = len(names) - len(found)
-    return Fragility(np.exp(logs), float(np.exp(logs.mean())), float(logs.std(ddof=1)), (low, high), runs, left_out)
+            peak = float(np.hypot(*history.peak)) / STANDARD_GRAVITY
+            levels[fell].append((scale if fell else lower) * peak)
+    fallen, stood = np.sort(levels[True]), np.sort(levels[False])
+    if len(fallen) < 2:
+        raise SceneError("records", "must be two at least that bring the wall down", len(fallen))
+    level, stands = np.concatenate([fallen, stood]), np.arange(len(fallen) + len(stood)) >= len(fallen)
+    again = np.random.default_rng(seed).integers(len(level), size=(draws, len(level)))
+    medians = [fitted(level[drawn], stands[drawn])[0] for drawn in again]
+    low, high = np.quantile(medians, [0.05, 0.95], method="inverted_cdf").tolist()
+    left_out = len(names) - len(level)
+    return Fragility(fallen, stood, *fitted(level, stands), (low, high), runs, left_out)
+
+
+def fitted(level: Array, stands: Mask) -> tuple[float, float]:
+    """Median and dispersion of the log-normal distribution of what is at a level, or where it stands above it.
+
+    Without a fall the median is infinite.
+    """
+    if stands.all():
+        return math.inf, 0.0
+    start = np.log(level)
+    known = CensoredData.right_censored(level, stands)
+    shape, _, median = lognorm.fit(known, max(float(start.std()), 0.1), scale=float(np.exp(start.mean())), floc=0)
+    return float(median), float(shape)
