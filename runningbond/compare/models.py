@@ -210,6 +210,6 @@ def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: An
     Raises
     ------
     SceneError
-        As of `check_response`, and for a wall that does not rest under its dead load.
+        As of `check_response`.
     """
     return check_response(model, scene, scale)(scene, scale, **settings)

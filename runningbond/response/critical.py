@@ -93,10 +93,8 @@ def critical_scale(
     start, rest = time.perf_counter(), Resting.of(scene, model, system)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=rest.state.steps)
     outcome = replace(outcome, seconds=time.perf_counter() - start)
-    if rest.verdict == "collapse":
-        return replace(outcome, status="infeasible", message="collapses under its dead load")
-    if rest.verdict == "undecided":
-        return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+    if rest.trouble:
+        return replace(outcome, status=rest.trouble[0], message=rest.trouble[1])
     search, stopped = Search(lambda scale: follow(rest, scale, rows=ROWS, observe=observe), {}), False
     unit = STANDARD_GRAVITY / float(np.hypot(*rest.history.peak))
     try:

@@ -13,10 +13,10 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.dynamics import Observer, Run, State, no_observer
-from runningbond.scene import Array, SceneError
+from runningbond.scene import Array
 
 from .ground import Ground
-from .response import Response, Verdict, unaccounted
+from .response import ENERGIES, Response, Verdict, unaccounted
 from .resting import Resting
 
 TURNED = math.radians(60)
@@ -106,17 +106,14 @@ def follow(
     observe
         Called with the run, its state and λ at every row.
 
-    Raises
-    ------
-    SceneError
-        For a wall that does not rest under its dead load.
+    Returns
+    -------
+    Response
+        Without a row for a wall that does not rest under its dead load, ``infeasible`` or ``undecided``.
     """
-    if rest.verdict != "stable":
-        what = (
-            "falls under its dead load" if rest.verdict == "collapse" else "does not come to rest under its dead load"
-        )
-        raise SceneError(rest.scene.title, f"{what}: there is nothing to shake")
     begin, history = time.perf_counter(), rest.history
+    if rest.trouble:
+        return _not_shaken(rest, scale, rest.top if points is None else np.reshape(points, (-1, 2)), *rest.trouble)
     run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=PART)
     run.led, state = True, rest.state.copy()
     ground = Ground(run, history, scale, state.time)
@@ -136,6 +133,16 @@ def follow(
             elif now >= history.duration + swing and log.is_calm(now - swing):
                 verdict = "stands"
     return _response(rest, scale, log, run, state, (verdict, fell), time.perf_counter() - begin)
+
+
+def _not_shaken(rest: Resting, scale: float, points: Array, verdict: Verdict, message: str) -> Response:
+    """The response of a wall that does not rest."""
+    none, nowhere = np.zeros((0, 2)), np.zeros((len(rest.scene.blocks), 3))
+    return Response(
+        *(rest.scene.title, rest.model, scale, verdict, message, points),
+        *(none[:, 0], none, np.zeros((0, len(points), 2)), none[:, 0], none, np.zeros((0, len(ENERGIES)))),
+        *(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), nowhere, nowhere, math.nan, rest.state.steps),
+    )
 
 
 def _response(

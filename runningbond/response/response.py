@@ -1,5 +1,6 @@
 """What a wall does when its ground moves: time series, blocks that fell, and a verdict."""
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
@@ -7,8 +8,9 @@ import numpy as np
 
 from runningbond.scene import Array, Indices
 
-Verdict: TypeAlias = Literal["stands", "collapse", "undecided"]
-"""Whether a wall has come to rest, a block of it has fallen, or neither within the time that was followed."""
+Verdict: TypeAlias = Literal["stands", "collapse", "undecided", "infeasible"]
+"""Whether a wall has come to rest, a block of it has fallen, or neither within the time that was followed; or whether
+it falls under its dead load, so that there is nothing to shake."""
 
 ENERGIES = ("input", "weight", "kinetic", "stored", "friction", "damped")
 """Works of the ground's motion, in its frame, and of the dead load; energies; what is spent on friction and crushing
@@ -82,20 +84,21 @@ class Response:
 
     @property
     def residual_drift(self) -> float:
-        """Drift at the end."""
-        return float(self.drift[-1])
+        """Drift at the end; not a number, as the next, of a wall that was not shaken."""
+        return float(self.drift[-1]) if len(self.drift) else math.nan
 
     @property
     def peak_drift(self) -> float:
         """Largest drift, by its size."""
-        return float(np.abs(self.drift).max())
+        return float(np.abs(self.drift).max()) if len(self.drift) else math.nan
 
     def summary(self) -> dict[str, Any]:
-        """The scalars."""
+        """The scalars; None is what there is not."""
         names = ("scene", "model", "verdict", "scale", "peak_drift", "residual_drift", "unaccounted")
-        fallen = {"fallen": self.first.tolist(), "time": float(self.time[-1])}
+        fallen = {"fallen": self.first.tolist(), "time": float(self.time[-1]) if len(self.time) else math.nan}
         last = {name: getattr(self, name) for name in ("steps", "seconds", "message")}
-        return {name: getattr(self, name) for name in names} | fallen | last
+        found = {name: getattr(self, name) for name in names} | fallen | last
+        return {name: None if isinstance(x, float) and math.isnan(x) else x for name, x in found.items()}
 
     def columns(self) -> dict[str, Array]:
         """The time series column by column, with units."""

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -44,6 +45,15 @@ class Resting:
         verdict = settle(Run(system, local=CALMING), state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True)
         state.velocity[:] = 0.0
         return cls(scene, model, system, state, verdict, viscous)
+
+    @property
+    def trouble(self) -> tuple[Literal["infeasible", "undecided"], str] | None:
+        """What is to be said of a wall that does not rest, and so cannot be shaken."""
+        if self.verdict == "collapse":
+            return "infeasible", "collapses under its dead load"
+        if self.verdict == "undecided":
+            return "undecided", "the budget ran out before the wall came to rest under its dead load"
+        return None
 
     @property
     def history(self) -> History:
