@@ -19,7 +19,7 @@ from .tables import Table
 from .wall import Wall
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Fragility:
     """Log-normal fragility of a wall.
 
@@ -52,6 +52,10 @@ class Fragility:
     def probability(self, intensity: Array | float) -> Array:
         """Probability of a collapse at intensities [g]."""
         return np.asarray(ndtr(np.log(np.asarray(intensity) / self.median) / max(self.dispersion, 1e-12)))
+
+    def __repr__(self) -> str:
+        records = f"{len(self.intensity)} records, {len(self.stood)} under which it stands, {self.left_out} left out"
+        return f"<Fragility: median {self.median:.3g} g, dispersion {self.dispersion:.3g}; {records}>"
 
 
 def fragility(

@@ -54,8 +54,7 @@ def respond(
     for line in remarks(wall):
         print(line, file=sys.stderr)
     summary = response.summary()
-    said = f"{'infeasible: ' * (response.verdict == 'infeasible')}{response.message}"
-    text = f"{response.scene}: {response.model}, λ {scale:g}\n  {said}\n  {response.steps} steps, "
+    text = f"{response.scene}: {response.model}, λ {scale:g}\n  {response.line}\n  {response.steps} steps, "
     print(to_json.dumps(summary, allow_nan=False) if json else f"{text}{response.seconds:.3g} s", flush=True)
     if out is not None and recorder is not None:
         recorder.finish(Outcome(wall.title, response.model, "undecided"))

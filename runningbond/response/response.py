@@ -17,7 +17,7 @@ ENERGIES = ("input", "weight", "kinetic", "stored", "friction", "damped")
 or cracking, and on impacts and damping [J]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Response:
     """Response of a wall to a motion of its ground, in the frame of the ground.
 
@@ -92,6 +92,11 @@ class Response:
         """Largest drift, by its size."""
         return float(np.abs(self.drift).max()) if len(self.drift) else math.nan
 
+    @property
+    def line(self) -> str:
+        """The message, after its verdict where that is not in it."""
+        return f"infeasible: {self.message}" if self.verdict == "infeasible" else self.message
+
     def summary(self) -> dict[str, Any]:
         """The scalars; None is what there is not."""
         names = ("scene", "model", "verdict", "scale", "peak_drift", "residual_drift", "unaccounted")
@@ -119,6 +124,9 @@ class Response:
             "residual [J]": self.residual,
             "fallen": self.fallen,
         }
+
+    def __repr__(self) -> str:
+        return f"<Response of {self.model} on {self.scene!r}, λ = {self.scale:g}: {self.line.split(';')[0]}>"
 
 
 def supplied(energy: Array) -> Array:
