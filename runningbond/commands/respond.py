@@ -11,16 +11,14 @@ from runningbond.compare.models import MODELS, check_response
 from runningbond.compare.models import respond as respond_with
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import csv_lines
-from runningbond.pictures.time_series import KINDS
+from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.response import Response
+from runningbond.response.follow import AFTER
 from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene
 
 from .left_behind import RESPONSE_FILES, remove_older
 from .terminal import DONE, NO_ANSWER, Json, SceneName, remarks
-
-AFTER = 0.5
-"""Time [s] for which a wall that falls is filmed."""
 
 
 def respond(
@@ -57,12 +55,13 @@ def respond(
     text = f"{response.scene}: {response.model}, λ {scale:g}\n  {response.line}\n  {response.steps} steps, "
     print(to_json.dumps(summary, allow_nan=False) if json else f"{text}{response.seconds:.3g} s", flush=True)
     if out is not None and recorder is not None:
-        recorder.finish(Outcome(wall.title, response.model, "undecided"))
+        recorder.finish(Outcome(wall.title, response.model, "undecided", upper=scale))
         remove_older(out, record=True)
         if len(response.time):
             _keep(response, out)
             if not json:
-                print("\n".join(str(out / name) for name in (*RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS))))
+                written = (*RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS), MACRO)
+                print("\n".join(str(out / name) for name in written))
         elif is_new:
             out.rmdir()
     return NO_ANSWER if response.verdict == "undecided" else DONE

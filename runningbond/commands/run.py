@@ -16,7 +16,7 @@ from runningbond.compare.model import Model, Recorder
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model, run_model
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import csv_lines
-from runningbond.pictures.time_series import KINDS
+from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
 from runningbond.results.store import RECORD
 from runningbond.scene import Scene, SceneError, read_scene
@@ -169,7 +169,8 @@ def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
 
 def _written(out: Path) -> list[Path]:
     """What a run has left in its folder."""
-    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *(f"{kind}.pvd" for kind in KINDS), "mechanism.*")
+    series = (*(f"{kind}.pvd" for kind in KINDS), MACRO)
+    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *series, "mechanism.*")
     return [path for name in names for path in sorted(out.glob(name))]
 
 

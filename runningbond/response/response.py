@@ -47,8 +47,9 @@ class Response:
         Blocks that have fallen.
     first : (m,) int
         Blocks that had fallen by the end, the first ones first.
-    motion, velocity : (nb, 3) float
-        Displacement of each block's centroid [m] and its rotation [rad] at the end, and their rates.
+    motion, shape : (nb, 3) float
+        Displacement of each block's centroid [m] and its rotation [rad] since the wall was at rest: at the end, and at
+        the last moment at which no corner had gone farther than a tenth of the wall's size.
     unaccounted
         Largest share of the energy supplied that the ledger misses.
     steps
@@ -72,7 +73,7 @@ class Response:
     fallen: Indices
     first: Indices
     motion: Array
-    velocity: Array
+    shape: Array
     unaccounted: float
     steps: int
     seconds: float = 0.0

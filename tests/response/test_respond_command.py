@@ -48,6 +48,6 @@ def test_a_folder_holds_what_was_written_there_last_and_nothing_older(ask: Any, 
 
     ran = written("run")
     assert {"outcome.json", "curve.csv", "mechanism.svg", "blocks.pvd", "joints.pvd"} <= ran
-    assert written("respond", **SHAKEN) == {"response.csv", "response.png", "blocks.pvd", "joints.pvd"}
+    assert written("respond", **SHAKEN) == {"response.csv", "response.png", "open_run.py", "blocks.pvd", "joints.pvd"}
     assert written("run") == ran
     assert written("respond", **LEANING) == set()
