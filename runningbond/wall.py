@@ -259,9 +259,10 @@ class Wall:
 
         description, path = self.description, Path(path)
         if "drawing" in description["wall"]:
-            description["wall"]["drawing"] = relpath(self.folder / description["wall"]["drawing"], path.parent)
+            drawing = relpath(self.folder / description["wall"]["drawing"], path.parent)
+            description["wall"]["drawing"] = Path(drawing).as_posix()
         if "file" in (history := description["load"].get("history", {})):
-            history["file"] = relpath(self.folder / history["file"], path.parent)
+            history["file"] = Path(relpath(self.folder / history["file"], path.parent)).as_posix()
         write_atomically(path, toml(description).encode())
 
     def __repr__(self) -> str:
