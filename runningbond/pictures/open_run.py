@@ -54,6 +54,7 @@ lines.Position = [0.0, 0.0, 0.002]
 simple.ColorBy(lines, ("CELLS", "state"))
 states = simple.GetColorTransferFunction("state")
 states.InterpretValuesAsCategories = 1
+states.AnnotationsInitialized = 1
 states.Annotations = [text for number, (name, _) in STATES.items() for text in (number, name)]
 states.IndexedColors = [part for _, colour in STATES.values() for part in colour]
 lines.SetScalarBarVisibility(view, True)
