@@ -19,18 +19,20 @@ from runningbond.scene.table import Table
 from tests.random_scenes import random_scene
 from tests.walls import content
 
-jsonschema = pytest.importorskip("jsonschema")
-
 ROOT = Path(__file__).parents[2]
 FILES = sorted(path for room in ("runningbond", "examples") for path in (ROOT / room).rglob("*.toml"))
 SCHEMA = scene_schema()
-VALIDATOR: Any = jsonschema.Draft7Validator(SCHEMA)
 
 READERS = {"value", "required", "table", "optional_table", "tables_by_name", "list_of_tables", "number"}
 READERS |= {"optional_number", "text", "choice", "vector", "rows"}
 IN_PYTHON_ALONE = {"law"}
 CHOSEN = {"between", "blocks", "layer"}
 """Keys of ``assign`` that its reader goes through in a loop."""
+
+
+@pytest.fixture(scope="module")
+def validator() -> Any:
+    return pytest.importorskip("jsonschema").Draft7Validator(SCHEMA)
 
 
 def properties(schema: Any) -> Iterator[str]:
@@ -90,13 +92,13 @@ def test_the_scenes_that_it_is_made_of_are_read_but_for_files_that_are_not_there
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
-def test_shipped_scenes_and_examples_are_valid(path: Path) -> None:
-    VALIDATOR.validate(tomllib.loads(path.read_text(encoding="utf-8")))
+def test_shipped_scenes_and_examples_are_valid(path: Path, validator: Any) -> None:
+    validator.validate(tomllib.loads(path.read_text(encoding="utf-8")))
 
 
-def test_what_the_reader_takes_is_valid() -> None:
+def test_what_the_reader_takes_is_valid(validator: Any) -> None:
     for scene in (*({**PLAIN, **one} for one in SCENES), *map(random_scene, range(60))):
-        VALIDATOR.validate(scene)
+        validator.validate(scene)
 
 
 WRONG: list[dict[str, Any]] = [
@@ -142,14 +144,14 @@ WRONG: list[dict[str, Any]] = [
 
 
 @pytest.mark.parametrize("changes", WRONG, ids=lambda changes: next(iter(changes)))
-def test_wrong_scenes_are_not_valid_and_the_reader_refuses_them_too(changes: dict[str, Any]) -> None:
+def test_wrong_scenes_are_not_valid_and_the_reader_refuses_them_too(changes: dict[str, Any], validator: Any) -> None:
     scene = content(**changes)
-    assert not VALIDATOR.is_valid(scene)
+    assert not validator.is_valid(scene)
     with pytest.raises(SceneError):
         scene_from_dict(scene)
 
 
-def test_the_command_prints_it_and_nothing_else(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_prints_it_and_nothing_else(capsys: pytest.CaptureFixture[str], validator: Any) -> None:
     assert command(["schema"]) == 0
     assert json.loads(capsys.readouterr().out) == SCHEMA
-    jsonschema.Draft7Validator.check_schema(SCHEMA)
+    validator.check_schema(SCHEMA)
