@@ -6,19 +6,23 @@ Everything here is imported when it is first used, so that the import itself cos
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .fragility import Fragility, fragility
+    from .compare.draws import Draws
+    from .fragilities import Fragility, fragility
     from .path_states import PathState
+    from .response import Response
     from .run_result import Result
     from .scene import SceneError
     from .sweeps import sweep
     from .wall import Wall, read
 else:
     _MODULES = {
-        "Fragility": "fragility",
+        "Draws": "compare.draws",
+        "Fragility": "fragilities",
         "PathState": "path_states",
+        "Response": "response",
         "Result": "run_result",
         "SceneError": "scene",
-        "fragility": "fragility",
+        "fragility": "fragilities",
         "Wall": "wall",
         "read": "wall",
         "sweep": "sweeps",
@@ -37,4 +41,15 @@ else:
         return sorted({*globals(), *_MODULES})
 
 
-__all__ = ["Fragility", "PathState", "Result", "SceneError", "Wall", "fragility", "read", "sweep"]
+__all__ = [
+    "Draws",
+    "Fragility",
+    "PathState",
+    "Response",
+    "Result",
+    "SceneError",
+    "Wall",
+    "fragility",
+    "read",
+    "sweep",
+]

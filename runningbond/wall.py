@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from .compare.draws import Draws
     from .compare.model import Model
-    from .response import Response
+    from .drawn_response import DrawnResponse
     from .run_result import Result
 
 TABLES = {
@@ -220,7 +220,7 @@ class Wall:
         with ctrl_c_passed_on():
             return drawing.run(tolerance, None if folder is None else Path(folder), jobs)
 
-    def respond(self, model: "str | Model", scale: float = 1.0, **settings: Any) -> "Response":
+    def respond(self, model: "str | Model", scale: float = 1.0, **settings: Any) -> "DrawnResponse":
         """Follow the wall through the motion of its ground, ``load.history``.
 
         Parameters
@@ -234,8 +234,9 @@ class Wall:
             the wall is followed once a block has fallen [s].
         """
         from .compare.models import respond
+        from .drawn_response import DrawnResponse
 
-        return respond(model, self.scene, scale, **settings)
+        return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)))
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
         """Draw the wall with its support and loads into axes, new ones where none are given."""
@@ -258,9 +259,10 @@ class Wall:
 
         description, path = self.description, Path(path)
         if "drawing" in description["wall"]:
-            description["wall"]["drawing"] = relpath(self.folder / description["wall"]["drawing"], path.parent)
+            drawing = relpath(self.folder / description["wall"]["drawing"], path.parent)
+            description["wall"]["drawing"] = Path(drawing).as_posix()
         if "file" in (history := description["load"].get("history", {})):
-            history["file"] = relpath(self.folder / history["file"], path.parent)
+            history["file"] = Path(relpath(self.folder / history["file"], path.parent)).as_posix()
         write_atomically(path, toml(description).encode())
 
     def __repr__(self) -> str:

@@ -20,6 +20,7 @@ from .new import new
 from .render import render
 from .respond import respond
 from .run import run
+from .schema import schema
 from .show import show
 from .studies import stability, study
 from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions
@@ -32,7 +33,7 @@ app = App(
     result_action="return_value",
     suppress_keyboard_interrupt=False,
 )
-for each in (new, run, respond, show, advise, compare, stability, study, validate, mesh, render):
+for each in (new, run, respond, show, advise, compare, stability, study, validate, mesh, render, schema):
     app.command(each)
 app.register_install_completion_command()
 

@@ -11,16 +11,14 @@ from runningbond.compare.models import MODELS, check_response
 from runningbond.compare.models import respond as respond_with
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import csv_lines
-from runningbond.pictures.time_series import KINDS
+from runningbond.pictures.time_series import KINDS, MACRO
+from runningbond.response import Response
+from runningbond.response.follow import AFTER
 from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene
 
+from .left_behind import RESPONSE_FILES, remove_older
 from .terminal import DONE, NO_ANSWER, Json, SceneName, remarks
-
-AFTER = 0.5
-"""Time [s] for which a wall that falls is filmed."""
-
-SERIES, CHART = "response.csv", "response.png"
 
 
 def respond(
@@ -43,7 +41,7 @@ def respond(
     """
     wall = read_scene(find_scene(scene))
     check_response(model, wall, scale, "--model", "--scale")
-    recorder, observed = None, dict[str, Any]()
+    recorder, observed, is_new = None, dict[str, Any](), out is not None and not out.exists()
     if out is not None:
         from runningbond.pictures.recording import ResponseRecorder
 
@@ -54,17 +52,27 @@ def respond(
     for line in remarks(wall):
         print(line, file=sys.stderr)
     summary = response.summary()
-    text = f"{response.scene}: {response.model}, λ {scale:g}\n  {response.message}\n  {response.steps} steps, "
+    text = f"{response.scene}: {response.model}, λ {scale:g}\n  {response.line}\n  {response.steps} steps, "
     print(to_json.dumps(summary, allow_nan=False) if json else f"{text}{response.seconds:.3g} s", flush=True)
     if out is not None and recorder is not None:
-        from runningbond.pictures.captions import to_png
-        from runningbond.pictures.response import response_figure
-
-        recorder.finish(Outcome(wall.title, response.model, "undecided"))
-        columns = response.columns()
-        rows = [[float(x) for x in row] for row in zip(*columns.values(), strict=True)]
-        write_atomically(out / SERIES, csv_lines([list(columns), *rows]).encode())
-        write_atomically(out / CHART, to_png(response_figure(response)))
-        if not json:
-            print("\n".join(str(out / name) for name in (SERIES, CHART, *(f"{kind}.pvd" for kind in KINDS))))
+        recorder.finish(Outcome(wall.title, response.model, "undecided", upper=scale))
+        remove_older(out, record=True)
+        if len(response.time):
+            _keep(response, out)
+            if not json:
+                written = (*RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS), MACRO)
+                print("\n".join(str(out / name) for name in written))
+        elif is_new:
+            out.rmdir()
     return NO_ANSWER if response.verdict == "undecided" else DONE
+
+
+def _keep(response: Response, out: Path) -> None:
+    """Write a response as a table, and draw it."""
+    from runningbond.pictures.captions import to_png
+    from runningbond.pictures.response import response_figure
+
+    columns, (series, chart) = response.columns(), RESPONSE_FILES
+    rows = [[float(x) for x in row] for row in zip(*columns.values(), strict=True)]
+    write_atomically(out / series, csv_lines([list(columns), *rows]).encode())
+    write_atomically(out / chart, to_png(response_figure(response)))

@@ -16,11 +16,12 @@ from runningbond.compare.model import Model, Recorder
 from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model, run_model
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import csv_lines
-from runningbond.pictures.time_series import KINDS
+from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
 from runningbond.results.store import RECORD
 from runningbond.scene import Scene, SceneError, read_scene
 
+from .left_behind import CURVE_FILES, DRAWS, remove_older
 from .terminal import (
     BAD_INPUT,
     DONE,
@@ -39,9 +40,6 @@ from .terminal import (
     remarks,
     tell_cost,
 )
-
-CURVE_FILES = ("curve.csv", "curve.png")
-DRAWS = "draws"
 
 
 def run(
@@ -100,7 +98,7 @@ def run(
         print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
     if out is not None:
-        (out / f"{DRAWS}.json").unlink(missing_ok=True)
+        remove_older(out)
         # What was interrupted is kept under no fingerprint: no comparison takes it for the answer.
         save_outcome(outcome, out, "" if stopped else fingerprint(wall, chosen, tolerance), wall)
         _picture(wall, outcome, out, recorder, json)
@@ -134,6 +132,7 @@ def _draws(
         print_table(found.sheet())
         print(found, flush=True)
     if out is not None:
+        remove_older(out)
         save_outcome(outcome, out, fingerprint(wall, model, tolerance), wall)
         write_atomically(out / f"{DRAWS}.json", (to_json.dumps(found.summary(), indent=2) + "\n").encode())
         _picture(wall, outcome, out, None, json)
@@ -157,11 +156,8 @@ def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
     """Write and draw the curve and the mechanism."""
     from runningbond.pictures.captions import to_png
     from runningbond.pictures.curve import curve_figure
-    from runningbond.pictures.render import draw_folder, remove_pictures
+    from runningbond.pictures.render import draw_folder
 
-    remove_pictures(out)
-    for name in CURVE_FILES:
-        (out / name).unlink(missing_ok=True)
     columns = outcome.curve_columns("λ", "control displacement [m]")
     rows = [["" if np.isnan(x) else float(x) for x in row] for row in zip(*columns.values(), strict=True)]
     if rows:
@@ -173,7 +169,8 @@ def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
 
 def _written(out: Path) -> list[Path]:
     """What a run has left in its folder."""
-    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *(f"{kind}.pvd" for kind in KINDS), "mechanism.*")
+    series = (*(f"{kind}.pvd" for kind in KINDS), MACRO)
+    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *series, "mechanism.*")
     return [path for name in names for path in sorted(out.glob(name))]
 
 

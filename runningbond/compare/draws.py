@@ -26,7 +26,7 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 NUMBER = Range(least=2, most=10_000)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Draws:
     """Outcomes of one model on a wall as it is, and on others drawn beside it."""
 
@@ -92,6 +92,13 @@ class Draws:
             f"{collapsed}: lowest {_told(self.lowest)}, quantiles {quantiles}, "
             f"mean {_told(self.mean)} ± {_told(self.error)} (standard error)"
         )
+
+    def __repr__(self) -> str:
+        first, ends = self.outcomes[0], {"lowest": self.lowest, "mean": self.mean}
+        known = "".join(f", {name} {number(value)}" for name, value in ends.items() if value is not None)
+        spread = "" if self.error is None else f" ± {number(self.error)}"
+        collapse = f"{len(self.multipliers)} of {len(self.outcomes)} collapse"
+        return f"<Draws of {first.model} on {first.scene!r}, {self.scatter}: {collapse}{known}{spread}>"
 
 
 def _told(load: float | None) -> str:

@@ -59,7 +59,7 @@ def code_digest() -> str:
     for room in COMPUTING_ROOMS:
         folder = Path(str(import_module(room).__file__)).parent
         for source in sorted(folder.rglob("*.py")):
-            digest.update(f"{room}/{source.relative_to(folder)}\n".encode() + source.read_bytes())
+            digest.update(f"{room}/{source.relative_to(folder).as_posix()}\n".encode() + source.read_bytes())
     return digest.hexdigest()
 
 

@@ -48,7 +48,7 @@ _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(
 _RECORDER = partial(_late, "runningbond.pictures.recording")
 _PROGRESS = partial(_late, "runningbond.pictures.progress")
 _IN_MOTION: dict[str, Any] = {"interruptible": True, "takes": EXTRAS | {"load.history"}}
-_IN_MOTION |= {"observer": partial(_RECORDER, "MotionRecorder"), "progress": partial(_PROGRESS, "MotionProgress")}
+_IN_MOTION |= {"observer": partial(_RECORDER, "motion_recorder"), "progress": partial(_PROGRESS, "MotionProgress")}
 
 _EVERY_MODEL = (
     Model(
@@ -210,6 +210,6 @@ def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: An
     Raises
     ------
     SceneError
-        As of `check_response`, and for a wall that does not rest under its dead load.
+        As of `check_response`.
     """
     return check_response(model, scene, scale)(scene, scale, **settings)

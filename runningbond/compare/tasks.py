@@ -102,13 +102,25 @@ def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:
     """Answers as they come, from wherever joblib has been set to send its tasks."""
     # All of them at once, for the sake of workers that join a cluster later.
     run = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="all")
-    # A process that starts inherits the mask: Ctrl-C reaches all of a terminal's processes, and the parent ends them.
+    with _interruptions_held():
+        answers = run(delayed(Task.run)(task) for task in tasks)
+    yield from answers
+
+
+@contextmanager
+def _interruptions_held() -> Iterator[None]:
+    """Hold Ctrl-C back from processes that start, which inherit the mask, where the system knows masks.
+
+    It reaches all of a terminal's processes, and the parent ends the others.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        answers = run(delayed(Task.run)(task) for task in tasks)
+        yield
     finally:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    yield from answers
 
 
 def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
@@ -142,7 +154,8 @@ def _processes(jobs: int) -> Iterator[None]:
         with parallel_config(backend="sequential"):
             yield
         return
-    multiprocessing.resource_tracker.ensure_running()  # its start unblocks what `side_by_side` blocks
+    if hasattr(signal, "pthread_sigmask"):
+        multiprocessing.resource_tracker.ensure_running()  # its start unblocks what `side_by_side` blocks
     # More processes than cores gain nothing but memory.
     n_jobs = cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count()))
     # Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say.

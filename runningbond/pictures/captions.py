@@ -127,7 +127,8 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
     if not drawn:
         return Caption(title, load, [warning or "no mechanism"], [])
     columns = 5 if sum(len(handle.get_label()) for handle in key) < 45 else 3
-    size = f"mechanism; its fastest corner is drawn to move {DRAWN * wall_size(scene):.2g} m"
+    what = "shape in the fall; the farthest corner" if scene.history else "mechanism; its fastest corner"
+    size = f"{what} is drawn to move {DRAWN * wall_size(scene):.2g} m"
     return Caption(title, load, [size, warning] if warning else [size], key, columns)
 
 

@@ -55,6 +55,8 @@ class Frame:
         Of the nodes of the triangles [m]; empty for rigid blocks.
     stress : (nt, 3) float
         σ_x, σ_y, τ_xy of those triangles [Pa]; empty without them.
+    time
+        Since the motion of the ground began [s]; None where there is none.
     """
 
     multiplier: float
@@ -68,6 +70,7 @@ class Frame:
     damage: Array = field(default_factory=lambda: np.zeros(0))
     displacement: Array = field(default_factory=lambda: np.zeros((0, 2)))
     stress: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    time: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "state", frozen(self.state, np.int64))

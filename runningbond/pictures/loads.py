@@ -11,6 +11,7 @@ from runningbond.scene import (
     Beam,
     BeamLoad,
     Body,
+    History,
     Indices,
     Lateral,
     LineLoad,
@@ -20,6 +21,7 @@ from runningbond.scene import (
     Tilt,
 )
 from runningbond.scene.actions import unit_vector
+from runningbond.scene.history import STANDARD_GRAVITY
 
 from .captions import is_force
 from .deformed_shape import DeformedShape
@@ -77,6 +79,9 @@ class LoadDrawing:
             case Body():
                 size = readable(math.hypot(*action.acceleration), "m/s²")
                 self._on_mass(unit_vector(np.array(action.acceleration)), size, live)
+            case History():
+                size = f"{math.hypot(*action.peak) / STANDARD_GRAVITY:.3g} g at the peak"
+                self._on_mass(unit_vector(-action.peak), size, live)
             case Settlement():
                 pass  # drawn with the support that it moves
             case _:

@@ -37,9 +37,15 @@ def has_mechanism(scene: Scene, outcome: Outcome) -> bool:
 
 
 def outcome_check(scene: Scene, outcome: Outcome) -> MechanismCheck | None:
-    """Check the mechanism of an outcome under the load that brought the wall down; None where it has none."""
+    """Check the mechanism of an outcome under the load that brought the wall down; None where it has none.
+
+    Of a wall whose ground moves it is a shape in the fall, which loads at one moment need not drive.
+    """
     if not has_mechanism(scene, outcome):
         return None
+    if scene.history:
+        none = np.zeros(outcome.motion.size)
+        return check_mechanism(scene, outcome.motion, none, none, 0.0)
     bounds = (outcome.upper, outcome.multiplier, outcome.lower)
     multiplier = next((bound for bound in bounds if bound is not None), 0.0)
     return check_mechanism(scene, outcome.motion, dead_load(scene), live_load(scene), multiplier)

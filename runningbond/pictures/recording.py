@@ -15,7 +15,7 @@ from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.joint_state import states_under_load
 from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.pictures.style import DRAWN
-from runningbond.pictures.time_series import TimeSeries
+from runningbond.pictures.time_series import MAX_FRAMES, TimeSeries
 from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import Outcome
 from runningbond.results.mechanism import rigid_jumps
@@ -47,6 +47,7 @@ class SeriesRecorder:
     def __init__(self, discretisation: Discretisation, folder: Path | None) -> None:
         self._folder = folder
         self._error: OSError | VtkError | None = None
+        self._is_begun = False
         self._begin(discretisation)
 
     def _begin(self, discretisation: Discretisation) -> None:
@@ -59,11 +60,16 @@ class SeriesRecorder:
         """Write a moment."""
         if self._error is None:
             try:
-                if self._folder and not len(self._series):  # an outcome that is there is of another run
-                    (self._folder / RECORD).unlink(missing_ok=True)
+                self._replace_outcome()
                 self._series.add(frame)
             except (OSError, VtkError) as error:
                 self._error = error
+
+    def _replace_outcome(self) -> None:
+        """Remove an outcome that was there before the first moment: it is of another run."""
+        if self._folder and not self._is_begun:
+            (self._folder / RECORD).unlink(missing_ok=True)
+        self._is_begun = True
 
     def finish(self, outcome: Outcome) -> None:
         """End the series, once the outcome is known; raises the error of a moment that could not be written."""
@@ -71,6 +77,8 @@ class SeriesRecorder:
             raise self._error
         if not len(self._series):
             self._series.clear()
+        elif isinstance(self._series, TimeSeries):
+            self._series.write_macro()
 
 
 class StaticRecorder(SeriesRecorder):
@@ -161,20 +169,33 @@ class MotionRecorder(SeriesRecorder):
 
 
 class ResponseRecorder(MotionRecorder):
-    """Writes moments of a wall whose ground moves, evenly spaced."""
+    """Remembers moments of a wall whose ground moves, evenly spaced, and writes those of the last motion in the end."""
 
     def __init__(self, scene: Scene, folder: Path | None) -> None:
         super().__init__(scene, folder)
-        self._spacing = scene.history.duration / RESPONSE_FRAMES if scene.history else 0.0
-        self._next = -np.inf
+        self._duration = scene.history.duration if scene.history else 0.0
+        self._start = self._now = self._next = self._spacing = 0.0
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
-        """Write a moment if it is time."""
+        """Remember a moment if it is time."""
         if isinstance(run.system.source, ModalWall) and run.system.source is not self._wall:
             self._observe(run.system.source)
+        if multiplier != self._multiplier or state.time < self._now:  # another motion
+            self._multiplier, self._moments, self._spacing = multiplier, [], self._duration / RESPONSE_FRAMES
+            self._start = self._next = state.time
+            self._replace_outcome()
+        self._now = state.time
         if state.time >= self._next:
-            self.keep(self._frame(run, state, multiplier))
+            frame = replace(self._frame(run, state, multiplier), time=state.time - self._start)
+            self._moments.append((state.steps, frame))
+            if len(self._moments) > MAX_FRAMES:
+                self._moments, self._spacing = self._moments[::2], 2 * self._spacing
             self._next = state.time + self._spacing
+
+
+def motion_recorder(scene: Scene, folder: Path | None) -> MotionRecorder:
+    """Of a run of a scene whose ground moves the fall, of any other the loads that were borne as well."""
+    return (ResponseRecorder if scene.history else MotionRecorder)(scene, folder)
 
 
 def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
@@ -186,6 +207,7 @@ def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
         series.add(replace(frame.scaled(0.0), state=np.zeros_like(frame.state)))
         for share in np.linspace(0, 1, MECHANISM_FRAMES)[1:]:
             series.add(frame.scaled(float(share) * DRAWN * wall_size(scene)))
+        series.write_macro()
 
 
 def stresses(wall: ModalWall, motion: Array) -> Array:

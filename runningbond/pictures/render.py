@@ -34,12 +34,6 @@ PICTURES = (*DRAWN, "rendering.png", "last-moment.png", "film.gif")
 """What a folder can show, where it has a mechanism or a time series."""
 
 
-def remove_pictures(folder: Path) -> None:
-    """Remove pictures, which may be of an outcome that is there no more."""
-    for name in PICTURES:
-        (folder / name).unlink(missing_ok=True)
-
-
 def draw_folder(folder: Path) -> list[Path]:
     """Draw the mechanism of a folder flat, ``mechanism.svg`` and ``mechanism.png``, if it has one; the files."""
     outcome, scene = load_outcome(folder)[0], load_scene(folder)

@@ -1,17 +1,27 @@
 """Time series for ParaView: a VTU file a frame, and a PVD file that lists them, readable after every frame."""
 
+import re
 import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from runningbond.results.store import StoreError, write_atomically
 
+from .deformed_shape import wall_size
 from .frame import Discretisation, Frame
-from .vtk_grids import Grid, GridBuilder
+from .style import AT_REST, DRAWN, FASTEST, OUTLINE, STATE_COLOURS, STATE_NAMES
+from .vtk_grids import DISPLACEMENT, Grid, GridBuilder
 from .vtk_safety import import_pyvista, vtk_errors_raised
 
 KINDS = ("blocks", "joints")
 """What a series consists of: ``blocks.pvd`` and ``joints.pvd``, each with its own VTU files."""
+
+MACRO = "open_run.py"
+"""Macro with which ParaView opens a series as pictures show it."""
 
 MAX_FRAMES = 40
 """Frames that a series keeps; when there are more, every other one is deleted."""
@@ -26,16 +36,18 @@ class TimeSeries:
     def __init__(self, discretisation: Discretisation, folder: Path) -> None:
         self._grids = GridBuilder(discretisation)
         self._folder = folder
-        self._numbers: list[int] = []
+        self._frames: dict[int, tuple[float | None, float]] = {}  # their times [s] and loads by their numbers
         self._next = 0
+        self._farthest, self._size = 0.0, wall_size(discretisation.scene)
         self._is_started = False
 
     def __len__(self) -> int:
-        return len(self._numbers)
+        return len(self._frames)
 
     def clear(self) -> None:
         """Delete all frames, also those that were there before."""
-        self._numbers, self._next, self._is_started = [], 0, True
+        self._frames, self._next, self._is_started, self._farthest = {}, 0, True, 0.0
+        (self._folder / MACRO).unlink(missing_ok=True)
         for kind in KINDS:
             (self._folder / f"{kind}.pvd").unlink(missing_ok=True)
             for stale in (self._folder / "frames").glob(f"{kind}-*.vtu"):
@@ -48,18 +60,54 @@ class TimeSeries:
         grids = {"blocks": self._grids.blocks(frame), "joints": self._grids.joints(frame)}
         for kind, grid in grids.items():
             write_atomically(self._file(kind, self._next), vtu(grid))
-        self._numbers.append(self._next)
+        self._frames[self._next] = frame.time, frame.multiplier
+        moved = np.asarray(grids["blocks"].point_data[DISPLACEMENT])
+        self._farthest = max(self._farthest, float(np.hypot(*moved.T[:2]).max()))
         self._next += 1
-        dropped = self._numbers[1:-1:2] if len(self._numbers) > MAX_FRAMES else []
-        self._numbers = [number for number in self._numbers if number not in dropped]
+        dropped = list(self._frames)[1:-1:2] if len(self._frames) > MAX_FRAMES else []
+        self._frames = {number: stamp for number, stamp in self._frames.items() if number not in dropped}
+        times = times_shown(list(self._frames.values()))
         for kind in KINDS:
-            files = [(number, self._file(kind, number)) for number in self._numbers]
+            files = [(time, self._file(kind, number)) for time, number in zip(times, self._frames, strict=True)]
             write_atomically(self._folder / f"{kind}.pvd", _pvd(files, self._folder))
             for number in dropped:
                 self._file(kind, number).unlink(missing_ok=True)  # of another run into the same folder
 
+    def write_macro(self) -> None:
+        """Write the macro with which ParaView opens the series, enlarged as pictures of its largest motion are."""
+        from matplotlib.colors import to_rgb
+
+        scale = DRAWN * self._size / self._farthest if self._farthest else 1.0
+        states = {str(int(state)): (name, to_rgb(STATE_COLOURS[state])) for state, name in STATE_NAMES.items()}
+        given = {"FOLDER": f"Path({str(self._folder.resolve())!r})", "SCALE": scale, "FARTHEST": self._farthest or 1.0}
+        given |= {"AT_REST": AT_REST, "FASTEST": FASTEST, "STATES": {"0": ("sticks", OUTLINE), **states}}
+        text = Path(__file__).with_name(MACRO).read_text(encoding="utf-8")
+        for name, value in given.items():
+            literal = str(value).replace("\\", r"\\")
+            text = re.sub(rf"(?m)^({name}.*?) = .*$", rf"\1 = {literal}", text)
+        write_atomically(self._folder / MACRO, text.encode())
+
     def _file(self, kind: str, number: int) -> Path:
         return self._folder / "frames" / f"{kind}-{number:04d}.vtu"
+
+
+def times_shown(frames: Sequence[tuple[float | None, float]]) -> list[float]:
+    """Times under which frames are listed, each larger than the one before, from their times [s] and loads.
+
+    They are the seconds, or the loads where these go up; of frames under one load, as in a fall, each is later by a
+    millionth. Where loads go down again or stay what they are, they are the numbers of the frames.
+    """
+    seconds = [time for time, _ in frames if time is not None]
+    if len(seconds) == len(frames):
+        return seconds
+    loads = [load for _, load in frames]
+    range_ = loads[-1] - loads[0]
+    if range_ <= 0 or any(after < before for before, after in pairwise(loads)):
+        return [float(k) for k in range(len(frames))]
+    times = loads[:1]
+    for load in loads[1:]:
+        times.append(max(load, times[-1] + 1e-6 * range_))
+    return times
 
 
 def frame_files(folder: Path, kind: str) -> list[Path]:
@@ -102,12 +150,12 @@ def vtu(grid: Grid) -> bytes:
     return str(writer.GetOutputString()).encode()
 
 
-def _pvd(files: list[tuple[int, Path]], folder: Path) -> bytes:
+def _pvd(files: list[tuple[float, Path]], folder: Path) -> bytes:
     root = ET.Element("VTKFile", type="Collection", version="0.1", byte_order="LittleEndian")
     collection = ET.SubElement(root, "Collection")
-    for number, path in files:
+    for time, path in files:
         name = path.relative_to(folder).as_posix()
-        ET.SubElement(collection, "DataSet", timestep=str(float(number)), part="0", file=name)
+        ET.SubElement(collection, "DataSet", timestep=repr(float(time)), part="0", file=name)
     ET.indent(root)
     content: bytes = ET.tostring(root, encoding="utf-8", xml_declaration=True)
     return content

@@ -3,6 +3,7 @@
 Names and units are those of docs/paraview.md, and the same in every frame.
 """
 
+from collections.abc import Mapping
 from functools import cached_property
 from typing import Any, TypeAlias
 
@@ -12,13 +13,19 @@ from numpy.typing import ArrayLike
 from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Blocks, Indices, Scene
 
-from .deformed_shape import DeformedShape, course_numbers, outer_edges, visible_scale
+from .deformed_shape import DeformedShape, course_numbers, outer_edges, visible_scale, wall_size
 from .frame import Discretisation, Frame
 from .joint_state import joint_states
 from .vtk_safety import import_pyvista
 
 Grid: TypeAlias = Any
 """A ``pyvista.UnstructuredGrid``; PyVista is only imported where one is made."""
+
+DISPLACEMENT = "displacement [m]"
+"""Array of both grids by whose vectors they are warped."""
+
+GROUND = 0.15
+"""How far the ground is shown around a wall, in sizes of it."""
 
 LINE, TRIANGLE, POLYGON, QUAD = 3, 5, 7, 9
 """VTK's numbers for kinds of cells."""
@@ -31,27 +38,36 @@ class GridBuilder:
         self._scene, self._points = discretisation.scene, discretisation.points
         self._triangles = discretisation.triangles
         self._courses, self._templates = course_numbers(self._scene), _templates(self._scene.blocks)
+        (left, low), (right, high) = self._scene.blocks.extent(self._scene.wall)
+        air = GROUND * wall_size(self._scene)
+        self._around = (left - air, low - air), (right + air, high + air)
 
     def blocks(self, frame: Frame) -> Grid:
         """Blocks, each a polygon, or in triangles where they deform, with the arrays of ``blocks.pvd``."""
         blocks, triangles = self._scene.blocks, self._triangles
         if triangles is None:
-            block, owner, points = np.arange(len(blocks)), blocks.owner, blocks.vertices
+            block, owner = np.arange(len(blocks)), blocks.owner
+            points = self._near(blocks.vertices, owner)
             displacement = carried(blocks, owner, points, frame.motion)
             grid = _grid(points, [(POLYGON, np.arange(len(points)), np.diff(blocks.first))])
         else:
-            block, points, displacement = triangles.block, triangles.points, frame.displacement
-            owner = np.empty(len(points), dtype=np.int64)
+            block, displacement = triangles.block, frame.displacement
+            owner = np.empty(len(triangles.points), dtype=np.int64)
             owner[triangles.corners.ravel()] = np.repeat(block, 3)
+            points = self._near(triangles.points, owner)
             grid = _grid(points, [(TRIANGLE, triangles.corners.ravel(), np.full(len(block), 3))])
         velocity = carried(blocks, owner, points, frame.velocity)
-        _add(grid.point_data, displacement=_in_space(displacement), velocity=_in_space(velocity))
+        _add(grid.point_data, {DISPLACEMENT: _in_space(displacement), "velocity [m/s]": _in_space(velocity)})
         course, template, held = self._courses[block], self._templates[block], self._scene.fixed[block]
-        _add(grid.cell_data, block=block, template=template, course=course, held=held.astype(np.uint8))
+        _add(grid.cell_data, {"block": block, "template": template, "course": course, "held": held.astype(np.uint8)})
         if len(frame.stress):
-            _add(grid.cell_data, stress=frame.stress)
-        _add(grid.field_data, multiplier=[frame.multiplier])
+            _add(grid.cell_data, _tensors(frame.stress))
+        _add(grid.field_data, _moment(frame))
         return grid
+
+    def _near(self, points: Array, owner: Indices) -> Array:
+        """Points ``(n, 2)`` of blocks ``(n,)``, those of the ground brought near the wall."""
+        return np.where(self._scene.wall[owner][:, None], points, np.clip(points, *self._around))
 
     def joints(self, frame: Frame) -> Grid:
         """Joints, piece by piece between neighbouring points, with the arrays of ``joints.pvd``.
@@ -66,24 +82,32 @@ class GridBuilder:
         lines, quads = corner + np.arange(2), corner + np.arange(2, 6)
         grid = _grid(points.position[at], [(LINE, lines.ravel(), np.full(n, 2)), (QUAD, quads.ravel(), np.full(n, 4))])
 
-        jump = frame.opening[:, None] * points.normal + frame.slip[:, None] * points.tangent
+        jump, traction = (
+            along[:, None] * points.normal + across[:, None] * points.tangent
+            for along, across in ((frame.opening, frame.slip), (frame.normal, frame.tangential))
+        )
         # Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
         a, b = (carried(self._scene.blocks, side, points.position, frame.motion) for side in points.block.T)
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
         _add(
             grid.point_data,
-            displacement=_in_space(((a + b - jump) / 2)[at] + share[:, None] * jump[at]),
-            opening=frame.opening[at],
-            slip=frame.slip[at],
-            sigma=frame.normal[at],
-            tau=frame.tangential[at],
-            damage=frame.damage[at],
-            state=frame.state[at].astype(np.uint8),
+            {
+                DISPLACEMENT: _in_space(((a + b - jump) / 2)[at] + share[:, None] * jump[at]),
+                "normal": _in_space(points.normal[at]),
+                "jump [m]": _in_space(jump[at]),
+                "opening [m]": frame.opening[at],
+                "slip [m]": frame.slip[at],
+                "traction [Pa]": _in_space(traction[at]),
+                "normal stress [Pa]": frame.normal[at],
+                "shear stress [Pa]": frame.tangential[at],
+                "damage": frame.damage[at],
+                "state": frame.state[at].astype(np.uint8),
+            },
         )
         joint = np.tile(points.joint[pair[:, 0]], 2)
         state, inner = np.tile(joint_states(frame.state[pair]), 2), self._scene.joints.inner[joint]
-        _add(grid.cell_data, joint=joint, inner=inner.astype(np.uint8), state=state.astype(np.uint8))
-        _add(grid.field_data, multiplier=[frame.multiplier])
+        _add(grid.cell_data, {"joint": joint, "inner": inner.astype(np.uint8), "state": state.astype(np.uint8)})
+        _add(grid.field_data, _moment(frame))
         return grid
 
     @cached_property
@@ -104,7 +128,7 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
     count = np.diff(blocks.cell_offsets)
     corner = np.asarray(blocks.cell_connectivity)[np.repeat(own, count)]
     first = np.concatenate([[0], np.cumsum(count[own])])
-    displacement = np.asarray(blocks.point_data["displacement"])[corner, :2]
+    displacement = np.asarray(blocks.point_data[DISPLACEMENT])[corner, :2]
     quads = joints.celltypes == QUAD
     corners = joints.cells_dict[QUAD]
     return DeformedShape(
@@ -115,7 +139,7 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
         np.asarray(blocks.cell_data["block"])[own],
         outer_edges(corner, first),
         np.asarray(joints.points)[corners, :2],
-        np.asarray(joints.point_data["displacement"])[corners, :2],
+        np.asarray(joints.point_data[DISPLACEMENT])[corners, :2],
         np.asarray(joints.cell_data["state"])[quads],
         float(blocks.field_data["multiplier"][0]),
         visible_scale(scene, displacement),
@@ -128,6 +152,24 @@ def _templates(blocks: Blocks) -> Indices:
     seen: dict[bytes, int] = {}
     pieces = np.split(shape, blocks.first[1:-1])
     return np.array([seen.setdefault(piece.tobytes(), len(seen)) for piece in pieces])
+
+
+def _tensors(stress: Array) -> dict[str, Array]:
+    """Stresses ``(n, 3)`` as VTK's symmetric tensors (xx, yy, zz, xy, yz, xz), and the principal ones in the plane."""
+    x, y, shear = stress.T
+    none, middle, radius = np.zeros(len(stress)), (x + y) / 2, np.hypot((x - y) / 2, shear)
+    tensor = np.column_stack([x, y, none, shear, none, none])
+    return {
+        "stress [Pa]": tensor,
+        "largest principal stress [Pa]": middle + radius,
+        "smallest principal stress [Pa]": middle - radius,
+    }
+
+
+def _moment(frame: Frame) -> dict[str, ArrayLike]:
+    """The load of a frame and, of a ground that moves, its time."""
+    moment = {"multiplier": frame.multiplier} | ({} if frame.time is None else {"time [s]": frame.time})
+    return {name: [value] for name, value in moment.items()}
 
 
 def _in_space(vectors: Array) -> Array:
@@ -146,7 +188,7 @@ def _grid(points: Array, cells: list[tuple[int, Indices, Indices]]) -> Grid:
     return pv.UnstructuredGrid(connectivity, types.astype(np.uint8), _in_space(points))
 
 
-def _add(data: Any, **arrays: ArrayLike) -> None:
+def _add(data: Any, arrays: Mapping[str, ArrayLike]) -> None:
     """Add named arrays to a grid's data; whole numbers take four bytes."""
     for name, values in arrays.items():
         array = np.asarray(values)

@@ -8,6 +8,7 @@ the same steps to `BEYOND` times the first fall, and each window in which the wa
 import math
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from runningbond.results.reactions import AT_REST
 from runningbond.scene import Scene
 from runningbond.scene.history import STANDARD_GRAVITY
 
-from .follow import follow
+from .follow import AFTER, follow
 from .response import Response
 from .resting import Resting
 
@@ -82,21 +83,20 @@ def critical_scale(
     note
         What the message is to say besides.
     observe
-        As of `follow`, of every run.
+        As of `follow`, of every run; who observes is shown the fall, at the upper scale, once more at the end.
 
     Returns
     -------
     Outcome
-        `curve` has the largest displacement of the upper corners, and λ, of every scale tried; `path` whether the wall
-        stood there, and its drift in the end.
+        `motion` is that of `Response.shape` in the fall, the farthest corner moved by one metre; `curve` has the
+        largest displacement of the upper corners, and λ, of every scale tried; `path` whether the wall stood there, and
+        its drift in the end.
     """
     start, rest = time.perf_counter(), Resting.of(scene, model, system)
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms, steps=rest.state.steps)
     outcome = replace(outcome, seconds=time.perf_counter() - start)
-    if rest.verdict == "collapse":
-        return replace(outcome, status="infeasible", message="collapses under its dead load")
-    if rest.verdict == "undecided":
-        return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
+    if rest.trouble:
+        return replace(outcome, status=rest.trouble[0], message=rest.trouble[1])
     search, stopped = Search(lambda scale: follow(rest, scale, rows=ROWS, observe=observe), {}), False
     unit = STANDARD_GRAVITY / float(np.hypot(*rest.history.peak))
     try:
@@ -104,6 +104,9 @@ def critical_scale(
     except KeyboardInterrupt:
         stopped = True
     outcome = _judged(outcome, rest, search, tolerance, stopped)
+    if outcome.upper is not None and observe is not no_observer and not stopped:
+        with suppress(KeyboardInterrupt):
+            follow(rest, outcome.upper, after=AFTER, rows=ROWS, observe=observe)
     message = "; ".join(filter(None, (outcome.message, note)))
     return replace(outcome, message=message, seconds=time.perf_counter() - start)
 
@@ -145,7 +148,7 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
         return replace(outcome, message="interrupted: the bracket so far")
     if upper is None:
         return replace(outcome, message=f"stands at every scale tried, up to {number(runs[-1].scale)}")
-    outcome = replace(outcome, motion=fastest_corner_by_one(rest.scene.blocks, upper.velocity))
+    outcome = replace(outcome, motion=fastest_corner_by_one(rest.scene.blocks, upper.shape))
     doubtful = max((run for run in (lower, upper) if run), key=lambda run: run.unaccounted)
     if doubtful.unaccounted > MISSED:
         message = (

@@ -13,10 +13,11 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.dynamics import Observer, Run, State, no_observer
-from runningbond.scene import Array, SceneError
+from runningbond.results.mechanism import carried
+from runningbond.scene import Array
 
 from .ground import Ground
-from .response import Response, Verdict, unaccounted
+from .response import ENERGIES, Response, Verdict, unaccounted
 from .resting import Resting
 
 TURNED = math.radians(60)
@@ -30,6 +31,12 @@ ROWS = 200
 
 PART = 0.8
 """Time step, in stable ones: an impact makes up or loses energy by its square."""
+
+SHAPE = 0.1
+"""Largest displacement of a corner, in sizes of the wall, at the moment whose shape a response keeps."""
+
+AFTER = 0.5
+"""Time [s] for which a wall that falls is filmed."""
 
 PATIENCE = 30
 """Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided."""
@@ -48,6 +55,8 @@ class _Log:
         self._calm = RISE * rest.gravity * float(ground.inertia[0].sum()) * rest.scene.block_size
         self._dead = ground.dead()
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
+        self._blocks, self._far = rest.scene.blocks, SHAPE * rest.size
+        self.shape = np.zeros((len(self._blocks), 3))
         self._motion, self._places, self._energies = state.motion.copy(), self._where(state), self._energy(state)
         self._momentum, self._time = ground.momentum(state), state.time
         self.rows: list[tuple[float, Array, Array, float, Array, Array, int]] = []
@@ -59,6 +68,9 @@ class _Log:
         system, now = self._run.system, self.ground.time(state)
         moved = system.motion_of_bodies(state.motion - self._motion)
         fell = self._movable & ((-moved[:, 1] > self._size / 2) | (np.abs(moved[:, 2]) > TURNED))
+        shape = system.motion_of_blocks(state.motion - self._motion)
+        if np.hypot(*carried(self._blocks, self._blocks.owner, self._blocks.vertices, shape).T).max() <= self._far:
+            self.shape = shape
         self.first += [block for block in dict.fromkeys(system.owner[fell].tolist()) if block not in self.first]
         momentum, span = self.ground.momentum(state), state.time - self._time
         pushed = (momentum - self._momentum) / span if span else np.zeros(2)
@@ -104,19 +116,16 @@ def follow(
     rows
         Rows in a second, and at least in the record.
     observe
-        Called with the run, its state and λ at every row.
+        Called with the run, its state and λ at the beginning and at every row.
 
-    Raises
-    ------
-    SceneError
-        For a wall that does not rest under its dead load.
+    Returns
+    -------
+    Response
+        Without a row for a wall that does not rest under its dead load, ``infeasible`` or ``undecided``.
     """
-    if rest.verdict != "stable":
-        what = (
-            "falls under its dead load" if rest.verdict == "collapse" else "does not come to rest under its dead load"
-        )
-        raise SceneError(rest.scene.title, f"{what}: there is nothing to shake")
     begin, history = time.perf_counter(), rest.history
+    if rest.trouble:
+        return _not_shaken(rest, scale, rest.top if points is None else np.reshape(points, (-1, 2)), *rest.trouble)
     run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=PART)
     run.led, state = True, rest.state.copy()
     ground = Ground(run, history, scale, state.time)
@@ -124,6 +133,7 @@ def follow(
     verdict: Verdict = "undecided"
     fell, now, swing = math.inf, 0.0, rest.swing
     end = history.duration + PATIENCE * swing
+    observe(run, state, scale)
     with threadpool_limits(limits=1, user_api="blas"):
         while verdict == "undecided" and now < end:
             ground.bring(state, now + min(1.0, history.duration if now < history.duration else 1.0) / rows)
@@ -136,6 +146,16 @@ def follow(
             elif now >= history.duration + swing and log.is_calm(now - swing):
                 verdict = "stands"
     return _response(rest, scale, log, run, state, (verdict, fell), time.perf_counter() - begin)
+
+
+def _not_shaken(rest: Resting, scale: float, points: Array, verdict: Verdict, message: str) -> Response:
+    """The response of a wall that does not rest."""
+    none, nowhere = np.zeros((0, 2)), np.zeros((len(rest.scene.blocks), 3))
+    return Response(
+        *(rest.scene.title, rest.model, scale, verdict, message, points),
+        *(none[:, 0], none, np.zeros((0, len(points), 2)), none[:, 0], none, np.zeros((0, len(ENERGIES)))),
+        *(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), nowhere, nowhere, math.nan, rest.state.steps),
+    )
 
 
 def _response(
@@ -171,8 +191,8 @@ def _response(
         energy=energy,
         fallen=fallen,
         first=np.array(log.first, dtype=np.int64),
-        motion=run.system.motion_of_blocks(state.motion),
-        velocity=run.system.motion_of_blocks(state.velocity),
+        motion=run.system.motion_of_blocks(state.motion - rest.state.motion),
+        shape=log.shape,
         unaccounted=lost,
         steps=state.steps - rest.state.steps,
         seconds=seconds,

@@ -1,5 +1,6 @@
 """What a wall does when its ground moves: time series, blocks that fell, and a verdict."""
 
+import math
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
@@ -7,15 +8,16 @@ import numpy as np
 
 from runningbond.scene import Array, Indices
 
-Verdict: TypeAlias = Literal["stands", "collapse", "undecided"]
-"""Whether a wall has come to rest, a block of it has fallen, or neither within the time that was followed."""
+Verdict: TypeAlias = Literal["stands", "collapse", "undecided", "infeasible"]
+"""Whether a wall has come to rest, a block of it has fallen, or neither within the time that was followed; or whether
+it falls under its dead load, so that there is nothing to shake."""
 
 ENERGIES = ("input", "weight", "kinetic", "stored", "friction", "damped")
 """Works of the ground's motion, in its frame, and of the dead load; energies; what is spent on friction and crushing
 or cracking, and on impacts and damping [J]."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Response:
     """Response of a wall to a motion of its ground, in the frame of the ground.
 
@@ -45,8 +47,9 @@ class Response:
         Blocks that have fallen.
     first : (m,) int
         Blocks that had fallen by the end, the first ones first.
-    motion, velocity : (nb, 3) float
-        Displacement of each block's centroid [m] and its rotation [rad] at the end, and their rates.
+    motion, shape : (nb, 3) float
+        Displacement of each block's centroid [m] and its rotation [rad] since the wall was at rest: at the end, and at
+        the last moment at which no corner had gone farther than a tenth of the wall's size.
     unaccounted
         Largest share of the energy supplied that the ledger misses.
     steps
@@ -70,7 +73,7 @@ class Response:
     fallen: Indices
     first: Indices
     motion: Array
-    velocity: Array
+    shape: Array
     unaccounted: float
     steps: int
     seconds: float = 0.0
@@ -82,20 +85,26 @@ class Response:
 
     @property
     def residual_drift(self) -> float:
-        """Drift at the end."""
-        return float(self.drift[-1])
+        """Drift at the end; not a number, as the next, of a wall that was not shaken."""
+        return float(self.drift[-1]) if len(self.drift) else math.nan
 
     @property
     def peak_drift(self) -> float:
         """Largest drift, by its size."""
-        return float(np.abs(self.drift).max())
+        return float(np.abs(self.drift).max()) if len(self.drift) else math.nan
+
+    @property
+    def line(self) -> str:
+        """The message, after its verdict where that is not in it."""
+        return f"infeasible: {self.message}" if self.verdict == "infeasible" else self.message
 
     def summary(self) -> dict[str, Any]:
-        """The scalars."""
+        """The scalars; None is what there is not."""
         names = ("scene", "model", "verdict", "scale", "peak_drift", "residual_drift", "unaccounted")
-        fallen = {"fallen": self.first.tolist(), "time": float(self.time[-1])}
+        fallen = {"fallen": self.first.tolist(), "time": float(self.time[-1]) if len(self.time) else math.nan}
         last = {name: getattr(self, name) for name in ("steps", "seconds", "message")}
-        return {name: getattr(self, name) for name in names} | fallen | last
+        found = {name: getattr(self, name) for name in names} | fallen | last
+        return {name: None if isinstance(x, float) and math.isnan(x) else x for name, x in found.items()}
 
     def columns(self) -> dict[str, Array]:
         """The time series column by column, with units."""
@@ -116,6 +125,9 @@ class Response:
             "residual [J]": self.residual,
             "fallen": self.fallen,
         }
+
+    def __repr__(self) -> str:
+        return f"<Response of {self.model} on {self.scene!r}, λ = {self.scale:g}: {self.line.split(';')[0]}>"
 
 
 def supplied(energy: Array) -> Array:

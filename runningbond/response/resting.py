@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -46,6 +47,15 @@ class Resting:
         return cls(scene, model, system, state, verdict, viscous)
 
     @property
+    def trouble(self) -> tuple[Literal["infeasible", "undecided"], str] | None:
+        """What is to be said of a wall that does not rest, and so cannot be shaken."""
+        if self.verdict == "collapse":
+            return "infeasible", "collapses under its dead load"
+        if self.verdict == "undecided":
+            return "undecided", "the budget ran out before the wall came to rest under its dead load"
+        return None
+
+    @property
     def history(self) -> History:
         """The motion of its ground; a scene without is refused."""
         if self.scene.history is None:
@@ -57,6 +67,12 @@ class Resting:
         """Height of the wall [m]."""
         low, high = self.scene.blocks.extent(self.scene.wall)
         return float(high[1] - low[1])
+
+    @property
+    def size(self) -> float:
+        """Size of the wall: the root of its length times its height [m]."""
+        low, high = self.scene.blocks.extent(self.scene.wall)
+        return float(np.sqrt(np.prod(high - low)))
 
     @property
     def gravity(self) -> float:

@@ -42,7 +42,7 @@ def replacing(path: Path) -> Iterator[Path]:
         os.close(handle)
         try:
             yield Path(name)
-            with open(name, "rb") as file:
+            with open(name, "r+b") as file:  # Windows brings nothing to the disk through a file that is only read
                 os.fsync(file.fileno())
             os.chmod(name, 0o644)
             os.replace(name, path)

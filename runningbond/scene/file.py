@@ -4,13 +4,13 @@ import math
 import os
 import tomllib
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 from .assignment import ANY, BEAM, GROUND, read_assignments
 from .beam import read_beam
 from .errors import SceneError, keys_of
 from .loads import read_load
-from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Stiffness, check_friction
+from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Softening, Stiffness, check_friction
 from .outlines import read_outlines
 from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, Range
 from .supports import SUPPORT_KINDS, SupportKind
@@ -133,7 +133,7 @@ def _joint_material(joint: Table) -> JointMaterial:
             elasticity=_elasticity(joint),
             closure=_closure(joint),
             law=joint.value("law"),
-            softening=joint.value("softening", "linear"),
+            softening=cast(Softening, joint.choice("softening", get_args(Softening), "linear")),
             name=_material_name(joint),
             **joint.numbers(JointMaterial, "friction"),
         )

@@ -9,7 +9,6 @@ import numpy as np
 from .actions import Action, nonzero_vector
 from .errors import SceneError
 from .forces import Forces
-from .ranges import one_of
 from .table import Table
 
 if TYPE_CHECKING:
@@ -43,10 +42,8 @@ class Lateral(Action):
     @classmethod
     def read(cls, table: Table) -> "Lateral":
         """The load of a table with a direction, to the right unless it says another."""
-        direction = table.value("direction", "right")
-        if isinstance(direction, str):
-            direction = SIDES[one_of(table.key("direction"), direction, SIDES)]
-        return cls(direction)
+        given = isinstance(table.peek("direction"), (list, tuple))
+        return cls(table.vector("direction") if given else SIDES[table.choice("direction", SIDES, "right")])
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Iterable
 from dataclasses import MISSING, fields
-from typing import Any
+from typing import Any, ClassVar
 
 from .errors import SceneError
 from .ranges import Range, one_of, ranges_of, suggestion, vector
@@ -12,12 +12,17 @@ from .ranges import Range, one_of, ranges_of, suggestion, vector
 class Table:
     """A TOML table being read: its full name, empty for the file's top level, and what the file holds under that."""
 
+    visits: "ClassVar[list[tuple[str, dict[str, Any], dict[str, dict[str, Any]]]] | None]" = None
+    """Where a list stands here, each table adds its name, its content, and what is asked of its keys (`schema`)."""
+
     def __init__(self, name: str, content: Any) -> None:
         if not isinstance(content, dict):
             raise SceneError(name, f"must be a table, [{name}] with keys of its own", content)
         self.name = name
         self._left: dict[str, Any] = dict(content)
-        self._keys: list[str] = []
+        self._keys: dict[str, dict[str, Any]] = {}  # what is asked of each
+        if Table.visits is not None:
+            Table.visits.append((name, content, self._keys))
 
     def key(self, key: str) -> str:
         """Full name of a key."""
@@ -28,7 +33,7 @@ class Table:
 
     def value(self, key: str, default: Any = None) -> Any:
         """Whatever the key holds; `default` where it is not present."""
-        self._keys.append(key)
+        self._ask(key)
         return self._left.pop(key, default)
 
     def peek(self, key: str) -> Any:
@@ -37,12 +42,16 @@ class Table:
 
     def required(self, key: str, wanted: str) -> Any:
         """Whatever the key holds; a file without it is refused."""
-        self._keys.append(key)
+        self._ask(key, required=True)
         if key not in self._left:
             likely = difflib.get_close_matches(key, [k for k in self._left if k not in self._keys], n=1)
             hint = f"; is {self.key(likely[0])} a misspelling of it?" if likely else ""
             raise SceneError(self.key(key), f"is missing; it must be {wanted}{hint}")
         return self._left.pop(key)
+
+    def _ask(self, key: str, **what: Any) -> None:
+        """Note what is asked of a key: that it is there, a range, words, a kind of value."""
+        self._keys.setdefault(key, {}).update(what)
 
     def table(self, key: str) -> "Table":
         """A table inside this one."""
@@ -56,6 +65,7 @@ class Table:
     def tables_by_name(self, key: str) -> "list[Table]":
         """The tables of a table of tables, none where the key is not present."""
         outer = self.optional_table(key)
+        self._ask(key, kind="tables by name")
         return [] if outer is None else [Table(outer.key(name), inner) for name, inner in outer._left.items()]
 
     def list_of_tables(self, key: str) -> "list[Table]":
@@ -67,10 +77,12 @@ class Table:
 
     def number(self, key: str, within: Range) -> float:
         """A number in a range."""
+        self._ask(key, within=within)
         return within.take(self.key(key), self.required(key, str(within)))
 
     def optional_number(self, key: str, within: Range) -> float | None:
         """A number where the key is present, None where it is not."""
+        self._ask(key, within=within)
         value = self.value(key)
         return None if value is None else within.take(self.key(key), value)
 
@@ -86,6 +98,7 @@ class Table:
 
     def text(self, key: str, default: str | None = None) -> str:
         """A string; `default` None makes the key required."""
+        self._ask(key, kind="text")
         value = self.required(key, "a string") if default is None else self.value(key, default)
         if not isinstance(value, str):
             raise SceneError(self.key(key), "must be a string", value)
@@ -94,12 +107,14 @@ class Table:
     def choice(self, key: str, options: Iterable[str], default: str | None = None) -> str:
         """One of a few words."""
         words = list(options)
+        self._ask(key, words=words)
         wanted = "one of " + ", ".join(f'"{word}"' for word in words)
         value = self.required(key, wanted) if default is None else self.value(key, default)
         return one_of(self.key(key), value, words)
 
     def vector(self, key: str) -> tuple[float, float]:
         """A pair of finite numbers."""
+        self._ask(key, kind="vector")
         return vector(self.key(key), self.required(key, "a pair of numbers [x, y]"))
 
     def rows(self, key: str) -> list[list[float]]:
@@ -119,5 +134,5 @@ class Table:
         """Refuse keys that have no meaning."""
         for key, value in self._left.items():
             place = f"[{self.name}]" if self.name else "a scene file"
-            what = f"is not a key of {place}{suggestion(key, self._keys)}"
+            what = f"is not a key of {place}{suggestion(key, list(self._keys))}"
             raise SceneError(self.key(key), what, "a table" if isinstance(value, dict) else value)

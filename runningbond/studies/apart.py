@@ -5,17 +5,27 @@
 
 import json
 import os
-import resource
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
-from threading import Event
+from threading import Event, Thread
+from typing import Any
 
 from .study import Case, Row
+
+resource: Any
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None
+
+ENDED = -signal.SIGXCPU if resource else 152
+"""Exit code of a process that has worked too long."""
 
 LONGEST = 60  # processor seconds after which a run is ended, from `limit_time` on
 TOO_LONG = "too long"  # status of a case whose run took more than `LONGEST`
@@ -44,7 +54,7 @@ def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = 
         if process.poll() is None:
             process.kill()
             process.communicate()
-    if process.returncode == -signal.SIGXCPU:
+    if process.returncode == ENDED:
         return {"status": TOO_LONG, "message": f"more than {LONGEST} s of the processor"}
     if process.returncode:
         last = (complaint.strip().splitlines() or [f"signal {-process.returncode}"])[-1]
@@ -54,10 +64,25 @@ def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = 
 
 
 def limit_time() -> None:
-    """Let the system end this process once it has worked `LONGEST` seconds more."""
+    """Let the system, or a thread where it cannot, end this process once it has worked `LONGEST` seconds more."""
+    global _limit
+    if resource is None:
+        if _limit is None:
+            Thread(target=_watch, daemon=True).start()
+        _limit = time.process_time() + LONGEST
+        return
     used = resource.getrusage(resource.RUSAGE_SELF)
     _, hard = resource.getrlimit(resource.RLIMIT_CPU)
     resource.setrlimit(resource.RLIMIT_CPU, (int(used.ru_utime + used.ru_stime) + LONGEST, hard))
+
+
+_limit: float | None = None
+
+
+def _watch() -> None:
+    while _limit is None or time.process_time() < _limit:
+        time.sleep(POLL)
+    os._exit(ENDED)
 
 
 if __name__ == "__main__":

@@ -126,7 +126,7 @@ def sources_digest(sources: tuple[Path, ...]) -> str:
     for source in sources:
         for path in sorted(source.rglob("*")) if source.is_dir() else [source]:
             if path.suffix in (".py", ".toml"):
-                digest.update(f"{path.relative_to(source.parent)}\n".encode() + path.read_bytes())
+                digest.update(f"{path.relative_to(source.parent).as_posix()}\n".encode() + path.read_bytes())
     return digest.hexdigest()
 
 

@@ -9,6 +9,7 @@ import pytest
 
 import runningbond as rb
 from fem_interface.modal_wall import modal_wall
+from runningbond.compare.scatter import Scatter
 from runningbond.results import Outcome
 from runningbond.run_result import Result
 
@@ -151,3 +152,29 @@ def test_an_unknown_model_is_refused_with_what_there_is() -> None:
 def test_a_model_that_does_not_apply_says_why() -> None:
     with pytest.raises(rb.SceneError, match="mortar"):
         WALL.with_({"joint.mortar": None}).run("dem-static")
+
+
+def test_draws_and_responses_are_told_in_a_line() -> None:
+    ends = (3.0, 1.0, None, 5.0, 2.0, 4.0)
+    each = [Outcome("small", "mine", "collapse" if x else "undecided", multiplier=x) for x in ends]
+    told = "<Draws of mine on 'small', bits: 5 of 6 collapse, lowest 1.0000, mean 3.0000 ± 0.7071>"
+    assert repr(rb.Draws(tuple(each), Scatter())) == told
+    assert repr(rb.Draws(tuple(each[2:3]), Scatter())) == "<Draws of mine on 'small', bits: 0 of 1 collapse>"
+    found = rb.Fragility(np.ones(3), np.ones(1), 0.25, 0.4, (0.2, 0.3), WALL.run("limit").blocks, 2)
+    records = "3 records, 1 under which it stands, 2 left out"
+    assert repr(found) == f"<Fragility: median 0.25 g, dispersion 0.4; {records}>"
+
+
+def test_responses_are_told_in_a_line_and_drawn() -> None:
+    pulse = {"pulse": {"kind": "sine", "amplitude": 2.0, "period": 0.05}, "quantity": "acceleration"}
+    block: dict[str, Any] = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2, "history": pulse}
+    wall = rb.Wall.courses([[1]], **block, **MATERIAL)
+    response = wall.respond("dem-dynamic", scale=0.5)
+    assert isinstance(response, rb.Response)
+    assert repr(response).startswith("<Response of dem-dynamic on 'small', λ = 0.5: stands, with a residual drift")
+    assert "<svg" in (response._repr_svg_() or "")
+    assert (response._repr_png_() or b"").startswith(b"\x89PNG")
+    falls = wall.with_({"load.gravity": [9.0, -3.0]}).respond("dem-dynamic")
+    assert repr(falls) == "<Response of dem-dynamic on 'small', λ = 1: infeasible: collapses under its dead load>"
+    assert falls._repr_svg_() is None
+    assert falls._repr_png_() is None

@@ -1,12 +1,16 @@
 """Fragility over a set of records."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 import runningbond as rb
+from runningbond.fragilities import fitted
 from runningbond.scene.history import pulse
+from runningbond.tables import table
 
 
 @pytest.mark.long
@@ -40,3 +44,51 @@ def test_fragility_of_a_block_over_some_records(tmp_path: Path) -> None:
 def test_a_wall_without_a_record_has_no_fragility() -> None:
     with pytest.raises(rb.SceneError, match="load.history.file: is missing"):
         rb.fragility(rb.read("panel-01"), ["a.csv"], "dem-dynamic")
+
+
+def test_records_under_which_the_wall_stands_count_as_bounds_from_below() -> None:
+    """A log-normal sample known up to a level gives its median and dispersion back; leaving the rest out does not."""
+    n, median, dispersion = 400, 0.5, 0.4
+    sample = median * np.exp(dispersion * norm.ppf((np.arange(n) + 0.5) / n))
+    for level in (0.5, 0.7):
+        found = fitted(np.minimum(sample, level), sample > level)
+        known = fitted(sample[sample <= level], np.zeros((sample <= level).sum(), dtype=bool))
+        assert abs(np.log(found[0] / median)) < dispersion / np.sqrt(n)
+        assert abs(found[1] - dispersion) < dispersion / np.sqrt(2 * n)
+        assert abs(found[0] - median) < 0.1 * abs(known[0] - median)
+        assert abs(found[1] - dispersion) < 0.1 * abs(known[1] - dispersion)
+
+
+def test_all_records_known_have_the_mean_and_deviation_of_their_logarithms() -> None:
+    logs = np.array([-0.7, 0.1, 0.2, 0.9])
+    found = fitted(np.exp(logs), np.zeros(4, dtype=bool))
+    assert found == pytest.approx((np.exp(logs.mean()), logs.std()))
+
+
+def test_a_fragility_takes_records_that_never_bring_the_wall_down(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """By λ: two falls, two that stand to the last scale tried, one that broke and one that fell at every scale."""
+    rows: dict[str, list[Any]] = {
+        "status": ["collapse", "undecided", "collapse", "undecided", "failed", "undecided"],
+        "multiplier": [0.5, None, 1.0, None, None, None],
+        "lower": [0.49, 2.0, 0.99, 3.0, 1.0, None],
+        "upper": [0.51, None, 1.01, None, 2.0, 0.1],
+    }
+    monkeypatch.setattr("runningbond.fragilities.sweep", lambda *_, **__: table(rows))
+    for name in (records := [str(tmp_path / f"{k}.csv") for k in range(6)]):
+        Path(name).write_text("time,x\n0,0\n0.5,0.25\n1,0\n")
+    size: dict[str, Any] = {
+        "block_width": 0.5,
+        "block_height": 1.0,
+        "thickness": 0.1,
+        "density": 1800.0,
+        "friction": 0.6,
+    }
+    wall = rb.Wall.courses([[1]], **size, history={"file": records[0], "quantity": "g"})
+    found = rb.fragility(wall, records, "dem-dynamic", draws=20)
+    assert found.intensity == pytest.approx([0.125, 0.25])
+    assert found.stood == pytest.approx([0.5, 0.75])
+    assert found.left_out == 2
+    assert found.median > 0.125 * np.sqrt(2)
+    assert found.interval[0] <= found.median <= found.interval[1]

@@ -2,7 +2,6 @@
 
 import os
 import platform
-import resource
 import statistics
 import sys
 import time
@@ -11,8 +10,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import psutil
+
 from runningbond.studies import Row
-from runningbond.studies.apart import limit_time
+from runningbond.studies.apart import limit_time, resource
 
 from .parameters import settings_of
 from .questions import Answer, ask
@@ -91,5 +92,7 @@ def most_memory() -> float:
         for line in Path("/proc/self/status").read_text().splitlines():
             if line.startswith("VmHWM:"):
                 return 1024 * float(line.split()[1])
+    if resource is None:  # Windows
+        return float(psutil.Process().memory_info().peak_wset)
     unit = 1 if sys.platform == "darwin" else 1024
     return float(unit * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)

@@ -1,0 +1,13 @@
+"""``runningbond schema``."""
+
+import json
+
+from runningbond.scene.schema import scene_schema
+
+from .terminal import DONE
+
+
+def schema() -> int:
+    """Print the JSON schema of scene files, with which editors complete and check them."""
+    print(json.dumps(scene_schema(), indent=2, allow_nan=False))
+    return DONE

@@ -1,0 +1,123 @@
+"""Fragility: how likely a wall is brought down by motions of the ground of some intensity, over a set of records."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr
+from scipy.stats import CensoredData, lognorm
+
+from .compare.model import Model
+from .compare.models import TOLERANCE
+from .scene import Array, Mask, SceneError
+from .scene.history import STANDARD_GRAVITY
+from .sweeps import sweep
+from .tables import Table
+from .wall import Wall
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fragility:
+    """Log-normal fragility of a wall.
+
+    Parameters
+    ----------
+    intensity : (n,) float
+        Peak acceleration of the ground at which each record brings the wall down, ascending [g].
+    stood : (m,) float
+        Largest one tried of records that never bring it down, ascending [g].
+    median, dispersion
+        Of the log-normal distribution that fits them by maximum likelihood, `stood` as bounds from below (censored on
+        the right): median, and standard deviation of the logarithm.
+    interval
+        Of the median, at 90 %, from records drawn again and again with a seed; without an upper end (infinite) where
+        too few of them bring the wall down.
+    runs
+        A row a record: its bracket of λ, and what became of it.
+    left_out
+        Records without an answer.
+    """
+
+    intensity: Array
+    stood: Array
+    median: float
+    dispersion: float
+    interval: tuple[float, float]
+    runs: Table
+    left_out: int
+
+    def probability(self, intensity: Array | float) -> Array:
+        """Probability of a collapse at intensities [g]."""
+        return np.asarray(ndtr(np.log(np.asarray(intensity) / self.median) / max(self.dispersion, 1e-12)))
+
+    def __repr__(self) -> str:
+        records = f"{len(self.intensity)} records, {len(self.stood)} under which it stands, {self.left_out} left out"
+        return f"<Fragility: median {self.median:.3g} g, dispersion {self.dispersion:.3g}; {records}>"
+
+
+def fragility(
+    wall: Wall,
+    records: Iterable[str | Path],
+    model: str | Model,
+    *,
+    tolerance: float = TOLERANCE,
+    folder: str | Path | None = None,
+    jobs: int = -1,
+    seed: int = 0,
+    draws: int = 1000,
+) -> Fragility:
+    """Find the critical scale of every record, and the fragility that follows.
+
+    Parameters
+    ----------
+    wall
+        The wall, with a ``load.history`` whose file is replaced by each record's in turn.
+    records
+        Files.
+    model, tolerance, folder, jobs
+        As of `sweep`: with a folder, only records that are not there are computed.
+    seed, draws
+        Of the interval of the median.
+
+    Raises
+    ------
+    SceneError
+        Where the wall has no record, or fewer than two records bring it down.
+    """
+    if wall.scene.history is None or "file" not in wall.description["load"]["history"]:
+        raise SceneError("load.history.file", "is missing: the record that others are to take the place of")
+    names = [str(record) for record in records]
+    runs = sweep(wall, {"load.history.file": names}, model, tolerance=tolerance, folder=folder, jobs=jobs)
+    levels: dict[bool, list[float]] = {True: [], False: []}  # by whether the wall fell
+    for name, *answer in zip(names, *(runs[key] for key in ("status", "multiplier", "lower", "upper")), strict=True):
+        status, scale, lower, upper = answer[0], *(math.nan if x is None else float(x) for x in answer[1:])
+        fell = status == "collapse"
+        if fell or (status == "undecided" and lower > 0 and math.isnan(upper)):
+            history: Any = wall.with_({"load.history.file": name}).scene.history
+            peak = float(np.hypot(*history.peak)) / STANDARD_GRAVITY
+            levels[fell].append((scale if fell else lower) * peak)
+    fallen, stood = np.sort(levels[True]), np.sort(levels[False])
+    if len(fallen) < 2:
+        raise SceneError("records", "must be two at least that bring the wall down", len(fallen))
+    level, stands = np.concatenate([fallen, stood]), np.arange(len(fallen) + len(stood)) >= len(fallen)
+    again = np.random.default_rng(seed).integers(len(level), size=(draws, len(level)))
+    medians = [fitted(level[drawn], stands[drawn])[0] for drawn in again]
+    low, high = np.quantile(medians, [0.05, 0.95], method="inverted_cdf").tolist()
+    left_out = len(names) - len(level)
+    return Fragility(fallen, stood, *fitted(level, stands), (low, high), runs, left_out)
+
+
+def fitted(level: Array, stands: Mask) -> tuple[float, float]:
+    """Median and dispersion of the log-normal distribution of what is at a level, or where it stands above it.
+
+    Without a fall the median is infinite.
+    """
+    if stands.all():
+        return math.inf, 0.0
+    start = np.log(level)
+    known = CensoredData.right_censored(level, stands)
+    shape, _, median = lognorm.fit(known, max(float(start.std()), 0.1), scale=float(np.exp(start.mean())), floc=0)
+    return float(median), float(shape)

@@ -1,0 +1,220 @@
+"""The scene file as a JSON schema, for editors: what the reader asks of each table and key while it reads some scenes.
+
+The scenes come to every key between them; what they are worth as walls does not matter.
+"""
+
+import re
+from collections.abc import Iterable
+from contextlib import suppress
+from copy import deepcopy
+from typing import Any, TypeAlias
+
+from .errors import SceneError
+from .file import scene_from_dict
+from .loads import DEAD_KINDS, KINDS
+from .ranges import Range
+from .table import Table
+
+Schema: TypeAlias = dict[str, Any]
+
+ROW = {"from": [0.0, 0.6], "to": [1.2, 0.6]}
+AT = {"at": [0.3, 0.6], "force": [0.0, -1.0]}
+BOX = [[-1.0, -9.0], [9.0, 0.55]]
+EXAMPLE_LOADS: dict[str, Schema] = {
+    "lateral": {"direction": [1.0, 0.0]},
+    "tilt": {"direction": [-1.0, 0.0]},
+    "body": {"acceleration": [1.0, 0.0]},
+    "point": AT,
+    "line": {**ROW, "force": [0.0, -1.0]},
+    "moment": {"at": [0.3, 0.5], "moment": 1.0},
+    "settlement": {"box": BOX, "by": [0.0, -0.1], "rotation_angle": 1.0, "about": [0.0, 0.0]},
+}
+TURNED = {"kind": "settlement", "box": BOX, "rotation_angle": 1.0}
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+STRENGTH = {"cohesion": 1e5, "tensile_strength": 5e4, "inset": 0.0, "fracture_energy_1": 9.0, "fracture_energy_2": 9.0}
+CRUSHING = {"compressive_strength": 1e6, "compressive_fracture_energy": 1e4, "cap_shear": 9.0, "peak_closure": 1e-5}
+SPRINGS = {"normal_stiffness": 1e9, "shear_stiffness": 1e9, "closure": {"growth": 1e4, "stiffest": 1e10}}
+BLOCKS = {"block_width": 0.4, "thickness": 0.2}
+TIE = {"from": [0.1, 0.5], "to": [9.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 1e4}
+PULSE = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 1.0}, "quantity": "g", "scale": 1.0}
+PLAIN: Schema = {
+    "wall": {**BLOCKS, "block_height": 0.2, "length": 1.2, "height": 0.6, "first_course": "full", "ends": "flush"},
+    "block": {"density": 1800.0},
+    "joint": {"friction": 0.6},
+    "support": {"kind": "base"},
+    "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+}
+LISTED: Schema = {
+    "title": "every table",
+    "wall": {**BLOCKS, "courses": [[1, 1, 1]] * 3, "course_heights": [0.2, 0.2, 0.2]},
+    "materials": {"oak": {"density": 700.0, "young": 1e10, "poisson": 0.3}},
+    "joints": {"glue": {"friction_angle": 35.0, **STRENGTH, **CRUSHING, "mortar": MORTAR, "softening": "linear"}},
+    "inner_joint": {"friction": 0.7, **SPRINGS},
+    "assign": [
+        {"block": "oak", "blocks": [0]},
+        {"block": "oak", "box": BOX},
+        {"joint": "glue", "between": ["oak", "*"], "orientation": "bed"},
+        {"joint": "glue", "orientation": "bed"},
+        {"joint": "glue", "box": BOX},
+    ],
+    "beam": {
+        "height": 0.1,
+        "mass": 1.0,
+        "joint": "glue",
+        "force": [0.0, -1.0],
+        "drive": {"force": [1.0, 0.0], "at": 0.6},
+    },
+    "tie": [TIE, {**TIE, "preload": 1.0}],
+    "load": {
+        "gravity": [0.0, -9.81],
+        "live": [
+            {"kind": kind, **EXAMPLE_LOADS[kind], **changed}
+            for changed in ({}, {"direction": "right"})
+            for kind in KINDS
+            if kind != "settlement" and changed.keys() <= EXAMPLE_LOADS[kind].keys()
+        ],
+        "dead": [*({"kind": kind, **EXAMPLE_LOADS[kind]} for kind in DEAD_KINDS), {"kind": "lateral"}],
+    },
+}
+OPENED = {**BLOCKS, "block_height": 0.2, "length": 2.4, "height": 1.2}
+LINTEL = {"height": 0.2, "bearing": 0.2}
+HOLE = {"from": [0.4, 0.2], "to": [0.8, 0.6]}
+LOW = {"from": [1.4, 0.2], "to": [2.0, 0.4], "lintel": LINTEL}
+LED = {"height": 0.1, "joint": "lime", "condition": "level", "force": [0.0, -1.0], "force_line": "fixed"}
+
+ALIKE = {r"^materials\.[^.]+": "block", r"^joints\.[^.]+": "joint", r"^inner_joint": "joint"}
+"""Tables with the keys of others."""
+
+SCENES: tuple[Schema, ...] = (
+    PLAIN,
+    LISTED,
+    {
+        "materials": {"oak": {"density": 700.0}},
+        "wall": {
+            **OPENED,
+            "opening": [HOLE, {**HOLE, "from": [1.4, 0.2], "to": [2.0, 0.6], "lintel": {**LINTEL, "material": "oak"}}],
+        },
+        "joints": {"lime": {"friction": 0.5}},
+        "beam": {**LED, "drive": {"displacement": [[0.01, -0.01]], "rate": 1e-3}},
+        "load": {"gravity": 9.81},
+    },
+    {
+        "wall": {**OPENED, "opening": [{**HOLE, "lintel": {**LINTEL, "material": "elm"}}, LOW]},
+        "materials": {"elm": {"density": 600.0}},
+        "assign": [{"block": "elm", "blocks": [1]}],
+        "load": {"gravity": 9.81, "live": [{"kind": "settlement", **EXAMPLE_LOADS["settlement"]}], "dead": []},
+    },
+    {"beam": {"height": 0.1, "drive": {"displacement": [0.01, 0]}}, "load": {"gravity": 9.81}},
+    {"load": {"gravity": 9.81, "live": TURNED, "dead": {"kind": "point", **AT}}},
+    {"load": {"gravity": 9.81, "live": {"kind": "settlement", "box": BOX, "by": [0.0, -0.1]}}},
+    {"joints": {"lime": {"friction": 0.5}}, "assign": [{"joint": "lime", "orientation": "head"}]},
+    {"load": {"gravity": 9.81, "history": PULSE}},
+    {"load": {"gravity": 9.81, "history": {"file": "record.at2"}}},  # there is no such file, nor
+    {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "heal": 0.001}},  # such a drawing,
+    {"assign": [{"block": "block", "layer": "OAK"}, {"joint": "joint", "layer": "OAK"}]},  # and layers without one
+)
+"""What is read: tables in place of those of `PLAIN`."""
+
+
+def scene_schema() -> Schema:
+    """JSON schema, draft 7, of a scene file."""
+    Table.visits, visits = [], []
+    try:
+        for scene in SCENES:
+            with suppress(SceneError):  # of files that are not there; what was asked until then counts
+                scene_from_dict(deepcopy({**PLAIN, **scene}))
+    finally:
+        visits, Table.visits = Table.visits, None
+    tables: dict[str, list[tuple[Schema, dict[str, Schema]]]] = {}
+    for name, content, asked in visits:
+        if asked:
+            tables.setdefault(_path(name), []).append((content, asked))
+    return {"$schema": "http://json-schema.org/draft-07/schema#", "title": "runningbond scene", **_table(tables, "")}
+
+
+def _path(name: str) -> str:
+    """What tables with the same keys have in common, of the full name of one."""
+    path = re.sub(r"\[\d+\]", "", name)
+    for pattern, default in ALIKE.items():
+        path = re.sub(pattern, default, path)
+    return path
+
+
+def _table(tables: Any, path: str) -> Schema:
+    """What the table at a path may hold; one of several things where that depends on its kind."""
+    visits = tables[path]
+    kinds = dict.fromkeys(content["kind"] for content, asked in visits if "words" in asked.get("kind", {}))
+    variants = {
+        kind: _variant(tables, path, [visit for visit in visits if visit[0].get("kind") == kind])
+        for kind in (kinds or [None])
+    }
+    bare = [
+        {**one, "properties": {key: what for key, what in one["properties"].items() if key != "kind"}}
+        for one in variants.values()
+    ]
+    if all(one == bare[0] for one in bare):
+        return next(iter(variants.values()))
+    for kind, one in variants.items():
+        one["properties"]["kind"] = {"const": kind}
+    return {"anyOf": list(variants.values())}
+
+
+def _variant(tables: Any, path: str, visits: list[tuple[Schema, dict[str, Schema]]]) -> Schema:
+    keys = dict.fromkeys(key for _, asked in visits for key in asked)
+    properties = {}
+    for key in keys:
+        inner = f"{path}.{key}" if path else key
+        found = [_value(tables, inner, asked[key], content.get(key)) for content, asked in visits if key in asked]
+        if merged := _merged([one for one in found if one]):
+            properties[key] = merged
+    required = [key for key in keys if all(asked.get(key, {}).get("required") for _, asked in visits)]
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+
+
+def _value(tables: Any, path: str, asked: Schema, value: Any) -> Schema:
+    """What is asked of one value; nothing where only the value itself could tell, and there is none."""
+    if within := asked.get("within"):
+        return _number(within)
+    if words := asked.get("words"):
+        return {"enum": words}
+    if asked.get("kind") == "tables by name":
+        return {"type": "object", "additionalProperties": _table(tables, _path(f"{path}.any"))}
+    fixed: dict[Any, Schema] = {
+        "text": {"type": "string"},
+        "vector": {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2},
+    }
+    return fixed.get(asked.get("kind")) or _like(tables, path, value)
+
+
+def _like(tables: Any, path: str, value: Any) -> Schema:
+    """Values like one."""
+    if isinstance(value, dict):
+        return _table(tables, _path(path))
+    if isinstance(value, list):
+        return {"type": "array", "items": _merged([_like(tables, path, one) for one in value])}
+    names = {str: "string", int: "number", float: "number"}
+    return {"type": names[type(value)]} if value is not None else {}
+
+
+def _number(within: Range) -> Schema:
+    limits = {
+        "minimum": within.least,
+        "maximum": within.most,
+        "exclusiveMinimum": within.above,
+        "exclusiveMaximum": within.below,
+    }
+    finite = {name: limit for name, limit in limits.items() if abs(limit) < float("inf")}
+    return {"type": "number", "description": str(within), **finite}
+
+
+def _merged(found: Iterable[Schema]) -> Schema:
+    """Any of some things; words that are not always the same are names, and may be any."""
+    distinct: list[Schema] = []
+    distinct += (one for one in found if one and one not in distinct)
+    if len(distinct) > 1 and all("enum" in one for one in distinct):
+        return {"type": "string"}
+    arrays = [one for one in distinct if one.get("type") == "array" and "minItems" not in one]
+    if len(arrays) > 1:
+        rest = [one for one in distinct if one not in arrays]
+        return _merged([*rest, {"type": "array", "items": _merged([one["items"] for one in arrays])}])
+    return distinct[0] if len(distinct) == 1 else {"anyOf": distinct} if distinct else {}

@@ -1,0 +1,110 @@
+"""What Windows does not have, taken away here: locks of folders, masks of signals, limits of time. None ran this."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from runningbond.results import Outcome, StoreError, load_outcome, save_outcome
+from runningbond.scene import folder_lock
+from runningbond.scene.folder_lock import LOCK, locked
+from runningbond.studies import apart
+
+filelock = pytest.importorskip("filelock")
+
+ROOT = Path(__file__).parents[2]
+
+WITHOUT = """
+import builtins, os, signal, sys
+kept = builtins.__import__
+def found(name, globals=None, *others, **more):
+    if name in ("fcntl", "resource") and (globals or {}).get("__name__", "").startswith("runningbond"):
+        raise ImportError(name)
+    return kept(name, globals, *others, **more)
+builtins.__import__ = found
+del signal.pthread_sigmask, signal.SIGXCPU, os.O_DIRECTORY
+"""
+
+
+def without(script: str) -> "subprocess.CompletedProcess[str]":
+    """Run a script where none of that is there."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *filter(None, sys.path)])}
+    command = [sys.executable, "-c", WITHOUT + script]
+    return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+
+
+def test_runs_and_campaigns_in_processes_need_none_of_it(tmp_path: Path) -> None:
+    script = f"""
+import runningbond as rb
+from runningbond.commands.command_line import command
+from runningbond.studies import apart
+if __name__ == "__main__":
+    assert apart.resource is None
+    out = {str(tmp_path)!r}
+    assert command(["run", "panel-01", "--model", "limit", "--json", "--out", out + "/run"]) == 0
+    walls, changes = rb.read("panel-01"), {{"joint.friction": [0.4, 0.5]}}
+    for again in range(2):
+        assert set(rb.sweep(walls, changes, "limit", folder=out + "/swept", jobs=2)["status"]) == {{"collapse"}}
+"""
+    done = without(script)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout.splitlines()[0])["status"] == "collapse"
+    assert load_outcome(tmp_path / "run")[0].status == "collapse"
+    assert len(list((tmp_path / "swept").rglob("outcome.json"))) == 2
+
+
+@pytest.fixture
+def no_fcntl(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(folder_lock, "fcntl", None)
+
+
+def is_free(folder: Path) -> bool:
+    other = filelock.FileLock(folder / LOCK, is_singleton=False)
+    try:
+        other.acquire(timeout=0)
+    except filelock.Timeout:
+        return False
+    other.release()
+    return True
+
+
+@pytest.mark.usefixtures("no_fcntl")
+def test_a_file_holds_a_folder_where_the_system_does_not(tmp_path: Path) -> None:
+    with locked(tmp_path):
+        assert not is_free(tmp_path)
+    assert is_free(tmp_path)
+    with pytest.raises(RuntimeError, match="inside"), locked(tmp_path):
+        raise RuntimeError("inside")
+    assert is_free(tmp_path)
+    with pytest.raises(FileNotFoundError), locked(tmp_path / "missing"):
+        pass
+
+
+@pytest.mark.usefixtures("no_fcntl")
+def test_outcomes_are_kept_and_found_without_fcntl(tmp_path: Path) -> None:
+    for seconds in (1.0, 2.0):
+        save_outcome(Outcome("wall", "limit", "undecided", seconds=seconds), tmp_path, "key")
+    assert load_outcome(tmp_path)[0].seconds == 2.0
+    assert {path.name.split("-")[0] for path in tmp_path.iterdir()} <= {LOCK, "outcome.json", "arrays"}
+    with pytest.raises(StoreError, match="holds no outcome"):
+        load_outcome(tmp_path / "missing")
+
+
+@pytest.mark.usefixtures("no_fcntl")
+def test_a_folder_that_takes_no_lock_is_read_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: Any, **__: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    save_outcome(Outcome("wall", "limit", "undecided"), tmp_path, "key")
+    monkeypatch.setattr(filelock.FileLock, "acquire", refused)
+    assert load_outcome(tmp_path)[1] == "key"
+
+
+def test_a_process_that_works_too_long_ends_itself_without_limits_of_the_system() -> None:
+    script = "from runningbond.studies import apart\napart.LONGEST = 1\napart.limit_time()\nwhile True: pass"
+    assert without(script).returncode == 152
+    assert apart.ENDED != 152

@@ -1,0 +1,53 @@
+"""``runningbond respond``: what it says of walls that fall by themselves, and what it leaves in a folder."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from runningbond.commands.command_line import command
+from tests.walls import content, write_toml
+
+PULSE = {"pulse": {"kind": "sine", "amplitude": 2.0, "period": 0.05}, "quantity": "acceleration"}
+SHAKEN = {"load__live": None, "load__history": PULSE}
+LEANING = {**SHAKEN, "load__gravity": [9.0, -3.0]}
+SIZE = {"wall__length": 0.24, "wall__height": 0.12, "wall__block_height": 0.12}
+STIFF = {"joint__normal_stiffness": 1e9, "joint__shear_stiffness": 1e9}
+
+
+@pytest.fixture
+def ask(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Any:
+    """Run a command on a block, into a folder; its output. All end well."""
+
+    def asked(name: str, out: Path, *options: str, **changes: Any) -> str:
+        path = write_toml(content(**SIZE, **STIFF, **changes), tmp_path / "wall.toml")
+        assert command([name, str(path), "--model", "dem-dynamic", "--out", str(out), *options]) == 0
+        return capsys.readouterr().out
+
+    return asked
+
+
+def test_a_wall_that_falls_under_its_weight_is_infeasible_to_both_commands(ask: Any, tmp_path: Path) -> None:
+    run = json.loads(ask("run", tmp_path / "run", "--json", **LEANING))
+    response = json.loads(ask("respond", tmp_path / "respond", "--json", **LEANING))
+    assert run["status"] == response["verdict"] == "infeasible"
+    assert run["message"] == response["message"] == "collapses under its dead load"
+    assert response["time"] is response["peak_drift"] is None
+    assert "  infeasible: collapses under its dead load\n" in ask("respond", tmp_path / "respond", **LEANING)
+    assert not (tmp_path / "respond").exists()
+
+
+def test_a_folder_holds_what_was_written_there_last_and_nothing_older(ask: Any, tmp_path: Path) -> None:
+    """Over the run of a static wall a response, over that a run, and at last a wall that falls by itself."""
+    out = tmp_path / "out"
+
+    def written(name: str, **changes: Any) -> set[str]:
+        ask(name, out, **changes)
+        return {path.name.split("-")[0] for path in out.glob("*.*")}
+
+    ran = written("run")
+    assert {"outcome.json", "curve.csv", "mechanism.svg", "blocks.pvd", "joints.pvd"} <= ran
+    assert written("respond", **SHAKEN) == {"response.csv", "response.png", "open_run.py", "blocks.pvd", "joints.pvd"}
+    assert written("run") == ran
+    assert written("respond", **LEANING) == set()

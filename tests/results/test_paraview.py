@@ -1,0 +1,188 @@
+"""What ParaView is given besides the numbers: times, tensors, vectors, the ground near the wall, and a macro."""
+
+import runpy
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+from unittest.mock import MagicMock
+
+import numpy as np
+import pytest
+import pyvista
+
+from runningbond.compare.models import respond, run_model
+from runningbond.joints import wall_points
+from runningbond.limit import limit
+from runningbond.pictures.frame import Discretisation, Frame, Triangles
+from runningbond.pictures.mechanism import mechanism_shape
+from runningbond.pictures.recording import motion_recorder, record_mechanism
+from runningbond.pictures.style import DRAWN
+from runningbond.pictures.time_series import MACRO, frame_files, times_shown
+from runningbond.pictures.vtk_grids import DISPLACEMENT, GridBuilder
+from runningbond.scene import Scene, scene_from_dict
+from tests.walls import courses, panel
+
+STIFF = {"friction": 0.7, "normal_stiffness": 1e8, "shear_stiffness": 1e8}
+
+
+@pytest.mark.parametrize(
+    ("frames", "shown"),
+    [
+        ([(None, 0.0), (None, 0.2), (None, 0.5)], [0.0, 0.2, 0.5]),
+        ([(None, 0.0), (None, 0.5), (None, 0.5), (None, 0.5)], [0.0, 0.5, 0.5 + 5e-7, 0.5 + 1e-6]),
+        ([(None, 0.3), (None, 0.3)], [0.0, 1.0]),
+        ([(None, 0.0), (None, 0.5), (None, 0.4)], [0.0, 1.0, 2.0]),
+        ([(0.0, 1.5), (0.1, 1.5), (0.4, 1.5)], [0.0, 0.1, 0.4]),
+        ([], []),
+    ],
+)
+def test_time_is_seconds_or_the_load_where_that_goes_up(frames: Any, shown: list[float]) -> None:
+    assert times_shown(frames) == pytest.approx(shown, abs=1e-12)
+
+
+def tower() -> Scene:
+    """Two blocks of 0.5 × 0.5 m whose ground moves by half a sine."""
+    size = {"courses": [[1], [1]], "block_width": 0.5, "block_height": 0.5, "thickness": 0.3}
+    pulse = {"pulse": {"kind": "half-sine", "amplitude": 1.0, "period": 1.0}, "quantity": "g"}
+    return scene_from_dict(
+        {
+            "title": "tower",
+            "wall": size,
+            "block": {"density": 2000.0},
+            "joint": STIFF,
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81, "history": pulse},
+        }
+    )
+
+
+def test_the_fall_of_a_critical_scale_is_kept_in_seconds_and_its_shape_is_drawn(tmp_path: Path) -> None:
+    """The tower turns about its toe, against the ground's acceleration; of all scales tried the upper one is kept."""
+    scene = tower()
+    recorder = motion_recorder(scene, tmp_path)
+    outcome = run_model("dem-dynamic", scene, 0.3, recorder)
+    recorder.finish(outcome)
+    read: Any = pyvista.get_reader
+    series = read(tmp_path / "blocks.pvd")
+    times = np.array(series.time_values)
+    assert times[0] == 0.0
+    assert (np.diff(times) > 0).all()
+    assert times[-1] > scene.history.duration if scene.history else False
+    for time in times:
+        series.set_active_time_value(time)
+        grid = series.read()[0]
+        assert grid.field_data["time [s]"][0] == time
+        assert grid.field_data["multiplier"][0] == outcome.upper
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    assert outcome.motion[:2, 2] == pytest.approx(outcome.motion[0, 2], rel=0.02)
+    assert outcome.motion[0, 2] > 0.5
+    toe = np.hypot(*shape.displacement.T)[(shape.points == 0.0).all(axis=1)]
+    assert toe == pytest.approx(0.0, abs=0.05)
+
+
+def test_the_shape_of_a_fall_is_one_that_can_be_seen() -> None:
+    """Its farthest corner has gone nearly a tenth of the wall's size, whatever it did in the end."""
+    scene = tower()
+    response = respond("dem-dynamic", scene, 2.0, rows=200)
+    assert response.verdict == "collapse"
+    assert abs(response.motion[:2, 2]).max() > 0.5
+    farthest = np.hypot(*(response.shape[1, :2] + response.shape[1, 2] * np.array([-0.25, 0.25])))
+    assert 0.07 < farthest / np.sqrt(0.5) < 0.1
+
+
+def test_stresses_are_tensors_with_the_principal_ones_beside_them() -> None:
+    scene = panel()
+    stress = np.random.default_rng(0).normal(size=(4, 3))
+    triangles = Triangles(np.eye(3)[:, :2], np.tile([0, 1, 2], (4, 1)), np.zeros(4, dtype=np.int64))
+    points = wall_points(scene)
+    none = np.zeros(len(points))
+    motion = np.zeros((len(scene.blocks), 3))
+    frame = Frame(0.0, motion, none, none, none, none, none.astype(int), displacement=np.zeros((3, 2)), stress=stress)
+    data = GridBuilder(Discretisation(scene, points, triangles)).blocks(frame).cell_data
+    xx, yy, zz, xy, yz, xz = np.array(data["stress [Pa]"]).T
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]).transpose(2, 0, 1)
+    assert np.array_equal(tensor[:, [0, 1, 0], [0, 1, 1]], stress)
+    ends = [data[f"{which} principal stress [Pa]"] for which in ("smallest", "largest")]
+    assert np.transpose(ends) == pytest.approx(np.linalg.eigvalsh(tensor[:, :2, :2]))
+
+
+def test_tractions_and_jumps_are_vectors_along_normals_and_across_them(tmp_path: Path) -> None:
+    """In the motion of a limit analysis, of which every joint has some."""
+    scene = panel()
+    outcome = limit(scene)
+    record_mechanism(scene, outcome, tmp_path)
+    data = pyvista.read(frame_files(tmp_path, "joints")[-1]).point_data
+    normal = np.asarray(data["normal"])
+    assert np.hypot(*normal.T[:2]) == pytest.approx(1.0)
+    for vector, along, across in (
+        ("jump [m]", "opening [m]", "slip [m]"),
+        ("traction [Pa]", "normal stress [Pa]", "shear stress [Pa]"),
+    ):
+        values = np.asarray(data[vector])
+        tangential = -values[:, 0] * normal[:, 1] + values[:, 1] * normal[:, 0]
+        assert (values * normal).sum(axis=1) == pytest.approx(np.asarray(data[along]), abs=1e-9)
+        assert tangential == pytest.approx(np.asarray(data[across]), abs=1e-9)
+        assert abs(values).max() > 0
+
+
+@pytest.mark.parametrize("support", ["base", "fixed-first-course"])
+def test_the_ground_is_shown_near_the_wall_alone(support: str) -> None:
+    scene = panel(support__kind=support)
+    points = wall_points(scene)
+    none, motion = np.zeros(len(points)), np.zeros((len(scene.blocks), 3))
+    frame = Frame(0.0, motion, none, none, none, none, none.astype(int))
+    builder = GridBuilder(Discretisation.of_rigid_blocks(scene))
+    left, right, bottom, top, *_ = builder.blocks(frame).bounds
+    low, high = scene.blocks.extent(scene.wall)
+    air = 0.16 * np.sqrt(np.prod(high - low))
+    assert left >= low[0] - air
+    assert right <= high[0] + air
+    assert bottom >= low[1] - air
+    assert top == high[1]
+    assert builder.joints(frame).bounds[0] >= low[0]
+
+
+@pytest.mark.parametrize("folder", ["run", "two words 'n \\ slash"])
+def test_the_macro_opens_the_series_that_it_lies_beside(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str
+) -> None:
+    """ParaView is not there: what the macro asks of it is noted down, and the arrays that it names are in the files."""
+    scene = courses([[1], [1]], width=0.2, height=0.4)
+    out = tmp_path / folder
+    record_mechanism(scene, limit(scene), out)
+    simple, paraview = MagicMock(), ModuleType("paraview")
+    monkeypatch.setattr(paraview, "simple", simple, raising=False)
+    monkeypatch.setitem(sys.modules, "paraview", paraview)
+    text = (out / MACRO).read_text(encoding="utf-8")
+    elsewhere = tmp_path / "macros" / MACRO
+    elsewhere.parent.mkdir()
+    elsewhere.write_text(text, encoding="utf-8")
+    for macro in (out / MACRO, elsewhere):
+        simple.reset_mock()
+        names = runpy.run_path(str(macro))
+        opened = [Path(call.kwargs["FileName"]) for call in simple.PVDReader.call_args_list]
+        assert [path.name for path in opened] == ["blocks.pvd", "joints.pvd"]
+        assert all(path.is_file() for path in opened)
+        assert simple.WarpByVector.return_value.Vectors == ["POINTS", DISPLACEMENT]
+        asked = {call.args[1] for call in simple.ColorBy.call_args_list}
+        assert asked == {("POINTS", DISPLACEMENT, "Magnitude"), ("CELLS", "state")}
+        assert len(names["states"].Annotations) == 2 * len(names["STATES"]) == 8
+        assert len(names["states"].IndexedColors) == 12
+    last = [pyvista.read(frame_files(out, kind)[-1]) for kind in ("blocks", "joints")]
+    assert all(DISPLACEMENT in grid.point_data for grid in last)
+    assert "state" in last[1].cell_data
+    farthest = np.hypot(*np.asarray(last[0].point_data[DISPLACEMENT]).T[:2]).max()
+    assert names["FARTHEST"] == pytest.approx(farthest)
+    assert names["SCALE"] * farthest == pytest.approx(DRAWN * np.sqrt(0.2 * 0.8))
+
+
+def test_a_series_that_begins_anew_takes_its_macro_away(tmp_path: Path) -> None:
+    scene = courses([[1], [1]], width=0.2, height=0.4)
+    outcome = limit(scene)
+    record_mechanism(scene, outcome, tmp_path)
+    assert (tmp_path / MACRO).is_file()
+    record_mechanism(scene, replace(outcome, motion=np.zeros((0, 3))), tmp_path)
+    assert not list(tmp_path.glob("*.p*"))
