@@ -1,4 +1,4 @@
-"""The pages of this folder are read on GitHub as well, and docstrings in terminals: what Sphinx must be told of both."""
+"""The pages of this folder are read on GitHub as well, and docstrings in terminals: what Sphinx is told of both."""
 
 import re
 from typing import Any
@@ -12,10 +12,10 @@ PAGES = {
 """Where links to files outside this folder lead within the site; all others are downloads."""
 
 TYPES = {
-    r"~?[\w.]*ndarray\[tuple\[Any, \.\.\.\], ~?[\w.]*dtype\[~?[\w.]*float64\]\]": "Array",
-    r"~?[\w.]*ndarray\[tuple\[Any, \.\.\.\], ~?[\w.]*dtype\[~?[\w.]*int64\]\]": "Indices",
-    r"~?[\w.]*ndarray\[tuple\[Any, \.\.\.\], ~?[\w.]*dtype\[~?[\w.]*bool\]\]": "Mask",
     r"~[\w.]*\.(\w+)": r"\1",
+    r"ndarray\[tuple\[Any, \.\.\.\], dtype\[float64\]\]": "Array",
+    r"ndarray\[tuple\[Any, \.\.\.\], dtype\[int64\]\]": "Indices",
+    r"ndarray\[tuple\[Any, \.\.\.\], dtype\[bool\]\]": "Mask",
 }
 
 
@@ -25,9 +25,7 @@ def lead_home(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = source[0].replace(f"]({file})", f"]({target})")
 
 
-def keep_formulas(
-    app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]
-) -> None:
+def keep_formulas(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
     """Keep formulas of docstrings as they stand: indented paragraphs before the first section, and |x|."""
     section = next((i for i, line in enumerate(lines) if re.fullmatch(r"-{3,}", line)), len(lines) + 1) - 1
     kept: list[str] = []
