@@ -1,5 +1,6 @@
 """The documentation site: `make docs` builds it, offline and complete in itself, into site/."""
 
+import logging
 import sys
 import warnings
 from importlib.metadata import version as installed
@@ -49,7 +50,13 @@ html_js_files = ["moments.js"]
 html_math_renderer = "mathml"
 html_copy_source = False
 html_show_sphinx = False
+html_show_copyright = False
 
+for page in (DOCS / "gallery-of-examples").glob("*/*.rst"):  # of examples that are no more
+    if page.stem != "index" and not (DOCS / "gallery" / page.parent.name / f"{page.stem}.py").exists():
+        page.unlink()
+
+logging.getLogger("skfem").setLevel(logging.WARNING)
 warnings.filterwarnings("ignore", "FigureCanvasAgg is non-interactive", UserWarning)
 
 sphinx_gallery_conf = {
@@ -66,6 +73,7 @@ sphinx_gallery_conf = {
     "write_computation_times": False,
     "min_reported_time": 1e9,
     "remove_config_comments": True,
+    "reset_modules": ("matplotlib", "sources.cropped"),
     "capture_repr": (),
     "plot_gallery": True,
 }

@@ -1,4 +1,4 @@
-"""A wall on its way to collapse, with a slider over the moments: ``moments`` runs a model while the site is built."""
+"""Walls that pages show, drawn while the site is built: as they stand, as they fall, and moment by moment."""
 
 import json
 from pathlib import Path
@@ -11,23 +11,41 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import runningbond as rb
+from runningbond.compare.page import inline_svg
+from runningbond.pictures.flat import figure_of
 
 MOMENTS, DRAWN, ROOT = 24, 0.6, Path(__file__).parents[2]
 """Most moments, and how far the last of them is drawn, in heights of the lowest block."""
 
 
-class Moments(SphinxDirective):
-    """A wall, a file of this repository or a published one, and a model that follows a path."""
+class Drawing(SphinxDirective):
+    """A wall, a file of this repository or a published one; with a model, its mechanism."""
 
-    required_arguments = 2
+    required_arguments, optional_arguments = 1, 1
+
+    @property
+    def wall(self) -> rb.Wall:
+        """The wall, upon whose file the page depends."""
+        file = ROOT / self.arguments[0]
+        self.env.note_dependency(str(file))
+        return rb.read(file if file.exists() else self.arguments[0])
+
+    def run(self) -> list[nodes.Node]:
+        """Draw it."""
+        scene = self.wall.scene
+        outcome = self.wall.run(self.arguments[1]).outcome if len(self.arguments) > 1 else None
+        svg = inline_svg(figure_of(scene, outcome), scene.title)
+        return [nodes.raw("", f'<figure class="drawing">{svg}</figure>', format="html")]
+
+
+class Moments(Drawing):
+    """A wall and a model that follows a path."""
+
+    required_arguments, optional_arguments = 2, 0
 
     def run(self) -> list[nodes.Node]:
         """Follow the wall, and keep some moments as a drawing that `moments.js` moves."""
-        name, model = self.arguments
-        file = ROOT / name
-        self.env.note_dependency(str(file))
-        result = rb.read(file if file.exists() else name).run(model, states=True)
-        return [nodes.raw("", page(result), format="html")]
+        return [nodes.raw("", page(self.wall.run(self.arguments[1], states=True)), format="html")]
 
 
 def page(result: rb.Result) -> str:
@@ -65,5 +83,6 @@ def page(result: rb.Result) -> str:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Tell Sphinx."""
+    app.add_directive("drawing", Drawing)
     app.add_directive("moments", Moments)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

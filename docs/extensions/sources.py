@@ -3,6 +3,7 @@
 import re
 from typing import Any
 
+import matplotlib
 from sphinx.application import Sphinx
 
 PAGES = {
@@ -45,6 +46,11 @@ def shorten(app: Sphinx, what: str, name: str, thing: Any, options: Any, signatu
     for long, short in TYPES.items():
         parts = [part and re.sub(long, short, part) for part in parts]
     return parts
+
+
+def cropped(configuration: dict[str, Any], name: str) -> None:
+    """Pictures of the gallery, without the white around them."""
+    matplotlib.rcParams.update({"savefig.bbox": "tight", "savefig.pad_inches": 0.1})
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

@@ -1,7 +1,7 @@
 for (const figure of document.querySelectorAll("figure.moments")) {
   const moments = JSON.parse(figure.dataset.moments), slider = figure.querySelector("input");
   const blocks = figure.querySelectorAll("polygon"), [far, load] = [0, 1].map(k => Math.max(...moments.map(m => m.at[k])));
-  const place = ([x, y]) => [4 + 292 * x / far, 116 - 108 * Math.max(y, 0) / load];
+  const place = ([x, y]) => [16 + 292 * x / far, 116 - 104 * Math.max(y, 0) / load];
   figure.querySelector("polyline").setAttribute("points", moments.map(m => place(m.at)).join(" "));
   const show = () => {
     const { load, far, at, motion } = moments[slider.value], [cx, cy] = place(at), dot = figure.querySelector("circle");

@@ -23,3 +23,4 @@ axes.legend()
 # %%
 # The slender one turns about its corner, the circle.
 results[2].plot()
+# sphinx_gallery_thumbnail_number = 2

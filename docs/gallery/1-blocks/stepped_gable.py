@@ -19,3 +19,4 @@ gable.plot()
 result = gable.run("limit-nonassociated")
 print(f"λ = {result.lower:.4f} … {result.upper:.4f}")
 result.plot()
+# sphinx_gallery_thumbnail_number = 2

@@ -23,3 +23,4 @@ wall.plot()
 result = wall.run("limit")
 print(result)
 result.plot()
+# sphinx_gallery_thumbnail_number = 2

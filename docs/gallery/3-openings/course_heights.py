@@ -8,7 +8,11 @@ A plinth of large heavy stones under courses that get lower. Materials have name
 import runningbond as rb
 
 wall = rb.Wall.running_bond(
-    **{"length": 2.4, "height": 2.0, "block_width": 0.6, "block_height": 0.2, "thickness": 0.4},
+    length=2.4,
+    height=2.0,
+    block_width=0.6,
+    block_height=0.2,
+    thickness=0.4,
     density=1800.0,
     friction=0.6,
     title="wall on a plinth",

@@ -17,3 +17,4 @@ facade.plot()
 # %%
 # Pushed to the right it comes apart at the windows.
 facade.run("limit").plot()
+# sphinx_gallery_thumbnail_number = 2

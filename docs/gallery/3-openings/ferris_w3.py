@@ -16,3 +16,4 @@ wall.plot()
 result = wall.run("limit-nonassociated")
 print(f"λ = {result.lower:.4f} … {result.upper:.4f}; associated {wall.run('limit').multiplier:.4f}")
 result.plot()
+# sphinx_gallery_thumbnail_number = 2

@@ -19,3 +19,4 @@ wall.plot()
 # %%
 # How it falls when it is pushed to the right.
 wall.run("limit").plot()
+# sphinx_gallery_thumbnail_number = 2

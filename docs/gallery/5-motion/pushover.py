@@ -16,3 +16,4 @@ axes.set_xscale("log")
 # %%
 # How it falls: forces in the joints as thin lines.
 result.plot()
+# sphinx_gallery_thumbnail_number = 2
