@@ -39,8 +39,8 @@ bibtex_bibfiles = ["../CITATIONS.bib"]
 bibtex_default_style = "unsrt"
 bibtex_reference_style = "author_year"
 
-math_numfig = True
-numfig = False
+numfig = True
+numfig_secnum_depth = 1
 
 html_theme = "furo"
 html_title = "runningbond"
@@ -56,7 +56,8 @@ for page in (DOCS / "gallery-of-examples").glob("*/*.rst"):  # of examples that 
     if page.stem != "index" and not (DOCS / "gallery" / page.parent.name / f"{page.stem}.py").exists():
         page.unlink()
 
-logging.getLogger("skfem").setLevel(logging.WARNING)
+for talkative in ("skfem", "fontTools"):
+    logging.getLogger(talkative).setLevel(logging.WARNING)
 warnings.filterwarnings("ignore", "FigureCanvasAgg is non-interactive", UserWarning)
 
 sphinx_gallery_conf = {

@@ -1,12 +1,25 @@
-"""Formulas as MathML, which browsers draw by themselves: no script, no fonts, nothing to load."""
+"""Formulas as MathML, which browsers draw by themselves: no script, and of a font the signs that formulas need.
 
+Systems without a font for mathematics set subscripts badly; STIX Two Math, under the Open Font License, comes with ziamath.
+"""
+
+from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 from docutils import nodes
 from docutils.utils.math import MathError
 from docutils.utils.math.latex2mathml import tex2mathml
+from fontTools import subset
 from sphinx.application import Sphinx
 from sphinx.util.logging import getLogger
+from sphinx.util.math import get_node_equation_number
+
+SIGNS = (
+    *((0x20, 0x7E), (0xA0, 0xB7), (0xD7, 0xD7), (0x302, 0x307), (0x391, 0x3F6), (0x2010, 0x2064), (0x2190, 0x21D4)),
+    *((0x2200, 0x22FF), (0x2308, 0x230B), (0x239B, 0x23AE), (0x1D400, 0x1D49B), (0x1D6A8, 0x1D755)),
+)
+"""Latin, Greek, signs, and letters of mathematics."""
 
 
 def mathml(node: nodes.Element, *, as_block: bool) -> str:
@@ -28,15 +41,26 @@ def block(writer: Any, node: nodes.math_block) -> None:
     """Write a formula of its own, with its number where it has one."""
     writer.body.append(writer.starttag(node, "div", CLASS="math"))
     writer.body.append(mathml(node, as_block=True))
-    if number := node["number"]:
-        writer.body.append(f'<span class="eqno">({number})')
+    if node["number"]:
+        writer.body.append(f'<span class="eqno">({get_node_equation_number(writer, node)})')
         writer.add_permalink_ref(node, "Link to this equation")
         writer.body.append("</span>")
     writer.body.append("</div>\n")
     raise nodes.SkipNode
 
 
+def write_font(app: Sphinx, failure: Exception | None) -> None:
+    """Write the font beside the pages."""
+    wanted = subset.Options(flavor="woff", layout_features=["*"], notdef_outline=True)
+    with subset.load_font(str(files("ziamath.fonts") / "STIXTwoMath-Regular.ttf"), wanted) as font:
+        subsetter = subset.Subsetter(wanted)
+        subsetter.populate(unicodes=[code for first, last in SIGNS for code in range(first, last + 1)])
+        subsetter.subset(font)
+        subset.save_font(font, str(Path(app.outdir) / "_static" / "math.woff"), wanted)
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Tell Sphinx."""
+    app.connect("build-finished", write_font)
     app.add_html_math_renderer("mathml", (inline, None), (block, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
