@@ -51,6 +51,7 @@ class Moments(Drawing):
 def page(result: rb.Result) -> str:
     """Drawing, curve and slider of a result with states."""
     scene, states = result.wall.scene, result.states
+    loads = result.outcome.curve[:, 1] if scene.is_led else [state.multiplier for state in states]
     far = np.array([np.abs(state.motion[:, :2]).max() for state in states])
     chosen = np.unique([int(np.abs(far - x).argmin()) for x in np.linspace(far[0], far.max(), MOMENTS)])
     factor = float(f"{DRAWN * scene.lowest_block / far.max():.1g}")
@@ -62,9 +63,9 @@ def page(result: rb.Result) -> str:
     ]
     moments = [
         {
-            "load": f"{states[i].multiplier:.4g}",
+            "load": f"{loads[i]:.4g}",
             "far": f"{1000 * far[i]:.3g}",
-            "at": [(float(f"{1000 * far[i]:.4g}")), float(f"{states[i].multiplier:.5g}")],
+            "at": [float(f"{1000 * far[i]:.4g}"), float(f"{loads[i]:.5g}")],
             "motion": [[float(f"{v * factor:.4g}") for v in row] for row in states[i].motion],
         }
         for i in chosen
