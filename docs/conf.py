@@ -66,7 +66,6 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
     "copyfile_regex": r".*\.csv",
-    "image_srcset": ["2x"],
     "abort_on_example_error": True,
     "show_memory": False,
     "show_signature": False,

@@ -1,6 +1,6 @@
 """Formulas as MathML, which browsers draw by themselves: no script, and of a font the signs that formulas need.
 
-Systems without a font for mathematics set subscripts badly; STIX Two Math, under the Open Font License, comes with ziamath.
+Systems without a font for mathematics set subscripts badly; STIX Two Math (Open Font License) comes with ziamath.
 """
 
 from importlib.resources import files

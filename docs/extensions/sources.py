@@ -50,7 +50,7 @@ def shorten(app: Sphinx, what: str, name: str, thing: Any, options: Any, signatu
 
 def cropped(configuration: dict[str, Any], name: str) -> None:
     """Pictures of the gallery, without the white around them."""
-    matplotlib.rcParams.update({"savefig.bbox": "tight", "savefig.pad_inches": 0.1})
+    matplotlib.rcParams.update({"savefig.bbox": "tight", "savefig.pad_inches": 0.1, "savefig.dpi": 150})
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

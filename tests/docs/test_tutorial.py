@@ -31,7 +31,8 @@ def test_a_newcomer_sees_what_the_page_shows(
     for line, shown in COMMANDS:
         refused = "typo" in line
         if refused:
-            Path("typo.toml").write_text(Path("wall.toml").read_text(encoding="utf-8").replace("friction =", "frictoin ="))
+            scene = Path("wall.toml").read_text(encoding="utf-8")
+            Path("typo.toml").write_text(scene.replace("friction =", "frictoin ="), encoding="utf-8")
         assert command(line.split()) == (2 if refused else 0), line
         output = capsys.readouterr()
         printed = output.err if refused else output.out
