@@ -56,7 +56,8 @@ for page in (DOCS / "gallery-of-examples").glob("*/*.rst"):  # of examples that 
     if page.stem != "index" and not (DOCS / "gallery" / page.parent.name / f"{page.stem}.py").exists():
         page.unlink()
 
-for talkative in ("skfem", "fontTools"):
+# accessible_pygments, which furo uses, would have every library tell what it does
+for talkative in ("ezdxf", "fontTools", "skfem"):
     logging.getLogger(talkative).setLevel(logging.WARNING)
 warnings.filterwarnings("ignore", "FigureCanvasAgg is non-interactive", UserWarning)
 
