@@ -66,7 +66,6 @@ sphinx_gallery_conf = {
     "gallery_dirs": "gallery-of-examples",
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
-    "copyfile_regex": r".*\.csv",
     "abort_on_example_error": True,
     "show_memory": False,
     "show_signature": False,
@@ -76,5 +75,4 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "reset_modules": ("matplotlib", "sources.cropped"),
     "capture_repr": (),
-    "plot_gallery": True,
 }

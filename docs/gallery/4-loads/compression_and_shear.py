@@ -3,7 +3,6 @@ The more pressure, the more shear
 =================================
 
 A shear wall under a beam: its horizontal strength over the vertical load, the beam turning freely or kept level.
-Under the level beam the thrust goes from corner to corner.
 """
 
 import matplotlib.pyplot as plt
@@ -22,4 +21,7 @@ for condition in ("free", "level"):
     axes.plot(forces, [each.run("limit").multiplier / 1e3 for each in walls], "o-", label=condition)
 axes.set(xlabel="pressed with [kN]", ylabel="bears horizontally [kN]", title="Beam that turns freely, or stays level")
 axes.legend()
+
+# %%
+# Under the level beam the thrust goes from corner to corner.
 walls[-1].run("limit").plot()

@@ -22,4 +22,7 @@ axes.minorticks_off()
 axes.set(xlabel="compressive strength of joints [MPa]", ylabel="force on the beam [kN]", title="A wall that rocks")
 axes.set_xticks(strengths, map(str, strengths))
 axes.legend()
+
+# %%
+# At 4 MPa; crushed, blocks overlap.
 results[2].plot()

@@ -23,4 +23,7 @@ axes.plot(levels, 3 / levels**2, label="3 / h²")
 axes.plot(levels, [result.multiplier for result in results], "o", label="limit")
 axes.set(xlabel="depth of the water [m]", ylabel="λ", title="A dam that slides")
 axes.legend()
+
+# %%
+# One metre of water, three times as heavy as it is.
 results[-1].plot()
