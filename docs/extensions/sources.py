@@ -21,9 +21,11 @@ TYPES = {
 
 
 def lead_home(app: Sphinx, page: str, source: list[str]) -> None:
-    """Lead links to files that are pages of the site to these pages."""
+    """Lead links to files that are pages of the site, scripts of the gallery among them, to these pages."""
     for file, target in PAGES.items():
         source[0] = source[0].replace(f"]({file})", f"]({target})")
+    source[0] = re.sub(r"\]\((?:\.\./)?gallery\)", "](/gallery-of-examples/index.rst)", source[0])
+    source[0] = re.sub(r"\]\((?:\.\./)?gallery/(\S+)\.py\)", r"](/gallery-of-examples/\1.rst)", source[0])
 
 
 def keep_formulas(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:

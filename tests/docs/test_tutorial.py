@@ -48,8 +48,3 @@ def test_a_newcomer_sees_what_the_page_shows(
     assert len(rising) == 3
     assert rising == sorted(rising)
     assert Path("wall.svg").exists()
-
-
-def test_its_files_are_those_that_it_links_to() -> None:
-    for target in re.findall(r"\]\((?!https:)([^)#]+\.md)", PAGE):
-        assert (Path(__file__).parents[2] / "docs" / target).exists(), target
