@@ -57,7 +57,7 @@ for page in (DOCS / "gallery-of-examples").glob("*/*.rst"):  # of examples that 
         page.unlink()
 
 # accessible_pygments, which furo uses, would have every library tell what it does
-for talkative in ("ezdxf", "fontTools", "skfem"):
+for talkative in ("ezdxf", "fontTools", "matplotlib", "skfem"):
     logging.getLogger(talkative).setLevel(logging.WARNING)
 warnings.filterwarnings("ignore", "FigureCanvasAgg is non-interactive", UserWarning)
 
@@ -75,4 +75,5 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "reset_modules": ("matplotlib", "sources.cropped"),
     "capture_repr": (),
+    "reference_url": dict.fromkeys(("dem", "homog", "runningbond")),
 }

@@ -16,8 +16,8 @@ from sphinx.util.logging import getLogger
 from sphinx.util.math import get_node_equation_number
 
 SIGNS = (
-    *((0x20, 0x7E), (0xA0, 0xB7), (0xD7, 0xD7), (0x302, 0x307), (0x391, 0x3F6), (0x2010, 0x2064), (0x2190, 0x21D4)),
-    *((0x2200, 0x22FF), (0x2308, 0x230B), (0x239B, 0x23AE), (0x1D400, 0x1D49B), (0x1D6A8, 0x1D755)),
+    "20-7E,A0-B7,D7,2C6-2DD,302-308,391-3F6,2010-2064,210E,2190-21D4,2200-22FF,"
+    "2308-230B,239B-23AE,1D400-1D49B,1D5A0-1D5B9,1D6A8-1D755"
 )
 """Latin, Greek, signs, and letters of mathematics."""
 
@@ -54,7 +54,7 @@ def write_font(app: Sphinx, failure: Exception | None) -> None:
     wanted = subset.Options(flavor="woff", layout_features=["*"], notdef_outline=True)
     with subset.load_font(str(files("ziamath.fonts") / "STIXTwoMath-Regular.ttf"), wanted) as font:
         subsetter = subset.Subsetter(wanted)
-        subsetter.populate(unicodes=[code for first, last in SIGNS for code in range(first, last + 1)])
+        subsetter.populate(unicodes=subset.parse_unicodes(SIGNS))
         subsetter.subset(font)
         subset.save_font(font, str(Path(app.outdir) / "_static" / "math.woff"), wanted)
 
