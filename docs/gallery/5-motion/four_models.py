@@ -17,6 +17,6 @@ for row, model in enumerate(models):
     result = wall.run(model)
     axes.plot([result.lower, result.upper], [row, row], lw=5, marker="|", ms=14, solid_capstyle="butt")
 axes.axvline(0.563, ls=":", color="0.4")
-axes.text(0.563, 3.6, "Ferris & Tin-Loi", ha="center", fontsize=8)
+axes.text(0.563, 3.6, "Ferris & Tin-Loi", ha="center", fontsize=8, backgroundcolor="white")
 axes.set(yticks=range(4), xlabel="λ", ylim=(-0.6, 4.0), title=wall.scene.title)
 axes.set_yticklabels(models)
