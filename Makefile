@@ -7,7 +7,7 @@ ready := .venv/.ready
 bin := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: compare study stability validate test test-long bench clean help
+.PHONY: compare study stability validate test test-long bench docs clean help
 
 compare: $(ready) ## run every model on every published wall and tabulate, in comparison/
 	$(bin)/runningbond compare --out comparison $(ARGS)
@@ -33,8 +33,16 @@ test-long: $(ready) ## the studies that take minutes
 bench: $(ready) ## run the benchmarks one after another
 	@set -e; for script in $(sort $(wildcard benchmarks/*.py)); do echo "$$script"; $(bin)/python "$$script"; done
 
+docs: .venv/.docs ## build the documentation, its gallery run, in site/
+	$(bin)/sphinx-build -q -W --keep-going -d build/docs docs site
+	@echo 'site/index.html: open it in a browser; nothing is loaded from anywhere.'
+
+.venv/.docs: $(ready)
+	@$(bin)/python -m pip install -q --disable-pip-version-check -e '.[docs]'
+	@touch $@
+
 clean: ## remove .venv and caches; results stay
-	rm -rf .venv .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist *.egg-info
+	rm -rf .venv docs/gallery-of-examples .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist *.egg-info
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help: ## show this

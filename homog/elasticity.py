@@ -27,7 +27,13 @@ def elastic_moduli(
     head_normal: float,
     head_shear: float,
 ) -> Moduli:
-    """Moduli of the infinite wall from blocks b × a [m] and stiffnesses per unit area [Pa/m] of bed and head joints."""
+    """Moduli of the infinite wall from blocks b × a [m] and stiffnesses per unit area [Pa/m] of bed and head joints.
+
+    Examples
+    --------
+    >>> elastic_moduli(240, 60, bed_normal=80, bed_shear=30, head_normal=50, head_shear=20).a1111
+    19200.0
+    """
     b, a = block_width, block_height
     # Shear strain tilts the bond against the heads' shear and the beds' normal stiffness, in series with bed shear.
     tilting = b * head_shear + bed_normal * b**2 / (4 * a)

@@ -27,6 +27,11 @@ def lateral_multiplier(slenderness: float, slope: float, friction: float) -> flo
     """Collapse multiplier λ of a panel of slenderness r = H / L with crack slope s.
 
     It is 1 / (2 s) where r ≤ s, (3 r − 2 s) / (3 r² − s²) beyond, and never more than tan φ, at which all of it slides.
+
+    Examples
+    --------
+    >>> round(lateral_multiplier(slenderness=0.5, slope=crack_slope(0.24, 0.06, 0.6), friction=0.6), 4)
+    0.5477
     """
     r, s = slenderness, slope
     turning = 1 / (2 * s) if r <= s else (3 * r - 2 * s) / (3 * r**2 - s**2)

@@ -84,6 +84,15 @@ class Wall:
             file's top level (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that needs no
             more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load
             lateral unless given.
+
+        Examples
+        --------
+        >>> size = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2}
+        >>> wall = Wall.running_bond(length=1.6, height=1.2, **size, density=1800.0, friction=0.6)
+        >>> wall
+        <Wall 'running bond': 27 blocks, 1.6 × 1.2 m>
+        >>> print(f"{wall.run('limit').multiplier:.4f}")
+        0.5838
         """
         block = {"block_width": block_width, "block_height": block_height, "thickness": thickness}
         return cls._built("running bond", {"length": length, "height": height, **block}, keys)
@@ -136,6 +145,15 @@ class Wall:
         tables
             Keys by table: ``joint={"friction": 0.7}``. Tables are merged with those that are there, but one that
             names its ``kind`` takes the place of the old one.
+
+        Examples
+        --------
+        >>> read("wall-w1").with_({"joint.friction": 0.4}).run("limit").status
+        'collapse'
+        >>> read("wall-w1").with_({"joint.friktion": 0.4})
+        Traceback (most recent call last):
+            ...
+        runningbond.scene.errors.SceneError: joint.friktion = 0.4: is not a key of [joint]; did you mean "friction"?
         """
         description = self._description
         for name, value in (changes or {}).items():

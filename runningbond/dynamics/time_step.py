@@ -23,6 +23,11 @@ def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: flo
         ξ of the viscous damping of that mode.
     local
         α of the local damping.
+
+    Examples
+    --------
+    >>> stable_step(frequency_squared=4.0)  # 0.9 of 2 / ω
+    0.9
     """
     enlarged = math.sqrt(1 + local)
     ratio = enlarged * damping_ratio

@@ -27,6 +27,11 @@ def joint_stiffness(material: JointMaterial) -> Stiffness:
     ------
     SceneError
         If the scene gives neither mortar nor stiffness.
+
+    Examples
+    --------
+    >>> joint_stiffness(JointMaterial(friction=0.6, elasticity=Mortar(young=1e9, poisson=0.0, thickness=0.01)))
+    Stiffness(normal=100000000000.0, shear=50000000000.0)
     """
     elasticity = material.elasticity
     if isinstance(elasticity, Stiffness):

@@ -1,0 +1,25 @@
+"""
+Slender panels fall earlier
+===========================
+
+Where the crack no longer reaches the top corner the wedge is cut off by the panel's side, and λ falls with the
+height.
+"""
+
+import matplotlib.pyplot as plt
+
+import runningbond as rb
+
+panel = rb.read("panel-06")
+heights = [0.48 * k for k in range(1, 8)]
+walls = [panel.with_({"wall.height": height}) for height in heights]
+
+figure, axes = plt.subplots()
+for model, marker in (("limit", "o-"), ("homog", "s--")):
+    axes.plot([h / 1.44 for h in heights], [wall.run(model).multiplier for wall in walls], marker, label=model)
+axes.set(xlabel="H / L", ylabel="λ", title="Blocks of 0.24 × 0.12 m, tan φ = 0.6")
+axes.legend()
+
+# %%
+# The highest of them.
+walls[-1].run("limit").plot()

@@ -1,0 +1,20 @@
+"""
+A façade of two storeys
+=======================
+
+Door, windows, lintels of oak and granite, a floor and a roof that load it: a scene file of a hundred lines
+(``examples/walls/facade.toml``, on the page of :doc:`six walls </walls>`).
+"""
+
+from pathlib import Path
+
+import runningbond as rb
+
+folder = Path(rb.__file__).parents[1] / "examples" / "walls"
+facade = rb.read(folder / "facade.toml")
+facade.plot()
+
+# %%
+# Pushed to the right it comes apart at the windows.
+facade.run("limit").plot()
+# sphinx_gallery_thumbnail_number = 2

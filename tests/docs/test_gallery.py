@@ -1,0 +1,38 @@
+"""Every example of docs/gallery runs as it stands, and draws."""
+
+import runpy
+import warnings
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+GALLERY = Path(__file__).parents[2] / "docs" / "gallery"
+EXAMPLES = sorted(GALLERY.glob("*/*.py"))
+
+
+def name(path: Path) -> str:
+    return path.relative_to(GALLERY).as_posix()
+
+
+def test_there_are_thirty_short_ones() -> None:
+    assert len(EXAMPLES) >= 30
+    for path in EXAMPLES:
+        assert len(path.read_text(encoding="utf-8").splitlines()) <= 30, name(path)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("path", EXAMPLES, ids=name)
+def test_an_example_runs_and_draws(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import matplotlib.pyplot as plt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(matplotlib, "rcParams", matplotlib.rcParams.copy())
+    matplotlib.use("Agg")
+    plt.close("all")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        runpy.run_path(str(path), run_name="__main__")
+    drawn = plt.get_fignums()
+    plt.close("all")
+    assert drawn
