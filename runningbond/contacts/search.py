@@ -16,6 +16,9 @@ from .rigid_sides import Placed, RigidSides, gather_sides
 FASTEST_OPENING = math.sqrt(5)
 """Most by which an opening changes, in ways of the corner (`sharp_opening`)."""
 
+DEEP = 0.1
+"""Depth of an end, in margins of the outline, from which on it is asked whether its blocks reach as deep."""
+
 LEAST_OVERLAP = 1e-6
 """Least overlap of two sides for which their contact has a stiffness, in lengths of the shorter one."""
 
@@ -130,13 +133,33 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
         np.tile(joint, 2),
         np.zeros(2 * n, dtype=bool),
     )
-    close = np.abs(jumps(outline, both, motion)[0]) < FASTEST_OPENING * margin
+    opening, _ = jumps(outline, both, motion)
+    close = (np.abs(opening) < FASTEST_OPENING * margin) & ~_past_each_other(outline, both, opening, motion)
     near = np.tile(close[:n] | close[n:], 2)
     # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
     # rests with both, each of which stands for its own area.
     corner, _ = resting(outline, both, motion)
     lean = -both.inwards * np.tile(tilt + turned, 2)
     return both.chosen(near & (np.abs(lean) <= np.maximum(outline.exterior[corner] / 2, FLAT)))
+
+
+def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motion: Array) -> Mask:
+    """Ends that lie deeper than their two blocks reach into each other along the normal of any side, ``(n,)``.
+
+    Such a block has come by the end of the other one's side, and is below it without having gone through it.
+    """
+    blocks, found = outline.blocks, np.zeros(len(contacts), dtype=bool)
+    deep = np.flatnonzero(opening < -DEEP * outline.margin)
+    corners, normals = outline.corners(motion), outline.placed(motion).arcs[:, 2:]
+    for end in deep:
+        sides = [
+            slice(*blocks.first[block : block + 2]) for block in blocks.owner[contacts.ends[end, 4:].astype(np.int64)]
+        ]
+        axes = np.concatenate([normals[side] for side in sides]).T
+        one, other = (corners[side] @ axes for side in sides)
+        reach = np.minimum(one.max(axis=0), other.max(axis=0)) - np.maximum(one.min(axis=0), other.min(axis=0))
+        found[end] = reach.min() < -opening[end] / 2
+    return found
 
 
 def jumps(outline: Outline, contacts: Contacts, motion: Array) -> Array:

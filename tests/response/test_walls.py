@@ -9,6 +9,7 @@ import pytest
 
 from dem.finite_system import finite_system
 from runningbond.compare.models import respond, run_model
+from runningbond.compare.published import published_scene
 from runningbond.joints.wall_law import with_impacts
 from runningbond.response import critical_scale, follow
 from runningbond.response.critical import Search
@@ -56,6 +57,20 @@ def test_ground_that_moves_as_slowly_as_can_be_leaves_the_static_bracket(sense: 
     falls = follow(rest, 1.03 * static.multiplier, rows=50)
     assert falls.verdict == "collapse"
     assert falls.drift[-1] * sense < 0
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["wall-w1", "wall-w2", "wall-w3"])
+def test_published_walls_fall_at_their_static_load_as_the_ground_moves_slowly(name: str) -> None:
+    """W1 to W3 under an acceleration that grows for 4 s and stays: 3 % below the static bracket's middle and above."""
+    scene = published_scene(name)
+    static = run_model("dem-dynamic", scene)
+    assert static.multiplier is not None
+    time, values = pulse("ramp", -GRAVITY, 4.0)
+    history = History(time, values, holds=True, interval=0.02)
+    rest = resting(replace(scene, load=replace(scene.load, live=(history,))))
+    assert follow(rest, 0.97 * static.multiplier, rows=50).verdict == "stands"
+    assert follow(rest, 1.03 * static.multiplier, rows=50).verdict == "collapse"
 
 
 def test_a_mirrored_motion_has_a_mirrored_response() -> None:

@@ -1,0 +1,100 @@
+"""Deformable blocks of 1 to 1000 GPa beside rigid ones: walls with inset contacts and arches, brackets and cost.
+
+Prints a Markdown table, a row a wall and Young's modulus as it ends; processor seconds, and the ratio of both models'.
+
+    python benchmarks/studies/stiff_blocks.py
+    python benchmarks/studies/stiff_blocks.py --young 1 100 wall-w1 arch-27
+"""
+
+import argparse
+import tempfile
+import time
+from pathlib import Path
+
+import ezdxf
+import numpy as np
+
+from runningbond.compare import published_scene, run_model
+from runningbond.compare.table import bracket
+from runningbond.results import Outcome
+from runningbond.scene import Scene, scene_from_dict
+
+INSET = 0.02
+ARCHES = {"arch-9": (9, 180.0), "arch-15": (15, 180.0), "arch-21": (21, 120.0), "arch-27": (27, 180.0)}
+"""Voussoirs and the angle [degrees] that they span."""
+
+WALLS = ["wall-w1", "wall-w2", "wall-w3", *ARCHES]
+YOUNG = [1.0, 10.0, 100.0, 1000.0]
+RADIUS, RING = 2.0, 0.4
+
+
+def arch(voussoirs: int, spanned: float) -> Scene:
+    """An arch of 2 m and 0.4 m on the ground, pushed sideways by its weight."""
+    document = ezdxf.new("R2000")  # type: ignore[attr-defined]
+    space = document.modelspace()
+    rays = np.radians(90 + np.linspace(spanned / 2, -spanned / 2, voussoirs + 1))
+    ring = np.array([[np.cos(rays), np.sin(rays)]]) * np.array([RADIUS, RADIUS + RING])[:, None, None]
+    inner, outer = np.moveaxis(ring, 2, 1)
+    for k in range(voussoirs):
+        space.add_lwpolyline(
+            [inner[k], outer[k], outer[k + 1], inner[k + 1]][::-1], close=True, dxfattribs={"layer": "ARCH"}
+        )
+    for end, sense in ((0, -1.0), (-1, 1.0)):
+        away = sense * np.array([-np.sin(rays[end]), np.cos(rays[end])]) * -RING
+        corners = [inner[end], outer[end], outer[end] + away, inner[end] + away]
+        space.add_lwpolyline(corners, close=True, dxfattribs={"layer": "GROUND"})
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "arch.dxf"
+        document.saveas(path)
+        return scene_from_dict(
+            {
+                "title": f"arch of {voussoirs} voussoirs",
+                "wall": {"drawing": str(path), "units": "m", "thickness": 0.3},
+                "block": {"density": 2000.0, "young": 1e10, "poisson": 0.2},
+                "joint": {"friction": 0.7, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}},
+                "support": {"kind": "base"},
+                "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+            },
+            folder=Path(folder),
+        )
+
+
+def wall(name: str) -> Scene:
+    """A wall by its name; those of Ferris & Tin-Loi with their contacts farther in."""
+    return arch(*ARCHES[name]) if name in ARCHES else published_scene(name).with_joint(inset=INSET)
+
+
+def timed(model: str, scene: Scene) -> tuple[Outcome, float]:
+    """Outcome of a model, and the processor time that it took [s]."""
+    start = time.process_time()
+    return run_model(model, scene), time.process_time() - start
+
+
+def is_beside(one: Outcome, other: Outcome) -> bool:
+    """Whether two brackets have a load in common."""
+    if one.lower is None or one.upper is None or other.lower is None or other.upper is None:
+        return False
+    return one.lower <= other.upper and other.lower <= one.upper
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("walls", nargs="*", default=WALLS)
+    parser.add_argument("--young", nargs="+", type=float, default=YOUNG, help="in GPa")
+    asked = parser.parse_args()
+    print("| wall | E [GPa] | dem-dynamic | fem | agree | dem-dynamic [s] | fem [s] | ratio | fem says |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for name in asked.walls:
+        scene = wall(name)
+        run_model("dem-dynamic", scene)  # kernels are compiled before anything is measured
+        rigid, rigid_seconds = timed("dem-dynamic", scene)
+        for young in asked.young:
+            found, seconds = timed("fem", scene.with_block(young=1e9 * young))
+            brackets = f"{bracket(rigid)} | {bracket(found)} | {'yes' if is_beside(rigid, found) else 'no'}"
+            costs = f"{rigid_seconds:.2g} | {seconds:.2g} | {seconds / rigid_seconds:.1f}"
+            print(f"| {name} | {young:g} | {brackets} | {costs} | {found.message} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
