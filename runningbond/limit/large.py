@@ -8,23 +8,13 @@ Nothing is searched further: neither other starts nor a descent.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from runningbond.scene import Array
 
 from .certificates import Certificate, driving_forces
 from .equilibrium import Equilibrium
-from .force_program import (
-    Aim,
-    ForceSet,
-    ForceSolution,
-    coulomb,
-    force_program,
-    frozen_friction,
-    solution_of,
-    solve_forces,
-)
-from .interior_point import interior_point
+from .force_program import coulomb, frozen_friction, solve_forces
+from .interior_point import near
 from .macro import glue, still_points
 from .search import Observer, Search, averaged
 
@@ -37,9 +27,6 @@ POINTS_TO_GLUE = 12_000
 STILL = (1e-2, 1e-3, 1e-4)
 """Jumps, relative to the largest motion, below which points count as still, in turn."""
 
-ROUGH = 1e-6
-"""Relative tolerance of programs that only bring pressures up to date, and of whether there are forces."""
-
 SETTLING = 4
 """Programs before the first mechanism is looked at."""
 
@@ -50,12 +37,6 @@ MOST = 40
 def takes_one_start(system: Equilibrium) -> bool:
     """Whether a wall is too large for more than this."""
     return len(system.points) >= POINTS
-
-
-def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSolution:
-    """Forces of a set near those at the largest or smallest load, and near balance."""
-    point = interior_point(force_program(system, forces, aim), ROUGH)
-    return replace(solution_of(system, forces, "optimal", point.forces, point.motion, 0), status=point.status)
 
 
 def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search:

@@ -12,7 +12,17 @@ from scipy.sparse import csc_array, hstack
 from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
-from .force_program import ForceSet, ForceSolution, bounds_of, frozen_friction, mechanism_scale, solution_of
+from .force_program import (
+    Aim,
+    ForceSet,
+    ForceSolution,
+    bounds_of,
+    frozen_friction,
+    mechanism_scale,
+    solution_of,
+    solve_forces,
+)
+from .interior_point import near
 from .simplex import DUAL, PRIMAL, Simplex
 
 NO_FORCE = 1e-7
@@ -66,8 +76,17 @@ class Programs:
         return self._solved(self._frozen, frozen_friction(self.system.strength, pressure), sense=-1.0)
 
     def extreme(self, forces: ForceSet, sense: float = 1.0, method: int = PRIMAL) -> ForceSolution:
-        """Forces of a set of two rays a point at the least load, or with a `sense` of −1 at the most."""
-        return self._solved(self._driven, forces, sense=sense, method=method, pivots=MOST_PIVOTS)
+        """Forces of a set of two rays a point at the least load, or with a `sense` of −1 at the most.
+
+        Where the simplex method has passed so many corners without any such forces, the interior point says whether
+        there are some.
+        """
+        found = self._solved(self._driven, forces, sense=sense, method=method, pivots=MOST_PIVOTS)
+        if found.status != "numerical":
+            return found
+        aim: Aim = "smallest" if sense > 0 else "largest"
+        rough = near(self.system, forces, aim)
+        return rough if rough.status != "optimal" else solve_forces(self.system, forces, aim)
 
     def corner(
         self, forces: ForceSet, weights: Array, multiplier: float | None = None, pivots: int | None = None
