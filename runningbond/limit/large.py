@@ -36,7 +36,7 @@ FREEDOMS = 700
 MIXED = 1e-4
 """Jumps of a mix of mechanisms, relative to its largest motion, that a corner need not have."""
 
-SLOW, AT_ONCE = (0.3, range(2, 5)), (1.0, range(4, 40))
+SLOW, AT_ONCE = (0.3, range(2, 4)), (1.0, range(4, 40))
 """Weight of new pressures, and programs whose mechanisms are looked at, of the sequence that glues and of the other."""
 
 
@@ -53,31 +53,48 @@ def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search
     found = Search(starts=1)
     try:
         pressure = near(system, coulomb(system.strength)).pressure
+        first = _program(system, pressure, found)
         if not system.has_support:
-            _sequence(system, place, pressure, found, observe, *SLOW)
+            _sequence(system, place, pressure, first, found, observe, *SLOW)
         if not (found.certificates or found.frictionless):
-            _sequence(system, None, pressure, found, observe, *AT_ONCE)
+            _sequence(system, None, pressure, first, found, observe, *AT_ONCE)
     except KeyboardInterrupt:
         found.interrupted = True
     return found
 
 
+def _program(system: Equilibrium, pressure: Array, found: Search) -> ForceSolution:
+    """A program of the sequences; HiGHS says whether one without an optimum has forces without end."""
+    found.programs += 1
+    forces = frozen_friction(system.strength, pressure)
+    program = near(system, forces)
+    if program.status != "optimal":
+        found.frictionless = solve_forces(system, forces).status == "unbounded"
+    return program
+
+
 def _sequence(
-    system: Equilibrium, place: Array | None, pressure: Array, found: Search, observe: Observer, weight: float, looked_at: range
+    system: Equilibrium,
+    place: Array | None,
+    pressure: Array,
+    program: ForceSolution,
+    found: Search,
+    observe: Observer,
+    weight: float,
+    looked_at: range,
 ) -> None:
     """Bring pressures ``(np,)`` up to date until a mechanism is certified; blocks are glued if their place is known."""
     for k in range(looked_at.stop):
-        program = near(system, frozen_friction(system.strength, pressure))
-        found.programs += 1
+        if k:
+            pressure = averaged(pressure, program.pressure, weight)
+            program = _program(system, pressure, found)
         if program.status != "optimal":
-            found.frictionless = solve_forces(system, frozen_friction(system.strength, pressure)).status == "unbounded"
             return
         if k in looked_at:
             found.certificates += _certified(system, _corners(system, place, pressure, program.motion, found), found)
             if found.certificates:
                 return
         observe(found)
-        pressure = averaged(pressure, program.pressure, weight)
 
 
 def _certified(system: Equilibrium, motions: Iterator[Array], found: Search) -> list[Certificate]:
