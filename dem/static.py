@@ -54,6 +54,9 @@ PAST = 500
 OTHER_STEPS = (0.5, 0.7)
 """First steps of the paths beside the first one, in its own. The second is taken where the first does not agree."""
 
+ROUNDING = 1e-9
+"""Part of a load by which λ of a state of rest may differ from it."""
+
 INTERRUPTED = "interrupted"
 """Why a wall is undecided after Ctrl-C."""
 
@@ -165,9 +168,12 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
 
 
 def _apart(found: list[tuple[Outcome, LoadPath]]) -> float:
-    """Relative width of the loads that bracket all collapses of paths; 0 where their brackets have a load in common."""
+    """Relative width of the loads that bracket all collapses of paths; 0 where their brackets overlap.
+
+    One path may rest under the very load under which another falls.
+    """
     lower, upper = ([getattr(outcome, end) for outcome, _ in found] for end in ("lower", "upper"))
-    return 0.0 if max(lower) <= min(upper) else float((max(upper) - min(lower)) / max(upper))
+    return 0.0 if max(lower) < (1 - ROUNDING) * min(upper) else float((max(upper) - min(lower)) / max(upper))
 
 
 def _loads(outcome: Outcome) -> str:
@@ -204,7 +210,7 @@ def _ends(path: LoadPath) -> tuple[float, float]:
 
 def _agrees(path: LoadPath, lower: float, upper: float) -> bool:
     """Whether a path collapses between two loads."""
-    return path.upper is not None and lower <= path.lower and path.upper <= upper
+    return path.upper is not None and (1 - ROUNDING) * lower <= path.lower and path.upper <= upper
 
 
 def _bracket(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[float] = ()) -> str:
@@ -212,9 +218,10 @@ def _bracket(path: LoadPath, first_step: float, tolerance: float, asked: Sequenc
 
     Of a wall that has fallen, loads that are `asked` for are tried before those in the middle.
     """
-    step = first_step
+    step, left = first_step, list(asked)
     while True:
-        inside = [load for load in asked if path.upper is not None and path.lower < load < path.upper]
+        inside = [load for load in left if path.upper is not None and path.lower < load < path.upper]
+        left = inside[1:] if inside else left  # each once: λ of a rest is its load up to rounding
         if path.upper is not None and path.upper - path.lower <= tolerance * max(path.upper, NOISE) and not inside:
             return ""
         middle = path.lower + step if path.upper is None else (path.lower + path.upper) / 2
