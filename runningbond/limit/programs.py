@@ -47,6 +47,7 @@ class Programs:
     system: Equilibrium
     stopped: Event = field(default_factory=Event)
     solved: int = 0
+    asks_interior_point: bool = True
     _power: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -84,11 +85,11 @@ class Programs:
     def extreme(self, forces: ForceSet, sense: float = 1.0, method: int = PRIMAL) -> ForceSolution:
         """Forces of a set of two rays a point at the least load, or with a `sense` of −1 at the most.
 
-        Where the simplex method has passed so many corners without any such forces, the interior point says whether
-        there are some.
+        Where the simplex method has passed so many corners without any such forces, it has not shown that there are
+        none: the interior point says so, if it is to be asked.
         """
         found = self._solved(self._driven, forces, sense=sense, method=method, pivots=MOST_PIVOTS)
-        if found.status != "numerical":
+        if found.status != "numerical" or not self.asks_interior_point:
             return found
         aim: Aim = "smallest" if sense > 0 else "largest"
         rough = near(self.system, forces, aim)
