@@ -16,6 +16,7 @@ A beam or supports that are moved by displacements take the wall along, step by 
 """
 
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -52,6 +53,9 @@ PAST = 500
 
 OTHER_STEPS = (0.5, 0.7)
 """First steps of the paths beside the first one, in its own. The second is taken where the first does not agree."""
+
+ROUNDING = 1e-9
+"""Part of a load by which λ of a state of rest may differ from it."""
 
 INTERRUPTED = "interrupted"
 """Why a wall is undecided after Ctrl-C."""
@@ -145,7 +149,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
         if outcome.message.endswith(INTERRUPTED) or (len(found) > 1 and _apart(found) <= tolerance):
             break
         path = LoadPath(first.system, first.far, left, rest)
-        outcome = _along(result, path, factor * first_step, tolerance, past)
+        outcome = _along(result, path, factor * first_step, tolerance, past, first)
         steps += left - path.budget
         told.append(f"with load steps {factor:g} times as long {_loads(outcome)}")
         if outcome.status == "collapse":
@@ -164,9 +168,12 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
 
 
 def _apart(found: list[tuple[Outcome, LoadPath]]) -> float:
-    """Relative width of the loads that bracket all collapses of paths; 0 where their brackets have a load in common."""
+    """Relative width of the loads that bracket all collapses of paths; 0 where their brackets overlap.
+
+    One path may rest under the very load under which another falls.
+    """
     lower, upper = ([getattr(outcome, end) for outcome, _ in found] for end in ("lower", "upper"))
-    return 0.0 if max(lower) <= min(upper) else float((max(upper) - min(lower)) / max(upper))
+    return 0.0 if max(lower) < (1 - ROUNDING) * min(upper) else float((max(upper) - min(lower)) / max(upper))
 
 
 def _loads(outcome: Outcome) -> str:
@@ -176,12 +183,17 @@ def _loads(outcome: Outcome) -> str:
     return f"{number(outcome.lower)}–{number(outcome.upper)}"
 
 
-def _along(result: Outcome, path: LoadPath, first_step: float, tolerance: float, past: int) -> Outcome:
-    """Outcome of a wall that is loaded until it has fallen, close enough to the last load at rest, and followed."""
+def _along(
+    result: Outcome, path: LoadPath, first_step: float, tolerance: float, past: int, first: LoadPath | None = None
+) -> Outcome:
+    """Outcome of a wall that is loaded until it has fallen, close enough to the last load at rest, and followed.
+
+    A path beside the first one that collapses within its bracket is not followed.
+    """
     undecided, cut = INTERRUPTED, ""
     with suppress(KeyboardInterrupt):
-        undecided = _bracket(path, first_step, tolerance)
-        if past and not undecided:  # the bracket is found, and stands
+        undecided = _bracket(path, first_step, tolerance, () if first is None else _ends(first))
+        if past and not undecided and not (first and _agrees(path, *_ends(first))):  # the bracket is found, and stands
             cut = f"; its curve was {INTERRUPTED}"
             _look_closer(path, tolerance, past)
             cut = ""
@@ -191,17 +203,34 @@ def _along(result: Outcome, path: LoadPath, first_step: float, tolerance: float,
     return replace(outcome, message=outcome.message + cut)
 
 
-def _bracket(path: LoadPath, first_step: float, tolerance: float) -> str:
-    """Load a wall until it has fallen, close enough to the last load at rest; why it is undecided."""
-    step = first_step
-    while path.upper is None or path.upper - path.lower > tolerance * max(path.upper, NOISE):
-        held = path.push(path.lower + step if path.upper is None else (path.lower + path.upper) / 2)
+def _ends(path: LoadPath) -> tuple[float, float]:
+    """The bracket of a path that has fallen."""
+    return _peak(path).multiplier, np.inf if path.upper is None else path.upper
+
+
+def _agrees(path: LoadPath, lower: float, upper: float) -> bool:
+    """Whether a path collapses between two loads."""
+    return path.upper is not None and (1 - ROUNDING) * lower <= path.lower and path.upper <= upper
+
+
+def _bracket(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[float] = ()) -> str:
+    """Load a wall until it has fallen, close enough to the last load at rest; why it is undecided.
+
+    Of a wall that has fallen, loads that are `asked` for are tried before those in the middle.
+    """
+    step, left = first_step, list(asked)
+    while True:
+        inside = [load for load in left if path.upper is not None and path.lower < load < path.upper]
+        left = inside[1:] if inside else left  # each once: λ of a rest is its load up to rounding
+        if path.upper is not None and path.upper - path.lower <= tolerance * max(path.upper, NOISE) and not inside:
+            return ""
+        middle = path.lower + step if path.upper is None else (path.lower + path.upper) / 2
+        held = path.push(inside[0] if inside else middle)
         if held.verdict == "undecided":
             return "it neither rested nor fell"
         step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
         if path.upper is None and path.lower > LARGEST_LOAD * first_step:
             return "it bore every load tried"
-    return ""
 
 
 def _look_closer(path: LoadPath, tolerance: float, past: int) -> None:

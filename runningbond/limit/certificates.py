@@ -35,17 +35,19 @@ class Certificate:
     most: ForceSolution
 
 
-def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
+def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -> ForceSet | None:
     """Forces that obey Coulomb's law on a mechanism ``(nd,)``: none where it opens, at the limit where it slides.
 
     A tie that lengthens is at yield, and one that shortens is slack. What holds a beam at its height presses it down,
-    if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other.
+    if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other. Jumps up to
+    `still` times the largest motion count as none.
     """
     opening, slip = system.opening.T @ motion, system.slip.T @ motion
     largest = float(np.abs(motion).max(initial=0.0))
-    if largest == 0.0 or opening.min(initial=0.0) < -PENETRATION * largest:
+    if largest == 0.0 or opening.min(initial=0.0) < -max(PENETRATION, still) * largest:
         return None
-    opens, forward, backward = opening > NO_JUMP * largest, slip > NO_JUMP * largest, slip < -NO_JUMP * largest
+    least = still * largest
+    opens, forward, backward = opening > least, slip > least, slip < -least
     longer = system.elongation(motion)
     cone = coulomb(system.strength)
     up, down = cone.most
@@ -54,8 +56,8 @@ def driving_forces(system: Equilibrium, motion: Array) -> ForceSet | None:
         (np.where(opens | backward, 0.0, up), np.where(opens | forward, 0.0, down)),
         np.where(forward, cone.shear_high, cone.shear_low),
         np.where(backward, cone.shear_low, cone.shear_high),
-        np.where(longer > NO_JUMP * largest, system.tie_yield, 0.0),
-        np.where(longer < -NO_JUMP * largest, 0.0, system.tie_yield),
+        np.where(longer > least, system.tie_yield, 0.0),
+        np.where(longer < -least, 0.0, system.tie_yield),
         late_least=0.0,
     )
 

@@ -13,7 +13,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import clarabel
@@ -22,10 +22,14 @@ from scipy.sparse import block_array, csc_array, csc_matrix, eye_array
 
 from runningbond.scene import Array
 
-from .force_program import ProgramStatus
+from .equilibrium import Equilibrium
+from .force_program import Aim, ForceSet, ForceSolution, ProgramStatus, force_program, solution_of
 
 FARTHEST = 1e4
 """Largest and smallest stiffness of a force in `InteriorPoint.compliance`, relative; farther apart rounding wins."""
+
+ROUGH = 1e-6
+"""Relative tolerance of programs that only bring pressures up to date, and of whether there are forces."""
 
 SUPERNODAL = 20_000
 """Equations above which dense blocks of the factors pay (faer): a third of the time of a simple one on 60 000."""
@@ -95,6 +99,12 @@ def interior_point(program: dict[str, Any], tolerance: float, *, unfinished: boo
     return InteriorPoint(
         _status(str(solution.status)), solution.iterations, forces, motion, slack, compliance, bool(interruptions)
     )
+
+
+def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSolution:
+    """Forces of a set near those at the largest or smallest load, and near balance."""
+    point = interior_point(force_program(system, forces, aim), ROUGH)
+    return replace(solution_of(system, forces, "optimal", point.forces, point.motion, 0), status=point.status)
 
 
 @contextmanager

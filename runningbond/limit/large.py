@@ -1,50 +1,43 @@
-"""Certificates of large walls: one start, by interior points.
+"""Certificates of large walls: two sequences from the associated pressures, by interior points.
 
 From corner to corner a program of more than some thousand points takes longer than afresh, and the simplex method may
-never see that there are no forces. What only brings pressures up to date is solved by Clarabel to a rough tolerance;
-then HiGHS finds corners, whose mechanisms move few points, and Clarabel sees in a moment whether forces drive them.
-Of walls for which that takes minutes, blocks that hardly move against each other are glued first (`macro`).
+never see that there are no forces. What brings pressures up to date is solved by Clarabel to a rough tolerance. Its
+mechanism is a mix of all that collapse at that load; a corner is looked for, by HiGHS, where it is cheap or promises
+something:
+
+- in the wall whose blocks are glued where they hardly move against each other (`macro`), which leaves some hundred
+  freedoms. Pressures that follow slowly pass by many such mechanisms of few parts;
+- in the wall itself, once there are forces that drive the mix but for its smallest jumps. Where the whole wall slides
+  and opens no coarse mechanism does, and pressures that follow at once come to rest soonest.
+
 Nothing is searched further: neither other starts nor a descent.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 from runningbond.scene import Array
 
 from .certificates import Certificate, driving_forces
 from .equilibrium import Equilibrium
-from .force_program import (
-    Aim,
-    ForceSet,
-    ForceSolution,
-    coulomb,
-    force_program,
-    frozen_friction,
-    solution_of,
-    solve_forces,
-)
-from .interior_point import interior_point
+from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+from .interior_point import near
 from .macro import glue, still_points
 from .search import Observer, Search, averaged
 
 POINTS = 4500
 """Joint points, six or so a block, from which a wall is searched so."""
 
-POINTS_TO_GLUE = 12_000
-"""Joint points from which a wall's blocks are glued before corners are looked for."""
+STILL = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
+"""Jumps, relative to the largest motion, below which points count as still when blocks are glued, in turn."""
 
-STILL = (1e-2, 1e-3, 1e-4)
-"""Jumps, relative to the largest motion, below which points count as still, in turn."""
+FREEDOMS = 700
+"""Most freedoms of a glued wall whose corner is looked for."""
 
-ROUGH = 1e-6
-"""Relative tolerance of programs that only bring pressures up to date, and of whether there are forces."""
+MIXED = 1e-4
+"""Jumps of a mix of mechanisms, relative to its largest motion, that a corner need not have."""
 
-SETTLING = 4
-"""Programs before the first mechanism is looked at."""
-
-MOST = 40
-"""Programs in all."""
+SLOW, AT_ONCE = (0.3, range(2, 4)), (1.0, range(4, 40))
+"""Weight of new pressures, and programs whose mechanisms are looked at, of the sequence that glues and of the other."""
 
 
 def takes_one_start(system: Equilibrium) -> bool:
@@ -52,60 +45,94 @@ def takes_one_start(system: Equilibrium) -> bool:
     return len(system.points) >= POINTS
 
 
-def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSolution:
-    """Forces of a set near those at the largest or smallest load, and near balance."""
-    point = interior_point(force_program(system, forces, aim), ROUGH)
-    return replace(solution_of(system, forces, "optimal", point.forces, point.motion, 0), status=point.status)
-
-
 def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search:
-    """Run the sequence from the associated pressures to its first certificate, or Ctrl-C; loads are rough.
+    """Run both sequences from the associated pressures, or up to a certificate, or Ctrl-C; loads are rough.
 
     Movable blocks have their centroids at `place` ``(n, 2)`` [m].
     """
     found = Search(starts=1)
-    glues = len(system.points) >= POINTS_TO_GLUE and not system.has_support
     try:
         pressure = near(system, coulomb(system.strength)).pressure
-        for k in range(MOST):
-            forces, looked_at = frozen_friction(system.strength, pressure), k >= SETTLING
-            program = solve_forces(system, forces) if looked_at and not glues else near(system, forces)
-            found.programs += 1
-            if program.status != "optimal":
-                found.frictionless = looked_at and program.status == "unbounded"
-                break
-            if looked_at:
-                motions = _glued(system, place, pressure, program.motion, found) if glues else [program.motion]
-                certificate = next(filter(None, (_driven(system, motion, found) for motion in motions)), None)
-                if certificate is not None:
-                    found.certificates.append(certificate)
-                    break
-            observe(found)
-            pressure = averaged(pressure, program.pressure, (k + 1.0) ** -0.5)
+        first = _program(system, pressure, found)
+        if not system.has_support:
+            _sequence(system, place, pressure, first, found, observe, *SLOW)
+        if not (found.certificates or found.frictionless):
+            _sequence(system, None, pressure, first, found, observe, *AT_ONCE)
     except KeyboardInterrupt:
         found.interrupted = True
     return found
 
 
-def _glued(system: Equilibrium, place: Array, pressure: Array, motion: Array, found: Search) -> Iterator[Array]:
-    """Corners ``(nd,)`` of the wall whose blocks are glued where a mechanism ``(nd,)`` hardly moves them."""
+def _program(system: Equilibrium, pressure: Array, found: Search) -> ForceSolution:
+    """A program of the sequences; HiGHS says whether one without an optimum has forces without end."""
+    found.programs += 1
+    forces = frozen_friction(system.strength, pressure)
+    program = near(system, forces)
+    if program.status != "optimal":
+        found.frictionless = solve_forces(system, forces).status == "unbounded"
+    return program
+
+
+def _sequence(
+    system: Equilibrium,
+    place: Array | None,
+    pressure: Array,
+    program: ForceSolution,
+    found: Search,
+    observe: Observer,
+    weight: float,
+    looked_at: range,
+) -> None:
+    """Bring pressures ``(np,)`` up to date until a mechanism is certified; blocks are glued if their place is known."""
+    for k in range(looked_at.stop):
+        if k:
+            pressure = averaged(pressure, program.pressure, weight)
+            program = _program(system, pressure, found)
+        if program.status != "optimal":
+            return
+        if k in looked_at:
+            found.certificates += _certified(system, _corners(system, place, pressure, program.motion, found), found)
+            if found.certificates:
+                return
+        observe(found)
+
+
+def _certified(system: Equilibrium, motions: Iterator[Array], found: Search) -> list[Certificate]:
+    """The first of some mechanisms ``(nd,)`` that forces near those that are found drive."""
+    for motion in motions:
+        driving = driving_forces(system, motion)
+        if driving is None:
+            continue
+        found.programs += 2
+        least = near(system, driving, "smallest")
+        most = near(system, driving) if least.status == "optimal" else least
+        if most.status == "optimal":
+            return [Certificate(motion, least, most)]
+    return []
+
+
+def _corners(
+    system: Equilibrium, place: Array | None, pressure: Array, motion: Array, found: Search
+) -> Iterator[Array]:
+    """Mechanisms ``(nd,)`` at corners of the program of which a mix is given: of the glued wall, or of the wall."""
+    if place is None:
+        mixed = driving_forces(system, motion, MIXED)
+        found.programs += 1
+        if mixed is not None and near(system, mixed, "smallest").status == "optimal":
+            corner = _corner(system, pressure, found)
+            if corner.status == "optimal":
+                yield corner.motion
+        return
     last = 0
     for least in STILL:
         glued = glue(system, place, still_points(system, motion, least))
-        if glued.system.freedoms > last:
+        if last < glued.system.freedoms <= FREEDOMS:
             last = glued.system.freedoms
-            found.programs += 1
-            program = solve_forces(glued.system, frozen_friction(glued.system.strength, pressure[glued.points]))
-            if program.status == "optimal":
-                yield glued.motions @ program.motion
+            corner = _corner(glued.system, pressure[glued.points], found)
+            if corner.status == "optimal":
+                yield glued.motions @ corner.motion
 
 
-def _driven(system: Equilibrium, motion: Array, found: Search) -> Certificate | None:
-    """A mechanism ``(nd,)`` with forces near those that drive it."""
-    driving = driving_forces(system, motion)
-    if driving is None:
-        return None
-    found.programs += 2
-    least = near(system, driving, "smallest")
-    most = near(system, driving) if least.status == "optimal" else least
-    return Certificate(motion, least, most) if most.status == "optimal" else None
+def _corner(system: Equilibrium, pressure: Array, found: Search) -> ForceSolution:
+    found.programs += 1
+    return solve_forces(system, frozen_friction(system.strength, pressure))

@@ -12,8 +12,18 @@ from scipy.sparse import csc_array, hstack
 from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
-from .force_program import ForceSet, ForceSolution, bounds_of, frozen_friction, mechanism_scale, solution_of
-from .simplex import DUAL, PRIMAL, Simplex
+from .force_program import (
+    Aim,
+    ForceSet,
+    ForceSolution,
+    bounds_of,
+    frozen_friction,
+    mechanism_scale,
+    solution_of,
+    solve_forces,
+)
+from .interior_point import near
+from .simplex import DUAL, INTERIOR, PRIMAL, Simplex
 
 NO_FORCE = 1e-7
 """Force, in force units, that counts as none, and distance from the limit that counts as at it."""
@@ -21,6 +31,10 @@ NO_FORCE = 1e-7
 
 MOST_PIVOTS = 800
 """Corners after which loads that drive a mechanism are given up, or taken as they are."""
+
+FARTHEST = 10_000
+"""Corners between two programs of a sequence beyond which interior point and crossover take over: in walls of 600
+blocks so many take over a second, and they some tenths."""
 
 Corners: TypeAlias = "Sequence[highspy.HighsBasis | None]"
 """Corners from which the models of `Programs` start; None is nothing."""
@@ -33,6 +47,7 @@ class Programs:
     system: Equilibrium
     stopped: Event = field(default_factory=Event)
     solved: int = 0
+    asks_interior_point: bool = True
     _power: float = field(init=False)
 
     def __post_init__(self) -> None:
@@ -63,11 +78,22 @@ class Programs:
 
     def frozen(self, pressure: Array) -> ForceSolution:
         """Forces at the largest load if shear resistances are those of a pressure ``(np,)``."""
-        return self._solved(self._frozen, frozen_friction(self.system.strength, pressure), sense=-1.0)
+        forces = frozen_friction(self.system.strength, pressure)
+        found = self._solved(self._frozen, forces, sense=-1.0, pivots=FARTHEST)
+        return found if found.status != "numerical" else self._solved(self._frozen, forces, sense=-1.0, method=INTERIOR)
 
     def extreme(self, forces: ForceSet, sense: float = 1.0, method: int = PRIMAL) -> ForceSolution:
-        """Forces of a set of two rays a point at the least load, or with a `sense` of −1 at the most."""
-        return self._solved(self._driven, forces, sense=sense, method=method, pivots=MOST_PIVOTS)
+        """Forces of a set of two rays a point at the least load, or with a `sense` of −1 at the most.
+
+        Where the simplex method has passed so many corners without any such forces, it has not shown that there are
+        none: the interior point says so, if it is to be asked.
+        """
+        found = self._solved(self._driven, forces, sense=sense, method=method, pivots=MOST_PIVOTS)
+        if found.status != "numerical" or not self.asks_interior_point:
+            return found
+        aim: Aim = "smallest" if sense > 0 else "largest"
+        rough = near(self.system, forces, aim)
+        return rough if rough.status != "optimal" else solve_forces(self.system, forces, aim)
 
     def corner(
         self, forces: ForceSet, weights: Array, multiplier: float | None = None, pivots: int | None = None

@@ -41,6 +41,9 @@ STARTS = 160
 PIVOTS = 400
 """Corners passed on the way to random forces to start from."""
 
+MANY_CORNERS = 2500
+"""Joint points from which mechanisms that the simplex method gives up are not left for other starts."""
+
 ROUND = 4
 """Starts of a round."""
 
@@ -127,7 +130,8 @@ class Start:
                 known = self.found.certificates
                 known.append(certificate)
                 known += descent.below(certificate.motion, certificate.least, rng)
-            if self.best is None or is_lower(self.found.lowest, self.best.least.multiplier):
+            early = self.number <= ROUND  # a walk from the first certificate is no better than from any other
+            if early or self.best is None or is_lower(self.found.lowest, self.best.least.multiplier):
                 best = self.found.best
                 self.found.certificates += [] if best is None else descent.around(best, rng)
         finally:
@@ -181,7 +185,10 @@ def search(
     crew = [Programs(system, stopped) for _ in range(workers)]
     known: dict[bytes, ForceSolution | None] = {}
     corners: Corners = (None, None, None)
+    patient = len(system.points) >= MANY_CORNERS
     while found.starts < starts:
+        for programs in crew:
+            programs.asks_interior_point = patient
         numbers = range(found.starts, min(starts, found.starts + ROUND) if found.starts else 1)
         batch = [Start(number, associated, found.best, dict(known), corners) for number in numbers]
         try:
@@ -194,13 +201,13 @@ def search(
             _merge(found, start.found)
         corners = crew[0].corners if found.starts == 1 else corners
         observe(found)
-        if (
-            found.interrupted
-            or found.frictionless
-            or found.dry >= dry_allowed(system)
-            or found.programs > programs_allowed(system)
-        ):
+        if found.interrupted or found.frictionless:
             break
+        if found.dry >= dry_allowed(system) or found.programs > programs_allowed(system):
+            if patient or found.certificates:
+                break
+            patient = True  # what was given up may be all there is
+            known.clear()
     return found
 
 

@@ -16,6 +16,9 @@ from .force_program import ProgramStatus
 DUAL, PRIMAL = 1, 4
 """HiGHS's numbers of the simplex methods."""
 
+INTERIOR = 0
+"""Interior point and crossover instead, which start from no corner but end at one."""
+
 OPTIONS: dict[str, bool | int | float | str] = {
     "output_flag": False,
     "threads": 1,
@@ -78,7 +81,9 @@ class Simplex:
         After so many `pivots` the status is ``budget``, and x a corner but not the best, if the method is primal.
         """
         highs = self._highs
-        highs.setOptionValue("simplex_strategy", method)
+        highs.setOptionValue("solver", "ipm" if method == INTERIOR else "simplex")
+        highs.setOptionValue("presolve", "on" if method == INTERIOR else "off")
+        highs.setOptionValue("simplex_strategy", method or DUAL)
         highs.setOptionValue("simplex_iteration_limit", highspy.kHighsIInf if pivots is None else pivots)
         highs.changeColsBounds(self._size, self._every, low, high)
         highs.changeColsCost(self._size, self._every, cost)

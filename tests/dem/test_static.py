@@ -427,6 +427,7 @@ def interrupt(*arguments: object) -> None:
         ([(1.004, 1.006), (1.0, 1.002)], (1.0, 1.006)),
         ([(1.0, 1.01), (0.9, 0.91), (0.95, 0.96)], (0.9, 1.01)),
         ([(1.0, 1.01), (1.1, 1.11), (1.0, 1.01)], (1.0, 1.11)),
+        ([(1.0, 1.01), (0.9, 1.0), (1.0, 1.01)], (0.9, 1.01)),
         ([(1.0, 1.01), None, (0.8, 0.81)], (0.8, 1.01)),
         ([(1.0, 1.01), None, None], (1.0, 1.01)),
         ([None], None),
@@ -475,6 +476,32 @@ def test_states_are_those_of_the_lowest_path(monkeypatch: pytest.MonkeyPatch) ->
     assert len(paths) == 3
     assert [frame.multiplier for frame in recorder.frames] == pytest.approx(outcome.curve[:, 1])
     assert len(recorder.frames) == len(paths[-1].rests) + len(paths[-1].past)
+
+
+def test_a_path_beside_the_first_is_asked_for_the_loads_of_its_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
+    """W2, whose paths agree: it rests under the one and falls under the other, and only the first one is followed."""
+    paths: list[LoadPath] = []
+    follow = LoadPath.follow
+
+    def followed(path: LoadPath, budget: int) -> None:
+        paths.append(path)
+        follow(path, budget)
+
+    monkeypatch.setattr(LoadPath, "follow", followed)
+    told: list[tuple[float, float]] = []
+    agrees = static._agrees
+
+    def listened(path: LoadPath, lower: float, upper: float) -> bool:
+        told.append((path.lower, path.upper or np.inf))
+        return agrees(path, lower, upper)
+
+    monkeypatch.setattr(static, "_agrees", listened)
+    outcome = dem_static(ferris("W2", inset=0.02))
+    assert len(set(map(id, paths))) == 1
+    ((lower, upper),) = told
+    unit = paths[0].system.equilibrium.live_unit
+    assert bracket(outcome)[0] <= unit * lower
+    assert unit * upper <= bracket(outcome)[1]
 
 
 # --- the algorithm as published ------------------------------------------------------------------------------

@@ -193,6 +193,29 @@ def test_a_program_that_goes_on_from_a_corner_has_the_optimum_of_one_from_nothin
         programs.corner(driving, np.ones(len(system.points)), pivots=20)
 
 
+def test_a_simplex_method_that_gives_up_has_shown_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With one corner for each program interior points say what there is: the same loads, or that there are none."""
+    system = equilibrium(published_scene("wall-w3"))
+    patient, hasty, statuses = Programs(system), Programs(system), set()
+    pressure = limit_state(system).forces.pressure * np.exp(np.random.default_rng(0).normal(size=len(system.points)))
+    for _ in range(6):
+        program = patient.frozen(pressure)
+        driving = driving_forces(system, program.motion)
+        with monkeypatch.context() as patch:
+            patch.setattr("runningbond.limit.programs.FARTHEST", 1)
+            patch.setattr("runningbond.limit.programs.MOST_PIVOTS", 1)
+            assert hasty.frozen(pressure).multiplier == pytest.approx(program.multiplier, rel=1e-7)
+            assert driving is not None
+            for sense in (1.0, -1.0):
+                hasty.go_to((None, None, None))
+                found, exact = hasty.extreme(driving, sense), patient.extreme(driving, sense)
+                assert found.status == exact.status
+                assert found.multiplier == pytest.approx(exact.multiplier, rel=1e-7, nan_ok=True)
+                statuses.add(found.status)
+        pressure = 0.4 * pressure + 0.6 * program.pressure
+    assert statuses == {"optimal", "infeasible"}
+
+
 @pytest.mark.parametrize("name", ["wall-w2", "wall-w3"])
 def test_the_lowest_and_the_highest_certificate_are_stored_and_proved_by_the_checker(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
