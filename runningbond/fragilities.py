@@ -113,9 +113,9 @@ def fragility(
 def fitted(level: Array, stands: Mask) -> tuple[float, float]:
     """Median and dispersion of the log-normal distribution of what is at a level, or where it stands above it.
 
-    Without a fall the median is infinite.
+    With fewer than two falls the median is infinite.
     """
-    if stands.all():
+    if np.count_nonzero(~stands) < 2:
         return math.inf, 0.0
     start = np.log(level)
     known = CensoredData.right_censored(level, stands)

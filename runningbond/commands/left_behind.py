@@ -2,19 +2,27 @@
 
 from pathlib import Path
 
-from runningbond.results.store import RECORD
+from runningbond.pictures.time_series import KINDS
+from runningbond.results.store import ARRAY_FILES, RECORD
 
 CURVE_FILES, RESPONSE_FILES = ("curve.csv", "curve.png"), ("response.csv", "response.png")
 DRAWS = "draws"
 
 
+def holds_results(folder: Path | None) -> bool:
+    """Whether a command has left an outcome or a time series in a folder: else all files there are somebody's own."""
+    return folder is not None and any((folder / name).exists() for name in (RECORD, *(f"{kind}.pvd" for kind in KINDS)))
+
+
 def remove_older(folder: Path, *, record: bool = False) -> None:
     """Remove what an older command left beside a time series, which is replaced frame by frame; its outcome as well.
 
-    An outcome that is replaced by another stays until that is written.
+    An outcome that is replaced by another stays until that is written, and a ``response.csv`` without its chart is
+    somebody's own.
     """
     from runningbond.pictures.render import PICTURES
 
-    outcome = (RECORD, *(path.name for path in folder.glob("arrays-*.npz"))) if record else ()
-    for name in (f"{DRAWS}.json", *CURVE_FILES, *RESPONSE_FILES, *PICTURES, *outcome):
+    outcome = (RECORD, *(path.name for path in folder.glob(ARRAY_FILES))) if record else ()
+    response = RESPONSE_FILES if all((folder / name).exists() for name in RESPONSE_FILES) else ()
+    for name in (f"{DRAWS}.json", *CURVE_FILES, *response, *PICTURES, *outcome):
         (folder / name).unlink(missing_ok=True)

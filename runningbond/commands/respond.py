@@ -2,6 +2,7 @@
 
 import json as to_json
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,7 +18,7 @@ from runningbond.response.follow import AFTER
 from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene
 
-from .left_behind import RESPONSE_FILES, remove_older
+from .left_behind import RESPONSE_FILES, holds_results, remove_older
 from .terminal import DONE, NO_ANSWER, Json, SceneName, remarks
 
 
@@ -42,6 +43,7 @@ def respond(
     wall = read_scene(find_scene(scene))
     check_response(model, wall, scale, "--model", "--scale")
     recorder, observed, is_new = None, dict[str, Any](), out is not None and not out.exists()
+    is_used = holds_results(out)
     if out is not None:
         from runningbond.pictures.recording import ResponseRecorder
 
@@ -56,14 +58,16 @@ def respond(
     print(to_json.dumps(summary, allow_nan=False) if json else f"{text}{response.seconds:.3g} s", flush=True)
     if out is not None and recorder is not None:
         recorder.finish(Outcome(wall.title, response.model, "undecided", upper=scale))
-        remove_older(out, record=True)
+        if is_used:
+            remove_older(out, record=True)
         if len(response.time):
             _keep(response, out)
             if not json:
                 written = (*RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS), MACRO)
                 print("\n".join(str(out / name) for name in written))
         elif is_new:
-            out.rmdir()
+            with suppress(OSError):  # somebody else has used it since
+                out.rmdir()
     return NO_ANSWER if response.verdict == "undecided" else DONE
 
 

@@ -145,8 +145,6 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
             elif r_v + r_w > 0.0:
                 away, nx, ny = arc_on_arc(dx, dy, r_v + r_w)
                 moved = r_v * angle(nx, ny, ex, ey) + r_w * angle(nx, ny, arcs[f, 2], arcs[f, 3])
-            else:  # sharp corners that have come off each other's sides
-                away += 2.0 * min(-on_f, -on_e)
         opening[k] = away
         slip[k] = moved
         contact[k, 0] = x - behind * nx

@@ -134,8 +134,8 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
         np.zeros(2 * n, dtype=bool),
     )
     opening, _ = jumps(outline, both, motion)
-    close = (np.abs(opening) < FASTEST_OPENING * margin) & ~_past_each_other(outline, both, opening, motion)
-    near = np.tile(close[:n] | close[n:], 2)
+    close = np.abs(opening) < FASTEST_OPENING * margin
+    near = np.tile(close[:n] | close[n:], 2) & ~_past_each_other(outline, both, opening, motion)
     # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
     # rests with both, each of which stands for its own area.
     corner, _ = resting(outline, both, motion)

@@ -120,28 +120,27 @@ def _spread(interface: Interface, state: State, share: Array) -> float:
     """Spread what points bear over more area than they had a `share` of, in place; the energy that is lost [J].
 
     What has come to overlap meets as it lies, without pressure or shear: a point's force goes on and not its traction,
-    else springs would be pressed by nobody. Points of a law that knows no plastic closure go on with their traction.
+    else springs would be pressed by nobody. Points of a law without a plastic closure go on with their traction.
     """
     law, history = interface.law, state.history
-    if PLASTIC_CLOSURE not in law.law.history:
+    if law.law.closed is None:
         return 0.0
     opening, slip = interface.jumps(state.motion)
     seat, rest = history[law.law.row(PLASTIC_CLOSURE)], history[law.law.row(PLASTIC_SLIP)]
     grown = (share < 1) & (-opening > seat)
-    before = _stored(interface, opening, slip, history)[grown]
+    (normal, _), before = _borne(interface, opening, slip, history)
     part = share[grown]
-    seat[grown] = part * seat[grown] - (1 - part) * opening[grown]
+    seat[grown] = -opening[grown] - law.closure(-share * normal)[grown]
     rest[grown] = part * rest[grown] + (1 - part) * slip[grown]
-    after = _stored(interface, opening, slip, history)[grown]
-    return float(interface.area[grown] @ (part * before - after))
+    _, after = _borne(interface, opening, slip, history)
+    return float(interface.area[grown] @ (part * before[grown] - after[grown]))
 
 
-def _stored(interface: Interface, opening: Array, slip: Array, history: Array) -> Array:
-    """Energy that points would give back ``(np,)`` [J/m²]."""
-    law = interface.law
-    normal, tangential = np.zeros((2, law.points))
-    law.kernel(opening, slip, law.parameters, history.copy(), 0.0, normal, tangential)
-    return law.energy(opening, normal, tangential, history)
+def _borne(interface: Interface, opening: Array, slip: Array, history: Array) -> tuple[Array, Array]:
+    """Tractions ``(2, np)`` [Pa] of points, and the energy that they would give back ``(np,)`` [J/m²]."""
+    law, tractions = interface.law, np.zeros((2, interface.law.points))
+    law.kernel(opening, slip, law.parameters, history.copy(), 0.0, *tractions)
+    return tractions, law.energy(opening, tractions[0], tractions[1], history)
 
 
 def contacts_of(state: State) -> Contacts:

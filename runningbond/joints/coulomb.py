@@ -46,7 +46,7 @@ def shear_within(trial: float, drag: float, most: float) -> tuple[float, float]:
 def work_of_slip(before: float, held: float, slid: float) -> float:
     """Work [J/m²] of a slip [m] under the mean of a spring's shear before and after it, as central differences do it.
 
-    None where the shear turned round: it slid under the latter.
+    Never less than nothing, where the shear turns round: friction takes energy, and the ledger misses what is cut off.
     """
     work = 0.5 * (before + held) * slid
     return work if work > 0.0 else 0.0

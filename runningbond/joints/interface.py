@@ -11,7 +11,7 @@ import numpy as np
 
 from runningbond.scene import Array, JointMaterial
 
-from .closure import Curve, closure_curve, pressure_at, stiffness_at, stored_at
+from .closure import Curve, closure_at, closure_curve, pressure_at, stiffness_at, stored_at
 from .compiled import kernel
 from .coulomb import PLASTIC_SLIP, work_of_slip
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
@@ -39,9 +39,19 @@ def interface_constants(material: JointMaterial) -> tuple[float, ...]:
     return *softening_constants(material), *curve, *crushing_cap(material), *flags
 
 
+def curve_of(points: KernelLaw) -> tuple[Array, ...]:
+    """The closure's curve of each point, five times ``(np,)``."""
+    return tuple(points.of_points(CURVE + k) for k in range(5))
+
+
+def closed_under(points: KernelLaw, pressure: Array) -> Array:
+    """Elastic closure of points under a pressure [Pa], ``(np,)`` [m]."""
+    return np.asarray(closure_at.py_func(pressure, curve_of(points)))
+
+
 def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
     """Energy of points that unload to where they sit in opening and along their curve in closure, ``(np,)`` [J/m²]."""
-    curve = tuple(points.of_points(CURVE + k) for k in range(5))
+    curve = curve_of(points)
     closed = stored_at.py_func(np.maximum(0.0, -normal), curve)
     opened = np.maximum(0.0, normal) * np.maximum(0.0, opening) / 2
     return np.asarray(closed + opened + tangential**2 / (2 * points.shear_stiffness))
@@ -187,5 +197,12 @@ def interface_kernel(
 
 
 INTERFACE = Law(
-    "interface", interface_constants, interface_kernel, HISTORY, stored_when_seated, damage="damage", stiffest=STIFFEST
+    "interface",
+    interface_constants,
+    interface_kernel,
+    HISTORY,
+    stored_when_seated,
+    damage="damage",
+    stiffest=STIFFEST,
+    closed=closed_under,
 )

@@ -175,6 +175,7 @@ class ResponseRecorder(MotionRecorder):
         super().__init__(scene, folder)
         self._duration = scene.history.duration if scene.history else 0.0
         self._start = self._now = self._next = self._spacing = 0.0
+        self._is_begun = True  # frames come in the end, when a new outcome has taken the place of an older one
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Remember a moment if it is time."""
@@ -183,7 +184,6 @@ class ResponseRecorder(MotionRecorder):
         if multiplier != self._multiplier or state.time < self._now:  # another motion
             self._multiplier, self._moments, self._spacing = multiplier, [], self._duration / RESPONSE_FRAMES
             self._start = self._next = state.time
-            self._replace_outcome()
         self._now = state.time
         if state.time >= self._next:
             frame = replace(self._frame(run, state, multiplier), time=state.time - self._start)

@@ -104,11 +104,12 @@ def critical_scale(
     except KeyboardInterrupt:
         stopped = True
     outcome = _judged(outcome, rest, search, tolerance, stopped)
+    seconds = time.perf_counter() - start
     if outcome.upper is not None and observe is not no_observer and not stopped:
         with suppress(KeyboardInterrupt):
             follow(rest, outcome.upper, after=AFTER, rows=ROWS, observe=observe)
     message = "; ".join(filter(None, (outcome.message, note)))
-    return replace(outcome, message=message, seconds=time.perf_counter() - start)
+    return replace(outcome, message=message, seconds=seconds)
 
 
 def _bracket(search: Search, scale: float, most: float, tolerance: float) -> None:

@@ -24,6 +24,8 @@ from .outcome import ARRAYS, Outcome
 from .scene_arrays import SCENE_KEY, scene_from_arrays, scene_to_arrays
 
 RECORD = "outcome.json"
+ARRAY_FILES = f"arrays-{'[0-9a-f]' * 16}.npz"
+"""Pattern of the names of the arrays' files: no others are anybody's but the user's."""
 
 
 class StoreError(Exception):
@@ -94,7 +96,7 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
     with locked(folder):  # or another writer would take these arrays for stale ones
         write_atomically(folder / arrays, content)
         write_atomically(folder / RECORD, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())
-        for stale in (*folder.glob("arrays-*.npz"), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{RECORD}.*")):
+        for stale in (*folder.glob(ARRAY_FILES), *folder.glob(".arrays-*.npz.*"), *folder.glob(f".{RECORD}.*")):
             if stale.name != arrays:
                 stale.unlink(missing_ok=True)
 

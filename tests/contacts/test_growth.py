@@ -16,10 +16,12 @@ from tests.walls import courses
 STIFF = {"friction": 0.9, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
 
 
+@pytest.mark.parametrize("closure", [{}, {"closure": {"growth": 1e6, "stiffest": 2e10}}])
 @pytest.mark.parametrize("share", [1.0, 0.9, 0.25])
-def test_a_contact_that_grows_goes_on_with_its_force(share: float) -> None:
+def test_a_contact_that_grows_goes_on_with_its_force(share: float, closure: dict[str, object]) -> None:
     """Springs of what has come to overlap are neither pressed nor sheared: no force changes, and no energy is made."""
-    system = finite_system(courses([[1, 1], [0.5, 1, 0.5]], joint={**STIFF, "compressive_strength": 1e8}))
+    material = {**STIFF, "compressive_strength": 1e8, **closure}
+    system = finite_system(courses([[1, 1], [0.5, 1, 0.5]], joint=material))
     run, state = Run(system), State.at_rest(system)
     run.hold(state, 0.3, 3000)
     normal, tangential = run.forces(state)
@@ -29,8 +31,9 @@ def test_a_contact_that_grows_goes_on_with_its_force(share: float) -> None:
     assert np.abs(tangential).max() > 0.1 * np.abs(normal).max() > 0
     assert after[0] == pytest.approx(share * normal, rel=1e-9, abs=1e-9 * np.abs(normal).max())
     assert after[1] == pytest.approx(share * tangential, rel=1e-9, abs=1e-9 * np.abs(normal).max())
-    # A share s of the springs had s E, and s² E is left in all of them.
-    assert lost == pytest.approx(share * (1 - share) * joint, rel=1e-9, abs=1e-9 * joint)
+    assert 0 <= lost <= (1 - share) * joint * (1 + 1e-9)
+    if not closure:  # a share s of the springs had s E, and s² E is left in all of them
+        assert lost == pytest.approx(share * (1 - share) * joint, rel=1e-9, abs=1e-9 * joint)
 
 
 @pytest.mark.long

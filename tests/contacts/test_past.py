@@ -2,9 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from dem.finite_system import finite_system
+from runningbond.contacts.outline import Outline
+from runningbond.contacts.search import DEEP, find_contacts, jumps
 from runningbond.response import follow
 from runningbond.response.resting import Resting
 from runningbond.scene import History, Load, Scene
@@ -12,12 +17,13 @@ from runningbond.scene.history import pulse
 from tests.walls import courses
 
 GRAVITY = 9.81
+FALL = 1.0  # m, about
+STIFF = {"friction": 0.7, "normal_stiffness": 1e8, "shear_stiffness": 1e8}
 
 
 def falling_off() -> Scene:
     """Two blocks that are thrown off the end of the ground, which is a block's length and a half away."""
-    joint = {"friction": 0.7, "normal_stiffness": 1e8, "shear_stiffness": 1e8}
-    scene = courses([[1], [1]], width=0.5, height=0.5, wall__thickness=0.3, block__density=2000.0, joint=joint)
+    scene = courses([[1], [1]], width=0.5, height=0.5, wall__thickness=0.3, block__density=2000.0, joint=STIFF)
     time, values = pulse("half-sine", GRAVITY, 1.0)
     return replace(scene, load=Load(live=(History(time, values),)))
 
@@ -31,6 +37,25 @@ def test_what_falls_past_the_end_of_the_ground_gets_no_energy() -> None:
     kinetic, stored = response.energy[:, 2], response.energy[:, 3]
     weight = GRAVITY * float(scene.mass[~scene.fixed].sum())
     assert response.displacement[-1, :, 1].min() < -0.4
-    assert stored.max() < 0.2 * weight
-    assert kinetic.max() < 1.5 * weight
+    assert stored.max() < 0.2 * weight * FALL
+    assert kinetic.max() < 1.5 * weight * FALL
     assert response.unaccounted == pytest.approx(0.0, abs=0.05)
+
+
+@given(x=st.floats(0.02, 0.5), y=st.floats(-1.2, 1.0), turned=st.floats(-3.1, 3.1), margin=st.floats(0.02, 0.4))
+@settings(max_examples=60, deadline=None)
+@pytest.mark.parametrize("inset", [0.0, 0.02])
+def test_blocks_that_are_apart_do_not_press_on_each_other(
+    inset: float, x: float, y: float, turned: float, margin: float
+) -> None:
+    """A block wholly to the right of the ground's end, however high or low: no contact is deep, at any margin."""
+    scene = courses([[1]], width=0.5, height=0.5, joint={**STIFF, "inset": inset})
+    outline = Outline.of(scene)
+    (block,) = np.flatnonzero(scene.wall)
+    (_, _), (end, _) = scene.blocks.extent(scene.fixed)
+    reach = outline.reach[block]
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[block] = end + reach + x - scene.blocks.centroid[block, 0], y, turned
+    contacts = find_contacts(outline, motion.ravel(), margin)
+    opening, _ = jumps(outline, contacts, motion.ravel())
+    assert opening.min(initial=0.0) > -DEEP * outline.margin

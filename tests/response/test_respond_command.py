@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from runningbond.commands.command_line import command
+from runningbond.commands.left_behind import holds_results
 from tests.walls import content, write_toml
 
 PULSE = {"pulse": {"kind": "sine", "amplitude": 2.0, "period": 0.05}, "quantity": "acceleration"}
@@ -51,3 +52,22 @@ def test_a_folder_holds_what_was_written_there_last_and_nothing_older(ask: Any, 
     assert written("respond", **SHAKEN) == {"response.csv", "response.png", "open_run.py", "blocks.pvd", "joints.pvd"}
     assert written("run") == ran
     assert written("respond", **LEANING) == set()
+
+
+def test_files_of_somebodys_own_stay(ask: Any, tmp_path: Path) -> None:
+    """A response touches nothing in a folder that no command has used; a run no table that is not a command's."""
+    own = tmp_path / "own"
+    own.mkdir()
+    names = {"curve.csv", "draws.json", "arrays-of-sensors.npz", "film.gif", "rendering.png"}
+    for name in names:
+        (own / name).write_text("measured")
+    assert not holds_results(own)
+    ask("respond", own, **SHAKEN)
+    assert {name for name in names if (own / name).read_text() == "measured"} == names
+    assert holds_results(own)
+    (own / "response.png").unlink()
+    ask("run", own)
+    assert (own / "response.csv").exists()
+    ask("respond", own, **SHAKEN)
+    assert (own / "arrays-of-sensors.npz").read_text() == "measured"
+    assert not (own / "outcome.json").exists()
