@@ -114,7 +114,7 @@ def test_two_writers_into_one_folder_leave_one_whole_result(tmp_path: Path, monk
 
 
 def test_what_a_killed_writer_leaves_is_cleared_away(tmp_path: Path) -> None:
-    for name in (".outcome.json.k3", ".arrays-0123.npz.k3", "arrays-0123.npz"):
+    for name in (".outcome.json.k3", ".arrays-0123.npz.k3", "arrays-0123456789abcdef.npz"):
         (tmp_path / name).write_text("half")
     save_outcome(outcome(0.5), tmp_path)
     assert sorted(path.suffix for path in tmp_path.iterdir()) == [".json", ".npz"]
