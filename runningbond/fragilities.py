@@ -111,9 +111,19 @@ def fragility(
 
 
 def fitted(level: Array, stands: Mask) -> tuple[float, float]:
-    """Median and dispersion of the log-normal distribution of what is at a level, or where it stands above it.
+    """Fit the log-normal distribution of the level at which something falls, by maximum likelihood.
 
-    With fewer than two falls the median is infinite.
+    Parameters
+    ----------
+    level : (n,) float
+        Where it fell, or the largest at which it was seen to stand; of any unit.
+    stands : (n,) bool
+        Which of them stand, so fall somewhere above.
+
+    Returns
+    -------
+    tuple
+        Median, in the unit of the levels, infinite with fewer than two falls; standard deviation of the logarithm.
     """
     if np.count_nonzero(~stands) < 2:
         return math.inf, 0.0

@@ -18,7 +18,7 @@ from runningbond.compare.published import find_scene
 from runningbond.compare.table import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
-from runningbond.results.store import RECORD
+from runningbond.results.store import ARRAY_FILES, RECORD
 from runningbond.scene import Scene, SceneError, read_scene
 
 from .left_behind import CURVE_FILES, DRAWS, remove_older
@@ -170,7 +170,7 @@ def _draw(wall: Scene, outcome: Outcome, out: Path) -> None:
 def _written(out: Path) -> list[Path]:
     """What a run has left in its folder."""
     series = (*(f"{kind}.pvd" for kind in KINDS), MACRO)
-    names = (RECORD, "arrays-*.npz", f"{DRAWS}.json", *CURVE_FILES, *series, "mechanism.*")
+    names = (RECORD, ARRAY_FILES, f"{DRAWS}.json", *CURVE_FILES, *series, "mechanism.*")
     return [path for name in names for path in sorted(out.glob(name))]
 
 

@@ -122,15 +122,15 @@ def _spread(interface: Interface, state: State, share: Array) -> float:
     What has come to overlap meets as it lies, without pressure or shear: a point's force goes on and not its traction,
     else springs would be pressed by nobody. Points of a law without a plastic closure go on with their traction.
     """
-    law, history = interface.law, state.history
-    if law.law.closed is None:
+    law, history, closed = interface.law, state.history, interface.law.law.closed
+    if closed is None:
         return 0.0
     opening, slip = interface.jumps(state.motion)
     seat, rest = history[law.law.row(PLASTIC_CLOSURE)], history[law.law.row(PLASTIC_SLIP)]
     grown = (share < 1) & (-opening > seat)
     (normal, _), before = _borne(interface, opening, slip, history)
     part = share[grown]
-    seat[grown] = -opening[grown] - law.closure(-share * normal)[grown]
+    seat[grown] = -opening[grown] - closed(law, np.maximum(0.0, -share * normal))[grown]
     rest[grown] = part * rest[grown] + (1 - part) * slip[grown]
     _, after = _borne(interface, opening, slip, history)
     return float(interface.area[grown] @ (part * before[grown] - after[grown]))

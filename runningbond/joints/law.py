@@ -59,8 +59,8 @@ class Law:
     stiffest
         Number of the constant that is the largest normal stiffness [Pa/m], by which time steps go.
     closed
-        ``closed(points, pressure)``: elastic closure under a pressure [Pa], ``(np,)`` [m], of a law whose points have a
-        `PLASTIC_CLOSURE`.
+        ``closed(points, pressure)``: elastic closure ``(np,)`` [m] under a pressure [Pa], not negative, of a law whose
+        points have a `PLASTIC_CLOSURE`; None for another.
     """
 
     name: str
@@ -168,18 +168,6 @@ class KernelLaw:
         """How far each point has been crushed with a history ``(rows, np)`` [m]; zero for a law that knows none."""
         known = PLASTIC_CLOSURE in self.law.history
         return history[self.law.row(PLASTIC_CLOSURE)].copy() if known else np.zeros(self.points)
-
-    def closure(self, pressure: Array) -> Array:
-        """Elastic closure ``(np,)`` [m] of points under a pressure ``(np,)`` [Pa], not negative.
-
-        Raises
-        ------
-        TypeError
-            For a law that does not say it.
-        """
-        if self.law.closed is None:
-            raise TypeError(f"the law {self.law.name!r} says nothing of closures")
-        return self.law.closed(self, np.maximum(0.0, pressure))
 
     def damage(self, history: Array) -> Array:
         """Damage of each point with a history ``(rows, np)``; zero for a law that knows none."""

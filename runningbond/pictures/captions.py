@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
-from .deformed_shape import Extent, wall_size
+from .deformed_shape import Extent
 from .joint_state import JointState
 from .mechanism import mechanism_warning
 from .style import AT_REST, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
@@ -128,7 +128,7 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
         return Caption(title, load, [warning or "no mechanism"], [])
     columns = 5 if sum(len(handle.get_label()) for handle in key) < 45 else 3
     what = "shape in the fall; the farthest corner" if scene.history else "mechanism; its fastest corner"
-    size = f"{what} is drawn to move {DRAWN * wall_size(scene):.2g} m"
+    size = f"{what} is drawn to move {DRAWN * scene.size:.2g} m"
     return Caption(title, load, [size, warning] if warning else [size], key, columns)
 
 

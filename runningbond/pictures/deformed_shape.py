@@ -112,7 +112,7 @@ class DeformedShape:
     @cached_property
     def drawn_state(self) -> Indices:
         """The state that each joint is drawn in, ``(nf,)``: it sticks where it opens by less than can be seen."""
-        unseen = (self.state == JointState.OPEN) & (self.gaps.max(axis=1) < SEEN * wall_size(self.scene))
+        unseen = (self.state == JointState.OPEN) & (self.gaps.max(axis=1) < SEEN * self.scene.size)
         return np.where(unseen, JointState.STICK, self.state)
 
     @property
@@ -123,7 +123,7 @@ class DeformedShape:
     @property
     def hinges(self) -> Array:
         """Closed ends about which joints that open turn, where they are drawn, ``(n, 2)`` [m]."""
-        closed = self.gaps.min(axis=1) < 0.5 * SEEN * wall_size(self.scene)
+        closed = self.gaps.min(axis=1) < 0.5 * SEEN * self.scene.size
         turns = closed & (self.drawn_state == JointState.OPEN)
         return np.asarray(self.placed_faces[turns, self.gaps[turns].argmin(axis=1)])
 
@@ -146,7 +146,7 @@ class DeformedShape:
             colours = np.array(COURSES)[course_numbers(self.scene)[self.block] % len(COURSES)]
         else:
             moved = np.add.reduceat(np.hypot(*self.displacement.T), self.first[:-1]) / np.diff(self.first)
-            share = np.minimum(self.scale * moved / (DRAWN * wall_size(self.scene)), 1.0)
+            share = np.minimum(self.scale * moved / (DRAWN * self.scene.size), 1.0)
             colours = np.array(AT_REST) + share[:, None] * (np.array(FASTEST) - AT_REST)
         colours[self.scene.fixed[self.block]] = HELD
         return colours
@@ -167,13 +167,7 @@ def common_extent(shapes: Sequence[DeformedShape]) -> Extent:
 def visible_scale(scene: Scene, displacement: Array) -> float:
     """Factor that makes the largest displacement of corners ``(n, 2)`` [m] visible; 1 where nothing moves."""
     farthest = float(np.hypot(*displacement.T).max())
-    return DRAWN * wall_size(scene) / farthest if farthest > 0 else 1.0
-
-
-def wall_size(scene: Scene) -> float:
-    """Size of a wall: the root of its length times its height [m]."""
-    low, high = scene.blocks.extent(scene.wall)
-    return float(np.sqrt(np.prod(high - low)))
+    return DRAWN * scene.size / farthest if farthest > 0 else 1.0
 
 
 def course_numbers(scene: Scene) -> Indices:

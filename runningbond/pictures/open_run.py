@@ -19,8 +19,8 @@ STATES: dict[str, tuple[str, tuple[float, float, float]]] = {}
 
 def moved(kind: str) -> tuple[Any, Any]:
     """A series and its shape, displacements enlarged."""
-    here = Path(globals().get("__file__", "")).resolve().parent
-    folder = here if (here / f"{kind}.pvd").is_file() else FOLDER
+    beside = Path(globals().get("__file__", FOLDER / "open_run.py")).resolve().with_name(f"{kind}.pvd")
+    folder = beside.parent if beside.is_file() else FOLDER
     series = simple.PVDReader(FileName=str(folder / f"{kind}.pvd"))
     shape = simple.WarpByVector(Input=series)
     shape.Vectors = ["POINTS", "displacement [m]"]

@@ -10,7 +10,6 @@ from dem.rigid_system import contact_points
 from fem_interface.modal_wall import ModalWall
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
-from runningbond.pictures.deformed_shape import wall_size
 from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.joint_state import states_under_load
 from runningbond.pictures.mechanism import mechanism_frame
@@ -206,7 +205,7 @@ def record_mechanism(scene: Scene, outcome: Outcome, folder: Path) -> None:
     if frame is not None:
         series.add(replace(frame.scaled(0.0), state=np.zeros_like(frame.state)))
         for share in np.linspace(0, 1, MECHANISM_FRAMES)[1:]:
-            series.add(frame.scaled(float(share) * DRAWN * wall_size(scene)))
+            series.add(frame.scaled(float(share) * DRAWN * scene.size))
         series.write_macro()
 
 

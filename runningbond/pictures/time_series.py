@@ -11,7 +11,6 @@ import numpy as np
 
 from runningbond.results.store import StoreError, write_atomically
 
-from .deformed_shape import wall_size
 from .frame import Discretisation, Frame
 from .style import AT_REST, DRAWN, FASTEST, OUTLINE, STATE_COLOURS, STATE_NAMES
 from .vtk_grids import DISPLACEMENT, Grid, GridBuilder
@@ -38,7 +37,7 @@ class TimeSeries:
         self._folder = folder
         self._frames: dict[int, tuple[float | None, float]] = {}  # their times [s] and loads by their numbers
         self._next = 0
-        self._farthest, self._size = 0.0, wall_size(discretisation.scene)
+        self._farthest, self._size = 0.0, discretisation.scene.size
         self._is_started = False
 
     def __len__(self) -> int:

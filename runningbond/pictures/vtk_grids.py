@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Blocks, Indices, Scene
 
-from .deformed_shape import DeformedShape, course_numbers, outer_edges, visible_scale, wall_size
+from .deformed_shape import DeformedShape, course_numbers, outer_edges, visible_scale
 from .frame import Discretisation, Frame
 from .joint_state import joint_states
 from .vtk_safety import import_pyvista
@@ -39,7 +39,7 @@ class GridBuilder:
         self._triangles = discretisation.triangles
         self._courses, self._templates = course_numbers(self._scene), _templates(self._scene.blocks)
         (left, low), (right, high) = self._scene.blocks.extent(self._scene.wall)
-        air = GROUND * wall_size(self._scene)
+        air = GROUND * self._scene.size
         self._around = (left - air, low - air), (right + air, high + air)
 
     def blocks(self, frame: Frame) -> Grid:

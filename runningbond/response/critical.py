@@ -160,9 +160,11 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
         return replace(
             outcome, message="no scale was found at which the wall comes to rest below one at which it falls"
         )
+    unsure = ", ".join(number(run.scale) for run in runs[:first] if run.verdict != "stands")
+    others = f"others but {unsure}, where it neither rests nor falls," if unsure else "tried"
     again = [f"{number(low)} … {number(high)}" if high > low else number(low) for low, high in search.windows()]
     parts = (
-        f"the wall stands at the lower scale and at all tried below it; at the upper one it {upper.message}",
+        f"the wall stands at the lower scale and at all {others} below it; at the upper one it {upper.message}",
         f"it stands again at {', '.join(again)}" if again else "",
         f"scales were tried in steps of {RATIO:g} up to {number(runs[-1].scale)}; narrower windows are not seen",
     )

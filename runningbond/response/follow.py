@@ -55,7 +55,7 @@ class _Log:
         self._calm = RISE * rest.gravity * float(ground.inertia[0].sum()) * rest.scene.block_size
         self._dead = ground.dead()
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
-        self._blocks, self._far = rest.scene.blocks, SHAPE * rest.size
+        self._blocks, self._far = rest.scene.blocks, SHAPE * rest.scene.size
         self.shape = np.zeros((len(self._blocks), 3))
         self._motion, self._places, self._energies = state.motion.copy(), self._where(state), self._energy(state)
         self._momentum, self._time = ground.momentum(state), state.time

@@ -69,12 +69,6 @@ class Resting:
         return float(high[1] - low[1])
 
     @property
-    def size(self) -> float:
-        """Size of the wall: the root of its length times its height [m]."""
-        low, high = self.scene.blocks.extent(self.scene.wall)
-        return float(np.sqrt(np.prod(high - low)))
-
-    @property
     def gravity(self) -> float:
         """Gravity [m/s²]."""
         return float(np.hypot(*self.scene.load.gravity))

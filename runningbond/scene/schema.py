@@ -117,7 +117,7 @@ SCENES: tuple[Schema, ...] = (
 
 
 def scene_schema() -> Schema:
-    """JSON schema, draft 7, of a scene file."""
+    """JSON schema, draft 7, of a scene file. No scene may be read in another thread meanwhile: its keys would count."""
     Table.visits, visits = [], []
     try:
         for scene in SCENES:

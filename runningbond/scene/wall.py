@@ -227,6 +227,12 @@ class Scene:
         return min(self.lowest_block, self.bond.width) if self.bond else self.lowest_block
 
     @property
+    def size(self) -> float:
+        """Size of the wall: the root of its length times its height [m]."""
+        low, high = self.blocks.extent(self.wall)
+        return float(np.sqrt(np.prod(high - low)))
+
+    @property
     def block_sizes(self) -> Array:
         """Size of each block [m], ``(nb,)``: its smaller side, and not less than that of the wall's blocks.
 
