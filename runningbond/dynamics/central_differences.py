@@ -30,8 +30,8 @@ Modes: TypeAlias = tuple[Array, Array, Array]
 StateArrays: TypeAlias = tuple[Array, Array, Array, Array, Array]
 """Motion, velocity, history, damped and unbalanced of a `State`, which the steps write to."""
 
-Work: TypeAlias = tuple[Array, Array, Array, Array, Array]
-"""Buffers: motions ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
+Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
+"""Buffers: motion and load ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
 
 Watch: TypeAlias = tuple[int, float, Array]
 """Steps taken before; energy [J] that the state was given but for the work of loads that are constant now, inf where
@@ -41,9 +41,15 @@ These are plain tuples: to take a named one apart costs a call of the kernels a 
 """
 
 Control: TypeAlias = Literal["held", "driven", "carried"]
-"""What the steps prescribe: a constant load alone, the live load's power besides, or the velocity of held modes."""
+"""What the steps prescribe: a load alone, the live load's power besides, or the velocity of held modes."""
 
 CONTROLS: tuple[Control, ...] = get_args(Control)
+"""In the order of their numbers."""
+
+HELD, DRIVEN, CARRIED = range(3)
+
+RISE = 20
+"""Steps in which a load that rises is constant."""
 
 LOOK = 100
 """Steps between two looks at the energy."""
@@ -121,27 +127,35 @@ def _is_stable(given: float, load: Array, modes: Modes, state: StateArrays, most
     return bool(max(spent, 0.0) + CERTAIN_SHARE * held <= TOO_MUCH_SPENT * most[0])
 
 
-@cache
-def stepper(
-    gather: Kernel, law: Kernel, scatter: Kernel, control: Control, tied: bool = False, rigged: bool = False
-) -> Any:
-    """Compile the loop of a model: at a constant load, or at a prescribed speed besides; `tied` where it has ties.
+@kernel
+def _dot(one: Array, other: Array) -> float:
+    total = 0.0
+    for i in range(one.size):
+        total += one[i] * other[i]
+    return total
 
-    Where it is `rigged`, the live load turns with the beam (`rig`), is written to, and acts on nothing else.
+
+@cache
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
+    """Compile the loop of a model.
 
     Returns
     -------
     step
-        ``step(steps, dt, local, joint_viscosity, load, live, speed, …)`` holds a constant load; driven, it keeps
-        live · v at the speed [W] besides, by a multiplier of the live load; carried, held modes move at the speed
-        [1/s] times `live`. Returns the steps taken, whether no more energy is spent than was supplied, the sum of
-        the multipliers, or of what presses on the carried modes per unit of their motion, and the work of either. It
-        looks at the energy every `LOOK` steps of the state's life, and stops where it does not add up.
+        ``step(control, steps, dt, local, joint_viscosity, load, live, speed, …)``: held, it adds to a constant load
+        the live one, times a multiplier that rises from zero by the speed a step; driven, it keeps live · v at the
+        speed [W], by a multiplier of the live load; carried, held modes move at the speed [1/s] times `live`.
+        Returns the steps taken, whether no more energy is spent than was supplied, the sum of the multipliers that
+        drive, or of what presses on the carried modes per unit of their motion, and the work of all but the constant
+        load. It looks at the energy every `LOOK` steps of the state's life, and stops where it does not add up.
+
+        With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
+        acts on nothing else.
     """
-    driven, carried = control == "driven", control == "carried"
 
     @kernel
     def step(
+        control: int,
         steps: int,
         dt: float,
         local: float,
@@ -162,13 +176,24 @@ def stepper(
         stiffness, viscosity, mobility = modes
         motion, velocity, history, _, force = state
         freedom, basis = restraint
-        moved, opening, slip, normal, tangential = work
+        moved, loaded, opening, slip, normal, tangential = work
         already, given, most = watch
+        rigged = rig[0].size > 0
         response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        if driven:
+        rises = control == HELD and speed != 0.0
+        loaded[:] = load
+        if rises:
+            before = _dot(live, motion)
+        if control == DRIVEN:
             for i in range(live.size):
                 response += live[i] * mobility[i] * live[i]
         for taken in range(steps):
+            if rises and taken % RISE == 0:
+                pushed = _dot(live, motion)
+                worked += multiplier * (pushed - before)
+                before, multiplier = pushed, speed * (taken + 0.5 * min(RISE, steps - taken))
+                for i in range(live.size):
+                    loaded[i] = load[i] + multiplier * live[i]
             if freedom.size:
                 _restrained(motion, freedom, basis, moved)
                 gather(moved, geometry, opening, slip)
@@ -179,19 +204,18 @@ def stepper(
                 force[:] = 0.0
                 scatter(normal, tangential, geometry, force)
                 _project(force, freedom, basis)
-                force += load
+                force += loaded
             else:
-                force[:] = load
+                force[:] = loaded
                 scatter(normal, tangential, geometry, force)
-            if tied:
-                pull(ties, motion, force)
+            pull(ties, motion, force)
             if rigged:
                 moment = turn_rig(rig, motion, live)
                 force[rig[0][2]] += moment
                 response = 0.0
                 for k in range(3):
                     response += live[rig[0][k]] ** 2 * mobility[rig[0][k]]
-            if carried:
+            if control == CARRIED:
                 pressed = 0.0
                 for i in range(live.size):
                     if live[i] != 0.0:
@@ -199,7 +223,7 @@ def stepper(
                         velocity[i] = speed * live[i]
                 total += pressed
                 worked -= pressed * speed * dt
-            if driven:
+            if control == DRIVEN:
                 pushed, before = 0.0, 0.0
                 for i in range(live.size):
                     pushed += live[i] * mobility[i] * (force[i] - stiffness[i] * motion[i] - viscosity[i] * velocity[i])
@@ -208,7 +232,7 @@ def stepper(
                 for i in range(live.size):
                     force[i] += multiplier * live[i]
             _update(modes, state, local, dt)
-            if driven:
+            if control == DRIVEN:
                 # Local damping acts on the live load too; what it takes from the prescribed speed is given back.
                 after = 0.0
                 for i in range(live.size):
@@ -226,6 +250,10 @@ def stepper(
                 worked += turned
                 rig[3][0] += turned
             due = (already + taken + 1) % LOOK == 0 and given < np.inf
+            if rises and (due or taken + 1 == steps):
+                pushed = _dot(live, motion)
+                worked += multiplier * (pushed - before)
+                before = pushed
             if due and not _is_stable(given + worked, load, modes, state, most):
                 return taken + 1, False, total, worked
         return steps, True, total, worked

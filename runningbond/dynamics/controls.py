@@ -16,11 +16,9 @@ CURVE_ROWS, START_ROWS = 4000, 20
 """Rows of a pushover curve if all bodies move as far as the control point, and those in which they gather speed."""
 
 
-def ramp(run: Run, state: State, start: float, stop: float, steps: int, interval: int = 20) -> None:
+def ramp(run: Run, state: State, start: float, stop: float, steps: int) -> None:
     """Raise the multiplier evenly from `start` to `stop` over a number of steps, in place."""
-    pieces, given = max(1, steps // interval), run.given(state)
-    for k in range(pieces):
-        run.hold(state, start + (stop - start) * (k + 0.5) / pieces, interval, given=given)
+    run.hold(state, start, steps, rise=(stop - start) / steps, given=run.given(state))
 
 
 @dataclass(frozen=True, eq=False)

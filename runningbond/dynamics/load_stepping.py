@@ -21,6 +21,12 @@ to bear more, or less.
 FAR, FASTER = 1 / 3, 8
 """Part of a bound of the load up to which a wall with a weight is loaded faster, and how much faster."""
 
+SOFTER = 2.0
+"""How much farther than where it was stiffest a wall goes with the load where it has begun to give way.
+
+Until then it is loaded faster as well: what slips there slips one after the other all the same.
+"""
+
 GIVES_WAY, LOOKS = 1.0, 8
 """Motion, in units of collapse, at which a load grows no more, and looks at it in a step of the load: at those loads
 that bisection would try, so that models that see the same wall find the same bracket."""
@@ -104,6 +110,57 @@ class UndecidedLoads:
         return undecided if undecided.loads and min(undecided.sides(result)) > 0 else UndecidedLoads()
 
 
+@dataclass(eq=False)
+class Growth:
+    """How the load of a wall grows: slowly once the wall gives way, which is when the order of slips counts."""
+
+    run: Run
+    criteria: Criteria
+    far: float  # multiplier up to which it grows faster whatever the wall does
+    softest: float = np.inf  # least motion per multiplier that was seen, in units of collapse
+    slow: float = np.inf  # multiplier from which the wall gives way
+    # multipliers that growth has passed since the last one that grew, each with the wall then
+    passed: list[tuple[float, State]] = field(default_factory=list)
+    steps: int = 0  # steps taken
+
+    def passed_by(self, trial: float) -> tuple[float, State] | None:
+        """The multiplier, but for rounding, and a copy of the wall as it grew through it; None where it did not."""
+        for multiplier, state in self.passed:
+            if np.isclose(multiplier, trial, rtol=1e-12, atol=0.0):
+                return multiplier, state.copy()
+        return None
+
+    def up_to(self, stop: float, state: State, start: float, steps: float) -> tuple[float, State]:
+        """Raise the multiplier in some steps, until the wall gives way; what it reached, and the wall then."""
+        begin, reached, self.passed = state.motion, start, []
+        for look in range(1, LOOKS + 1):
+            before, reached = reached, stop if look == LOOKS else start + (stop - start) * look / LOOKS
+            state = self._onward(state, before, reached, max(1, round(steps / LOOKS)))
+            if self.run.system.farthest(state.motion - begin, self.criteria.collapse) > GIVES_WAY:
+                break
+            self.passed.append((reached, state))
+        return reached, state.copy()
+
+    def _onward(self, state: State, start: float, stop: float, steps: int) -> State:
+        """The wall after the multiplier has grown: faster first, and slowly after all where it gave way to that."""
+        if stop <= self.far or (stop <= self.slow and self.softest < np.inf):
+            grown, softness = self._grown(state, start, stop, max(1, round(steps / FASTER)))
+            if stop <= self.far or softness <= SOFTER * self.softest:
+                self.softest = min(self.softest, softness)
+                return grown
+            self.slow = start
+        grown, softness = self._grown(state, start, stop, steps)
+        self.softest = min(self.softest, softness)
+        return grown
+
+    def _grown(self, state: State, start: float, stop: float, steps: int) -> tuple[State, float]:
+        grown = state.copy()
+        ramp(self.run, grown, start, stop, steps)
+        self.steps += grown.steps - state.steps
+        moved = self.run.system.farthest(grown.motion - state.motion, self.criteria.collapse)
+        return grown, moved / (stop - start)
+
+
 def load_steps(
     run: Run,
     first: float,
@@ -118,7 +175,8 @@ def load_steps(
 ) -> LoadSteps:
     """Raise the load step by step, each to rest, and bisect the step that brings the wall down.
 
-    Every trial starts from the last state at rest, so that a fall leaves no trace in the states that count.
+    Every trial starts from the last state at rest, or from the wall as it was when the load grew through that trial
+    slowly, so that a fall leaves no trace in the states that count.
     Steps grow while they are borne, so that the first one need not know the answer's size. An undecided load is passed
     by, just beside it; once a fall is known the bracket closes in on such loads from both sides.
 
@@ -136,8 +194,8 @@ def load_steps(
         Time in which the load grows by its first step, or by an eighth where that is more, in times that the wall
         takes to rest under the first step put on at once; `LOADING` or `LOADING_WEIGHTLESS` where none is given.
     bound
-        Multiplier that is proved too large, where one is: far below it the load grows faster, and none that is much
-        larger is tried unless the wall bears it.
+        Multiplier that is proved too large, where one is: far below it the load grows faster (elsewhere where the wall
+        does not give way, `Growth`), and none that is much larger is tried unless the wall bears it.
 
     Returns
     -------
@@ -180,7 +238,7 @@ def _search(
     # A wall that comes to rest slowly is loaded as slowly as the budget allows.
     unhurried = min(loading * (probe.steps - state.steps), criteria.budget) if answered else criteria.budget
     result.steps = probe.steps
-    step, undecided, in_vain = first, UndecidedLoads(), 0
+    step, undecided, in_vain, grows = first, UndecidedLoads(), 0, Growth(run, criteria, FAR * bound)
     narrowest = RESOLVED * criteria.rest / (system.measure(system.live) or 1.0)
     while result.upper is None or result.upper - result.lower > max(tolerance * result.upper, narrowest):
         if undecided.closed(result, max(tolerance * (result.upper or 0.0), narrowest)):
@@ -193,15 +251,20 @@ def _search(
             trial = edge
         if trial > most:
             return
-        state = result.borne.copy()
         growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
         share = (trial - result.lower) / max(first, growth * trial)
+        before = grows.steps
         if system.weightless:
+            state = result.borne.copy()
             trial = _raise_in_parts(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
+            grows.steps += state.steps - result.borne.steps
+        elif passed := grows.passed_by(trial):
+            trial, state = passed
         else:
-            trial = _raise(run, state, result.lower, trial, unhurried * share, FAR * bound, criteria)
+            trial, state = grows.up_to(trial, result.borne, result.lower, unhurried * share)
+        held = state.steps
         verdict, halfway = hold_load(run, state, trial, criteria, observe)
-        taken = state.steps - result.borne.steps
+        taken = grows.steps - before + state.steps - held
         result.steps += taken
         result.add(trial, state, verdict, halfway)
         in_vain += taken if verdict == "undecided" else 0
@@ -228,18 +291,6 @@ def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, toler
         return above if upper is None or upper > above else low * (1 - tolerance / 4)
     below, above = undecided.sides(result)
     return (lower + low) / 2 if below > above else (high + upper) / 2
-
-
-def _raise(run: Run, state: State, start: float, stop: float, steps: float, far: float, criteria: Criteria) -> float:
-    """Raise the multiplier in some steps, in place, faster up to `far`, until the wall gives way; what it reached."""
-    motion, reached = state.motion.copy(), start
-    for look in range(1, LOOKS + 1):
-        before, reached = reached, stop if look == LOOKS else start + (stop - start) * look / LOOKS
-        faster = FASTER if reached <= far else 1
-        ramp(run, state, before, reached, max(1, round(steps / (LOOKS * faster))))
-        if run.system.farthest(state.motion - motion, criteria.collapse) > GIVES_WAY:
-            break
-    return reached
 
 
 def _raise_in_parts(

@@ -44,6 +44,9 @@ class Rig(NamedTuple):
         return float(x + self.arm[0] * (math.cos(spin) - 1) - self.arm[1] * math.sin(spin))
 
 
+NO_RIG = Rig(np.zeros(0, dtype=np.uint64), np.zeros(2), np.zeros(2), np.zeros(1))
+
+
 @kernel
 def turn_rig(rig: tuple[NDArray[np.uint64], Array, Array, Array], motion: Array, live: Array) -> float:
     """Write the live load where the beam is now, and return the moment of a dead force whose line is fixed."""

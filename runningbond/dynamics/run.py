@@ -13,7 +13,7 @@ from runningbond.scene import Array
 
 from .central_differences import CONTROLS, Control, stepper
 from .contact_update import ContactUpdate, contacts_of
-from .rig import turn_rig
+from .rig import NO_RIG, turn_rig
 from .state import State
 from .system import BlockSystem, Interface
 from .ties import YIELD
@@ -94,8 +94,8 @@ class Run:
         part: float = 1.0,
     ) -> None:
         self.system, self.local, self.viscous, self._part = system, local, viscous, part
-        self._given_step, self._tied = dt, len(system.ties) > 0
-        self._rig = () if system.rig is None else tuple(system.rig)
+        self._given_step = dt
+        self._rig = tuple(system.rig or NO_RIG)
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -110,11 +110,11 @@ class Run:
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._step = {control: stepper(*kernels, control, self._tied, bool(self._rig)) for control in CONTROLS}
+        self._step = stepper(*kernels)
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
-        self._work = (np.zeros(len(self.system.mass)), *(np.zeros(interface.law.points) for _ in range(4)))
+        self._work = (*np.zeros((2, len(self.system.mass))), *(np.zeros(interface.law.points) for _ in range(4)))
 
     def _return_to(self, state: State) -> None:
         """Go on with the interface on the contacts of a state, which may be another one than before."""
@@ -131,8 +131,17 @@ class Run:
             yield piece
             steps -= piece
 
-    def hold(self, state: State, multiplier: float, steps: int, dead: float = 1.0, *, given: float = math.inf) -> None:
-        """Take steps under constant loads: `multiplier` times the live one and `dead` times the dead one.
+    def hold(
+        self,
+        state: State,
+        multiplier: float,
+        steps: int,
+        dead: float = 1.0,
+        *,
+        rise: float = 0.0,
+        given: float = math.inf,
+    ) -> None:
+        """Take steps under loads: `multiplier` times the live one, which may rise, and `dead` times the dead one.
 
         Parameters
         ----------
@@ -142,6 +151,8 @@ class Run:
             Factors on the live and the dead load.
         steps
             How many steps.
+        rise
+            What the multiplier rises by in each step.
         given
             Energy [J] of the state besides the work of its loads, of `given`; inf does not watch the energy.
 
@@ -150,7 +161,8 @@ class Run:
         Unstable
             As soon as the energy that is watched does not add up; the state is left as it is then.
         """
-        self._advance("held", state, dead * self.system.dead + multiplier * self.system.live, 0.0, steps, given)
+        load = dead * self.system.dead + multiplier * self.system.live
+        self._advance("held", state, load, rise, steps, given)
 
     def bear(self, state: State, load: Array, steps: int) -> None:
         """Take steps under a constant load ``(nd,)`` [N]; as `hold` does without watching the energy."""
@@ -172,24 +184,26 @@ class Run:
 
     def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
         """Take steps under a constant load and a control; what `stepper` sums up."""
-        total, system = 0.0, self.system
+        total, system, number = 0.0, self.system, CONTROLS.index(control)
         live = system.carried.motion if control == "carried" else system.live
-        if self._rig:
+        if system.rig is not None:
             live = live.copy()  # it turns with the beam
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
-            step, ties = self._step[control], (*system.ties, state.stretch) if self._tied else ()
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
-            coefficients = (piece, self.dt, self.local, self._viscosity, load, live, speed)
-            taken, stable, multipliers, work = step(
+            coefficients = (number, piece, self.dt, self.local, self._viscosity, load, live, speed)
+            ties = (*system.ties, state.stretch)
+            taken, stable, multipliers, work = self._step(
                 *coefficients, *self._arrays, ties, self._rig, arrays, self._work, watch
             )
             total += multipliers
-            if self._rig:
+            if system.rig is not None:
                 state.turned += float(self._rig[3][0])
                 self._rig[3][0] = 0.0
             state.external += float(load.dot(state.motion)) - before + work
+            if control == "held" and speed:
+                load = load + taken * speed * live
             state.steps += taken
             state.time += taken * self.dt
             if not stable:

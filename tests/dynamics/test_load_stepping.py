@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
 from runningbond.dynamics.collapse import Verdict
-from runningbond.dynamics.load_stepping import FASTER, RESOLVED, _raise, _raise_in_parts
+from runningbond.dynamics.controls import ramp
+from runningbond.dynamics.load_stepping import FASTER, LOOKS, RESOLVED, Growth, _raise_in_parts
 from runningbond.scene import Array
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
@@ -104,17 +105,37 @@ def test_a_bound_that_the_wall_bears_all_the_same_does_not_end_the_search() -> N
     assert len(tried) < 60
 
 
-def test_a_load_grows_faster_far_below_its_bound_and_no_more_where_the_wall_gives_way() -> None:
-    """All the way to the stop at two speeds; or to where the wall has moved by the unit of collapse, sliding at 0.6."""
-    criteria, steps = Criteria(collapse=1.0), 9000.0
-    slow, fast, falling = (State.at_rest(BLOCK.system) for _ in range(3))
-    assert _raise(BLOCK, slow, 0.0, 0.3, steps, 0.0, criteria) == 0.3
-    assert _raise(BLOCK, fast, 0.0, 0.3, steps, 0.15, criteria) == 0.3
-    assert slow.steps == pytest.approx(steps, rel=0.02)
-    assert fast.steps == pytest.approx(steps / 2 + steps / 2 / FASTER, rel=0.1)
-    reached = _raise(BLOCK, falling, 0.0, 3.0, 4e4, 0.0, Criteria(collapse=1e-3))
-    assert 0.6 < reached < 1.5
-    assert BLOCK.system.farthest(falling.motion) > 1e-3
+def test_a_load_grows_faster_far_below_its_bound_and_where_the_wall_is_as_stiff_as_at_first() -> None:
+    """A block that does not slide yet: slowly in the first look alone, and not even there below a bound."""
+    for far, slowly in ((0.0, 1 / LOOKS), (0.3, 0.0)):
+        grows, start = Growth(BLOCK, Criteria(collapse=1.0), far), State.at_rest(BLOCK.system)
+        reached, state = grows.up_to(0.3, start, 0.0, 80_000.0)
+        assert reached == 0.3
+        assert start.steps == 0
+        assert state.steps == grows.steps == pytest.approx(80_000 * (slowly + (1 - slowly) / FASTER))
+
+
+def test_a_load_that_makes_a_wall_give_way_grows_slowly_and_no_more_once_it_has() -> None:
+    """Sliding at 0.6: the look of that load is gone through anew, slowly, to the last bit, and nothing is after it."""
+    grows = Growth(BLOCK, Criteria(collapse=1e-3), 0.0)
+    reached, fallen = grows.up_to(3.0, State.at_rest(BLOCK.system), 0.0, 80_000.0)
+    assert (reached, grows.slow) == (0.75, 0.375)
+    (passed, state), slowly = grows.passed[-1], grows.steps
+    assert (passed, len(grows.passed)) == (0.375, 1)
+    ramp(BLOCK, state, 0.375, 0.75, 10_000)
+    assert np.array_equal(state.motion, fallen.motion)
+    assert slowly == 20_000 + 10_000 // FASTER
+
+
+def test_a_load_that_has_been_grown_through_is_not_grown_to_again() -> None:
+    """Of the loads that bisect the step of the first fall, three were looked at on the way."""
+    with patch.object(Growth, "up_to", autospec=True, side_effect=Growth.up_to) as grown:
+        found, tried = searched(lambda load: "stable" if load < 0.5 else "collapse")
+    assert found.lower == pytest.approx(0.5, rel=0.005)
+    fall = next(k for k, load in enumerate(tried) if load >= 0.5)
+    stops = [call.args[1] for call in grown.call_args_list]
+    assert set(tried[: fall + 1]) <= set(stops)
+    assert not set(tried[fall + 1 : fall + 4]) & set(stops)
 
 
 @given(pauses=st.lists(st.booleans(), min_size=1, max_size=30), stop=st.floats(0.06, 3.0))
