@@ -98,11 +98,28 @@ def nodal_tables(
 
 
 @kernel
+def _subtract_product(table: Array, entry: Any, rows: Any, factor: Array, first: Any, out: Array) -> None:
+    """Subtract from a vector each row of a table, as long as it is, times a factor; a library's call takes longer."""
+    n = np.uint64(out.size)
+    for k in range(np.uint64(rows)):
+        value, at = factor[np.uint64(first) + k], np.uint64(entry) + k * n
+        for i in range(n):
+            out[i] -= value * table[at + i]
+
+
+@kernel
 def to_nodes(tables: NodalTables, motion: Array) -> None:
     """Displacements of the nodes, from modal coordinates ``(nd,)``."""
     shapes, table, nodal = tables.shapes, tables.forward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
+        if blocks == 1:
+            alone = nodal[at : at + width]
+            alone[:] = 0.0
+            _subtract_product(tables.backward, entry, modes, motion, first, alone)
+            for i in range(alone.size):
+                alone[i] = -alone[i]
+            continue
         phi = table[entry : entry + width * modes].reshape(width, modes)
         Q = motion[first : first + modes * blocks].reshape(modes, blocks)
         np.dot(phi, Q, nodal[at : at + width * blocks].reshape(width, blocks))
@@ -114,6 +131,9 @@ def to_modes(tables: NodalTables, force: Array) -> None:
     shapes, table, nodal, product = tables.shapes, tables.backward, tables.nodal, tables.product
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
+        if blocks == 1:
+            _subtract_product(tables.forward, entry, width, nodal, at, force[first : first + modes])
+            continue
         phi = table[entry : entry + width * modes].reshape(modes, width)
         S = nodal[at : at + width * blocks].reshape(width, blocks)
         out = product[: modes * blocks]
@@ -196,10 +216,19 @@ def gather_modes(motion: Array, geometry: ModalJoints, opening: Array, slip: Arr
         unfold(folded, motion, nodal)
     # What does not move shares the last entries, which scatter has written to.
     nodal[tables.still[0] :] = 0.0
-    points = shares.shape[1]
-    ne = opening.size // points
+    points = np.uint64(shares.shape[1])
+    ne = np.uint64(opening.size) // points
     for run in range(places.shape[0]):
         low, high = start[run], start[np.uint64(run + 1)]
+        if high - low == 1:  # as all are where no two joints are alike
+            for p in range(points):
+                u = v = 0.0
+                for k in range(4):
+                    along = nodal[places[run, k + 4] + low] - nodal[places[run, k] + low]
+                    u += shares[run, p, 0, k] * along
+                    v += shares[run, p, 1, k] * along
+                opening[p * ne + low], slip[p * ne + low] = u, v
+            continue
         for p in range(points):
             for axis in range(2):
                 out = opening[p * ne : (p + 1) * ne] if axis == 0 else slip[p * ne : (p + 1) * ne]
@@ -221,11 +250,19 @@ def scatter_modes(normal: Array, tangential: Array, geometry: ModalJoints, force
     """Subtract from modal forces ``(nd,)`` what the tractions at the points ``(np,)`` [Pa] do on the modes."""
     tables, folded, start, places, _, shares = geometry
     nodal = tables.nodal
-    points = shares.shape[1]
-    ne = normal.size // points
+    points = np.uint64(shares.shape[1])
+    ne = np.uint64(normal.size) // points
     nodal[:] = 0.0
     for run in range(places.shape[0]):
         low, high = start[run], start[np.uint64(run + 1)]
+        if high - low == 1:
+            for p in range(points):
+                n, t = normal[p * ne + low], tangential[p * ne + low]
+                for k in range(4):
+                    force_there = shares[run, p, 0, k] * n + shares[run, p, 1, k] * t
+                    nodal[places[run, k] + low] -= force_there
+                    nodal[places[run, k + 4] + low] += force_there
+            continue
         for p in range(points):
             for axis in range(2):
                 traction = normal[p * ne : (p + 1) * ne] if axis == 0 else tangential[p * ne : (p + 1) * ne]
