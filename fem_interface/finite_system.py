@@ -156,7 +156,7 @@ class DeformableContacts:
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`."""
         geometry = self.geometry(contacts)
-        gather_deformable(motion, geometry, *np.zeros((2, len(contacts))))
+        gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
         contact = geometry.contact
         return contacts.resultants(self.outline, contact[:, :4], force * [np.ones(len(contacts)), contact[:, 6]])
 
@@ -165,7 +165,7 @@ class DeformableContacts:
         """Key of the contact of the same joint nearest to each joint point, and the point's part of its area."""
         contacts, points = self.undeformed, self.blocks.wall.elements.points
         geometry = self.geometry(contacts)
-        gather_deformable(np.zeros(len(self.blocks.wall.mass)), geometry, *np.zeros((2, len(contacts))))
+        gather_deformable(np.zeros(len(self.blocks.wall.mass)), tuple(geometry), *np.zeros((2, len(contacts))))
         nearest = np.zeros(len(points), dtype=np.int64)
         for joint in np.unique(points.joint):
             here, own = np.flatnonzero(points.joint == joint), np.flatnonzero(contacts.joint == joint)
@@ -177,7 +177,7 @@ class DeformableContacts:
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
         """A number of the corner or node that rests and the side it rests on, for each contact."""
         geometry = self.geometry(contacts)
-        gather_deformable(motion, geometry, *np.zeros((2, len(contacts))))
+        gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
         of_a = geometry.touched[:, 2] == 1
         v, w, _, _, e, f = contacts.ends.astype(np.int64).T
         inner = contacts.inwards == 0
@@ -223,7 +223,7 @@ def _blocks_on(
     wall = blocks.wall
     motion = np.zeros(len(scaled.mass))
     motion[wall.rigid] = contacts.motion.reshape(-1, 3)
-    gather_deformable(motion, geometry, *np.zeros((2, len(contacts))))
+    gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
     turned, contact = geometry.placed.blocks, geometry.contact
     n = contact[:, 2:4]
     directions = ((n, law.stiffest), (np.column_stack([-n[:, 1], n[:, 0]]), law.shear_stiffness))

@@ -68,8 +68,15 @@ TOO_MUCH_SPENT = 2.0
 
 
 @kernel
+def _copy(source: Array, into: Array) -> None:
+    """Copy a vector; that of a slice comes with the text of an error, which takes seconds to compile."""
+    for i in range(into.size):
+        into[i] = source[i]
+
+
+@kernel
 def _restrained(motion: Array, freedom: Indices, basis: Array, moved: Array) -> None:
-    moved[:] = motion
+    _copy(motion, moved)
     for r in range(freedom.shape[0]):
         for row in range(3):
             total = 0.0
@@ -181,7 +188,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
         rigged = rig[0].size > 0
         response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         rises = control == HELD and speed != 0.0
-        loaded[:] = load
+        _copy(load, loaded)
         if rises:
             before = _dot(live, motion)
         if control == DRIVEN:
@@ -204,9 +211,10 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
                 force[:] = 0.0
                 scatter(normal, tangential, geometry, force)
                 _project(force, freedom, basis)
-                force += loaded
+                for i in range(force.size):
+                    force[i] += loaded[i]
             else:
-                force[:] = loaded
+                _copy(loaded, force)
                 scatter(normal, tangential, geometry, force)
             pull(ties, motion, force)
             if rigged:

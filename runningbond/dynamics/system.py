@@ -65,7 +65,7 @@ class Interface:
     def jumps(self, motion: Array) -> tuple[Array, Array]:
         """Opening and slip of the points after a motion ``(nd,)``, ``(np,)`` each [m]."""
         opening, slip = np.zeros((2, self.law.points))
-        self.gather(motion, self.geometry, opening, slip)
+        self.gather(motion, tuple(self.geometry), opening, slip)  # plain, as in the steps: compiled once
         return opening, slip
 
 

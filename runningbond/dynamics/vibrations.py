@@ -16,7 +16,7 @@ def elastic_stiffness(system: BlockSystem) -> tuple[Array, Array]:
     law, moving, one = system.interface.law, np.flatnonzero(np.isfinite(system.mass)), np.eye(len(system.mass))
     jump = np.zeros((len(moving), 2, law.points))
     for row, mode in zip(jump, moving, strict=True):
-        system.interface.gather(one[mode], system.interface.geometry, *row)
+        row[:] = system.interface.jumps(one[mode])
     springs = system.interface.area * np.stack([law.normal_stiffness, law.shear_stiffness])
     joints = np.einsum("idp,dp,jdp->ij", jump, springs, jump, optimize=True)
     return joints + np.diag(system.stiffness[moving]), system.mass[moving]

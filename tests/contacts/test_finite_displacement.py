@@ -83,7 +83,7 @@ def test_undeformed_wall_has_the_stiffness_of_its_joints(changes: dict[str, Any]
             motion = np.zeros(len(system.mass))
             motion[freedom] = sign * step
             opening, slip = np.zeros((2, len(system.interface.area)))
-            system.interface.gather(motion, system.interface.geometry, opening, slip)
+            system.interface.gather(motion, tuple(system.interface.geometry), opening, slip)
             jumps.append([opening, slip])
         rows.append((np.array(jumps[0]) - jumps[1]) / (2 * step))
     b = np.array(rows)

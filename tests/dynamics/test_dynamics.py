@@ -175,12 +175,12 @@ def test_kernels_are_the_jump_operator_and_its_transpose(changes: dict[str, Any]
     coordinates = np.zeros(motion.size)
     coordinates[system.rigid] = motion
     opening, slip, force = np.zeros(len(points)), np.zeros(len(points)), np.zeros(motion.size)
-    system.interface.gather(coordinates, system.interface.geometry, opening, slip)
+    system.interface.gather(coordinates, tuple(system.interface.geometry), opening, slip)
     assert opening == pytest.approx(jump.opening @ motion.ravel(), abs=1e-12)
     assert slip == pytest.approx(jump.slip @ motion.ravel(), abs=1e-12)
     normal, tangential = rng.normal(size=(2, len(points)))
     expected = jump.opening.T @ (normal * points.area) + jump.slip.T @ (tangential * points.area)
-    system.interface.scatter(normal, tangential, system.interface.geometry, force)
+    system.interface.scatter(normal, tangential, tuple(system.interface.geometry), force)
     assert force[system.rigid][~scene.fixed] == pytest.approx(-expected.reshape(-1, 3)[~scene.fixed], abs=1e-12)
 
 

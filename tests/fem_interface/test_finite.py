@@ -85,7 +85,7 @@ def bounded(system: BlockSystem, bound: float) -> BlockSystem:
 
 def jumps_on(system: BlockSystem, geometry: Any, motion: Array, n: int) -> Array:
     found = np.zeros((2, n))
-    system.interface.gather(motion, geometry, *found)
+    system.interface.gather(motion, tuple(geometry), *found)
     return found
 
 
@@ -143,7 +143,7 @@ def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, 
         ):
             # Slip is counted from where the undeformed contact is.
             jump = np.array(system.interface.jumps(motion)) - system.interface.jumps(0 * motion)
-            system.interface.scatter(*(stiffness * jump * mask), system.interface.geometry, force)
+            system.interface.scatter(*(stiffness * jump * mask), tuple(system.interface.geometry), force)
         assert np.abs(forces[1]).max() > 0
         difference.append(np.abs(forces[0] - forces[1])[:-1].max())
     slopes = np.diff(np.log10(difference))
@@ -182,7 +182,7 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
     rate = (rate - jumps_on(system, search.geometry(contacts), motion - step, len(contacts))) / 2e-7
     tractions = rng.normal(size=(2, len(contacts))) * plain
     force = np.zeros_like(motion)
-    system.interface.scatter(*tractions, geometry, force)
+    system.interface.scatter(*tractions, tuple(geometry), force)
     work = (tractions * rate * contacts.area).sum()
     scale = np.abs(tractions * rate * contacts.area).sum()
     assert -force[:-1] @ direction[:-1] == pytest.approx(work, abs=1e-5 * scale)

@@ -100,9 +100,9 @@ def test_kernels_do_not_mind_whether_tables_are_folded(
         rng = np.random.default_rng(1)
         motion = np.where(np.isfinite(system.mass), rng.normal(size=len(system.mass)), 0.0)
         opening, slip = np.zeros((2, system.interface.law.points))
-        system.interface.gather(motion, system.interface.geometry, opening, slip)
+        system.interface.gather(motion, tuple(system.interface.geometry), opening, slip)
         force = rng.normal(size=len(motion))
-        system.interface.scatter(*rng.normal(size=(2, len(opening))), system.interface.geometry, force)
+        system.interface.scatter(*rng.normal(size=(2, len(opening))), tuple(system.interface.geometry), force)
         # The last one stands for all that does not move, and nothing counts there.
         return opening, slip, force[:-1]
 

@@ -111,12 +111,12 @@ def test_kernels_are_the_nodal_jump_operator_and_its_transpose(make: Any, count:
         np.zeros(system.interface.law.points),
         np.zeros(len(motion)),
     )
-    system.interface.gather(motion, system.interface.geometry, opening, slip)
+    system.interface.gather(motion, tuple(system.interface.geometry), opening, slip)
     u = found.displacement(motion).ravel()
     assert opening == pytest.approx(jump.opening @ u, abs=1e-12)
     assert slip == pytest.approx(jump.slip @ u, abs=1e-12)
     normal, tangential = rng.normal(size=(2, len(opening)))
-    system.interface.scatter(normal.copy(), tangential.copy(), system.interface.geometry, force)
+    system.interface.scatter(normal.copy(), tangential.copy(), tuple(system.interface.geometry), force)
     virtual = system.interface.area @ (normal * opening + tangential * slip)
     assert force @ motion == pytest.approx(-virtual, abs=1e-12 * np.abs(force).sum())
 
