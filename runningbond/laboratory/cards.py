@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from statistics import median
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -57,14 +58,14 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
     for each in predictions:
         if each.strength is None:
             continue
-        look = {"color": each.rung.model.colour, "label": each.rung.name, "lw": 1.2}
+        look: dict[str, Any] = {"color": each.rung.model.colour, "ls": each.rung.model.line, "label": each.rung.name}
         if not len(each.curve):
-            style = {"rocking": ":", "sliding": "--"}.get(each.rung.name, "-.")
+            look |= {"rocking": {"ls": ":"}, "sliding": {"ls": "--"}}.get(each.rung.name, {})
             if each.rung.name != "by-hand" and each.strength < SEEN * (wall.peak or each.strength):
-                axes.axhline(each.strength / 1e3, ls=style, **look | {"lw": 0.9})  # type: ignore[arg-type]
+                axes.axhline(each.strength / 1e3, lw=0.9, **look)
             continue
         x, y = each.curve.T
-        axes.plot(1e3 * x, y / 1e3, **look | {"lw": 0.6} if wall.is_cyclic else look)  # type: ignore[arg-type]
+        axes.plot(1e3 * x, y / 1e3, lw=0.6 if wall.is_cyclic else 1.2, **look)
         if wall.is_cyclic:
             _envelope(axes, each.curve, wall.path, each.rung.model.colour)
     if wall.is_cyclic:

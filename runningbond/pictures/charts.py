@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike
 from runningbond.results import Outcome
 from runningbond.scene import Array
 
+from .style import CHART_COLOURS
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
-LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))  # colour and marker, one after another
+LOOKS = tuple(zip(CHART_COLOURS, "os^Dv", strict=True))  # colour and marker, one after another
 Looks: TypeAlias = Mapping[Any, tuple[str, str]]  # colour and marker by the entries of a column
 Row: TypeAlias = Mapping[str, Any]  # of a table, by columns
 

@@ -4,6 +4,8 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
@@ -14,6 +16,7 @@ from .captions import (
     Caption,
     colour_key,
     figure_with_room,
+    is_force,
     load_symbol,
     mechanism_caption,
     show_extent,
@@ -47,7 +50,8 @@ def frame_figure(
 ) -> "Figure":
     """Figure of one moment of a run; with the extent and the key of the last, so that several make a film."""
     last = last or shape
-    load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}"
+    unit = " N" if is_force(shape.scene) else ""
+    load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}{unit}"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
     key = colour_key(last.states, shape.colouring)
     return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), last)
@@ -70,6 +74,8 @@ def _room(last: DeformedShape) -> Room:
 
 
 def draw_painted(axes: "Axes", shape: DeformedShape, painter: Painter, extent: Extent) -> None:
-    """Draw a painted wall into axes of its own, without its supports and loads."""
-    axes.imshow(painter.paint(shape, extent), extent=square_around(extent), interpolation="antialiased", zorder=1)
+    """Draw a painted wall into axes of its own, without its supports and loads, which lie below it."""
+    image = painter.paint(shape, extent)
+    seen = np.dstack([image, np.where((image == 255).all(axis=2), 0, 255).astype(np.uint8)])
+    axes.imshow(seen, extent=square_around(extent), interpolation="antialiased", zorder=2.5)
     show_extent(axes, extent)
