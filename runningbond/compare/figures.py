@@ -72,14 +72,15 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
     figure = Figure(figsize=(7, 4.6), layout="constrained")
     axes = figure.add_subplot()
     aside = ("bottom", "center", "top", "center")  # three end close together
-    for (label, _), colour, column, place in zip(TEXTURES, CHART_COLOURS[:4], multiplier.T, aside, strict=True):
+    for (label, _), colour, column, side in zip(TEXTURES, CHART_COLOURS[:4], multiplier.T, aside, strict=True):
         axes.plot(slenderness, column, color=colour)
-        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va=place, color=DARK, annotation_clip=False)
+        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va=side, color=DARK, annotation_clip=False)
     for model in (model for model in comparison.models if model.kind == "bound"):
         for i, case in enumerate(cases_of(BARALDI)):
             outcome = comparison.outcome(case.name, model)
             if outcome is not None and outcome.multiplier is not None:
-                axes.plot(SLENDERNESS[i // 4][1], outcome.multiplier, model.marker, mfc="none", color=CHART_COLOURS[i % 4])
+                place, colour = SLENDERNESS[i // 4][1], CHART_COLOURS[i % 4]
+                axes.plot(place, outcome.multiplier, model.marker, mfc="none", color=colour)
         axes.plot([], [], model.marker, mfc="none", color="0.3", label=model.title)
     axes.axhline(FRICTION, color="0.6", lw=0.8, ls="--")
     axes.annotate("sliding, tan φ", (2.98, FRICTION), ha="right", va="bottom", color="0.4", fontsize=9)

@@ -114,22 +114,23 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
             median(seconds), median(errors), model.marker, color=model.colour, ms=10, mec="black", ls="none", label=name
         )
     if better := errors_by_hand(scored):
-        _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both, wall by wall", width=1.6)
+        _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both,\nwall by wall", width=1.6)
     if any(not own[0].rung.is_by_hand for own in by_rung.values()):
-        axes.legend(fontsize=8, title="large: median over walls", title_fontsize=8, loc="best")
+        axes.legend(fontsize=8, title="large: median over walls", title_fontsize=8, framealpha=1)
 
 
 def _level(axes: Axes, error: float, text: str, width: float = 0.9) -> None:
+    """A level with its name beside the axes, where no point is."""
     axes.axhline(error, color="0.35", lw=width, ls="--", zorder=0)
     side = "top" if width > 1 else "bottom"
     axes.annotate(
         text,
-        (0.99, error),
-        (0, 2 if side == "bottom" else -2),
+        (1.01, error),
+        (0, 1 if side == "bottom" else -1),
         xycoords=("axes fraction", "data"),
         textcoords="offset points",
-        ha="right",
         va=side,
         fontsize=8,
+        annotation_clip=False,
         color="0.3",
     )
