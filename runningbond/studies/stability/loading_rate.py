@@ -193,7 +193,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     right.set_xticks(np.arange(len(LOADINGS)), [f"{loading:g}" for loading in LOADINGS])
     right.set(xlabel="first load step in\n[times to rest]; ▾ the suite's", ylabel="bracket of λ off by [%]")
     right.margins(y=0.15)
-    right.legend(loc="upper right")
+    right.legend(loc="center right")
     for axes, title in ((left, "ramp; lines: theory"), (middle, "displacement control"), (right, "load steps")):
         axes.set_title(title, fontsize=10)
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=9)
