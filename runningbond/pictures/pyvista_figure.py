@@ -22,10 +22,10 @@ from .captions import (
     show_extent,
     wall_title,
 )
-from .deformed_shape import DeformedShape, Extent, undeformed_shape
+from .deformed_shape import DeformedShape, Extent, common_extent, undeformed_shape
 from .mechanism import mechanism_shape
 from .pyvista_painter import Painter, square_around
-from .style import Colouring
+from .style import STATE_COLOURS, Colouring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,28 +39,26 @@ def mechanism_figure(
     mechanism = mechanism_shape(scene, outcome)
     shape = replace(mechanism or undeformed_shape(scene), colouring=colouring)
     caption = mechanism_caption(scene, outcome, colour_key(shape.states, colouring), drawn=mechanism is not None)
-    return _figure(shape, painter, caption, shape)
+    return _figure(shape, painter, caption, (shape,))
 
 
 def frame_figure(
-    shape: DeformedShape,
-    outcome: Outcome,
-    painter: Painter,
-    last: DeformedShape | None = None,
+    shape: DeformedShape, outcome: Outcome, painter: Painter, film: tuple[DeformedShape, ...] = ()
 ) -> "Figure":
-    """Figure of one moment of a run; with the extent and the key of the last, so that several make a film."""
-    last = last or shape
+    """Figure of one moment of a run; with room for all moments of a film, and the key to them, if it is one of them."""
+    film = film or (shape,)
     unit = " N" if is_force(shape.scene) else ""
     load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}{unit}"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
-    key = colour_key(last.states, shape.colouring)
-    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), last)
+    states = [state for state in STATE_COLOURS if any(state in one.drawn_state for one in film)]
+    key = colour_key(states, shape.colouring)
+    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), film)
 
 
-def _figure(shape: DeformedShape, painter: Painter, caption: Caption, last: DeformedShape) -> "Figure":
-    room = _room(last)
+def _figure(shape: DeformedShape, painter: Painter, caption: Caption, film: tuple[DeformedShape, ...]) -> "Figure":
+    extent, room = _room(film)
     figure, axes = figure_with_room(room.extent, caption)
-    draw_painted(axes, shape, painter, last.extent)
+    draw_painted(axes, shape, painter, extent)
     show_extent(axes, room.extent)
     annotate(axes, shape, room)
     caption.write(axes)
@@ -68,9 +66,12 @@ def _figure(shape: DeformedShape, painter: Painter, caption: Caption, last: Defo
 
 
 @lru_cache(maxsize=1)
-def _room(last: DeformedShape) -> Room:
-    """Room for all frames of a film, from the wall at rest to the last one."""
-    return room_for([last, undeformed_shape(last.scene)], last.extent, (WIDTH, TALLEST))
+def _room(film: tuple[DeformedShape, ...]) -> tuple[Extent, Room]:
+    """What shows all frames of a film, and room for the wall at rest and in those that reach farthest."""
+    extents, outwards = np.array([one.extent for one in film]), (-1, 1, -1, 1)
+    farthest = dict.fromkeys(film[k] for k in (extents * outwards).argmax(axis=0))
+    extent = common_extent(film)
+    return extent, room_for([*farthest, undeformed_shape(film[0].scene)], extent, (WIDTH, TALLEST))
 
 
 def draw_painted(axes: "Axes", shape: DeformedShape, painter: Painter, extent: Extent) -> None:

@@ -273,6 +273,24 @@ def test_a_joint_on_the_ground_is_seen_and_a_load_has_its_unit(painter: Painter)
     assert "dem-static: P = 0.0000 N" in [text.get_text() for text in figure.axes[0].texts]
 
 
+@drawing
+def test_a_film_shows_all_of_every_moment(painter: Painter) -> None:
+    """A block taken to the left and then, less far, to the right: both are in the picture, and in its key."""
+    scene = courses([[1]], width=0.4, height=0.2)
+    shapes = []
+    for way, state in ((-1.0, JointState.SLIDE), (0.3, JointState.DEBONDED)):
+        motion = np.zeros((len(scene.blocks), 3))
+        motion[scene.wall, 0] = way
+        shapes.append(replace(DeformedShape.of_rigid_blocks(scene, motion, np.full(1, state), 0.6), scale=0.1))
+    axes = frame_figure(shapes[1], Outcome("wall", "dem-static", "collapse", 0.6), painter, tuple(shapes)).axes[0]
+    (left, right), places = axes.get_xlim(), np.concatenate([shape.placed for shape in shapes])
+    assert left < places[:, 0].min()
+    assert right > places[:, 0].max()
+    key = axes.get_legend()
+    assert key is not None
+    assert {"slides", "debonded"} <= {text.get_text() for text in key.get_texts()}
+
+
 # Folders and the command line
 
 
