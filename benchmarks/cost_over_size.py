@@ -4,7 +4,7 @@
 
 Every run is a process of its own and is ended once it has taken so many processor seconds; what it would have taken is
 not known, and the chart's open arrow says so. Compiled kernels are loaded before anything is measured. The table is
-kept beside the picture (CSV), and models that are not run again are drawn from it.
+kept beside the picture (CSV), and models that are not run again, with ``--models ""`` all, are drawn from it.
 """
 
 import argparse
@@ -102,7 +102,9 @@ def chart(table: list[Run]) -> Figure:
             path = np.array([*last, (run.blocks, run.seconds)]).T
             axes.plot(*path, color=looks.colour, linewidth=0.8, linestyle=":")
             axes.plot(run.blocks, run.seconds, looks.marker, color=looks.colour, markerfacecolor="white")
-    axes.set_title("arrows: ended by their budget, the true cost is not known", fontsize=8, color="0.35", loc="left")
+    figure.suptitle("Cost against size, model by model", fontsize=11)
+    said = "hollow: no collapse load found; arrows: ended by their budget, the true cost is not known"
+    axes.set_title(said, fontsize=8, color="0.35", loc="left")
     axes.set(xscale="log", yscale="log", xlim=(25, 2e5), ylim=(1e-3, 4 * max(run.seconds for run in table)))
     axes.set(xlabel="blocks of a running-bond panel", ylabel="processor seconds")
     axes.grid(which="major", color="0.9")
@@ -117,7 +119,7 @@ def main() -> None:
     parser.add_argument("--models", default=",".join(MODELS))
     parser.add_argument("--out", type=Path, default=Path("docs/cost-over-size.png"))
     arguments = parser.parse_args()
-    kept, chosen = arguments.out.with_suffix(".csv"), arguments.models.split(",")
+    kept, chosen = arguments.out.with_suffix(".csv"), [name for name in arguments.models.split(",") if name]
     rows = list(csv.DictReader(kept.open(encoding="utf-8"))) if kept.exists() else []
     table = [
         Run(row["model"], int(row["blocks"]), float(row["seconds"]), float(row["memory"]), row["status"])

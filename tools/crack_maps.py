@@ -15,6 +15,7 @@ from runningbond.joints.law import PLASTIC_CLOSURE
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
+from runningbond.pictures.style import CHART_COLOURS
 from runningbond.scene import Array
 
 SCALE = 12.0
@@ -59,15 +60,15 @@ def main(path: Path, names: list[str]) -> None:
     walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
     figure = Figure(figsize=(3.6 * (len(names) + 1), 3.9), layout="constrained")
     *maps, curves = figure.subplots(1, len(names) + 1)
-    for axes, name in zip(maps, names, strict=True):
+    for axes, name, colour in zip(maps, names, CHART_COLOURS, strict=False):
         seen = LastLook()
         scene = scene_of(walls[name], LADDER["fem-small"].features)
         curve = fem(scene, cells=2, modes=20, observe=seen).curve
         draw(axes, seen)
         axes.set_title(f"{name} at 4 mm, × {SCALE:g}", fontsize=9)
         peak, measured = 1e-3 * curve[:, 1].max(), 1e-3 * (walls[name].peak or np.nan)
-        (line,) = curves.plot(1e3 * curve[:, 0], 1e-3 * curve[:, 1], label=f"{name}: {peak:.0f} kN")
-        curves.axhline(measured, color=line.get_color(), ls="--", lw=0.8, label=f"measured peak: {measured:.0f} kN")
+        curves.plot(1e3 * curve[:, 0], 1e-3 * curve[:, 1], color=colour, label=f"{name}: {peak:.0f} kN")
+        curves.axhline(measured, color=colour, ls="--", lw=0.8, label=f"measured peak: {measured:.0f} kN")
     curves.set(xlabel="displacement [mm]", ylabel="horizontal force [kN]", xlim=(0, None), ylim=(0, None))
     curves.legend(fontsize=7, frameon=False)
     figure.legend(*maps[0].get_legend_handles_labels(), loc="outside lower left", fontsize=8, ncols=3, frameon=False)

@@ -10,7 +10,8 @@ from matplotlib.lines import Line2D
 
 from homog import crack_slope, lateral_multiplier
 from runningbond.pictures.captions import is_force, to_png
-from runningbond.pictures.charts import COLOURS, bare, mark
+from runningbond.pictures.charts import bare, mark
+from runningbond.pictures.style import CHART_COLOURS, DARK
 from runningbond.results import write_atomically
 from runningbond.scene import Array
 
@@ -71,14 +72,15 @@ def _figure_6(comparison: Comparison, slenderness: Array, multiplier: Array) -> 
     figure = Figure(figsize=(7, 4.6), layout="constrained")
     axes = figure.add_subplot()
     aside = ("bottom", "center", "top", "center")  # three end close together
-    for (label, _), colour, column, place in zip(TEXTURES, COLOURS, multiplier.T, aside, strict=True):
+    for (label, _), colour, column, side in zip(TEXTURES, CHART_COLOURS[:4], multiplier.T, aside, strict=True):
         axes.plot(slenderness, column, color=colour)
-        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va=place, color=colour, annotation_clip=False)
+        axes.annotate(f"b/a = {label}", (3.03, column[-1]), va=side, color=DARK, annotation_clip=False)
     for model in (model for model in comparison.models if model.kind == "bound"):
         for i, case in enumerate(cases_of(BARALDI)):
             outcome = comparison.outcome(case.name, model)
             if outcome is not None and outcome.multiplier is not None:
-                axes.plot(SLENDERNESS[i // 4][1], outcome.multiplier, model.marker, mfc="none", color=COLOURS[i % 4])
+                place, colour = SLENDERNESS[i // 4][1], CHART_COLOURS[i % 4]
+                axes.plot(place, outcome.multiplier, model.marker, mfc="none", color=colour)
         axes.plot([], [], model.marker, mfc="none", color="0.3", label=model.title)
     axes.axhline(FRICTION, color="0.6", lw=0.8, ls="--")
     axes.annotate("sliding, tan φ", (2.98, FRICTION), ha="right", va="bottom", color="0.4", fontsize=9)
@@ -143,7 +145,7 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
         figure.suptitle(title, fontsize=11)
         columns = [(figure.add_subplot(**labels), cases_of(source))]
     for axes, cases in columns:
-        for case, colour in zip(cases, COLOURS, strict=False):
+        for case, colour in zip(cases, CHART_COLOURS, strict=False):
             for model in models:
                 moved, multiplier = curves[case.name, model.name].T
                 axes.plot(moved, multiplier, ls=model.line, color=colour, lw=1.4)
@@ -160,7 +162,7 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
     walls = [f"b/a = {label}" for label, _ in TEXTURES]
     if source == FERRIS:
         walls = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
-    handles = [Line2D([], [], color=colour, label=wall) for wall, colour in zip(walls, COLOURS, strict=False)]
+    handles = [Line2D([], [], color=colour, label=wall) for wall, colour in zip(walls, CHART_COLOURS, strict=False)]
     widths = [(model, 0.8 if model.kind == "estimate" else 1.4) for model in (*estimates, *models)]
     handles += [Line2D([], [], color="0.3", ls=model.line, lw=width, label=model.name) for model, width in widths]
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from statistics import median
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -57,14 +58,14 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
     for each in predictions:
         if each.strength is None:
             continue
-        look = {"color": each.rung.model.colour, "label": each.rung.name, "lw": 1.2}
+        look: dict[str, Any] = {"color": each.rung.model.colour, "ls": each.rung.model.line, "label": each.rung.name}
         if not len(each.curve):
-            style = {"rocking": ":", "sliding": "--"}.get(each.rung.name, "-.")
+            look |= {"rocking": {"ls": ":"}, "sliding": {"ls": "--"}}.get(each.rung.name, {})
             if each.rung.name != "by-hand" and each.strength < SEEN * (wall.peak or each.strength):
-                axes.axhline(each.strength / 1e3, ls=style, **look | {"lw": 0.9})  # type: ignore[arg-type]
+                axes.axhline(each.strength / 1e3, lw=0.9, **look)
             continue
         x, y = each.curve.T
-        axes.plot(1e3 * x, y / 1e3, **look | {"lw": 0.6} if wall.is_cyclic else look)  # type: ignore[arg-type]
+        axes.plot(1e3 * x, y / 1e3, lw=0.6 if wall.is_cyclic else 1.2, **look)
         if wall.is_cyclic:
             _envelope(axes, each.curve, wall.path, each.rung.model.colour)
     if wall.is_cyclic:
@@ -113,22 +114,23 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
             median(seconds), median(errors), model.marker, color=model.colour, ms=10, mec="black", ls="none", label=name
         )
     if better := errors_by_hand(scored):
-        _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both, wall by wall", width=1.6)
+        _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both,\nwall by wall", width=1.6)
     if any(not own[0].rung.is_by_hand for own in by_rung.values()):
-        axes.legend(fontsize=8, title="large: median over walls", title_fontsize=8, loc="best")
+        axes.legend(fontsize=8, title="large: median over walls", title_fontsize=8, framealpha=1)
 
 
 def _level(axes: Axes, error: float, text: str, width: float = 0.9) -> None:
+    """A level with its name beside the axes, where no point is."""
     axes.axhline(error, color="0.35", lw=width, ls="--", zorder=0)
     side = "top" if width > 1 else "bottom"
     axes.annotate(
         text,
-        (0.99, error),
-        (0, 2 if side == "bottom" else -2),
+        (1.01, error),
+        (0, 1 if side == "bottom" else -1),
         xycoords=("axes fraction", "data"),
         textcoords="offset points",
-        ha="right",
         va=side,
         fontsize=8,
+        annotation_clip=False,
         color="0.3",
     )

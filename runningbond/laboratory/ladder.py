@@ -80,14 +80,17 @@ def _hand(name: str, title: str) -> Rung:
     return Rung(model, PUSHED, is_by_hand=True)
 
 
-def _rung(name: str, title: str, base: str, features: Features, colour: str, marker: str, **settings: Any) -> Rung:
+def _rung(
+    name: str, title: str, base: str, features: Features, colour: str, marker: str, line: Any = "-", **settings: Any
+) -> Rung:
     solve = partial(_run, base=base, settings=settings)
-    model = replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker)
+    model = replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker, line=line)
     return Rung(model, features, base, settings == FINITE)
 
 
 FINITE: dict[str, Any] = {"displacements": "finite"}
 CRUSHES, SPLITS = Features(closes=True, crushes=True), Features(closes=True, crushes=True, splits=True)
+CAPPED, DOTTED = replace(PUSHED, crushes=True), (0, (5, 1, 1, 1, 1, 1))
 
 LADDER: dict[str, Rung] = {
     rung.name: rung
@@ -95,18 +98,19 @@ LADDER: dict[str, Rung] = {
         _hand("rocking", "the wall turns as one block: N L / (2 H₀)"),
         _hand("sliding", "it slides on a bed joint: N tan φ"),
         _hand("by-hand", "the smaller of the two"),
-        _rung("limit", "limit analysis", "limit", PUSHED, "#0b559f", "o"),
-        _rung("limit-crushing", "limit analysis, toes crush", "limit", replace(PUSHED, crushes=True), "#7c3aed", "s"),
-        _rung("rigid", "rigid blocks, small displacements", "dem-dynamic", Features(), "#9bd0c9", "^"),
-        _rung("rigid-finite", "rigid blocks", "dem-dynamic", CRUSHES, "#2a9d8f", "^", **FINITE),
-        _rung("rigid-splitting", "rigid blocks that split", "dem-dynamic", SPLITS, "#c2410c", "P", **FINITE),
+        _rung("limit", "limit analysis", "limit", PUSHED, "#606fc6", "o", "-."),
+        _rung("limit-crushing", "limit analysis, toes crush", "limit", CAPPED, "#420697", "s", DOTTED),
+        _rung("rigid", "rigid blocks, small displacements", "dem-dynamic", Features(), "#7cc7ba", "v", ":"),
+        _rung("rigid-finite", "rigid blocks", "dem-dynamic", CRUSHES, "#349f8a", "^", **FINITE),
+        _rung("rigid-splitting", "rigid blocks that split", "dem-dynamic", SPLITS, "#9b471c", "P", DOTTED, **FINITE),
         _rung(
             "fem-small",
             "deformable blocks that split, small displacements",
             "fem",
             replace(SPLITS, deformable=True),
-            "#f59ab5",
-            "D",
+            "#d08fb8",
+            "d",
+            "--",
             cells=2,
             modes=20,
         ),
@@ -115,7 +119,7 @@ LADDER: dict[str, Rung] = {
             "deformable blocks that split",
             "fem",
             replace(SPLITS, deformable=True),
-            "#be185d",
+            "#7e2a55",
             "D",
             **FINITE,
         ),

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 WIDTH, TALLEST, DPI = 3.5, 4.2, 300
 """Width of a picture, that of a journal's column, largest height of the wall in it [in], and dots per inch."""
 
-LINE, KEY_LINE, NOTE_LINE, AIR = 0.14, 0.135, 0.105, 0.08
-"""Heights of a line of the title, of the key and of a note, and of the air above and below them [in]."""
+LINE, KEY_LINE, NOTE_LINE, AIR = 0.14, 0.14, 0.105, 0.08
+"""Heights of a line of the title, of an entry of the key, of a line more, and of the air above and below [in]."""
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,8 @@ class Caption:
     def _key_height(self) -> float:
         labels = [handle.get_label() for handle in self.key]
         n = math.ceil(len(labels) / self.columns)
-        lines = sum(1 + max(label.count("\n") for label in labels[k::n]) for k in range(n))
-        return float(KEY_LINE * lines + 0.04)
+        more = sum(max(label.count("\n") for label in labels[k::n]) for k in range(n))
+        return float(KEY_LINE * n + NOTE_LINE * more + 0.04)
 
     def write(self, axes: "Axes") -> None:
         """Write the words above and below some axes."""

@@ -9,11 +9,12 @@ from numpy.typing import ArrayLike
 from runningbond.results import Outcome
 from runningbond.scene import Array
 
+from .style import CHART_COLOURS
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = ("#0b559f", "#2a9d8f", "#e9a23b", "#c2410c")
-LOOKS = tuple(zip((*COLOURS, "#7c3aed"), "os^Dv", strict=True))  # colour and marker, one after another
+LOOKS = tuple(zip(CHART_COLOURS, "os^Dv", strict=True))  # colour and marker, one after another
 Looks: TypeAlias = Mapping[Any, tuple[str, str]]  # colour and marker by the entries of a column
 Row: TypeAlias = Mapping[str, Any]  # of a table, by columns
 
@@ -53,10 +54,19 @@ def level(axes: "Axes", y: float, text: str, x: float = 0.98, **style: Any) -> N
 
 
 def bracket(axes: "Axes", x: float, row: Row, colour: str, **style: Any) -> None:
-    """A bracket of λ as an upright bar, paler where it is no collapse."""
-    paler = 1.0 if row["status"] == "collapse" else 0.4
-    bar: dict[str, Any] = {"color": colour, "lw": 4, "alpha": paler, "solid_capstyle": "butt"} | style
+    """A bracket of λ as an upright bar, hollow where it is no collapse."""
+    bar: dict[str, Any] = {"color": colour, "lw": 4, "solid_capstyle": "butt"} | style
+    hollow = row["status"] != "collapse"
+    if hollow:
+        axes.plot([x, x], [row["λ lower"], row["λ upper"]], **bar | {"solid_capstyle": "projecting"})
+        bar |= {"color": "white", "lw": bar["lw"] / 2}
     axes.plot([x, x], [row["λ lower"], row["λ upper"]], **bar)
+
+
+def floor(axes: "Axes", least: float) -> None:
+    """A band at the end of an axis, where what is smaller is drawn, at a level that is said to be so much or less."""
+    axes.axhspan(least / 2, 1.6 * least, color="0.93", lw=0, zorder=0)
+    axes.annotate("or less", (0.99, least), xycoords=("axes fraction", "data"), ha="right", va="center", fontsize=8)
 
 
 def mark(axes: "Axes", x: float, outcome: Outcome, colour: str, marker: str) -> None:

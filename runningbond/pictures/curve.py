@@ -10,12 +10,12 @@ from runningbond.scene import Array, Scene
 
 from .captions import is_force, load_symbol, multiplier_text, wall_title
 from .charts import bare
-from .style import DARK, SMALL_TYPE, TYPE
+from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-CURVE, FALL, BAND = "#0b559f", "#c2410c", "#f2c879"
+(CURVE, _, _, FALL, _), BAND = CHART_COLOURS, "#f2c879"
 """Colours of states at rest, of a fall, and of the bracket."""
 
 SEEN = 0.04
@@ -53,7 +53,7 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
         axes.plot(moved[~rests], load[~rests], "x", color=FALL, ms=6, mew=1.5, label="falls")
         axes.legend(frameon=False, fontsize=SMALL_TYPE + 1, loc="lower right")
     half = _half_way(moved, load)
-    if 0 < half < SEEN * np.ptp(moved):
+    if 0 < half < SEEN * np.ptp(moved) and moved.min() > -half:  # not of a wall that is pushed to and fro
         linear = 10.0 ** np.ceil(np.log10(half))
         axes.set_xscale("symlog", linthresh=linear)
         axes.xaxis.set_major_formatter("{x:g}")
@@ -61,7 +61,7 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
         for word, place, align in (("linear", -4, "right"), ("logarithmic", 4, "left")):
             spot: dict[str, Any] = {"textcoords": "offset points", "ha": align, "fontsize": SMALL_TYPE}
             axes.annotate(word, (linear, 0.0), (place, 3), **spot)
-    axes.set_ylim(min(0.0, load.min()), 1.12 * max(load.max(), level) or 1.0)
+    axes.set_ylim(min(0.0, 1.12 * load.min()), 1.12 * max(load.max(), level) or 1.0)
     point = "displacement of the control point along the live load"
     axes.set_xlabel(f"{'largest displacement of the top' if scene.history else point} [mm]", fontsize=TYPE + 1)
     axes.set_ylabel(f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}", fontsize=TYPE + 1)

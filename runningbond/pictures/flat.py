@@ -171,7 +171,10 @@ def _draw_joints(axes: "Axes", shape: DeformedShape, state: JointState, width: f
     # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.
     middle = (faces[:, :2] + faces[:, :1:-1]) / 2
     lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
-    _draw_lines(axes, lines, colour, (0.75 if state == JointState.OPEN else 1.0) * width, DASHES[state])
+    wide = (0.75 if state == JointState.OPEN else 1.0) * width
+    if state != JointState.OPEN:  # what is dark below would fill the gaps of dashes
+        _draw_lines(axes, lines, "white", wide, "solid")
+    _draw_lines(axes, lines, colour, wide, DASHES[state])
 
 
 def _draw_lines(axes: "Axes", lines: Array, colour: str, width: float, dashes: Any) -> None:

@@ -136,7 +136,9 @@ def _loads(scene: Scene) -> list[Any]:
         _wrapped(f"given displacement: {', '.join(minus(1e3 * u) for u in path)} mm"): (MOTION, bool(path)),
     }
     return [
-        Line2D([0, 1], [0, 0], color=colour, label=name, **look) for name, (colour, there) in kinds.items() if there
+        Line2D([0, 1], [0, 0], color=colour, mfc="white" if colour == DEAD else colour, label=name, **look)
+        for name, (colour, there) in kinds.items()
+        if there
     ]
 
 

@@ -180,7 +180,7 @@ class LoadDrawing:
         for tail, tip in zip(tails, tips, strict=True):
             self.sketch.arrow(name, [tail, tip], colour)
         if not is_shear:
-            self.sketch.line(name, [tails[0], tails[-1]], color=colour, lw=1.2, zorder=6)
+            self.sketch.line(name, tails, color=colour, lw=1.2, zorder=6)
         ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
         outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ away))
         spots = [Spot(outer, _side(away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]

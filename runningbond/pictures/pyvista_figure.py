@@ -4,6 +4,8 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from runningbond.results.outcome import Outcome, number
 from runningbond.scene import Scene
 
@@ -14,15 +16,16 @@ from .captions import (
     Caption,
     colour_key,
     figure_with_room,
+    is_force,
     load_symbol,
     mechanism_caption,
     show_extent,
     wall_title,
 )
-from .deformed_shape import DeformedShape, Extent, undeformed_shape
+from .deformed_shape import DeformedShape, Extent, common_extent, undeformed_shape
 from .mechanism import mechanism_shape
 from .pyvista_painter import Painter, square_around
-from .style import Colouring
+from .style import STATE_COLOURS, Colouring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,27 +39,26 @@ def mechanism_figure(
     mechanism = mechanism_shape(scene, outcome)
     shape = replace(mechanism or undeformed_shape(scene), colouring=colouring)
     caption = mechanism_caption(scene, outcome, colour_key(shape.states, colouring), drawn=mechanism is not None)
-    return _figure(shape, painter, caption, shape)
+    return _figure(shape, painter, caption, (shape,))
 
 
 def frame_figure(
-    shape: DeformedShape,
-    outcome: Outcome,
-    painter: Painter,
-    last: DeformedShape | None = None,
+    shape: DeformedShape, outcome: Outcome, painter: Painter, film: tuple[DeformedShape, ...] = ()
 ) -> "Figure":
-    """Figure of one moment of a run; with the extent and the key of the last, so that several make a film."""
-    last = last or shape
-    load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}"
+    """Figure of one moment of a run; with room for all moments of a film, and the key to them, if it is one of them."""
+    film = film or (shape,)
+    unit = " N" if is_force(shape.scene) else ""
+    load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}{unit}"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
-    key = colour_key(last.states, shape.colouring)
-    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), last)
+    states = [state for state in STATE_COLOURS if any(state in one.drawn_state for one in film)]
+    key = colour_key(states, shape.colouring)
+    return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), film)
 
 
-def _figure(shape: DeformedShape, painter: Painter, caption: Caption, last: DeformedShape) -> "Figure":
-    room = _room(last)
+def _figure(shape: DeformedShape, painter: Painter, caption: Caption, film: tuple[DeformedShape, ...]) -> "Figure":
+    extent, room = _room(film)
     figure, axes = figure_with_room(room.extent, caption)
-    draw_painted(axes, shape, painter, last.extent)
+    draw_painted(axes, shape, painter, extent)
     show_extent(axes, room.extent)
     annotate(axes, shape, room)
     caption.write(axes)
@@ -64,12 +66,17 @@ def _figure(shape: DeformedShape, painter: Painter, caption: Caption, last: Defo
 
 
 @lru_cache(maxsize=1)
-def _room(last: DeformedShape) -> Room:
-    """Room for all frames of a film, from the wall at rest to the last one."""
-    return room_for([last, undeformed_shape(last.scene)], last.extent, (WIDTH, TALLEST))
+def _room(film: tuple[DeformedShape, ...]) -> tuple[Extent, Room]:
+    """What shows all frames of a film, and room for the wall at rest and in those that reach farthest."""
+    extents, outwards = np.array([one.extent for one in film]), (-1, 1, -1, 1)
+    farthest = dict.fromkeys(film[k] for k in (extents * outwards).argmax(axis=0))
+    extent = common_extent(film)
+    return extent, room_for([*farthest, undeformed_shape(film[0].scene)], extent, (WIDTH, TALLEST))
 
 
 def draw_painted(axes: "Axes", shape: DeformedShape, painter: Painter, extent: Extent) -> None:
-    """Draw a painted wall into axes of its own, without its supports and loads."""
-    axes.imshow(painter.paint(shape, extent), extent=square_around(extent), interpolation="antialiased", zorder=1)
+    """Draw a painted wall into axes of its own, without its supports and loads, which lie below it."""
+    image = painter.paint(shape, extent)
+    seen = np.dstack([image, np.where((image == 255).all(axis=2), 0, 255).astype(np.uint8)])
+    axes.imshow(seen, extent=square_around(extent), interpolation="antialiased", zorder=2.5)
     show_extent(axes, extent)

@@ -7,10 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
 
 from .captions import to_png, to_svg
-from .deformed_shape import DeformedShape, undeformed_shape
+from .deformed_shape import DeformedShape, undeformed_shape, visible_scale
 from .flat import figure_of
 from .mechanism import has_mechanism, mechanism_shape
 from .pyvista_figure import frame_figure, mechanism_figure
@@ -66,7 +68,7 @@ def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[P
 
 
 def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:
-    """Draw the moments of a folder, all from one point of view and to one scale: that of the last."""
+    """Draw the moments of a folder, those of a film from one point of view and to one scale: that of the farthest."""
     shapes = _shapes(folder, colouring)
     if not shapes:
         return []
@@ -75,8 +77,9 @@ def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list
         write_atomically(folder / "last-moment.png", to_png(frame_figure(last, outcome, painter)))
         written.append(folder / "last-moment.png")
     if len(shapes) > 1:
-        shapes = [replace(shape, scale=last.scale) for shape in shapes]
-        figures = (frame_figure(shape, outcome, painter, last) for shape in shapes)
+        scale = visible_scale(last.scene, np.concatenate([shape.displacement for shape in shapes]))
+        shapes = [replace(shape, scale=scale) for shape in shapes]
+        figures = (frame_figure(shape, outcome, painter, tuple(shapes)) for shape in shapes)
         write_atomically(folder / "film.gif", _film(to_png(figure, FILM_DPI) for figure in figures))
         written.append(folder / "film.gif")
     return written
@@ -109,11 +112,12 @@ def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
 
 
 def _film(contents: Iterable[bytes]) -> bytes:
-    """PNG files of one size as an animated GIF, with the colours of the last one."""
+    """PNG files of one size as an animated GIF, whose colours are common to all."""
     from PIL import Image
 
     images = [Image.open(io.BytesIO(content)).convert("RGB") for content in contents]
-    palette = images[-1].quantize(128, dither=Image.Dither.NONE)
+    every_third = np.concatenate([np.asarray(image)[::3, ::3] for image in images])
+    palette = Image.fromarray(every_third).quantize(128, dither=Image.Dither.NONE)
     frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     times = [FRAME_TIME] * (len(frames) - 1) + [LAST_FRAME_TIME]
     buffer = io.BytesIO()

@@ -6,13 +6,13 @@ import numpy as np
 
 from runningbond.response import ENERGIES, Response
 
-from .style import DARK, SMALL_TYPE, TYPE
+from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COLOURS = dict(zip(ENERGIES, ("#0b559f", "0.6", "#2a9d8f", "#e9a23b", "#c2410c", "#7c3aed"), strict=True))
-SPENT = ("kinetic", "stored", "friction", "damped")
+SPENT = dict(zip(("kinetic", "stored", "friction", "damped"), (*CHART_COLOURS[:3], "0.9"), strict=True))
+"""What energy becomes, and its colour."""
 
 
 def response_figure(response: Response) -> "Figure":
@@ -24,7 +24,7 @@ def response_figure(response: Response) -> "Figure":
     time = response.time
     lines = (
         (ground, response.ground[:, 0], "ground [m/s²]"),
-        (drift, response.drift, "drift"),
+        (drift, response.drift, "drift [–]"),
         (shear, response.reaction[:, 0] / 1e3, "base shear [kN]"),
     )
     for axes, values, name in lines:
@@ -32,7 +32,7 @@ def response_figure(response: Response) -> "Figure":
         axes.axhline(0.0, color="0.7", lw=0.5, zorder=0)
         axes.set_ylabel(name, fontsize=SMALL_TYPE + 1)
     parts = [response.energy[:, ENERGIES.index(name)] for name in SPENT]
-    energy.stackplot(time, np.maximum(parts, 0.0), colors=[COLOURS[name] for name in SPENT], labels=SPENT, lw=0)
+    energy.stackplot(time, np.maximum(parts, 0.0), colors=SPENT.values(), labels=SPENT, lw=0.3, ec="white")
     energy.plot(time, response.energy[:, :2].sum(axis=1), color=DARK, lw=0.9, label="input + weight")
     energy.set_ylabel("energy [J]", fontsize=SMALL_TYPE + 1)
     energy.set_xlabel("time [s]", fontsize=SMALL_TYPE + 1)
@@ -43,7 +43,7 @@ def response_figure(response: Response) -> "Figure":
         axes.spines[["top", "right"]].set_visible(False)
     fallen = np.flatnonzero(response.fallen)
     if len(fallen):
-        drift.axvline(time[fallen[0]], color=COLOURS["friction"], lw=0.9, ls="--")
+        drift.axvline(time[fallen[0]], color=CHART_COLOURS[3], lw=0.9, ls="--")
     title = f"{response.scene}: λ = {response.scale:g}, {response.message.split(';')[0]}"
     figure.suptitle(title, fontsize=TYPE)
     return figure

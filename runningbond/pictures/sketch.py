@@ -12,7 +12,7 @@ from runningbond.scene import Array
 
 from .deformed_shape import Extent
 from .labels import Label, PlacedLabel, Spot, place_labels
-from .style import DARK, TYPE, UNIT
+from .style import DARK, DEAD, TYPE, UNIT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,9 +67,10 @@ class Sketch:
         self.area(name, np.asarray(middle) + radius * np.column_stack([np.cos(turn), np.sin(turn)]), **style)
 
     def arrow(self, name: str, points: ArrayLike, colour: str, *, both: bool = False) -> None:
-        """An arrow along a line ``(n, 2)`` [m], with a head at its end or at both."""
+        """An arrow along a line ``(n, 2)`` [m], with a head at its end or at both, hollow for dead loads."""
         head = "-|>" if not both else "<|-|>"
-        style = {"arrowstyle": f"{head},head_width=0.16,head_length=0.32", "color": colour, "lw": 1.0, "zorder": 6}
+        fill = {"ec": colour, "fc": "white" if colour == DEAD else colour}
+        style = {"arrowstyle": f"{head},head_width=0.16,head_length=0.32", "lw": 1.0, "zorder": 6} | fill
         self.marks.append(Mark("arrow", name, np.array(points), style))
 
     def turn(self, name: str, middle: ArrayLike, radius: float, colour: str, *, clockwise: bool) -> None:

@@ -1,4 +1,7 @@
-"""Colours, widths and sizes of type, the same in vector drawings and in those painted by PyVista."""
+"""Colours, widths and sizes of type, the same in vector drawings and in those painted by PyVista.
+
+Colours of one kind differ in lightness, for print in grey, and for colour-blind eyes; tests/pictures/test_colours.py.
+"""
 
 from typing import Literal, TypeAlias
 
@@ -21,34 +24,35 @@ EDGE: Colour = (0.52, 0.52, 0.52)
 OUTLINE: Colour = (0.45, 0.45, 0.45)
 
 STATE_COLOURS: dict[JointState, str] = {
-    JointState.SLIDE: "#009e73",
+    JointState.SLIDE: "#005a43",
     JointState.OPEN: "#d55e00",
     JointState.DEBONDED: "#000000",
 }
-"""From the palette of Okabe and Ito (2008), which colour-blind readers tell apart."""
-
 STATE_NAMES = {JointState.SLIDE: "slides", JointState.OPEN: "opens", JointState.DEBONDED: "debonded"}
 
 DARK = "0.25"
 """Colour of annotations, live loads and notes."""
 
-DEAD, MOTION = "#0064a8", "#7b3294"
-"""Colours of dead loads, and of what is moved by a given displacement."""
+DEAD, MOTION = "#0064a8", "#8531fa"
+"""Colours of dead loads, whose arrows have hollow heads, and of what is moved by a given displacement."""
 
 BEAM: Colour = (0.55, 0.56, 0.58)
 BLOCK_COLOURS: tuple[Colour, ...] = (
     AT_REST,
-    (0.90, 0.79, 0.62),
-    (0.76, 0.85, 0.90),
-    (0.93, 0.75, 0.72),
-    (0.79, 0.87, 0.72),
-    (0.84, 0.77, 0.89),
-    (0.97, 0.91, 0.62),
+    (0.812, 0.616, 0.596),
+    (0.804, 0.831, 0.525),
+    (0.447, 0.627, 0.714),
+    (0.929, 0.839, 0.690),
+    (0.843, 0.725, 0.886),
+    (0.859, 0.918, 0.816),
 )
 """Colours of the beam, and of blocks by material."""
 
-JOINT_COLOURS = ("0.35", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
-"""Joints by material; from the palette of Okabe and Ito (2008)."""
+JOINT_COLOURS = ("0.35", "#bb932e", "#6f2008", "#67c7e5", "#358648", "#3f0340")
+"""Joints by material."""
+
+CHART_COLOURS = ("#2f3568", "#64baab", "#bf8111", "#943223", "#9b4db5")
+"""Series of charts."""
 
 UNIT = 8.0
 """Length in which arrows and supports are measured [pt]."""

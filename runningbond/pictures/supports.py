@@ -103,7 +103,7 @@ def draw_beam(sketch: Sketch, shape: DeformedShape) -> None:
         return
     number = np.array([beam.block])
     outline = np.array([at + shape.drawn_displacement(number, at) for at in scene.blocks.polygon(beam.block)])
-    sketch.area("beam", outline, fc="none", ec=DARK, lw=1.4)
+    sketch.area("beam", outline, fc="none", ec=DARK, lw=1.4, zorder=3.5)
     if beam.condition == "free":
         return
     low, high = outline.min(axis=0), outline.max(axis=0)

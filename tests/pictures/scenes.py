@@ -204,6 +204,18 @@ def one_block() -> dict[str, Any]:
     }
 
 
+def many_materials() -> dict[str, Any]:
+    """As many materials as there are colours, of blocks and of joints: a long key."""
+    places = [[[0, 0.25 * k + 0.2], [4, 0.25 * k + 0.4]] for k in range(6)]
+    return wall(4.0, 1.75) | {
+        "title": "Many materials",
+        "materials": {f"stone-{k}": {"density": 1000.0 + 200 * k} for k in range(6)},
+        "joints": {f"mortar-{k}": {"friction": 0.5 + 0.05 * k} for k in range(5)},
+        "assign": [{"block": f"stone-{k}", "box": box} for k, box in enumerate(places)]
+        + [{"joint": f"mortar-{k}", "box": box} for k, box in enumerate(places[:5])],
+    }
+
+
 def large() -> dict[str, Any]:
     return wall(10.0, 5.0, (0.25, 0.1)) | {
         "title": "2025 blocks",
@@ -232,7 +244,7 @@ SCENES = {
     each.__name__: each
     for each in (
         facade, settling_portal, turning_support, shear_wall, kept_beam, free_beam,
-        tied, tilted, many_loads, cracked, one_block,
+        tied, tilted, many_loads, cracked, one_block, many_materials,
     )
 }  # fmt: skip
 """Scenes by name."""

@@ -25,7 +25,7 @@ from runningbond.pictures.deformed_shape import DeformedShape, Extent, outline, 
 from runningbond.pictures.joint_state import JointState, joint_states
 from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape
 from runningbond.pictures.offscreen import PROBE, why_not_drawn
-from runningbond.pictures.pyvista_figure import mechanism_figure
+from runningbond.pictures.pyvista_figure import frame_figure, mechanism_figure
 from runningbond.pictures.pyvista_painter import Painter, square_around
 from runningbond.pictures.render import render_folder
 from runningbond.pictures.style import AT_REST, FASTEST, HELD, STATE_COLOURS
@@ -256,6 +256,42 @@ def test_every_support_and_load_has_its_sign(painter: Painter, kind: str) -> Non
     else:
         beside = image[int(image.shape[0] - y1) : int(image.shape[0] - y0), : int(x0) - 4]
         assert (beside < 150).any()
+
+
+@drawing
+def test_a_joint_on_the_ground_is_seen_and_a_load_has_its_unit(painter: Painter) -> None:
+    """A block under one newton slides on its base: the line of that joint is not below the ground's."""
+    scene = courses([[1]], width=0.4, height=0.2)
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[scene.wall, 0] = 1.0
+    shape = DeformedShape.of_rigid_blocks(scene, motion, np.full(1, JointState.SLIDE), 0.6)
+    axes = frame_figure(shape, Outcome("wall", "dem-static", "collapse", 0.6), painter).axes[0]
+    (image,) = axes.images
+    assert all(one.get_zorder() < image.get_zorder() for one in axes.get_children() if one.get_label() == "support")
+    pixels = np.asarray(image.get_array())
+    assert ((pixels[..., 3] == 0) == (pixels[..., :3] == 255).all(axis=2)).all()
+    assert of_colour(pixels[..., :3], STATE_COLOURS[JointState.SLIDE]).any()
+    pushed = panel(load__live={"kind": "point", "at": [0.72, 0.72], "force": [0.0, -1.0]}, support__kind="corners")
+    figure = frame_figure(undeformed_shape(pushed), Outcome("wall", "dem-static", "collapse", 5e4), painter)
+    assert "dem-static: P = 0.0000 N" in [text.get_text() for text in figure.axes[0].texts]
+
+
+@drawing
+def test_a_film_shows_all_of_every_moment(painter: Painter) -> None:
+    """A block taken to the left and then, less far, to the right: both are in the picture, and in its key."""
+    scene = courses([[1]], width=0.4, height=0.2)
+    shapes = []
+    for way, state in ((-1.0, JointState.SLIDE), (0.3, JointState.DEBONDED)):
+        motion = np.zeros((len(scene.blocks), 3))
+        motion[scene.wall, 0] = way
+        shapes.append(replace(DeformedShape.of_rigid_blocks(scene, motion, np.full(1, state), 0.6), scale=0.1))
+    axes = frame_figure(shapes[1], Outcome("wall", "dem-static", "collapse", 0.6), painter, tuple(shapes)).axes[0]
+    (left, right), places = axes.get_xlim(), np.concatenate([shape.placed for shape in shapes])
+    assert left < places[:, 0].min()
+    assert right > places[:, 0].max()
+    key = axes.get_legend()
+    assert key is not None
+    assert {"slides", "debonded"} <= {text.get_text() for text in key.get_texts()}
 
 
 # Folders and the command line

@@ -17,8 +17,9 @@ ratio = np.geomspace(0.25, 8, 40)
 moduli = [elastic_moduli(0.24, 0.24 / r, **springs) for r in ratio]
 
 figure, axes = plt.subplots()
-for name, label in (("a1111", "along the courses"), ("a2222", "across them"), ("a1212", "in shear")):
-    axes.loglog(ratio, [getattr(each, name) / 1e9 for each in moduli], label=label)
+kinds = (("a1111", "along the courses", "-"), ("a2222", "across them", "--"), ("a1212", "in shear", ":"))
+for name, label, line in kinds:
+    axes.loglog(ratio, [getattr(each, name) / 1e9 for each in moduli], line, label=label)
 axes.set(xlabel="b / a", ylabel="modulus [GPa]", title="Running bond of rigid blocks 0.24 m wide")
 axes.minorticks_off()
 axes.set_xticks([0.25, 0.5, 1, 2, 4, 8], ["1/4", "1/2", "1", "2", "4", "8"])

@@ -166,7 +166,8 @@ def _draw_map(axes: Axes, rows: Sequence[Row], norm: LogNorm) -> None:
             at = VISCOSITIES.index(row["ξ"]), LOCALS.index(row["α"])
             mark = "?" if row["verdict"] == "undecided" else "×"
             axes.annotate(mark, at, color="white", ha="center", va="center", fontsize=9, fontweight="bold")
-    axes.plot(VISCOSITIES.index(VISCOUS), LOCALS.index(LOCAL), "s", ms=13, mfc="none", mec=LOOKS[3][0], mew=2)
+    for colour, width in (("white", 4), (LOOKS[3][0], 2)):
+        axes.plot(VISCOSITIES.index(VISCOUS), LOCALS.index(LOCAL), "s", ms=13, mfc="none", mec=colour, mew=width)
     axes.set_xticks(range(len(VISCOSITIES)), [f"{x:g}" for x in VISCOSITIES])
     axes.set_yticks(range(len(LOCALS)), [f"{a:g}" for a in LOCALS])
     axes.tick_params(labelsize=8)

@@ -95,6 +95,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
                 bracket(loads, row[K_N] * 2.0 ** (place - 1), row, MODEL_LOOKS[model][0], lw=3)
         loads.plot([], [], color=MODEL_LOOKS[model][0], lw=3, label=model)
     exact = known_wall(W1).multiplier
+    loads.plot([], [], "s", color="0.3", mfc="white", label="hollow: no collapse load found")
     loads.axhline(exact, color="0.5", lw=0.9, ls="--", label="certified")
     loads.set(ylabel="λ of wall W1, inset 20 mm", ylim=(0.97 * exact, 1.03 * exact))
     colour, marker = MODEL_LOOKS["dem-dynamic"]

@@ -13,7 +13,7 @@ from runningbond.compare.published import published_scene
 from runningbond.limit import equilibrium
 from runningbond.limit.associated import LimitState
 from runningbond.limit.force_program import coulomb, solve_forces
-from runningbond.pictures.charts import LOOKS, level
+from runningbond.pictures.charts import LOOKS, floor, level
 from runningbond.scene import JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.walls import boxes
@@ -103,6 +103,8 @@ def _draw(figure: Figure, rows: Rows) -> None:
         left.semilogy(POWERS, np.maximum(row["errors"], 1e-16), ls=styles[row["quantity"]], label=label, **style)
     level(left, WORTH, "rounding of a linear program", 0.02, ha="left")
     left.set(xlabel="power of ten by which a quantity is multiplied", ylabel="relative error of λ", ylim=(5e-17, 1e-5))
+    floor(left, 1e-16)
+    floor(right, 1e-16)
     left.set_title("a glued pier at every scale", fontsize=10)
     blocks = [row["movable blocks"] for row in rows[SOLVERS]]
     for (colour, marker), name in zip(LOOKS[::3], ("interior point", "simplex"), strict=False):

@@ -27,11 +27,11 @@ SIZES = (1e-6, 1.0, 1e3)  # lengths [m] of one and the same wall
 PART = "Answers"
 Exact: TypeAlias = float | tuple[float, float] | str  # λ, two loads between which it lies, a status, or ``refused``
 WORTH = {  # what an answer may be worth: its colour, and words for it
-    "right": ("#a6cee3", "right"),
+    "right": ("#8fbcd8", "right"),
     "estimate": ("#dcdcdc", "estimate, on either side"),
     "refused": ("#f7f7f7", "refused: no closed form"),
-    "says so": ("#fdd49e", "no answer, and it says so"),
-    "wrong": ("#d7301f", "wrong"),
+    "says so": ("#cf8733", "no answer, and it says so"),
+    "wrong": ("#a11c12", "wrong"),
 }
 
 

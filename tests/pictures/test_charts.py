@@ -1,0 +1,39 @@
+"""Charts: curves of walls pushed to and fro, and brackets without a collapse."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import same_color
+from matplotlib.figure import Figure
+
+from runningbond.pictures.charts import bracket
+from runningbond.pictures.curve import curve_figure
+from runningbond.results import Outcome
+from runningbond.scene import Array
+from tests.walls import panel
+
+
+def curve(moved: Array, load: Array) -> Figure:
+    """The chart of a pushover curve [m]."""
+    return curve_figure(panel(), Outcome("wall", "dem-static", "collapse", 1.0, curve=np.column_stack([moved, load])))
+
+
+def test_displacements_are_logarithmic_where_the_elastic_range_is_not_seen_else() -> None:
+    load = np.array([0.0, 0.9, 1.0, 1.0])
+    assert curve(np.array([0.0, 1e-5, 1e-3, 1e-2]), load).axes[0].get_xscale() == "symlog"
+    assert curve(np.array([0.0, 1e-3, 2e-3, 1e-2]), load).axes[0].get_xscale() == "linear"
+
+
+def test_a_wall_pushed_to_and_fro_has_even_axes_with_all_of_its_curve() -> None:
+    figure = curve(1e-3 * np.array([0.0, 0.01, 1.0, -1.0, 1.0]), np.array([0.0, 0.9, 1.0, -1.0, 1.0]))
+    axes = figure.axes[0]
+    assert axes.get_xscale() == "linear"
+    assert axes.get_ylim()[0] < -1.05
+
+
+@pytest.mark.parametrize(("status", "inside"), [("collapse", "red"), ("undecided", "white")])
+def test_a_bracket_without_a_collapse_is_hollow(status: str, inside: str) -> None:
+    axes = Figure().add_subplot()
+    bracket(axes, 1.0, {"status": status, "λ lower": 0.2, "λ upper": 0.4}, "red")
+    last = axes.lines[-1]
+    assert same_color(last.get_color(), inside)
+    assert axes.lines[0].get_linewidth() == (4 if status == "collapse" else 2 * last.get_linewidth())
