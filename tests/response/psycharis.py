@@ -1,6 +1,6 @@
 """Two rigid blocks on one another that rock and do not slide, by Lagrange's equations on their own.
 
-The patterns are those of Psycharis (1990): the upper block alone, both as one, both in one sense, both in opposite ones.
+The patterns are those of Psycharis (1990): the upper block alone, both as one, both in one sense, or in opposite ones.
 In which a pair starts is found here from contacts that may open and press, but not pull.
 
 θ1 and θ2 are the blocks' rotations, counter-clockwise; each stands on a corner of what is beneath, or on both. With
