@@ -1,6 +1,7 @@
 """Housner's block, integrated on its own: rotation θ about the corner it stands on, and the impact at θ = 0."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -78,3 +79,15 @@ class HousnerBlock:
             if t > end and abs(rate) < 0.05 * self.p * self.alpha:
                 return largest
         return largest
+
+
+def edge(falls: Callable[[float], bool], about: float, width: float = 0.04, tolerance: float = 2e-3) -> float | None:
+    """Where a verdict changes, within a width about a scale."""
+    low, high = about * (1 - width), about * (1 + width)
+    at_low = falls(low)
+    if falls(high) == at_low:
+        return None
+    while high - low > tolerance * high:
+        middle = (low + high) / 2
+        low, high = (middle, high) if falls(middle) == at_low else (low, middle)
+    return (low + high) / 2
