@@ -5,7 +5,7 @@
 The block of 0.5 × 2 m beside Housner's equation, over stiffness of its joint, viscous damping and time step, one at a
 time from those of the suite. And a wall of 12 blocks under one sine and under seconds of noise, at scales around its
 critical one, each `DRAWS` times with joints that are a little different (`SCATTER`): how many fall, and which drifts
-those have gone through that do not.
+those have gone through that do not; then where each draw begins to fall.
 """
 
 import math
@@ -42,7 +42,8 @@ SETTINGS = (
 
 DRAWS, SCATTER = 6, {"stiffness": 0.01, "friction": 0.001}
 PEAKS = {"one sine": [1.08 * 1.04**k for k in range(7)], "4 s of noise": [0.64 * 1.1**k for k in range(10)]}
-"""Peak acceleration of the ground [g]."""
+FIRST = {"one sine": 1.21, "4 s of noise": 0.81}
+"""Peak acceleration of the ground [g]: of the runs, and about where the wall begins to fall."""
 
 
 def on_the_block() -> Iterator[str]:
@@ -121,6 +122,16 @@ def on_the_wall() -> Iterator[str]:
             across = f"{min(drifts):.3f} … {max(drifts):.3f}" if drifts else "–"
             missed = max(run.unaccounted for run in runs)
             yield f"| {name} | {peak:.2f} | {falls} of {DRAWS} | {across} | {missed:.1%} |"
+    yield "\n| motion | smallest peak at which a draw falls [g], by draw |\n|---|---|"
+    for history, (name, about) in zip((scene.history, noise()), FIRST.items(), strict=True):
+        assert history is not None
+        yield f"| {name} | {', '.join(first(rest, history, about) for rest in rests)} |"
+
+
+def first(rest: Resting, history: History, about: float) -> str:
+    """Where a wall begins to fall, within 6 % about a peak acceleration."""
+    found = edge(lambda peak: fallen(under(rest, history), peak, []), about, 0.06, 2e-3)
+    return f"{found:.3f}" if found else f"not within 6 % of {about:g}"
 
 
 if __name__ == "__main__":
