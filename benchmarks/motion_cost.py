@@ -1,6 +1,6 @@
 """Cost of motion against size: processor seconds of `dem-dynamic` a second of ground motion, on running-bond panels.
 
-    python benchmarks/motion_cost.py [docs/ground-motion-cost.png]
+    PYTHONPATH=. python benchmarks/motion_cost.py [docs/ground-motion-cost.png]
 
 The ground moves by a sine of 2.5 Hz, under which the panel holds together (0.1 g) or slides and rocks (1 g); what is
 measured is `SPAN` seconds from an eighth of the period on, medians of `RUNS` runs by turns, after the wall is at rest.

@@ -1,6 +1,6 @@
 """Overturning spectrum of a block under pulses of the ground beside Housner's equation: a table and a chart.
 
-``python benchmarks/overturning_spectrum.py [chart.png]``; some minutes.
+``PYTHONPATH=. python benchmarks/overturning_spectrum.py [chart.png]``; some minutes.
 """
 
 import math

@@ -1,6 +1,6 @@
 """A block of 0.5 × 2 m on a ground that moves: `dem-dynamic` and engines of games and robots beside Housner's equation.
 
-    python benchmarks/peers/rocking_block.py
+    PYTHONPATH=. python benchmarks/peers/rocking_block.py
 
 Needs ``pip install -e '.[peers]'``; an engine that is missing has a line that says so. Pulses are 5 % to either side of
 six overturning edges of Housner's block (Zhang & Makris 2001). All follow them in the frame of the ground, each step

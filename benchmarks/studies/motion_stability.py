@@ -1,6 +1,6 @@
 """Where an answer of `dem-dynamic` to a motion of its ground may be trusted: two Markdown tables.
 
-    python benchmarks/studies/motion_stability.py [block | wall]
+    PYTHONPATH=. python benchmarks/studies/motion_stability.py [block | wall]
 
 The block of 0.5 × 2 m beside Housner's equation, over stiffness of its joint, viscous damping and time step, one at a
 time from those of the suite. And a wall of 12 blocks under one sine and under seconds of noise, at scales around its

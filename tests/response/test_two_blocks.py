@@ -66,7 +66,7 @@ def test_there_is_one_pattern_to_start_in() -> None:
 
 @pytest.mark.parametrize(("pair", "ground", "pattern"), STARTS)
 def test_two_blocks_start_in_their_pattern(pair: TwoBlocks, ground: float, pattern: Pattern) -> None:
-    """Of a ground accelerated at once: the pattern, θ̈ of both blocks at the start to 1 % and over 0.1 s to 0.3 %.
+    """Of a ground accelerated at once: the pattern, θ̈ of both blocks at the start, and over 0.1 s, to 0.3 %.
 
     By second differences, as joints that give have been pressed a little less where they open, and leave a rate.
     """
@@ -85,7 +85,7 @@ def test_two_blocks_start_in_their_pattern(pair: TwoBlocks, ground: float, patte
     assert second_difference(found, time, 2) == pytest.approx(second_difference(exact, time, 2), abs=3e-3 * scale)
     start = (4 * second_difference(found, time, 1) - second_difference(found, time, 2)) / 3
     alpha = pair.accelerations(pattern, ground * GRAVITY, none, none)
-    assert start == pytest.approx(alpha, abs=1e-2 * max(float(np.abs(alpha).max()), 0.1))
+    assert start == pytest.approx(alpha, abs=3e-3 * max(float(np.abs(alpha).max()), 0.1))
     apart = np.array([start[0], start[1] - start[0]]) / max(float(np.abs(alpha).max()), 0.1)
     assert np.array_equal(np.where(np.abs(apart) < 0.01, 0, -np.sign(apart)), pattern)
 
