@@ -31,7 +31,7 @@ test-long: $(ready) ## the studies that take minutes
 	$(bin)/pytest -q -m long $(ARGS)
 
 bench: $(ready) ## run the benchmarks one after another
-	@set -e; for script in $(sort $(wildcard benchmarks/*.py)); do echo "$$script"; $(bin)/python "$$script"; done
+	@set -e; for script in $(sort $(wildcard benchmarks/*.py)); do echo "$$script"; PYTHONPATH=. $(bin)/python "$$script"; done
 
 docs: .venv/.docs ## build the documentation, its gallery run, in site/
 	$(bin)/sphinx-build -q -W --keep-going -d build/docs docs site

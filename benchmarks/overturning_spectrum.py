@@ -1,18 +1,17 @@
 """Overturning spectrum of a block under pulses of the ground beside Housner's equation: a table and a chart.
 
-``python benchmarks/overturning_spectrum.py [chart.png]``; some minutes.
+``PYTHONPATH=. python benchmarks/overturning_spectrum.py [chart.png]``; some minutes.
 """
 
 import math
 import sys
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from runningbond.response import follow
-from tests.response.housner import GRAVITY, HousnerBlock
+from tests.response.housner import GRAVITY, HousnerBlock, edge
 from tests.response.walls import block, resting, shaken, still
 
 BLOCK = HousnerBlock()
@@ -22,18 +21,6 @@ EDGES = {  # ω / p, and about where what a block does changes
     1.0: ((2, 1.22), (3, 1.40), (4, 1.78), (4, 5.02), (4, 5.32), (6, 4.57), (6, 8.55), (6, 9.70)),
 }
 NAMES = {0.5: "half-sine", 1.0: "sine"}
-
-
-def edge(falls: Callable[[float], bool], about: float, width: float = 0.04, tolerance: float = 2e-3) -> float | None:
-    """Where a verdict changes, within a width about a scale."""
-    low, high = about * (1 - width), about * (1 + width)
-    at_low = falls(low)
-    if falls(high) == at_low:
-        return None
-    while high - low > tolerance * high:
-        middle = (low + high) / 2
-        low, high = (middle, high) if falls(middle) == at_low else (low, middle)
-    return (low + high) / 2
 
 
 def spectrum() -> list[tuple[float, float, float, float]]:

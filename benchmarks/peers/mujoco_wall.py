@@ -23,7 +23,7 @@ FRICTION_STIFFNESS = 10.0
 """``impratio``."""
 
 TIME_CONSTANT = 0.01
-"""Time constant of contacts [s], critically damped; half its default, and well above two steps."""
+"""Time constant of contacts [s] with the default step, critically damped; half its default, well above two steps."""
 
 IMPEDANCE = (0.99, 0.999, 1e-5, 0.5, 2.0)
 """``solimp``."""
@@ -61,12 +61,12 @@ class MujocoWall:
         self._model, self._data, self._gravity = model, data, gravity
 
     @classmethod
-    def of(cls, scene: Scene) -> "MujocoWall":
+    def of(cls, scene: Scene, step: float = STEP) -> "MujocoWall":
         """The wall of a scene, as it was built."""
         import mujoco
 
         spec = mujoco.MjSpec()
-        spec.option.timestep = STEP
+        spec.option.timestep = step
         spec.option.cone = mujoco.mjtCone.mjCONE_ELLIPTIC
         spec.option.impratio = FRICTION_STIFFNESS
         spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
@@ -84,7 +84,7 @@ class MujocoWall:
                 density=scene.block.density,
                 friction=[scene.joint.friction, 0, 0],
                 margin=MARGIN,
-                solref=[TIME_CONSTANT, 1.0],
+                solref=[TIME_CONSTANT * step / STEP, 1.0],
                 solimp=IMPEDANCE,
             )
         model = spec.compile()
@@ -97,11 +97,15 @@ class MujocoWall:
         import mujoco
 
         self._model.opt.gravity[:] = multiplier * self._gravity, 0.0, -self._gravity
-        mujoco.mj_step(self._model, self._data, nstep=round(seconds / STEP))
+        mujoco.mj_step(self._model, self._data, nstep=round(seconds / self._model.opt.timestep))
 
     def position(self) -> Array:
         """Centroid of each block, ``(n, 2)`` [m]."""
         return np.array(self._data.xpos[1:, [0, 2]])
+
+    def rotation(self) -> Array:
+        """Rotation of each block that moves, ``(n,)`` [rad]."""
+        return -np.array(self._data.qpos[2::3])
 
     def copy(self) -> "MujocoWall":
         """Another wall in the same state."""

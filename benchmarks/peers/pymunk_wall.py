@@ -48,13 +48,15 @@ class PymunkWall:
         The space.
     gravity
         Acceleration of gravity [m/s²].
+    step
+        Time step [s].
     """
 
-    def __init__(self, space: Any, gravity: float) -> None:
-        self._space, self._gravity = space, gravity
+    def __init__(self, space: Any, gravity: float, step: float) -> None:
+        self._space, self._gravity, self._step = space, gravity, step
 
     @classmethod
-    def of(cls, scene: Scene) -> "PymunkWall":
+    def of(cls, scene: Scene, step: float = STEP) -> "PymunkWall":
         """The wall of a scene, as it was built."""
         import pymunk
 
@@ -71,18 +73,22 @@ class PymunkWall:
             shape = pymunk.Poly(body, [tuple(corner) for corner in corners], radius=OVERLAP / 2)
             shape.friction = scene.joint.friction**0.5
             space.add(body, shape)
-        return cls(space, float(np.hypot(*scene.load.gravity)))
+        return cls(space, float(np.hypot(*scene.load.gravity)), step)
 
     def hold(self, multiplier: float, seconds: float) -> None:
         """Bring the wall forward."""
         self._space.gravity = (multiplier * self._gravity, -self._gravity)
-        for _ in range(round(seconds / STEP)):
-            self._space.step(STEP)
+        for _ in range(round(seconds / self._step)):
+            self._space.step(self._step)
 
     def position(self) -> Array:
         """Centroid of each block, ``(n, 2)`` [m]."""
         return np.array([body.position for body in self._space.bodies])
 
+    def rotation(self) -> Array:
+        """Rotation of each block, ``(n,)`` [rad]."""
+        return np.array([body.angle for body in self._space.bodies])
+
     def copy(self) -> "PymunkWall":
         """Another wall in the same state, but for the impulses from which its iterations start."""
-        return PymunkWall(self._space.copy(), self._gravity)
+        return PymunkWall(self._space.copy(), self._gravity, self._step)

@@ -1,0 +1,141 @@
+"""Where an answer of `dem-dynamic` to a motion of its ground may be trusted: two Markdown tables.
+
+    PYTHONPATH=. python benchmarks/studies/motion_stability.py [block | wall]
+
+The block of 0.5 × 2 m beside Housner's equation, over stiffness of its joint, viscous damping and time step, one at a
+time from those of the suite. And a wall of 12 blocks under one sine and under seconds of noise, at scales around its
+critical one, each `DRAWS` times with joints that are a little different (`SCATTER`): how many fall, and which drifts
+those have gone through that do not; then where each draw begins to fall.
+"""
+
+import math
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from importlib import import_module
+
+import numpy as np
+
+import runningbond as rb
+from runningbond.response import Response, follow
+from runningbond.response.resting import VISCOUS, Resting
+from runningbond.scene import History, Scene, Stiffness
+from tests.response.housner import GRAVITY, HousnerBlock, edge
+from tests.response.walls import block, resting, shaken, still
+
+FOLLOW = import_module("runningbond.response.follow")
+BLOCK = HousnerBlock()
+UNIT = GRAVITY * BLOCK.b / BLOCK.h
+EDGES = ((0.5, 4, 2.798, 0.12), (1.0, 4, 1.780, 0.12), (1.0, 4, 5.3174, 0.04))
+"""Cycles, ω / p, overturning amplitude of Housner's block in g tan α, and the width in which it is looked for.
+
+It falls before an impact, after one, and again before one.
+"""
+
+STIFFNESS, PART = 1e10, float(vars(FOLLOW)["PART"])
+SETTINGS = (
+    *((f"stiffness {k:.0e} Pa/m".replace("+", ""), k, VISCOUS, PART) for k in (1e8, 1e9, 1e10, 1e11, 1e12)),
+    *((f"viscous ratio {ratio:g}", STIFFNESS, ratio, PART) for ratio in (0.01, 0.1, 0.5, 2.0)),
+    *((f"{part:g} of the stable step", STIFFNESS, VISCOUS, part) for part in (0.2, 0.5, 1.0)),
+)
+"""Joint stiffness [Pa/m], viscous damping ratio at the highest frequency, and part of the stable time step."""
+
+DRAWS, SCATTER = 6, {"stiffness": 0.01, "friction": 0.001}
+PEAKS = {"one sine": [1.08 * 1.04**k for k in range(7)], "4 s of noise": [0.64 * 1.1**k for k in range(10)]}
+FIRST = {"one sine": 1.21, "4 s of noise": 0.81}
+"""Peak acceleration of the ground [g]: of the runs, and about where the wall begins to fall."""
+
+
+def on_the_block() -> Iterator[str]:
+    """Errors of the edges, and the largest share of energy that a run at an edge missed."""
+    yield "| setting | falls before an impact | after one | again before | energy missed, at most |"
+    yield "|---|---|---|---|---|"
+    for name, stiffness, viscous, part in SETTINGS:
+        setattr(FOLLOW, "PART", part)  # noqa: B010 (of a module that no name leads to)
+        rest = replace(resting(block(BLOCK.b, BLOCK.h, still(), stiffness=stiffness)), viscous=viscous)
+        runs: list[Response] = []
+        cells = [off(rest, *each, runs) for each in EDGES]
+        yield f"| {name} | {' | '.join(cells)} | {max(run.unaccounted for run in runs):.1%} |"
+    setattr(FOLLOW, "PART", PART)  # noqa: B010
+
+
+def off(rest: Resting, cycles: float, ratio: float, exact: float, width: float, runs: list[Response]) -> str:
+    """How far from Housner's edge the block's is; no other edge is within the width."""
+    history = shaken("sine" if cycles == 1 else "half-sine", UNIT, 2 * math.pi / (ratio * BLOCK.p))
+    found = edge(lambda scale: fallen(under(rest, history), scale, runs), exact, width, 3e-3)
+    return f"{found / exact - 1:+.1%}" if found else f"over {width:.0%}"
+
+
+def fallen(rest: Resting, scale: float, runs: list[Response]) -> bool:
+    """Whether a wall falls; what it did is kept."""
+    runs.append(follow(rest, scale, rows=50))
+    return runs[-1].verdict == "collapse"
+
+
+def under(rest: Resting, history: History) -> Resting:
+    """A wall at rest, with another motion of its ground."""
+    return replace(rest, scene=replace(rest.scene, load=replace(rest.scene.load, live=(history,))))
+
+
+def noise(seconds: float = 4.0, seed: int = 1) -> History:
+    """White noise between 0.5 and 5 Hz under half a sine, of a peak of 1 g."""
+    random = np.random.default_rng(seed)
+    time, frequency = np.linspace(0, seconds, 801), np.arange(0.5, 5.0, 1 / seconds)
+    phases, sizes = random.uniform(0, 2 * np.pi, len(frequency)), random.normal(size=len(frequency))
+    values = np.sin(np.pi * time / seconds) * (sizes @ np.sin(2 * np.pi * np.outer(frequency, time) + phases[:, None]))
+    return History(time, np.column_stack([values / np.abs(values).max(), 0 * time]), "g")
+
+
+def wall() -> Scene:
+    """Eight courses of a block, or two halves, of 500 × 250 mm."""
+    size = {"block_width": 0.5, "block_height": 0.25, "thickness": 0.3, "density": 2000.0, "friction": 0.7}
+    pulse = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 0.5}, "quantity": "g"}
+    return rb.Wall.courses(
+        [[1], [0.5, 0.5]] * 4, **size, normal_stiffness=1e9, shear_stiffness=4e8, history=pulse
+    ).scene
+
+
+def drawn(scene: Scene, seed: int) -> Resting:
+    """A wall at rest whose joints differ a little."""
+    stiffer, rougher = 1 + np.array(list(SCATTER.values())) * np.random.default_rng(seed).uniform(-1, 1, 2)
+    joint = scene.joint
+    assert isinstance(joint.elasticity, Stiffness)
+    normal, shear = joint.elasticity.normal, joint.elasticity.shear
+    changed = scene.with_joint(
+        elasticity=Stiffness(stiffer * normal, stiffer * shear), friction=float(rougher * joint.friction)
+    )
+    return resting(changed)
+
+
+def on_the_wall() -> Iterator[str]:
+    """Falls and peak drifts of the wall and its draws, at scales around the critical one."""
+    scene = wall()
+    rests = [drawn(scene, seed) for seed in range(DRAWS)]
+    yield "| motion | peak [g] | fall | peak drift of the others | energy missed, at most |"
+    yield "|---|---|---|---|---|"
+    for history, (name, peaks) in zip((scene.history, noise()), PEAKS.items(), strict=True):
+        assert history is not None
+        for peak in peaks:
+            runs = list[Response]()
+            falls = sum(fallen(under(rest, history), peak, runs) for rest in rests)
+            drifts = [run.peak_drift for run in runs if run.verdict != "collapse"]
+            across = f"{min(drifts):.3f} … {max(drifts):.3f}" if drifts else "–"
+            missed = max(run.unaccounted for run in runs)
+            yield f"| {name} | {peak:.2f} | {falls} of {DRAWS} | {across} | {missed:.1%} |"
+    yield "\n| motion | smallest peak at which a draw falls [g], by draw |\n|---|---|"
+    for history, (name, about) in zip((scene.history, noise()), FIRST.items(), strict=True):
+        assert history is not None
+        yield f"| {name} | {', '.join(first(rest, history, about) for rest in rests)} |"
+
+
+def first(rest: Resting, history: History, about: float) -> str:
+    """Where a wall begins to fall, within 6 % about a peak acceleration."""
+    found = edge(lambda peak: fallen(under(rest, history), peak, []), about, 0.06, 2e-3)
+    return f"{found:.3f}" if found else f"not within 6 % of {about:g}"
+
+
+if __name__ == "__main__":
+    for part in sys.argv[1:] or ("block", "wall"):
+        for line in {"block": on_the_block, "wall": on_the_wall}[part]():
+            print(line, flush=True)
+        print()
