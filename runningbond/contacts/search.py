@@ -135,7 +135,8 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     )
     opening, _ = jumps(outline, both, motion)
     close = np.abs(opening) < FASTEST_OPENING * margin
-    near = np.tile(close[:n] | close[n:], 2) & ~_past_each_other(outline, both, opening, motion)
+    near = np.tile(close[:n] | close[n:], 2)
+    near[near] = ~_past_each_other(outline, both.chosen(near), opening[near], motion)
     # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
     # rests with both, each of which stands for its own area.
     corner, _ = resting(outline, both, motion)
@@ -146,19 +147,29 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
 def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motion: Array) -> Mask:
     """Ends that lie deeper than their two blocks reach into each other along the normal of any side, ``(n,)``.
 
-    Such a block has come by the end of the other one's side, and is below it without having gone through it.
+    Such a block has come by the end of the other one's side, and is below it without having gone through it. A sharp
+    corner there would take that end for the one that it is coming out at (`sharp_opening`).
     """
     blocks, found = outline.blocks, np.zeros(len(contacts), dtype=bool)
-    deep = np.flatnonzero(opening < -DEEP * outline.margin)
-    corners, normals = outline.corners(motion), outline.placed(motion).arcs[:, 2:]
-    for end in deep:
+    corners, arcs = outline.corners(motion), outline.placed(motion).arcs
+    normals = arcs[:, 2:]
+    v, w, _, _, e, f = contacts.ends.astype(np.int64).T
+    apart, side = arcs[v, :2] - arcs[w, :2], resting(outline, contacts, motion)[1]
+    normal = np.where((side == f)[:, None], normals[f], -normals[e])
+    depth = outline.radius[v] + outline.radius[w] - (apart * normal).sum(axis=1)
+    along = np.abs(apart[:, 1] * normal[:, 0] - apart[:, 0] * normal[:, 1])
+    # Of corners that are not in yet, those at the end of a side may come in, but for those that are past it by far.
+    beside = (opening >= 0) & (along >= outline.straight[side])
+    far = contacts.margin * np.where(outline.radius[v] + outline.radius[w] > 0, 1.0, FASTEST_OPENING)
+    deep = np.where(beside, far, DEEP * outline.margin)
+    for end in np.flatnonzero(depth > deep):
         sides = [
             slice(*blocks.first[block : block + 2]) for block in blocks.owner[contacts.ends[end, 4:].astype(np.int64)]
         ]
-        axes = np.concatenate([normals[side] for side in sides]).T
-        one, other = (corners[side] @ axes for side in sides)
+        axes = np.concatenate([normals[own] for own in sides]).T
+        one, other = (corners[own] @ axes for own in sides)
         reach = np.minimum(one.max(axis=0), other.max(axis=0)) - np.maximum(one.min(axis=0), other.min(axis=0))
-        found[end] = reach.min() < -opening[end] / 2
+        found[end] = reach.min() < (depth[end] / 2 if opening[end] < 0 else 0.0)
     return found
 
 

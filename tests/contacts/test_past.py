@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+import shapely
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from dem.finite_system import finite_system
@@ -12,7 +13,7 @@ from runningbond.contacts.outline import Outline
 from runningbond.contacts.search import DEEP, find_contacts, jumps
 from runningbond.response import follow
 from runningbond.response.resting import Resting
-from runningbond.scene import History, Load, Scene
+from runningbond.scene import Array, History, Load, Scene
 from runningbond.scene.history import pulse
 from tests.walls import courses
 
@@ -59,3 +60,39 @@ def test_blocks_that_are_apart_do_not_press_on_each_other(
     contacts = find_contacts(outline, motion.ravel(), margin)
     opening, _ = jumps(outline, contacts, motion.ravel())
     assert opening.min(initial=0.0) > -DEEP * outline.margin
+
+
+@given(
+    at=st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)),
+    turned=st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)),
+    step=st.tuples(*[st.floats(-1.0, 1.0)] * 6),
+    margin=st.floats(0.005, 0.2),
+)
+@example(at=(-0.405, -0.092), turned=(2.183, -0.8605), step=(-0.958, 0.232, 0.802, 0.643, -0.466, -0.863), margin=0.149)
+@settings(max_examples=200, deadline=None)
+@pytest.mark.parametrize("inset", [0.0, 0.02])
+def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
+    inset: float, at: tuple[float, float], turned: tuple[float, float], step: tuple[float, ...], margin: float
+) -> None:
+    """One anywhere beside, above or below the other, and both moved by half the margin at most since the search."""
+    scene = courses([[1], [1]], width=0.5, height=0.25, joint={**STIFF, "inset": inset})
+    outline = Outline.of(scene)
+    one, other = np.flatnonzero(scene.wall)
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[one], motion[other] = (0.0, 9.0, turned[0]), (*at, turned[1])
+    motion[other, :2] += scene.blocks.centroid[one] + [0.0, 9.0] - scene.blocks.centroid[other]
+    moved = motion.copy()
+    way = margin / 2 / (np.sqrt(2) + 1) * np.reshape(step, (2, 3))
+    moved[[one, other]] += way / np.column_stack([np.ones((2, 2)), outline.reach[[one, other]]])
+    apart = [distance(scene, outline, where) for where in (motion, (motion + moved) / 2, moved)]
+    assume(min(apart) > 1e-3)
+    contacts = find_contacts(outline, motion.ravel(), margin)
+    opening, _ = jumps(outline, contacts, moved.ravel())
+    assert opening.min(initial=0.0) > -DEEP * outline.margin
+
+
+def distance(scene: Scene, outline: Outline, motion: Array) -> float:
+    """Distance of the two blocks [m]."""
+    corners, first = outline.corners(motion.ravel()), scene.blocks.first
+    one, other = (shapely.Polygon(corners[first[k] : first[k + 1]]) for k in np.flatnonzero(scene.wall))
+    return float(one.distance(other))
