@@ -32,6 +32,22 @@ class Fronts(NamedTuple):
 
 
 @kernel
+def renew(tangent: Array, last: Array, jump: Array, front: Indices, changed: Mask, terms: Array) -> None:
+    """Terms ``(36 np,)`` of joint points whose tangents ``(np, 2, 2)`` are not the last ones; their fronts changed."""
+    for p in range(len(tangent)):
+        new, old, own = tangent[p], last[p], jump[p]
+        same = new[0, 0] == old[0, 0] and new[0, 1] == old[0, 1] and new[1, 0] == old[1, 0] and new[1, 1] == old[1, 1]
+        if same:
+            continue
+        changed[front[p, 0]] = changed[front[p, 1]] = True
+        for i in range(6):
+            normal = own[0, i] * new[0, 0] + own[1, i] * new[1, 0]
+            shear = own[0, i] * new[0, 1] + own[1, i] * new[1, 1]
+            for j in range(6):
+                terms[36 * p + 6 * i + j] = normal * own[0, j] + shear * own[1, j]
+
+
+@kernel
 def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> None:
     """Eliminate the unknowns of changed fronts ``(nf,)`` and, which are marked then, of those above them."""
     own, begin, _, place, above, first, below, at, term, order, address = fronts
