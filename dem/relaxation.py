@@ -51,10 +51,12 @@ USUAL, SMALLER, LARGER, REFUSAL = 8.0, 0.1, 2.0, 10.0
 WARY, WARINESS = 0.6, 3
 """Least factor of ε soon after a time step was given up, and how many time steps are soon."""
 
-STEADY = 0.9
-"""Unbalanced force, relative to that before half the motion, at which a fall does not slow down."""
+STEADY, SLOWING, FARTHER = 0.9, 0.75, 2.0
+"""Unbalanced force, relative to that before half the motion, at which a fall does not slow down; and after how many
+times the motion that is asked for the lesser one will do: blocks that hit others on the way lose some of it each time.
+"""
 
-LONGEST = 5000
+LONGEST = 3000
 """Linear systems after which a creep that neither rests nor falls is left undecided."""
 
 
@@ -106,7 +108,7 @@ def relax(
         path.append((float(np.abs(x[:nd] - guess[:nd]).max()), float(np.linalg.norm(residual[:nd]))))
         if _balanced(residual, response):
             return Rest("rest", x, response, last, solves)
-        if path[-1][0] > far and _steady(path):
+        if path[-1][0] > far and _steady(path, far):
             return Rest("fall", x, response, last, solves)
         made = None
         while made is None:
@@ -165,10 +167,11 @@ def _creep(
     return None, PATIENCE
 
 
-def _steady(path: list[tuple[float, float]]) -> bool:
-    """Whether the unbalanced force is still what it was before half the motion, or larger."""
+def _steady(path: list[tuple[float, float]], far: float) -> bool:
+    """Whether the unbalanced force is still about what it was before half the motion, or larger."""
     moved, size = path[-1]
-    return size >= STEADY * next(before for way, before in reversed(path) if way <= moved / 2)
+    least = SLOWING if moved > FARTHER * far else STEADY
+    return size >= least * next(before for way, before in reversed(path) if way <= moved / 2)
 
 
 def _balanced(residual: Array, response: PointResponse) -> bool:

@@ -9,8 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dem import static
+from dem.climb import climb, ends
 from dem.pushover import LoadPath, StaticState
-from dem.relaxation import RestVerdict, relax
+from dem.relaxation import Rest, RestVerdict, relax
 from dem.static import dem_static
 from dem.static_system import Control, static_system
 from dem.stiffness_update import stiffness_update
@@ -441,14 +442,15 @@ def test_the_bracket_takes_in_what_paths_in_other_load_steps_found(
     """One path more where brackets have a load in common or lie within the tolerance together, and else two."""
     left = iter(brackets)
 
-    def along(result: Outcome, *_: object) -> Outcome:
+    def climbed(path: LoadPath, *_: object) -> None:
         found = next(left)
-        if found is None:
-            return replace(result, status="undecided", message="no answer: it neither rested nor fell")
-        return replace(result, status="collapse", lower=found[0], upper=found[1], multiplier=found[0], message="found")
+        path.undecided = "" if found else "it neither rested nor fell"
+        if found:
+            lower, path.upper = (end / path.system.equilibrium.live_unit for end in found)
+            path.rests.append(replace(path.rests[0], x=np.append(path.rests[0].x[:-1], lower)))
 
-    monkeypatch.setattr("dem.static._along", along)
-    outcome = dem_static(ferris("W1"))
+    monkeypatch.setattr("dem.static.climb", climbed)
+    outcome = dem_static(ferris("W1"), past=0)
     assert next(left, "none") == "none"
     if expected is None:
         assert (outcome.status, outcome.message) == ("undecided", "no answer: it neither rested nor fell")
@@ -461,15 +463,15 @@ def test_the_bracket_takes_in_what_paths_in_other_load_steps_found(
 
 def test_states_are_those_of_the_lowest_path(monkeypatch: pytest.MonkeyPatch) -> None:
     """A path that ends lower than the first begins the series anew; the curve and the forces are its own."""
-    along, paths = static._along, list[LoadPath]()
+    paths = list[LoadPath]()
 
-    def ever_lower(result: Outcome, path: LoadPath, *others: Any) -> Outcome:
-        found = along(result, path, *others)
-        paths.append(path)
-        lower, upper = (0.9 ** len(paths) * end for end in bracket(found))
-        return replace(found, lower=lower, multiplier=lower, upper=upper)
+    def ever_lower(path: LoadPath) -> tuple[float, float]:
+        if path not in paths:
+            paths.append(path)
+        lower, upper = (0.9 ** paths.index(path) * end for end in ends(path))
+        return lower, upper
 
-    monkeypatch.setattr(static, "_along", ever_lower)
+    monkeypatch.setattr(static, "ends", ever_lower)
     scene = ferris("W1")
     recorder = StaticRecorder(scene, None)
     outcome = dem_static(scene, observe=recorder)
@@ -478,30 +480,75 @@ def test_states_are_those_of_the_lowest_path(monkeypatch: pytest.MonkeyPatch) ->
     assert len(recorder.frames) == len(paths[-1].rests) + len(paths[-1].past)
 
 
-def test_a_path_beside_the_first_is_asked_for_the_loads_of_its_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
-    """W2, whose paths agree: it rests under the one and falls under the other, and only the first one is followed."""
+def climbs(monkeypatch: pytest.MonkeyPatch) -> list[LoadPath]:
+    """Paths of a wall, as they are climbed."""
     paths: list[LoadPath] = []
-    follow = LoadPath.follow
 
-    def followed(path: LoadPath, budget: int) -> None:
+    def climbed(path: LoadPath, *others: Any) -> None:
         paths.append(path)
-        follow(path, budget)
+        climb(path, *others)
 
-    monkeypatch.setattr(LoadPath, "follow", followed)
-    told: list[tuple[float, float]] = []
-    agrees = static._agrees
+    monkeypatch.setattr(static, "climb", climbed)
+    return paths
 
-    def listened(path: LoadPath, lower: float, upper: float) -> bool:
-        told.append((path.lower, path.upper or np.inf))
-        return agrees(path, lower, upper)
 
-    monkeypatch.setattr(static, "_agrees", listened)
-    outcome = dem_static(ferris("W2", inset=0.02))
-    assert len(set(map(id, paths))) == 1
-    ((lower, upper),) = told
-    unit = paths[0].system.equilibrium.live_unit
-    assert bracket(outcome)[0] <= unit * lower
-    assert unit * upper <= bracket(outcome)[1]
+def test_a_path_beside_the_first_is_asked_for_the_loads_of_its_bracket(monkeypatch: pytest.MonkeyPatch) -> None:
+    """W2, whose paths agree: it rests under the one and falls under the other."""
+    paths = climbs(monkeypatch)
+    lower, upper = bracket(dem_static(ferris("W2", inset=0.02), past=0))
+    first, second = paths
+    unit = first.system.equilibrium.live_unit
+    assert (unit * first.lower, unit * (first.upper or 0.0)) == (lower, upper)
+    assert lower <= unit * second.lower * (1 + 1e-9)
+    assert unit * (second.upper or np.inf) <= upper
+
+
+def test_every_path_starts_from_the_rest_under_the_dead_load(monkeypatch: pytest.MonkeyPatch) -> None:
+    paths = climbs(monkeypatch)
+    monkeypatch.setattr(static, "_apart", lambda found: 1.0)
+    dem_static(ferris("W1"), past=0)
+    first, *others = paths
+    assert [path.rests[1].multiplier for path in others] == pytest.approx([0.015, 0.021])
+    assert all(path.rests[0] is first.rests[0] for path in others)
+
+
+def undecided_at(least: float, most: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No load between two is decided."""
+    hold = LoadPath.hold
+
+    def held(path: LoadPath, start: Array, slip: Array, control: Control, *others: Any) -> Rest:
+        if control.multiplier and least < control.value < most:
+            return Rest("undecided", start, path.system.respond(start, slip), start, 10)
+        return hold(path, start, slip, control, *others)
+
+    monkeypatch.setattr(LoadPath, "hold", held)
+
+
+@pytest.mark.parametrize(("least", "most"), [(0.55, 0.56), (0.57, 0.58), (0.59, 0.7), (0.582, 0.588)])
+def test_a_load_that_is_not_decided_is_gone_around(least: float, most: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """W1 with inset contacts, .5856: the wall rests and falls on either side, and nobody asks whether it locks."""
+    undecided_at(least, most, monkeypatch)
+    monkeypatch.setattr(static, "is_self_locking", interrupt)
+    outcome = dem_static(ferris("W1", 0.02))
+    assert outcome.status == "collapse"
+    lower, upper = bracket(outcome)
+    assert lower <= 0.5856 * 1.001
+    assert upper >= 0.5856 * 0.999
+    inside = least < 0.5856 < most
+    assert ("it neither rested nor fell under" in outcome.message) == inside
+    assert upper - lower <= (1.4 * (most - least) if inside else 0.01 * upper)
+
+
+def test_nothing_is_decided_above_the_last_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Undecided, between that rest and the proved bound."""
+    undecided_at(0.5, np.inf, monkeypatch)
+    scene = ferris("W1", 0.02)
+    outcome = dem_static(scene)
+    assert (outcome.status, outcome.multiplier) == ("undecided", None)
+    assert outcome.lower is not None
+    assert 0.4 < outcome.lower <= 0.5
+    assert outcome.upper == pytest.approx(limit(scene).upper)
+    assert outcome.message.startswith("no answer: it neither rested nor fell")
 
 
 # --- the algorithm as published ------------------------------------------------------------------------------
