@@ -157,8 +157,10 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     if len(paths) > 1:
         told = [f"with load steps {OTHER_STEPS[k]:g} times as long {_loads(path)}" for k, path in enumerate(paths[1:])]
         message += f"; friction remembers: {', '.join([_loads(first), *told])}; others may differ by more"
-    if len(ways) > 1:
-        outcome = replace(outcome, upper=path.system.equilibrium.live_unit * max(ends(path)[1] for path in ways))
+    if len(found) > 1:
+        unit = first.system.equilibrium.live_unit
+        upper, fall = unit * max(ends(path)[1] for path in ways), unit * min(ends(path)[1] for path in found)
+        outcome = replace(outcome, upper=upper, fall=fall)
     steps = budget - first.budget + sum(left - path.budget for path in paths[1:])
     return replace(outcome, steps=steps, message=message + cut)
 

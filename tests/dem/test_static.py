@@ -456,6 +456,8 @@ def test_the_bracket_takes_in_what_paths_in_other_load_steps_found(
         assert (outcome.status, outcome.message) == ("undecided", "no answer: it neither rested nor fell")
         return
     assert (outcome.lower, outcome.multiplier, outcome.upper) == (expected[0], expected[0], expected[1])
+    falls = [found[1] for found in brackets if found]
+    assert outcome.fall == (min(falls) if len(falls) > 1 else None)
     for found, factor in zip(brackets, ("", "with load steps 0.5 times", "with load steps 0.7 times"), strict=False):
         assert factor in outcome.message
         assert ("no answer" if found is None else f"{found[0]:.4f}–{found[1]:.4f}") in outcome.message
