@@ -9,8 +9,8 @@ and the curve goes on.
 Walls of upright or of small blocks do not reach one peak and sink: as blocks rock and slip into place λ falls and
 rises again many times over motions of a few elastic lengths. Under a displacement such a wall snaps, and where
 depends on the steps; under a load it falls to its next rest, or for good. Hence the bracket is one of loads. Friction
-remembers: loads in longer steps may bring a wall down earlier or later. The wall is loaded again in steps half as long,
-and where that brings it down elsewhere once more; the bracket then takes in what all of them found.
+remembers: loads in longer steps may bring a wall down earlier or later. The wall is loaded again in steps half as long;
+where that brings it down elsewhere, the bracket takes in both.
 
 A beam or supports that are moved by displacements take the wall along, step by step (`led`).
 """
@@ -48,8 +48,8 @@ BUDGET = 20_000
 PAST = 500
 """Linear systems that are spent past the largest load."""
 
-OTHER_STEPS = (0.5, 0.7)
-"""First steps of the paths beside the first one, in its own. The second is taken where the first does not agree."""
+OTHER_STEP = 0.5
+"""First step of the path beside the first one, in its own."""
 
 ROUNDING = 1e-9
 """Part of a load by which λ of a state of rest may differ from it."""
@@ -136,27 +136,23 @@ def _window(path: LoadPath) -> str:
 
 def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, tolerance: float, past: int) -> Outcome:
     """Outcome of a wall that is loaded from its rest under its weight, and if it collapses in other steps too."""
-    paths, start, left = [first], first.rests[0], first.budget
+    paths, left = [first], first.budget
     climb(first, first_step, tolerance)
-    for factor in OTHER_STEPS:
-        found = [path for path in paths if not path.undecided]
-        settled = not found or (len(found) > 1 and _apart(found) <= tolerance)
-        if settled or paths[-1].undecided == INTERRUPTED:
-            break
-        paths.append(LoadPath(first.system, first.far, left, [start]))
-        climb(paths[-1], factor * first_step, tolerance, ends(first))
-    found = [path for path in paths if not path.undecided]
-    ways = found if found and _apart(found) else [first]
-    stopped = first.undecided or paths[-1].undecided == INTERRUPTED
-    cut = _follow_lowest(ways, tolerance, 0 if stopped else past)
+    if not first.undecided:
+        paths.append(LoadPath(first.system, first.far, left, first.rests[:1]))
+        climb(paths[-1], OTHER_STEP * first_step, tolerance, ends(first))
+    found, cut = [path for path in paths if not path.undecided], ""
+    if found and past and paths[-1].undecided != INTERRUPTED:
+        cut = _follow_lowest(found, tolerance, past)
+    ways = _apart(found) or [first]
     path = min(ways, key=ends)
     for state in path.past if path is first else (*path.rests, *path.past):
         first.observe(path, state)
     outcome = _judge(result, path)
     message = outcome.message
     if len(paths) > 1:
-        told = [f"with load steps {OTHER_STEPS[k]:g} times as long {_loads(path)}" for k, path in enumerate(paths[1:])]
-        message += f"; friction remembers: {', '.join([_loads(first), *told])}; others may differ by more"
+        other = f"with load steps {OTHER_STEP:g} times as long {_loads(paths[1])}"
+        message += f"; friction remembers: {_loads(first)}, {other}; others may differ by more"
     if len(found) > 1:
         unit = first.system.equilibrium.live_unit
         upper, fall = unit * max(ends(path)[1] for path in ways), unit * min(ends(path)[1] for path in found)
@@ -165,24 +161,27 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     return replace(outcome, steps=steps, message=message + cut)
 
 
-def _follow_lowest(ways: list[LoadPath], tolerance: float, past: int) -> str:
-    """Follow the path that ends lowest past its largest load, and what then does; what there is to say if cut short."""
+def _follow_lowest(found: list[LoadPath], tolerance: float, past: int) -> str:
+    """Follow the path whose bracket counts past its largest load; what there is to say if that was cut short.
+
+    Where it has narrowed its bracket on the way, the other one is asked for its loads too, and may be lower then.
+    """
     followed: list[LoadPath] = []
     with suppress(KeyboardInterrupt):
-        while past and (path := min(ways, key=ends)) not in followed:
+        while (path := min(_apart(found) or found[:1], key=ends)) not in followed:
             followed.append(path)
             look_closer(path, tolerance, past)
+            for other in found:
+                if other is not path:
+                    climb(other, 0.0, tolerance, ends(path))
         return ""
     return f"; its curve was {INTERRUPTED}"
 
 
-def _apart(found: list[LoadPath]) -> float:
-    """Relative width of the loads that bracket all collapses of paths; 0 where their brackets overlap.
-
-    One path may rest under the very load under which another falls.
-    """
-    lower, upper = zip(*map(ends, found), strict=True)
-    return 0.0 if max(lower) < (1 - ROUNDING) * min(upper) else float((max(upper) - min(lower)) / max(upper))
+def _apart(found: list[LoadPath]) -> list[LoadPath]:
+    """Paths whose brackets have no load in common; none where they have: one may rest where another falls."""
+    lower, upper = zip(*map(ends, found), strict=True) if found else ((0.0,), (np.inf,))
+    return [] if max(lower) < (1 - ROUNDING) * min(upper) else found
 
 
 def _loads(path: LoadPath) -> str:
