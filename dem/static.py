@@ -136,16 +136,18 @@ def _window(path: LoadPath) -> str:
 
 def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, tolerance: float, past: int) -> Outcome:
     """Outcome of a wall that is loaded from its rest under its weight, and if it collapses in other steps too."""
-    paths, left = [first], first.budget
+    paths, left, cut = [first], first.budget, ""
     climb(first, first_step, tolerance)
     if not first.undecided:
-        paths.append(LoadPath(first.system, first.far, left, first.rests[:1]))
-        climb(paths[-1], OTHER_STEP * first_step, tolerance, ends(first))
-    found, cut = [path for path in paths if not path.undecided], ""
-    if found and past and paths[-1].undecided != INTERRUPTED:
-        cut = _follow_lowest(found, tolerance, past)
+        cut = _look_closer(first, tolerance, past)
+        if not cut:
+            paths.append(LoadPath(first.system, first.far, left, first.rests[:1]))
+            climb(paths[-1], OTHER_STEP * first_step, tolerance, ends(first))
+    found = [path for path in paths if not path.undecided]
     ways = _apart(found) or [first]
     path = min(ways, key=ends)
+    if path is not first:
+        cut = _look_closer(path, tolerance, past)
     for state in path.past if path is first else (*path.rests, *path.past):
         first.observe(path, state)
     outcome = _judge(result, path)
@@ -161,19 +163,11 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     return replace(outcome, steps=steps, message=message + cut)
 
 
-def _follow_lowest(found: list[LoadPath], tolerance: float, past: int) -> str:
-    """Follow the path whose bracket counts past its largest load; what there is to say if that was cut short.
-
-    Where it has narrowed its bracket on the way, the other one is asked for its loads too, and may be lower then.
-    """
-    followed: list[LoadPath] = []
+def _look_closer(path: LoadPath, tolerance: float, past: int) -> str:
+    """Follow a path past its largest load, if at all; what there is to say if that was cut short."""
     with suppress(KeyboardInterrupt):
-        while (path := min(_apart(found) or found[:1], key=ends)) not in followed:
-            followed.append(path)
+        if past:
             look_closer(path, tolerance, past)
-            for other in found:
-                if other is not path:
-                    climb(other, 0.0, tolerance, ends(path))
         return ""
     return f"; its curve was {INTERRUPTED}"
 
