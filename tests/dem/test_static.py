@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dem import static
+from dem import relaxation, static
 from dem.climb import climb, ends
 from dem.pushover import LoadPath, StaticState
 from dem.relaxation import Rest, RestVerdict, relax
@@ -200,6 +200,21 @@ def test_block_rests_below_its_collapse_load_and_falls_above(
     start = np.append(np.zeros(system.freedoms), multiplier)
     nothing = np.zeros(len(system.law.normal_stiffness))
     assert relax(system, start, nothing, Control(multiplier, multiplier=True), far).verdict == verdict
+
+
+@pytest.mark.parametrize(("slowing", "verdict"), [(0.5, "fall"), (2.0, "undecided")])
+def test_a_creep_that_goes_on_far_away_has_fallen_when_it_is_given_up(
+    slowing: float, verdict: RestVerdict, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A toppling block of which nothing is said before; and nothing at all of one that slows down."""
+    monkeypatch.setattr(relaxation, "STEADY", 9.0)
+    monkeypatch.setattr(relaxation, "SLOWING", slowing)
+    monkeypatch.setattr(relaxation, "LONGEST", 60)
+    system = static_system(pile([rectangle(0, 0, 0.5, 2)], 0.6))
+    start = np.append(np.zeros(system.freedoms), 0.26)
+    found = relax(system, start, np.zeros(len(system.law.normal_stiffness)), Control(0.26, multiplier=True), 1e2, 60)
+    assert found.verdict == verdict
+    assert relax(system, start, np.zeros(2), Control(0.26, multiplier=True), 1e2, 59).verdict == "undecided"
 
 
 def test_soft_joints_that_give_way_elastically_are_no_fall() -> None:
