@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 
 from runningbond.scene import Array, Indices
 
-from .front_kernels import Fronts, factorise, substitute
+from .front_kernels import Fronts, factorise, renew, substitute
 
 FEW = 6
 """Blocks that are not parted any further."""
@@ -40,12 +40,8 @@ class Dissection:
         numpy.linalg.LinAlgError
             For a matrix of which a front is singular to the last bit.
         """
-        other = np.flatnonzero((tangent != self.tangent).any(axis=(1, 2)))
         changed = np.full(len(self.fronts.above) + 1, self.is_new)
-        changed[self.front[other]] = True
-        jump = self.jump[other]
-        own = np.matmul(np.matmul(jump.transpose(0, 2, 1), tangent[other]), jump)
-        self.terms[: 36 * len(tangent)].reshape(-1, 36)[other] = own.reshape(-1, 36)
+        renew(tangent, self.tangent, self.jump, self.front, changed, self.terms)
         self.tangent, self.is_new = tangent, True  # should a front be singular
         factorise(self.fronts, changed, self.terms, self.store)
         self.is_new = False

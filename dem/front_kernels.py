@@ -32,6 +32,22 @@ class Fronts(NamedTuple):
 
 
 @kernel
+def renew(tangent: Array, last: Array, jump: Array, front: Indices, changed: Mask, terms: Array) -> None:
+    """Terms ``(36 np,)`` of joint points whose tangents ``(np, 2, 2)`` are not the last ones; their fronts changed."""
+    # Entry by entry: views of so few numbers cost more than what is done with them.
+    for p in range(len(tangent)):
+        nn, ns, sn, ss = tangent[p, 0, 0], tangent[p, 0, 1], tangent[p, 1, 0], tangent[p, 1, 1]
+        if nn == last[p, 0, 0] and ns == last[p, 0, 1] and sn == last[p, 1, 0] and ss == last[p, 1, 1]:
+            continue
+        changed[front[p, 0]] = changed[front[p, 1]] = True
+        for i in range(6):
+            normal = jump[p, 0, i] * nn + jump[p, 1, i] * sn
+            shear = jump[p, 0, i] * ns + jump[p, 1, i] * ss
+            for j in range(6):
+                terms[36 * p + 6 * i + j] = normal * jump[p, 0, j] + shear * jump[p, 1, j]
+
+
+@kernel
 def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> None:
     """Eliminate the unknowns of changed fronts ``(nf,)`` and, which are marked then, of those above them."""
     own, begin, _, place, above, first, below, at, term, order, address = fronts

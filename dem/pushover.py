@@ -67,7 +67,9 @@ class LoadPath:
     budget: int  # linear systems that may still be solved
     rests: list[StaticState]  # states of rest under growing loads, the dead load's first
     past: list[StaticState] = field(default_factory=list)  # states of rest past the largest load, under displacements
-    upper: float | None = None  # smallest load under which the wall fell
+    upper: float | None = None  # smallest load under which the wall fell, or above which nothing stands
+    unclear: list[float] = field(default_factory=list)  # loads under which it neither rested nor fell
+    undecided: str = ""  # why there is no bracket
     fall: Array | None = None  # (nd,) how it was moving when it had fallen far enough
     observe: StaticObserver = no_observer  # called with every state of rest under a load that is pushed for
 

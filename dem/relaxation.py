@@ -51,11 +51,12 @@ USUAL, SMALLER, LARGER, REFUSAL = 8.0, 0.1, 2.0, 10.0
 WARY, WARINESS = 0.6, 3
 """Least factor of ε soon after a time step was given up, and how many time steps are soon."""
 
-STEADY = 0.9
-"""Unbalanced force, relative to that before half the motion, at which a fall does not slow down."""
+STEADY, SLOWING = 0.9, 0.5
+"""Unbalanced force, relative to that before half the motion, at which a fall does not slow down; and at which a creep
+of the `LONGEST` kind is one all the same: blocks that meet others on the way lose some of it each time."""
 
-LONGEST = 5000
-"""Linear systems after which a creep that neither rests nor falls is left undecided."""
+LONGEST = 3000
+"""Linear systems after which a creep that neither rests nor falls is left undecided, unless it goes on far away."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,12 +107,13 @@ def relax(
         path.append((float(np.abs(x[:nd] - guess[:nd]).max()), float(np.linalg.norm(residual[:nd]))))
         if _balanced(residual, response):
             return Rest("rest", x, response, last, solves)
-        if path[-1][0] > far and _steady(path):
+        if path[-1][0] > far and _steady(path, STEADY):
             return Rest("fall", x, response, last, solves)
         made = None
         while made is None:
             if solves >= budget or (refused and not creeps):
-                return Rest("undecided", x, response, last, solves)
+                falls = solves >= LONGEST and path[-1][0] > far and _steady(path, SLOWING)
+                return Rest("fall" if falls else "undecided", x, response, last, solves)
             made, taken = _creep(system, x, plastic_slip, control, rate, tangent, residual)
             solves += taken
             if made is not None and not refused and np.abs(made[0][:nd] - guess[:nd]).max() > far:
@@ -165,10 +167,10 @@ def _creep(
     return None, PATIENCE
 
 
-def _steady(path: list[tuple[float, float]]) -> bool:
-    """Whether the unbalanced force is still what it was before half the motion, or larger."""
+def _steady(path: list[tuple[float, float]], share: float) -> bool:
+    """Whether the unbalanced force is still some share of what it was before half the motion, or larger."""
     moved, size = path[-1]
-    return size >= STEADY * next(before for way, before in reversed(path) if way <= moved / 2)
+    return size >= share * next(before for way, before in reversed(path) if way <= moved / 2)
 
 
 def _balanced(residual: Array, response: PointResponse) -> bool:

@@ -9,14 +9,13 @@ and the curve goes on.
 Walls of upright or of small blocks do not reach one peak and sink: as blocks rock and slip into place λ falls and
 rises again many times over motions of a few elastic lengths. Under a displacement such a wall snaps, and where
 depends on the steps; under a load it falls to its next rest, or for good. Hence the bracket is one of loads. Friction
-remembers: loads in longer steps may bring a wall down earlier or later. The wall is loaded again in steps half as long,
-and where that brings it down elsewhere once more; the bracket then takes in what all of them found.
+remembers: loads in longer steps may bring a wall down earlier or later. The wall is loaded again in steps half as long;
+where that brings it down elsewhere, the bracket takes in both.
 
 A beam or supports that are moved by displacements take the wall along, step by step (`led`).
 """
 
 import time
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -31,8 +30,9 @@ from runningbond.results import Outcome, Supports
 from runningbond.results.outcome import number
 from runningbond.scene import Scene
 
+from .climb import INTERRUPTED, NEITHER, climb, ends, look_closer, peak
 from .led import lead_along
-from .pushover import NOISE, LoadPath, StaticObserver, StaticState, lengthened, no_observer, state_of
+from .pushover import LoadPath, StaticObserver, no_observer, state_of
 from .relaxation import relax
 from .static_system import Control, StaticSystem, static_system, with_late_pins
 
@@ -42,23 +42,17 @@ FIRST_STEP = 0.03
 U_CRIT = 0.05
 """Motion of a block that is a fall unless it slows down, in heights of the lowest block."""
 
-LARGEST_LOAD = 1e6
-"""Multiplier, in first steps, beyond which no collapse is looked for."""
-
 BUDGET = 20_000
 """Linear systems after which a wall is left undecided."""
 
 PAST = 500
 """Linear systems that are spent past the largest load."""
 
-OTHER_STEPS = (0.5, 0.7)
-"""First steps of the paths beside the first one, in its own. The second is taken where the first does not agree."""
+OTHER_STEP = 0.5
+"""First step of the path beside the first one, in its own."""
 
 ROUNDING = 1e-9
 """Part of a load by which λ of a state of rest may differ from it."""
-
-INTERRUPTED = "interrupted"
-"""Why a wall is undecided after Ctrl-C."""
 
 
 def dem_static(
@@ -142,116 +136,59 @@ def _window(path: LoadPath) -> str:
 
 def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, tolerance: float, past: int) -> Outcome:
     """Outcome of a wall that is loaded from its rest under its weight, and if it collapses in other steps too."""
-    rest, left = first.rests[:1], first.budget
-    outcome = _along(result, first, first_step, tolerance, past)
-    found, steps, told = [(outcome, first)], budget - first.budget, [_loads(outcome)]
-    for factor in OTHER_STEPS if outcome.status == "collapse" else ():
-        if outcome.message.endswith(INTERRUPTED) or (len(found) > 1 and _apart(found) <= tolerance):
-            break
-        path = LoadPath(first.system, first.far, left, rest)
-        outcome = _along(result, path, factor * first_step, tolerance, past, first)
-        steps += left - path.budget
-        told.append(f"with load steps {factor:g} times as long {_loads(outcome)}")
-        if outcome.status == "collapse":
-            found.append((outcome, path))
-    outcome, path = found[0]
-    if len(found) > 1 and _apart(found):
-        outcome, path = min(found, key=lambda each: each[0].lower or 0.0)
-        outcome = replace(outcome, upper=max(each.upper or 0.0 for each, _ in found))
+    paths, left, cut = [first], first.budget, ""
+    climb(first, first_step, tolerance)
+    if not first.undecided:
+        cut = _look_closer(first, tolerance, past)
+        if not cut:
+            paths.append(LoadPath(first.system, first.far, left, first.rests[:1]))
+            climb(paths[-1], OTHER_STEP * first_step, tolerance, ends(first))
+    found = [path for path in paths if not path.undecided]
+    ways = _apart(found) or [first]
+    path = min(ways, key=ends)
     if path is not first:
-        for state in (*path.rests, *path.past):
-            first.observe(path, state)
-    if len(told) > 1:
-        message = f"{outcome.message}; friction remembers: {', '.join(told)}; others may differ by more"
-        outcome = replace(outcome, message=message)
-    return replace(outcome, steps=steps)
+        cut = _look_closer(path, tolerance, past)
+    for state in path.past if path is first else (*path.rests, *path.past):
+        first.observe(path, state)
+    outcome = _judge(result, path)
+    message = outcome.message
+    if len(paths) > 1:
+        other = f"with load steps {OTHER_STEP:g} times as long {_loads(paths[1])}"
+        message += f"; friction remembers: {_loads(first)}, {other}; others may differ by more"
+    if len(found) > 1:
+        unit = first.system.equilibrium.live_unit
+        upper, fall = unit * max(ends(path)[1] for path in ways), unit * min(ends(path)[1] for path in found)
+        outcome = replace(outcome, upper=upper, fall=fall)
+    steps = budget - first.budget + sum(left - path.budget for path in paths[1:])
+    return replace(outcome, steps=steps, message=message + cut)
 
 
-def _apart(found: list[tuple[Outcome, LoadPath]]) -> float:
-    """Relative width of the loads that bracket all collapses of paths; 0 where their brackets overlap.
-
-    One path may rest under the very load under which another falls.
-    """
-    lower, upper = ([getattr(outcome, end) for outcome, _ in found] for end in ("lower", "upper"))
-    return 0.0 if max(lower) < (1 - ROUNDING) * min(upper) else float((max(upper) - min(lower)) / max(upper))
-
-
-def _loads(outcome: Outcome) -> str:
-    """The bracket of a path, or that it has none."""
-    if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
-        return outcome.message
-    return f"{number(outcome.lower)}–{number(outcome.upper)}"
-
-
-def _along(
-    result: Outcome, path: LoadPath, first_step: float, tolerance: float, past: int, first: LoadPath | None = None
-) -> Outcome:
-    """Outcome of a wall that is loaded until it has fallen, close enough to the last load at rest, and followed.
-
-    A path beside the first one that collapses within its bracket is not followed.
-    """
-    undecided, cut = INTERRUPTED, ""
+def _look_closer(path: LoadPath, tolerance: float, past: int) -> str:
+    """Follow a path past its largest load, if at all; what there is to say if that was cut short."""
     with suppress(KeyboardInterrupt):
-        undecided = _bracket(path, first_step, tolerance, () if first is None else _ends(first))
-        if past and not undecided and not (first and _agrees(path, *_ends(first))):  # the bracket is found, and stands
-            cut = f"; its curve was {INTERRUPTED}"
-            _look_closer(path, tolerance, past)
-            cut = ""
-    for state in path.past:
-        path.observe(path, state)
-    outcome = _judge(result, path, undecided)
-    return replace(outcome, message=outcome.message + cut)
+        if past:
+            look_closer(path, tolerance, past)
+        return ""
+    return f"; its curve was {INTERRUPTED}"
 
 
-def _ends(path: LoadPath) -> tuple[float, float]:
-    """The bracket of a path that has fallen."""
-    return _peak(path).multiplier, np.inf if path.upper is None else path.upper
+def _apart(found: list[LoadPath]) -> list[LoadPath]:
+    """Paths whose brackets have no load in common; none where they have: one may rest where another falls."""
+    lower, upper = zip(*map(ends, found), strict=True) if found else ((0.0,), (np.inf,))
+    return [] if max(lower) < (1 - ROUNDING) * min(upper) else found
 
 
-def _agrees(path: LoadPath, lower: float, upper: float) -> bool:
-    """Whether a path collapses between two loads."""
-    return path.upper is not None and (1 - ROUNDING) * lower <= path.lower and path.upper <= upper
+def _loads(path: LoadPath) -> str:
+    """The bracket of a path, or that it has none."""
+    if path.undecided:
+        return f"no answer: {path.undecided}"
+    return "–".join(number(path.system.equilibrium.live_unit * end) for end in ends(path))
 
 
-def _bracket(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[float] = ()) -> str:
-    """Load a wall until it has fallen, close enough to the last load at rest; why it is undecided.
-
-    Of a wall that has fallen, loads that are `asked` for are tried before those in the middle.
-    """
-    step, left = first_step, list(asked)
-    while True:
-        inside = [load for load in left if path.upper is not None and path.lower < load < path.upper]
-        left = inside[1:] if inside else left  # each once: λ of a rest is its load up to rounding
-        if path.upper is not None and path.upper - path.lower <= tolerance * max(path.upper, NOISE) and not inside:
-            return ""
-        middle = path.lower + step if path.upper is None else (path.lower + path.upper) / 2
-        held = path.push(inside[0] if inside else middle)
-        if held.verdict == "undecided":
-            return "it neither rested nor fell"
-        step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
-        if path.upper is None and path.lower > LARGEST_LOAD * first_step:
-            return "it bore every load tried"
-
-
-def _look_closer(path: LoadPath, tolerance: float, past: int) -> None:
-    """Follow a wall past its bracket, and look whether the bracket's upper half bears anything."""
-    path.follow(past)
-    # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
-    closer = (1 + tolerance / 4) * _peak(path).multiplier
-    if path.upper is not None and closer < path.upper and path.push(closer, past).verdict == "rest":
-        path.follow(past)
-
-
-def _peak(path: LoadPath) -> StaticState:
-    """State of the largest λ in equilibrium that is none at which the wall fell."""
-    most, states = np.inf if path.upper is None else path.upper, (*path.rests, *path.past)
-    return max((state for state in states if state.multiplier < most), key=lambda state: state.multiplier)
-
-
-def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
+def _judge(result: Outcome, path: LoadPath) -> Outcome:
     """Verdict on a climb, and its arrays."""
     system, states = path.system, [*path.rests, *path.past]
-    equations, peak = system.equilibrium, _peak(path)
+    equations, best = system.equilibrium, peak(path)
     unit = equations.live_unit
     q = np.array([state.x[: system.freedoms] for state in states])
     loads = np.array([unit * state.multiplier for state in states])
@@ -264,21 +201,25 @@ def _judge(result: Outcome, path: LoadPath, undecided: str) -> Outcome:
     moving = path.fall if path.fall is not None else q[-1] - q[-2] if len(q) > 1 else None
     result = replace(
         result,
-        lower=unit * peak.multiplier,
+        lower=unit * best.multiplier,
         upper=None if path.upper is None else unit * path.upper,
         curve=np.column_stack([(q - q[0]) @ moved, loads]),
         motion=np.zeros((0, 3)) if moving is None else equations.motion(moving),
-        force=equations.force_unit * peak.force,
+        force=equations.force_unit * best.force,
         **Supports(equations.scene, equations.points).path(forces, ties, loads, works),
     )
-    if not undecided:
+    if not path.undecided:
         heights = path.far * system.length_unit / equations.scene.lowest_block
         message = f"largest load at rest and smallest of a fall over {heights:.2g} block heights, small displacements"
+        if path.fall is None:
+            message = "largest load at rest, and what limit analysis proves that nothing exceeds; small displacements"
+        unclear = [number(unit * load) for load in path.unclear if best.multiplier < load < (path.upper or np.inf)]
+        message += f"; {NEITHER} under {', '.join(unclear)}" if unclear else ""
         return replace(result, status="collapse", multiplier=result.lower, message=message)
-    if undecided != INTERRUPTED and path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
-        message = f"self-locking: {undecided}, and joint forces balance any multiple of it"
+    if path.undecided != INTERRUPTED and path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
+        message = f"self-locking: {path.undecided}, and joint forces balance any multiple of it"
         return replace(result, status="unbounded", lower=None, message=message)
-    return replace(result, message=f"no answer: {undecided}")
+    return replace(result, message=f"no answer: {path.undecided}")
 
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:

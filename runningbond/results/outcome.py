@@ -56,6 +56,8 @@ class Outcome:
         it rests (1) or falls (0). Without a curve one row at most, the collapse; not a number is what is not known.
     path_columns
         Names of the columns of `path`.
+    fall
+        Smallest load under which the wall was seen to fall, where `upper` takes in others that fell later; else None.
     """
 
     scene: str
@@ -79,6 +81,7 @@ class Outcome:
     curve: Array = field(default_factory=lambda: np.zeros((0, 2)))
     path: Array = field(default_factory=lambda: np.zeros((0, 0)))
     path_columns: tuple[str, ...] = ()
+    fall: float | None = None
 
     def __post_init__(self) -> None:
         for name, columns in ARRAYS.items():

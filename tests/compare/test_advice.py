@@ -185,6 +185,16 @@ def test_a_history_far_below_the_certified_loads_is_the_answer_and_calls_for_mor
     assert next_step(found, Step(HISTORY, "", draws=DRAWS), found.outcomes[-1]).model is not HISTORY
 
 
+def test_a_path_that_fell_below_the_upper_end_is_not_forgotten() -> None:
+    """Of several load steps the bracket ends where the last one fell, .98; that one of them fell at .81 counts."""
+    found, paths = known(1.0, (0.97, 0.99)), replace(collapse(HISTORY.name, 0.8, 0.98), fall=0.81)
+    found.learn(HISTORY, together([paths]), draws=[paths])
+    assert found.contradicted
+    assert (found.evidence, bracket_of(found), found.lowest) == ("history", (0.8, 0.98), 0.81)
+    assert "of its paths in load steps of several lengths, which lie further apart" in found.meaning()
+    assert next_step(found, Step(HISTORY, ""), found.outcomes[-1]).draws == DRAWS
+
+
 def test_draws_that_are_fewer_than_asked_for_do_not_call_for_themselves_again() -> None:
     found = known(1.0, (0.97, 0.99), (0.8, 0.81))
     nowhere = Outcome("", HISTORY.name, "undecided")

@@ -14,7 +14,7 @@ import pytest
 
 from dem.dynamic import dem_dynamic
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state, proved_bound
-from runningbond.limit.associated import judge
+from runningbond.limit.associated import is_self_locking, judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
 from runningbond.limit.interior_point import interior_point
 from runningbond.limit.proved import CLOSE, is_large, proved, resting_forces
@@ -241,6 +241,13 @@ def test_ctrl_c_in_the_bound_of_a_model_in_motion_ends_that_too(monkeypatch: pyt
     outcome = dem_dynamic(scene)
     assert (outcome.status, outcome.steps) == ("undecided", 0)
     assert outcome.message.startswith("interrupted before")
+
+
+@pytest.mark.parametrize("name", ["dry", "cohesive", "pulled up"])
+def test_a_proved_bound_says_that_a_wall_does_not_lock(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without HiGHS, which needs minutes to find no forces on 1000 blocks."""
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", None)
+    assert not is_self_locking(wall(name))
 
 
 def test_bounds_of_weaker_joints_are_not_taken_for_those_of_a_wall(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -70,7 +70,8 @@ class Knowledge:
         elif finite:
             self._answer("finite", outcome, outcome.lower)
         else:
-            falls = [draw.upper for draw in draws if draw.upper is not None]
+            # The upper end of paths in several load steps is where the last of them fell.
+            falls = [each.upper if each.fall is None else each.fall for each in draws or (outcome,) if each.upper]
             self.draws = max(1, len(falls))
             self._follow(outcome, min(falls, default=outcome.upper))
 
@@ -139,6 +140,8 @@ class Knowledge:
             return f"{self._certified(self.answer)}{seen}; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
         told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"
+        if self.draws == 1 and self.answer.fall is not None:
+            told = "the lowest and the highest of its paths in load steps of several lengths"
         wide = "" if _within(self.answer, self.tolerance) else ", which lie further apart than the tolerance"
         return f"largest load at rest and smallest at collapse in {told}{wide}, loads raised slowly{below}{above}"
 

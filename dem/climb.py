@@ -1,0 +1,81 @@
+"""Climbs to a wall's collapse: loads are pushed for until the bracket between a rest and a fall is narrow enough.
+
+A load under which a wall neither rests nor falls is gone around: those on either side of it are tried.
+"""
+
+from collections.abc import Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from runningbond.limit import proved_bound
+
+from .pushover import NOISE, LoadPath, StaticState, lengthened
+
+LARGEST_LOAD = 1e6
+"""Multiplier, in first steps, beyond which no collapse is looked for."""
+
+UNCLEAR = 3
+"""Loads under which a wall may neither rest nor fall; after one more the bracket around them stays as wide as it is."""
+
+INTERRUPTED, NEITHER = "interrupted", "it neither rested nor fell"
+"""Why a wall is undecided: after Ctrl-C, or after loads that were not."""
+
+
+def climb(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[float] = ()) -> None:
+    """Load a wall until it has fallen, close enough to the last load at rest, or note why it is undecided.
+
+    Of a wall that has fallen, loads that are `asked` for are tried before those in the middle. Nothing stands above the
+    bound of limit analysis, which is asked where a wall neither rests nor falls before it has fallen.
+    """
+    step, left, path.undecided = first_step, list(asked), INTERRUPTED
+    with suppress(KeyboardInterrupt):
+        while True:
+            inside = [load for load in left if path.upper is not None and path.lower < load < path.upper]
+            left = inside[1:] if inside else left  # each once: λ of a rest is its load up to rounding
+            if path.upper is not None and path.upper - path.lower <= tolerance * max(path.upper, NOISE) and not inside:
+                path.undecided = ""
+                return
+            load = inside[0] if inside else _next_load(path, step)
+            held = path.push(load)
+            if held.verdict == "undecided":
+                path.unclear.append(load)
+                if path.upper is None and path.budget > 0:
+                    bound = proved_bound(path.system.equilibrium.scene)
+                    path.upper = None if bound is None else max(bound / path.system.equilibrium.live_unit, path.lower)
+                if path.budget <= 0 or path.upper is None or len(path.unclear) > UNCLEAR:
+                    path.undecided = "" if path.fall is not None and path.budget > 0 else NEITHER
+                    return
+            step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
+            if path.upper is None and path.lower > LARGEST_LOAD * first_step:
+                path.undecided = "it bore every load tried"
+                return
+
+
+def _next_load(path: LoadPath, step: float) -> float:
+    """Load in the middle of the widest gap between a rest, loads under which nothing was decided, and a fall."""
+    if path.upper is None:
+        return path.lower + step
+    loads = [path.lower, *sorted(load for load in path.unclear if path.lower < load < path.upper), path.upper]
+    widest = int(np.diff(loads).argmax())
+    return (loads[widest] + loads[widest + 1]) / 2
+
+
+def ends(path: LoadPath) -> tuple[float, float]:
+    """The bracket of a path."""
+    return peak(path).multiplier, np.inf if path.upper is None else path.upper
+
+
+def look_closer(path: LoadPath, tolerance: float, past: int) -> None:
+    """Follow a wall past its bracket, and look whether the bracket's upper half bears anything."""
+    path.follow(past)
+    # Within the bracket the curve's peak is the better lower end, and a load just above it the better upper one.
+    closer = (1 + tolerance / 4) * peak(path).multiplier
+    if path.upper is not None and closer < path.upper and path.push(closer, past).verdict == "rest":
+        path.follow(past)
+
+
+def peak(path: LoadPath) -> StaticState:
+    """State of the largest λ in equilibrium that is none at which the wall fell."""
+    most, states = np.inf if path.upper is None else path.upper, (*path.rests, *path.past)
+    return max((state for state in states if state.multiplier < most), key=lambda state: state.multiplier)
