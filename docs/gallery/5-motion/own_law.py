@@ -17,9 +17,9 @@ folder = Path(rb.__file__).parents[1] / "examples"
 law = runpy.run_path(str(folder / "own_law.py"))["LAW"]
 wall = rb.read("wall-w2")
 figure, axes = plt.subplots()
-for name, its_law in (("rough", None), ("polished", law)):
+for name, its_law, line in (("rough", None, ".-"), ("polished", law, ".--")):
     result = wall.with_({"joint.law": its_law}).run("dem-dynamic", tolerance=0.01)
     moved, load = result.outcome.curve.T
-    axes.plot(1e3 * moved, load, ".-", label=f"{name}: λ = {result.lower:.3f} … {result.upper:.3f}")
+    axes.plot(1e3 * moved, load, line, label=f"{name}: λ = {result.lower:.3f} … {result.upper:.3f}")
 axes.set(xlabel="displacement [mm]", ylabel="λ", title="Until it falls", xscale="log", ylim=(0.3, 0.65))
-axes.legend()
+axes.legend(loc="lower right")
