@@ -68,15 +68,8 @@ TOO_MUCH_SPENT = 2.0
 
 
 @kernel
-def _copy(source: Array, into: Array) -> None:
-    """Copy a vector; that of a slice comes with the text of an error, which takes seconds to compile."""
-    for i in range(into.size):
-        into[i] = source[i]
-
-
-@kernel
 def _restrained(motion: Array, freedom: Indices, basis: Array, moved: Array) -> None:
-    _copy(motion, moved)
+    moved[:] = motion
     for r in range(freedom.shape[0]):
         for row in range(3):
             total = 0.0
@@ -188,7 +181,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
         rigged = rig[0].size > 0
         response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         rises = control == HELD and speed != 0.0
-        _copy(load, loaded)
+        loaded[:] = load
         if rises:
             before = _dot(live, motion)
         if control == DRIVEN:
@@ -214,7 +207,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel) -> Any:
                 for i in range(force.size):
                     force[i] += loaded[i]
             else:
-                _copy(loaded, force)
+                force[:] = loaded  # twice as fast as a loop
                 scatter(normal, tangential, geometry, force)
             pull(ties, motion, force)
             if rigged:
