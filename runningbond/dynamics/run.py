@@ -110,7 +110,8 @@ class Run:
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._step = stepper(*kernels)
+        self._step = {plain: stepper(*kernels, plain) for plain in (True, False)}
+        self._plain = not len(self.system.ties) and self.system.rig is None
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
@@ -185,6 +186,7 @@ class Run:
     def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
         """Take steps under a constant load and a control; what `stepper` sums up."""
         total, system, number = 0.0, self.system, CONTROLS.index(control)
+        plain = self._plain and control == "held"
         live = system.carried.motion if control == "carried" else system.live
         if system.rig is not None:
             live = live.copy()  # it turns with the beam
@@ -194,7 +196,7 @@ class Run:
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             coefficients = (number, piece, self.dt, self.local, self._viscosity, load, live, speed)
             ties = (*system.ties, state.stretch)
-            taken, stable, multipliers, work = self._step(
+            taken, stable, multipliers, work = self._step[plain](
                 *coefficients, *self._arrays, ties, self._rig, arrays, self._work, watch
             )
             total += multipliers
