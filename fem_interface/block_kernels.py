@@ -33,6 +33,8 @@ class NodalTables(NamedTuple):
         The tables, ``(displacements, modes)`` each, and their transposes, one after the other.
     still : (1,) int
         Place of the first displacement that is always zero.
+    alone : (1,) int
+        Number of templates of one block only.
     nodal, product : float
         Buffers of the displacements, and of a product.
     """
@@ -41,6 +43,7 @@ class NodalTables(NamedTuple):
     forward: Array
     backward: Array
     still: Indices
+    alone: Indices
     nodal: Array
     product: Array
 
@@ -92,6 +95,7 @@ def nodal_tables(
         np.concatenate([np.zeros(0), *(table.ravel() for _, table in templates)]),
         np.concatenate([np.zeros(0), *(table.T.ravel() for _, table in templates)]),
         np.array([still]),
+        np.array([sum(shape[0] == 1 for shape, _ in templates)]),
         np.zeros(still + spare),
         np.zeros(max((shape[0] * shape[1] for shape, _ in templates), default=0)),
     )
@@ -108,21 +112,37 @@ def _subtract_product(table: Array, entry: Any, rows: Any, factor: Array, first:
 
 
 @kernel
+def _alone_to_nodes(tables: NodalTables, motion: Array) -> None:
+    for k in range(tables.shapes.shape[0]):
+        blocks, modes, width, first, at, entry = tables.shapes[k]
+        if blocks == 1:
+            out = tables.nodal[at : at + width]
+            out[:] = 0.0
+            _subtract_product(tables.backward, entry, modes, motion, first, out)
+            for i in range(out.size):
+                out[i] = -out[i]
+
+
+@kernel
+def _alone_to_modes(tables: NodalTables, force: Array) -> None:
+    for k in range(tables.shapes.shape[0]):
+        blocks, modes, width, first, at, entry = tables.shapes[k]
+        if blocks == 1:
+            _subtract_product(tables.forward, entry, width, tables.nodal, at, force[first : first + modes])
+
+
+@kernel
 def to_nodes(tables: NodalTables, motion: Array) -> None:
     """Displacements of the nodes, from modal coordinates ``(nd,)``."""
     shapes, table, nodal = tables.shapes, tables.forward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
-        if blocks == 1:
-            alone = nodal[at : at + width]
-            alone[:] = 0.0
-            _subtract_product(tables.backward, entry, modes, motion, first, alone)
-            for i in range(alone.size):
-                alone[i] = -alone[i]
-            continue
-        phi = table[entry : entry + width * modes].reshape(width, modes)
-        Q = motion[first : first + modes * blocks].reshape(modes, blocks)
-        np.dot(phi, Q, nodal[at : at + width * blocks].reshape(width, blocks))
+        if blocks > 1:
+            phi = table[entry : entry + width * modes].reshape(width, modes)
+            Q = motion[first : first + modes * blocks].reshape(modes, blocks)
+            np.dot(phi, Q, nodal[at : at + width * blocks].reshape(width, blocks))
+    if tables.alone[0]:  # in a loop of their own: the others' would be slower for the question
+        _alone_to_nodes(tables, motion)
 
 
 @kernel
@@ -131,16 +151,16 @@ def to_modes(tables: NodalTables, force: Array) -> None:
     shapes, table, nodal, product = tables.shapes, tables.backward, tables.nodal, tables.product
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
-        if blocks == 1:
-            _subtract_product(tables.forward, entry, width, nodal, at, force[first : first + modes])
-            continue
-        phi = table[entry : entry + width * modes].reshape(modes, width)
-        S = nodal[at : at + width * blocks].reshape(width, blocks)
-        out = product[: modes * blocks]
-        np.dot(phi, S, out.reshape(modes, blocks))
-        into = force[first : first + modes * blocks]
-        for i in range(into.size):
-            into[i] -= out[i]
+        if blocks > 1:
+            phi = table[entry : entry + width * modes].reshape(modes, width)
+            S = nodal[at : at + width * blocks].reshape(width, blocks)
+            out = product[: modes * blocks]
+            np.dot(phi, S, out.reshape(modes, blocks))
+            into = force[first : first + modes * blocks]
+            for i in range(into.size):
+                into[i] -= out[i]
+    if tables.alone[0]:
+        _alone_to_modes(tables, force)
 
 
 @kernel

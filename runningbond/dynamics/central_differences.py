@@ -199,7 +199,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
     """
 
     @kernel
-    def step(
+    def constant(
         control: int,
         steps: int,
         dt: float,
@@ -221,25 +221,15 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
         _, _, mobility = modes
         motion, velocity, history, _, force = state
         freedom, basis = restraint
-        moved, loaded, opening, slip, normal, tangential = work
+        moved, _, opening, slip, normal, tangential = work
         already, given, most = watch
         driven, carried = not plain and control == DRIVEN, not plain and control == CARRIED
         rigged = not plain and rig[0].size > 0
         response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        rises = (plain or control == HELD) and speed != 0.0
-        loaded[:] = load
-        if rises:
-            before = _dot(live, motion)
         if driven:
             for i in range(live.size):
                 response += live[i] * mobility[i] * live[i]
         for taken in range(steps):
-            if rises and taken % RISE == 0:
-                pushed = _dot(live, motion)
-                worked += multiplier * (pushed - before)
-                before, multiplier = pushed, speed * (taken + 0.5 * min(RISE, steps - taken))
-                for i in range(live.size):
-                    loaded[i] = load[i] + multiplier * live[i]
             if freedom.size:
                 _restrained(motion, freedom, basis, moved)
                 gather(moved, geometry, opening, slip)
@@ -251,9 +241,9 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
                 scatter(normal, tangential, geometry, force)
                 _project(force, freedom, basis)
                 for i in range(force.size):
-                    force[i] += loaded[i]
+                    force[i] += load[i]
             else:
-                force[:] = loaded  # twice as fast as a loop
+                force[:] = load  # twice as fast as a loop
                 scatter(normal, tangential, geometry, force)
             if not plain:
                 pull(ties, motion, force)
@@ -280,12 +270,51 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
                 worked += turned
                 rig[3][0] += turned
             due = (already + taken + 1) % LOOK == 0 and given < np.inf
-            if rises and (due or taken + 1 == steps):
-                pushed = _dot(live, motion)
-                worked += multiplier * (pushed - before)
-                before = pushed
             if due and not _is_stable(given + worked, load, modes, state, most):
                 return taken + 1, False, total, worked
         return steps, True, total, worked
+
+    @kernel
+    def step(
+        control: int,
+        steps: int,
+        dt: float,
+        local: float,
+        joint_viscosity: float,
+        load: Array,
+        live: Array,
+        speed: float,
+        geometry: Any,
+        parameters: Any,
+        modes: Modes,
+        restraint: tuple[Indices, Array],
+        ties: Any,
+        rig: Any,
+        state: StateArrays,
+        work: Work,
+        watch: Watch,
+    ) -> tuple[int, bool, float, float]:
+        arrays = (geometry, parameters, modes, restraint, ties, rig, state, work)
+        if speed == 0.0 or not (plain or control == HELD):
+            answer: tuple[int, bool, float, float] = constant(
+                control, steps, dt, local, joint_viscosity, load, live, speed, *arrays, watch
+            )
+            return answer
+        motion, loaded = state[0], work[1]
+        already, given, most = watch
+        taken, stable, worked = 0, True, 0.0
+        while stable and taken < steps:
+            piece = min(RISE, steps - taken)
+            multiplier = speed * (taken + 0.5 * piece)
+            for i in range(live.size):
+                loaded[i] = load[i] + multiplier * live[i]
+            before = multiplier * _dot(live, motion)
+            watched = (already + taken, given + worked - before, most)
+            more, stable, _, turned = constant(
+                control, piece, dt, local, joint_viscosity, loaded, live, 0.0, *arrays, watched
+            )
+            taken += more
+            worked += turned + multiplier * _dot(live, motion) - before
+        return taken, stable, 0.0, worked
 
     return step
