@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.optimize import linprog
 from scipy.sparse import block_array, csc_array, eye_array
 
 from runningbond.joints import PointStrength
@@ -20,7 +19,17 @@ from runningbond.scene import Array, Indices
 
 from .crushing import STRONGEST, Crushing, may_crush
 from .equilibrium import Equilibrium
-from .force_program import STATUS, Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
+from .force_program import (
+    STATUS,
+    Aim,
+    ForceSet,
+    ForceSolution,
+    ProgramStatus,
+    coulomb,
+    force_program,
+    solution_of,
+    solve_program,
+)
 from .interior_point import InteriorPoint, interior_point
 from .proved import CLOSE, ROUGH, WIDE, is_large, loaded
 from .repair import admissible, balanced
@@ -137,7 +146,7 @@ class InnerProgram:
 
     def vertex(self) -> ForceSolution:
         """What HiGHS finds."""
-        result = linprog(**self.arguments(), method="highs-ipm")
+        result = solve_program(self.arguments(), "highs-ipm")
         status = STATUS[int(result.status)]
         if result.x is None or status != "optimal":
             return nothing(status, int(result.nit))

@@ -6,11 +6,13 @@ which HiGHS's interior point solves several times faster than rows of friction i
 """
 
 from collections.abc import Sequence
+from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
+from threading import Thread
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from scipy.optimize import linprog
+from scipy.optimize import OptimizeResult, linprog
 from scipy.sparse import csc_array, hstack
 
 from runningbond.joints import PointStrength
@@ -23,6 +25,9 @@ Aim: TypeAlias = Literal["largest", "smallest", "zero"]
 
 ProgramStatus: TypeAlias = Literal["optimal", "budget", "infeasible", "unbounded", "numerical"]
 STATUS: dict[int, ProgramStatus] = {0: "optimal", 1: "budget", 2: "infeasible", 3: "unbounded", 4: "numerical"}
+
+LOOK = 0.5
+"""Seconds after which one who waits for a program looks up."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,10 +134,26 @@ def bounds_of(system: Equilibrium, forces: ForceSet, *, has_shear: bool) -> Arra
     return np.column_stack([low, high])
 
 
+def solve_program(program: dict[str, Any], method: str) -> OptimizeResult:
+    """What `scipy.optimize.linprog` finds, which would not look up for Ctrl-C, in a thread that is left alone then."""
+    result: Future[OptimizeResult] = Future()
+
+    def solve() -> None:
+        try:
+            result.set_result(linprog(**program, method=method))  # type: ignore[call-overload]
+        except BaseException as error:  # whoever waits is to see it
+            result.set_exception(error)
+
+    Thread(target=solve, daemon=True).start()
+    while not wait([result], LOOK).done:  # who waits for ever hears nothing on Windows
+        pass
+    return result.result()
+
+
 def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *, method: str = "") -> ForceSolution:
     """Solve `force_program`: by interior point and crossover, or by simplex where nothing is optimised."""
     method = method or ("highs-ds" if aim == "zero" else "highs-ipm")
-    result = linprog(**force_program(system, forces, aim), method=method)  # type: ignore[call-overload]
+    result = solve_program(force_program(system, forces, aim), method)
     status = STATUS[int(result.status)]
     if result.x is None or status != "optimal":
         none = np.zeros(0)

@@ -1,6 +1,7 @@
 """Walls that the interior point is asked for: exact forces and mechanism, beside HiGHS's vertex."""
 
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -231,6 +232,24 @@ def test_ctrl_c_before_anything_is_proved_is_passed_on(monkeypatch: pytest.Monke
     with pytest.raises(KeyboardInterrupt):
         limit(wall("dry"))
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_ctrl_c_does_not_wait_for_highs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It holds no lock of Python's while it solves, and looks up for nobody: it is left alone in a thread."""
+    solver, left = threading.Event(), threading.Event()
+
+    def endless(**_: Any) -> None:
+        assert threading.current_thread() is not threading.main_thread()
+        signal.raise_signal(signal.SIGINT)
+        solver.wait()
+        left.set()
+
+    system = equilibrium(wall("dry")).under_live_load()
+    monkeypatch.setattr("runningbond.limit.force_program.linprog", endless)
+    with pytest.raises(KeyboardInterrupt):
+        solve_forces(system, coulomb(system.strength))
+    assert not left.is_set()
+    solver.set()
 
 
 def test_ctrl_c_in_the_bound_of_a_model_in_motion_ends_that_too(monkeypatch: pytest.MonkeyPatch) -> None:
