@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import re
 import subprocess
 import sys
 import threading
@@ -19,9 +20,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
+from runningbond.compare.table import Sheet
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study, apart, store
 from runningbond.studies.apart import TOO_LONG, Ended, measure_apart
-from runningbond.studies.page import agreement, edges_sheet, section, write_page
+from runningbond.studies.page import LONG, agreement, edges_sheet, section, write_page
 from runningbond.studies.store import csv_text, failures, is_complete, read_csv, run_study, table_path
 from runningbond.studies.study import FAILURE, all_rows
 
@@ -275,6 +277,13 @@ def test_the_page_needs_nothing_but_its_charts(tmp_path: Path) -> None:
     assert "<h1>All <b>beams</b></h1>" in page
     assert page.count("data:image/png;base64,") == 1
     assert "http" not in page.replace("http-equiv", "")
+
+
+def test_long_tables_are_folded_and_marks_in_cells_are_read(tmp_path: Path) -> None:
+    sheets = [Sheet(title, ("answer",), [["`undecided` < 1"]] * rows) for title, rows in (("Few", 3), ("All", LONG + 1))]
+    page = write_page("beams", sheets, tmp_path, "all")[1].read_text(encoding="utf-8")
+    assert page.count("<td><code>undecided</code> &lt; 1</td>") == LONG + 4
+    assert re.findall(r"<details><summary><h3>(\w+)</h3>, (\d+) rows", page) == [("All", str(LONG + 1))]
 
 
 def test_the_table_is_one_that_others_read(tmp_path: Path) -> None:
