@@ -9,7 +9,7 @@ from runningbond.scene import Array, Scene
 from .deformed_shape import DeformedShape, Extent, outline
 from .flat import line_width
 from .joint_state import JointState
-from .style import AT_REST, STATE_COLOURS, tint
+from .style import AT_REST, CRUSHED, STATE_COLOURS, tint
 
 WIDTH, UNITS, SHADES, SEEN_AREA = 2.4, 700, 24, 30
 """Width on paper [in], whole units that it is drawn in, shades of a colour, and least gap that is filled [units²]."""
@@ -26,7 +26,8 @@ def inline_wall(scene: Scene, extent: Extent, name: str) -> str:
 def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
     """A shape within an extent, as an ``svg`` element of the class ``wall``, over its `inline_wall` of some name.
 
-    Gaps of what opens are filled, joints that slide dashed, hinges circles, and the undeformed outline is dashed.
+    Gaps of what opens are filled, joints that slide dashed, hinges circles, and crosses where joints crush. The
+    undeformed outline is dashed.
     """
     left, right, bottom, top = extent
     scale, rest = UNITS / (right - left), hexadecimal(AT_REST)
@@ -62,6 +63,10 @@ def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
         parts.append(f'<path d="{_path(lines, extent, "")}" fill="none" {look}{dashes}/>')
     for x, y in np.rint(scale * (shape.hinges - [left, top]) * [1, -1]).astype(int):
         parts.append(f'<circle cx="{x}" cy="{y}" r="{1.2 * width:.1f}" fill="#fff" stroke="#404040"/>')
+    if len(shape.crosses):
+        arm = 1.2 * width / scale * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
+        crosses = _path((shape.crosses[:, None, None] + arm).reshape(-1, 2, 2), extent, "")
+        parts.append(f'<path d="{crosses}" fill="none" stroke="{CRUSHED}" stroke-width="{width:.1f}"/>')
     return "".join([*parts, "</svg>"])
 
 

@@ -280,7 +280,8 @@ def test_the_page_needs_nothing_but_its_charts(tmp_path: Path) -> None:
 
 
 def test_long_tables_are_folded_and_marks_in_cells_are_read(tmp_path: Path) -> None:
-    sheets = [Sheet(title, ("answer",), [["`undecided` < 1"]] * rows) for title, rows in (("Few", 3), ("All", LONG + 1))]
+    sizes = {"Few": 3, "All": LONG + 1}
+    sheets = [Sheet(title, ("answer",), [["`undecided` < 1"]] * rows) for title, rows in sizes.items()]
     page = write_page("beams", sheets, tmp_path, "all")[1].read_text(encoding="utf-8")
     assert page.count("<td><code>undecided</code> &lt; 1</td>") == LONG + 4
     assert re.findall(r"<details><summary><h3>(\w+)</h3>, (\d+) rows", page) == [("All", str(LONG + 1))]
