@@ -158,3 +158,19 @@ def test_names_of_shipped_files_are_taken_by_every_system() -> None:
     devices = re.compile(r"(?i)(^|/)(con|prn|aux|nul|com\d|lpt\d)(\.[^/]*)?(/|$)")
     assert not [name for name in names if devices.search(name)]
     assert len({name.lower() for name in names}) == len(names)
+
+
+def test_the_first_load_needs_neither_a_compiler_nor_a_mesher_nor_vtk() -> None:
+    """What a browser's Python does not have: `limit` of the wall that ``new`` writes, with all of it taken away."""
+    absent = ("numba", "llvmlite", "gmsh", "skfem", "meshio", "pyvista", "vtkmodules", "matplotlib", "psutil")
+    script = f"""
+import sys
+for name in {absent}:
+    sys.modules[name] = None
+from runningbond.limit import limit
+from runningbond.scene import read_scene
+print(f"{{limit(read_scene('runningbond/commands/scene.toml')).multiplier:.4f}}")
+"""
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "0.4740\n"), done.stderr
