@@ -44,8 +44,9 @@ numfig_secnum_depth = 1
 
 html_theme = "furo"
 html_title = "runningbond"
-html_static_path = ["static"]
-html_css_files = ["site.css"]
+SHARED = "../runningbond/compare/templates"
+html_static_path = ["static", f"{SHARED}/moments.js", f"{SHARED}/walls.css"]
+html_css_files = ["walls.css", "site.css"]
 html_js_files = ["moments.js"]
 html_math_renderer = "mathml"
 html_copy_source = False

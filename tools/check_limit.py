@@ -40,7 +40,7 @@ CONTACT = 1e-4
 
 def read(folder: Path) -> tuple[Any, dict[str, Any], dict[str, np.ndarray]]:
     """Scene, record and arrays of a result folder; of the scene each part has its fields as attributes."""
-    record = json.loads((folder / "outcome.json").read_text())
+    record = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
     with np.load(io.BytesIO((folder / record["arrays"]).read_bytes())) as stored:
         arrays = dict(stored)
 

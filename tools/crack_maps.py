@@ -15,11 +15,17 @@ from runningbond.joints.law import PLASTIC_CLOSURE
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
-from runningbond.pictures.style import CHART_COLOURS
+from runningbond.pictures.charts import bare
+from runningbond.pictures.joint_state import JointState
+from runningbond.pictures.style import CHART_COLOURS, CRUSHED, STATE_COLOURS
 from runningbond.scene import Array
 
 SCALE = 12.0
-KINDS = (("slipped by 0.1 mm", 1e-4, "#e0902f"), ("opened by 0.1 mm", 1e-4, "#c1121f"), ("crushed", 9e-5, "#5a189a"))
+KINDS = (
+    ("slipped by 0.1 mm", 1e-4, STATE_COLOURS[JointState.SLIDE], (0, (1.8, 0.7))),
+    ("opened by 0.1 mm", 1e-4, STATE_COLOURS[JointState.OPEN], "solid"),
+    ("crushed", 9e-5, CRUSHED, "solid"),
+)
 """What is drawn of a joint element's points, the last above the others; crushed is beyond the strength."""
 
 
@@ -47,8 +53,10 @@ def draw(axes: Axes, seen: LastLook) -> None:
     axes.add_collection(PolyCollection(list(at[wall.mesh.triangles]), facecolor="0.86", edgecolor="0.86", lw=0.3))
     ends = at[wall.elements.nodes].reshape(-1, 2, 2, 2).mean(axis=1)
     most = seen.jumps.reshape(3, -1, len(ends)).max(axis=1)
-    for (label, least, colour), jump in zip(KINDS, most, strict=True):
-        lines = LineCollection(list(ends[jump > least]), colors=colour, lw=1.8, label=label)
+    for (label, least, colour, dashes), jump in zip(KINDS, most, strict=True):
+        lines = LineCollection(
+            list(ends[jump > least]), colors=colour, lw=2.6 if label == "crushed" else 1.8, ls=[dashes], label=label
+        )
         axes.add_collection(lines)
     axes.set_aspect("equal")
     axes.set(xlim=(-0.12, 1.12), ylim=(-0.05, 1.08))
@@ -70,8 +78,10 @@ def main(path: Path, names: list[str]) -> None:
         curves.plot(1e3 * curve[:, 0], 1e-3 * curve[:, 1], color=colour, label=f"{name}: {peak:.0f} kN")
         curves.axhline(measured, color=colour, ls="--", lw=0.8, label=f"measured peak: {measured:.0f} kN")
     curves.set(xlabel="displacement [mm]", ylabel="horizontal force [kN]", xlim=(0, None), ylim=(0, None))
-    curves.legend(fontsize=7, frameon=False)
-    figure.legend(*maps[0].get_legend_handles_labels(), loc="outside lower left", fontsize=8, ncols=3, frameon=False)
+    bare(curves)
+    key = {"fontsize": 8, "frameon": False, "ncols": 3}
+    figure.legend(*curves.get_legend_handles_labels(), loc="outside lower right", **key)
+    figure.legend(*maps[0].get_legend_handles_labels(), loc="outside lower left", **key)
     figure.savefig(path, dpi=110)
 
 

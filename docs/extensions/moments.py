@@ -1,21 +1,20 @@
 """Walls that pages show, drawn while the site is built: as they stand, as they fall, and moment by moment."""
 
-import json
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from docutils import nodes
-from jinja2 import Environment, FileSystemLoader
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 import runningbond as rb
-from runningbond.compare.page import inline_svg
+from runningbond.compare.page import inline_svg, templates
+from runningbond.pictures.deformed_shape import common_extent, undeformed_shape
 from runningbond.pictures.flat import figure_of
+from runningbond.pictures.inline import inline_wall
+from runningbond.pictures.moments import farthest_shape, moving_wall, with_moments
 
-MOMENTS, DRAWN, ROOT = 24, 0.6, Path(__file__).parents[2]
-"""Most moments, and how far the last of them is drawn, in heights of the lowest block."""
+MOMENTS, ROOT = 24, Path(__file__).parents[2]
 
 
 class Drawing(SphinxDirective):
@@ -44,42 +43,14 @@ class Moments(Drawing):
     required_arguments, optional_arguments = 2, 0
 
     def run(self) -> list[nodes.Node]:
-        """Follow the wall, and keep some moments as a drawing that `moments.js` moves."""
-        return [nodes.raw("", page(self.wall.run(self.arguments[1], states=True)), format="html")]
-
-
-def page(result: rb.Result) -> str:
-    """Drawing, curve and slider of a result with states."""
-    scene, states = result.wall.scene, result.states
-    loads = result.outcome.curve[:, 1] if scene.is_led else [state.multiplier for state in states]
-    far = np.array([np.abs(state.motion[:, :2]).max() for state in states])
-    chosen = np.unique([int(np.abs(far - x).argmin()) for x in np.linspace(far[0], far.max(), MOMENTS)])
-    factor = float(f"{DRAWN * scene.lowest_block / far.max():.1g}")
-    (x0, y0), (x1, y1) = scene.blocks.extent(scene.wall)
-    margin = 0.06 * max(x1 - x0, y1 - y0) + DRAWN * scene.lowest_block
-    blocks = [
-        {"points": " ".join(f"{x:.4g},{-y:.4g}" for x, y in scene.blocks.polygon(b)), "at": scene.blocks.centroid[b]}
-        for b in range(len(scene.blocks))
-    ]
-    moments = [
-        {
-            "load": f"{loads[i]:.4g}",
-            "far": f"{1000 * far[i]:.3g}",
-            "at": [float(f"{1000 * far[i]:.4g}"), float(f"{loads[i]:.5g}")],
-            "motion": [[float(f"{v * factor:.4g}") for v in row] for row in states[i].motion],
-        }
-        for i in chosen
-    ]
-    template = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True).get_template("moments.html")
-    return template.render(
-        result=result,
-        blocks=blocks,
-        held=scene.fixed,
-        factor=factor,
-        box=f"{x0 - margin:.4g} {-y1 - margin:.4g} {x1 - x0 + 2 * margin:.4g} {y1 - y0 + 1.5 * margin:.4g}",
-        moments=json.dumps(moments),
-        count=len(moments),
-    )
+        """Follow the wall, and keep some moments under a slider, as reports of comparisons do."""
+        result = self.wall.run(self.arguments[1], states=True)
+        outcome = with_moments(result.wall.scene, result.outcome, result.states, MOMENTS)
+        scene, name = result.wall.scene, f"wall-{self.env.new_serialno('wall')}"
+        extent = common_extent([undeformed_shape(scene), farthest_shape(scene, outcome)])
+        parts: Any = templates().get_template("parts.html").module
+        moving = parts.moments([moving_wall(scene, outcome, extent, name)])
+        return [nodes.raw("", inline_wall(scene, extent, name) + str(moving), format="html")]
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

@@ -28,9 +28,9 @@ def page_html(subject: str, parts: Sequence[str], contents: Sequence[tuple[str, 
     return templates().get_template("page.html").render(subject=subject, parts=marked, contents=contents)
 
 
-def table_html(sheet: Sheet, wrapped: bool = False) -> str:
-    """A table under its title; its cells hold sentences where it is `wrapped`."""
-    return str(_parts().table(sheet, wrapped))
+def table_html(sheet: Sheet, wrapped: bool = False, folded: bool = False) -> str:
+    """A table under its title; its cells hold sentences where `wrapped`; a click opens one that is `folded`."""
+    return str(_parts().table(sheet, wrapped, folded))
 
 
 @cache
@@ -38,11 +38,11 @@ def _parts() -> Any:
     return templates().get_template("parts.html").module
 
 
-def figure_html(path: Path) -> str:
-    """A PNG file, in the page itself."""
+def figure_html(path: Path, caption: str) -> str:
+    """A PNG file, in the page itself, over what it shows."""
     data = base64.b64encode(path.read_bytes()).decode()
-    image = Markup('<img alt="{0}" src="data:image/png;base64,{1}">').format(path.stem, data)
-    return str(Markup("<figure>{}<figcaption>{}.png</figcaption></figure>").format(image, path.stem))
+    image = '<figure><img alt="{1}" src="data:image/png;base64,{0}"><figcaption>{1}</figcaption></figure>'
+    return str(Markup(image).format(data, caption))
 
 
 def inline_svg(figure: Figure, title: str) -> Markup:

@@ -16,6 +16,7 @@ from runningbond.pictures.captions import is_force, load_symbol, multiplier_text
 from runningbond.pictures.deformed_shape import common_extent, undeformed_shape
 from runningbond.pictures.inline import inline_mechanism, inline_wall
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
+from runningbond.pictures.moments import farthest_shape, moving_wall
 from runningbond.pictures.quantities import counted
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
@@ -143,7 +144,8 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
 
     outcomes = {x.name: outcome for x in comparison.models if (outcome := comparison.outcome(name, x)) is not None}
     shapes = {model: shape for model, x in outcomes.items() if (shape := mechanism_shape(scene, x)) is not None}
-    extent = common_extent([undeformed_shape(scene), *shapes.values()])
+    moved = [x for x in outcomes.values() if len(x.moments)]
+    extent = common_extent([undeformed_shape(scene), *shapes.values(), *(farthest_shape(scene, x) for x in moved)])
     rest = f"rest-{list(comparison.scenes).index(name)}"  # a wall may have any name
     mechanisms = [
         (
@@ -168,6 +170,7 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
         "title": scene.title,
         "mechanisms": mechanisms,
         "rest": Markup(inline_wall(scene, extent, rest)),
+        "moments": [moving_wall(scene, x, extent, rest) for x in moved],
         "curve": curve,
         "heads": heads,
         "rows": rows,

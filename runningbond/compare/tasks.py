@@ -15,6 +15,7 @@ from typing import TypeAlias
 from joblib import Parallel, cpu_count, delayed, parallel_config
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
+from runningbond.pictures.moments import with_moments
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 
@@ -67,9 +68,18 @@ class Task:
                 _interruptions_kept(),
                 _ONE_AT_A_TIME,
             ):  # also in a worker with threads: gmsh and those of linear algebra are there once
-                return Answer(self.cell, run_model(self.model, self.scene, self.tolerance), key=key)
+                return Answer(self.cell, self._outcome(), key=key)
         except SceneError as reason:
             return Answer(self.cell, None, str(reason), key)
+
+    def _outcome(self) -> Outcome:
+        """The outcome, with moments of the collapse where the model follows it."""
+        if self.model.observer is None:
+            return run_model(self.model, self.scene, self.tolerance)
+        recorder = self.model.observer(self.scene, None)
+        outcome = run_model(self.model, self.scene, self.tolerance, recorder)
+        recorder.finish(outcome)
+        return with_moments(self.scene, outcome, recorder.frames)
 
     def lost(self) -> Answer:
         """The answer where processes were killed over it."""

@@ -9,6 +9,7 @@ from .stiffness import joint_stiffness, stiffness_note
 from .wall_points import (
     listed_points,
     static_law,
+    wall_caps,
     wall_cones,
     wall_inset,
     wall_points,
@@ -34,6 +35,7 @@ __all__ = [
     "point_strength",
     "static_law",
     "stiffness_note",
+    "wall_caps",
     "wall_cones",
     "wall_inset",
     "wall_points",

@@ -50,6 +50,13 @@ def wall_cones(scene: Scene, joint: Indices) -> tuple[Array, Array, Array]:
     return friction, tension, shear
 
 
+def wall_caps(scene: Scene, joint: Indices) -> tuple[Array, Array]:
+    """Compressive strength [Pa] of joints of a scene, infinite without one, and closure at it [m], two ``(n,)``."""
+    caps = [(each.compressive_strength or np.inf, each.peak_closure) for each in scene.joint_materials]
+    strength, peak = np.array(caps, dtype=float)[scene.material_of_joint[joint]].T
+    return strength, peak
+
+
 def wall_stiffness(scene: Scene, joint: Indices, *, closed: bool = False) -> tuple[Array, Array]:
     """Normal and shear stiffness per unit area of joints of a scene, two ``(n,)`` [Pa/m], as of `joint_stiffness`.
 

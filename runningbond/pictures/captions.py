@@ -13,7 +13,7 @@ from runningbond.scene import Scene
 from .deformed_shape import Extent
 from .joint_state import JointState
 from .mechanism import mechanism_warning
-from .style import AT_REST, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
+from .style import AT_REST, CRUSHED, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -141,6 +141,7 @@ def colour_key(
     states: Sequence[JointState] = tuple(STATE_COLOURS),
     colouring: Colouring = "displacement",
     dashes: Mapping[JointState, Any] | None = None,
+    crushes: bool = False,
 ) -> list[Any]:
     """What the colours of a picture stand for, and the dashes of its lines: handles of a legend."""
     from matplotlib.lines import Line2D
@@ -148,6 +149,9 @@ def colour_key(
 
     styles = dashes or dict.fromkeys(STATE_COLOURS, "solid")
     lines = [Line2D([], [], color=STATE_COLOURS[x], ls=styles[x], lw=1.5, label=STATE_NAMES[x]) for x in states]
+    if crushes:
+        style: dict[str, Any] = {"marker": "X", "ms": 4, "mfc": CRUSHED, "mec": "white", "mew": 0.3}
+        lines.append(Line2D([], [], ls="none", label=STATE_NAMES[JointState.CRUSHED], **style))
     if colouring == "course":
         return lines
     ends = ((AT_REST, "block at rest"), (FASTEST, "fastest block"))

@@ -10,7 +10,7 @@ import numpy as np
 from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Indices, Mask, Scene
 
-from .joint_state import JointState
+from .joint_state import JointState, joint_states
 from .style import AT_REST, COURSES, DRAWN, FASTEST, HELD, SEEN, STATE_COLOURS, Colouring
 
 Extent: TypeAlias = tuple[float, float, float, float]
@@ -42,6 +42,8 @@ class DeformedShape:
         λ, and the factor of displacements in the drawing.
     colouring
         How blocks are coloured.
+    crushed : (nf, 2) bool
+        Whether each joint is crushed at its ends; empty where none is.
     motion : (nb, 3) float
         Motion of each block, of which that of supports is drawn; empty where these rest.
     """
@@ -59,10 +61,14 @@ class DeformedShape:
     scale: float
     colouring: Colouring = "displacement"
     motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    crushed: Mask = field(default_factory=lambda: np.zeros((0, 2), np.bool_))
 
     @classmethod
     def of_rigid_blocks(cls, scene: Scene, motion: Array, state: Indices, multiplier: float) -> "DeformedShape":
-        """Blocks that move by ``(nb, 3)`` [m, m, rad], their joints in states ``(nj,)``; displacements made visible."""
+        """Blocks that move by ``(nb, 3)`` [m, m, rad], displacements made visible.
+
+        States are those of joints ``(nj,)`` or of their ends ``(nj, 2)``.
+        """
         blocks, joints = scene.blocks, scene.joints
         own = scene.wall[blocks.owner]
         displacement = carried(blocks, blocks.owner, blocks.vertices, motion)[own]
@@ -79,10 +85,11 @@ class DeformedShape:
             outer_edges(np.arange(len(displacement)), first),
             faces,
             moved,
-            state,
+            joint_states(state.reshape(len(faces), -1)),
             multiplier,
             visible_scale(scene, displacement),
             motion=motion,
+            crushed=crushed_ends(state),
         )
 
     @property
@@ -125,7 +132,16 @@ class DeformedShape:
         """Closed ends about which joints that open turn, where they are drawn, ``(n, 2)`` [m]."""
         closed = self.gaps.min(axis=1) < 0.5 * SEEN * self.scene.size
         turns = closed & (self.drawn_state == JointState.OPEN)
+        turns[: len(self.crushed)] &= ~self.crushed.any(axis=1)
         return np.asarray(self.placed_faces[turns, self.gaps[turns].argmin(axis=1)])
+
+    @property
+    def crosses(self) -> Array:
+        """Ends of joints that are crushed, midway between their faces where they are drawn, ``(n, 2)``."""
+        if not len(self.crushed):
+            return np.zeros((0, 2))
+        faces = self.placed_faces
+        return np.unique(((faces[:, :2] + faces[:, :1:-1]) / 2)[self.crushed], axis=0)
 
     def drawn_displacement(self, block: Indices, at: Array) -> Array:
         """How far a point ``(2,)`` [m] of some blocks ``(n,)`` is drawn to have moved, ``(2,)`` [m]."""
@@ -150,6 +166,12 @@ class DeformedShape:
             colours = np.array(AT_REST) + share[:, None] * (np.array(FASTEST) - AT_REST)
         colours[self.scene.fixed[self.block]] = HELD
         return colours
+
+
+def crushed_ends(state: Indices) -> Mask:
+    """Which ends of joints are crushed, by their states ``(nj, 2)``; empty where none is."""
+    crushed = np.asarray(state == JointState.CRUSHED)
+    return crushed if crushed.ndim == 2 and crushed.any() else np.zeros((0, 2), np.bool_)
 
 
 def undeformed_shape(scene: Scene) -> DeformedShape:

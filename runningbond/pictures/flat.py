@@ -21,7 +21,7 @@ from .mechanism import mechanism_shape
 from .numbers import block_numbers
 from .quantities import readable
 from .resultants import resultants
-from .style import DARK, EDGE, OUTLINE, STATE_COLOURS, tint
+from .style import CRUSHED, DARK, EDGE, OUTLINE, STATE_COLOURS, tint
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,6 +42,7 @@ DASHES: dict[JointState, Any] = {
 THRUST, LEGIBLE = "#7b3294", 14.0
 """Colour of the forces in joints, and how large blocks must be drawn for them [pt]."""
 
+CROSS: dict[str, Any] = {"marker": "X", "ls": "none", "mfc": CRUSHED, "mec": "white", "zorder": 6}
 HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DARK, "zorder": 5}
 
 
@@ -113,6 +114,7 @@ def paint_mechanism(axes: "Axes", shape: DeformedShape, width: float) -> None:
     for state in shape.states:
         _draw_joints(axes, shape, state, width)
     axes.plot(*shape.hinges.T, ms=2.4 * width, mew=0.5 * width, **HINGE)
+    axes.plot(*shape.crosses.T, ms=max(3.6 * width, 2.0), mew=0.3 * width, **CROSS)
 
 
 def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, Array]:
@@ -121,7 +123,7 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
 
     mechanism = mechanism_shape(scene, outcome)
     shape = mechanism or undeformed_shape(scene)
-    key = mechanism_key(shape.states, hinges=len(shape.hinges) > 0)
+    key = mechanism_key(shape.states, hinges=len(shape.hinges) > 0, crushes=len(shape.crosses) > 0)
     lines, largest = resultants(shape, outcome)
     if len(lines) and mechanism and scene.block_size > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=f"force ≤ {readable(largest, 'N')}"))
@@ -130,12 +132,12 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
     return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None), lines
 
 
-def mechanism_key(states: Sequence[JointState], *, hinges: bool) -> list[Any]:
-    """What circles, dashes and colours of a mechanism stand for: handles of a legend."""
+def mechanism_key(states: Sequence[JointState], *, hinges: bool, crushes: bool = False) -> list[Any]:
+    """What circles, crosses, dashes and colours of a mechanism stand for: handles of a legend."""
     from matplotlib.lines import Line2D
 
     circle = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if hinges else []
-    return [*circle, *colour_key(states, dashes=DASHES)]
+    return [*circle, *colour_key(states, dashes=DASHES, crushes=crushes)]
 
 
 def line_width(scene: Scene, extent: Extent, size: tuple[float, float]) -> float:

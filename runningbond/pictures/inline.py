@@ -9,7 +9,7 @@ from runningbond.scene import Array, Scene
 from .deformed_shape import DeformedShape, Extent, outline
 from .flat import line_width
 from .joint_state import JointState
-from .style import AT_REST, STATE_COLOURS, tint
+from .style import AT_REST, CRUSHED, STATE_COLOURS, tint
 
 WIDTH, UNITS, SHADES, SEEN_AREA = 2.4, 700, 24, 30
 """Width on paper [in], whole units that it is drawn in, shades of a colour, and least gap that is filled [units²]."""
@@ -26,10 +26,11 @@ def inline_wall(scene: Scene, extent: Extent, name: str) -> str:
 def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
     """A shape within an extent, as an ``svg`` element of the class ``wall``, over its `inline_wall` of some name.
 
-    Gaps of what opens are filled, joints that slide dashed, hinges circles, and the undeformed outline is dashed.
+    Gaps of what opens are filled, joints that slide dashed, hinges circles, and crosses where joints crush. The
+    undeformed outline is dashed.
     """
     left, right, bottom, top = extent
-    scale, rest = UNITS / (right - left), _hex(AT_REST)
+    scale, rest = UNITS / (right - left), hexadecimal(AT_REST)
     height = round((top - bottom) * scale)
     width = line_width(shape.scene, extent, (WIDTH, WIDTH * height / UNITS)) * UNITS / (72 * WIDTH)
     moved = np.maximum.reduceat(np.hypot(*(shape.placed - shape.points).T), shape.first[:-1]) * scale > 0.5
@@ -47,12 +48,14 @@ def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
     for k, colour in enumerate(colours[first]):
         own = [polygon for polygon, one in zip(polygons, moved * (1 + kind.ravel()), strict=True) if one == k + 1]
         if own:
-            parts.append(f'<path class="block" d="{_path(own, extent)}" fill="{_hex(colour)}"/>')
+            parts.append(f'<path class="block" d="{_path(own, extent)}" fill="{hexadecimal(colour)}"/>')
     for state in shape.states:
         faces, colour = shape.placed_faces[shape.drawn_state == state], STATE_COLOURS[state]
         across, along = faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1]
         area = np.abs(across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0]) / 2
-        parts.append(f'<path d="{_path(faces[area * scale**2 > SEEN_AREA], extent)}" fill="{_hex(tint(state))}"/>')
+        parts.append(
+            f'<path d="{_path(faces[area * scale**2 > SEEN_AREA], extent)}" fill="{hexadecimal(tint(state))}"/>'
+        )
         middle = (faces[:, :2] + faces[:, :1:-1]) / 2
         lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
         dashes = "" if state == JointState.OPEN else f' stroke-dasharray="{2.6 * width:.0f} {1.3 * width:.0f}"'
@@ -60,6 +63,10 @@ def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
         parts.append(f'<path d="{_path(lines, extent, "")}" fill="none" {look}{dashes}/>')
     for x, y in np.rint(scale * (shape.hinges - [left, top]) * [1, -1]).astype(int):
         parts.append(f'<circle cx="{x}" cy="{y}" r="{1.2 * width:.1f}" fill="#fff" stroke="#404040"/>')
+    if len(shape.crosses):
+        arm = 1.2 * width / scale * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
+        crosses = _path((shape.crosses[:, None, None] + arm).reshape(-1, 2, 2), extent, "")
+        parts.append(f'<path d="{crosses}" fill="none" stroke="{CRUSHED}" stroke-width="{width:.1f}"/>')
     return "".join([*parts, "</svg>"])
 
 
@@ -76,5 +83,6 @@ def _steps(points: Array) -> str:
     return f"{start}l{steps}".replace(" -", "-")
 
 
-def _hex(colour: Iterable[float]) -> str:
+def hexadecimal(colour: Iterable[float]) -> str:
+    """A colour as ``#rrggbb``."""
     return "#" + "".join(f"{round(255 * part):02x}" for part in colour)

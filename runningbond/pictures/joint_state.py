@@ -4,7 +4,8 @@ from enum import IntEnum
 
 import numpy as np
 
-from runningbond.joints import JointPoints, wall_cones, wall_stiffness
+from runningbond.joints import JointPoints, wall_caps, wall_cones, wall_stiffness
+from runningbond.results.mechanism import MAX_OVERLAP
 from runningbond.scene import Array, Indices, Scene
 
 VISIBLE = 0.01
@@ -17,6 +18,10 @@ AT_THE_LIMIT = 1e-3
 """Shear below the strength, relative to it, that counts as sliding."""
 
 
+CRUSHED = 0.01
+"""Plastic closure below which a joint is not said to be crushed, in elastic closures at its compressive strength."""
+
+
 class JointState(IntEnum):
     """State of a joint point; the numbers are those in files."""
 
@@ -25,9 +30,11 @@ class JointState(IntEnum):
     OPEN = 2
     DEBONDED = 3
     """Neither slides nor is open, but its bond is broken (damage 1)."""
+    CRUSHED = 4
+    """Is not open, and has been crushed: under its compressive strength it closed for good."""
 
 
-_BY_WEIGHT = (JointState.STICK, JointState.DEBONDED, JointState.SLIDE, JointState.OPEN)
+_BY_WEIGHT = (JointState.STICK, JointState.DEBONDED, JointState.SLIDE, JointState.CRUSHED, JointState.OPEN)
 """States, that with the most to show last."""
 
 
@@ -42,21 +49,31 @@ def states_of_mechanism(scene: Scene, points: JointPoints, opening: Array, slip:
 
     A joint opens if a picture shows it open. Where flow is associated, as in `limit`, a joint that slides opens by
     tan φ times its slip, and only what exceeds that is opening. Such a mechanism is recognised by its jumps: nowhere
-    does it open by less.
+    does it open by less. One with a compressive strength is crushed where its blocks overlap by more than elastic
+    joints leave in a mechanism.
     """
     dilation = wall_cones(scene, points.joint)[0] * np.abs(slip)
     associated = bool((opening >= dilation - NORMALITY).all())
     opens = opening > (dilation if associated else 0.0) + VISIBLE
     slides = np.abs(slip) > VISIBLE
-    return np.select([opens, slides], [JointState.OPEN, JointState.SLIDE], JointState.STICK)
+    crushed = np.isfinite(wall_caps(scene, points.joint)[0]) & (opening < -MAX_OVERLAP)
+    kinds = [JointState.OPEN, JointState.CRUSHED, JointState.SLIDE]
+    return np.select([opens, crushed, slides], kinds, JointState.STICK)
 
 
 def states_under_load(
-    scene: Scene, points: JointPoints, opening: Array, normal: Array, tangential: Array, damage: Array
+    scene: Scene,
+    points: JointPoints,
+    opening: Array,
+    normal: Array,
+    tangential: Array,
+    damage: Array,
+    closure: Array | float = 0.0,
 ) -> Indices:
-    """States of joint points ``(np,)`` by their jumps [m], tractions [Pa] and damage.
+    """States of joint points ``(np,)`` by their jumps [m], tractions [Pa], damage and plastic closure [m].
 
-    A point is open where it has opened farther than tension can stretch it; the joints of the scene need a stiffness.
+    A point is open where it has opened farther than tension can stretch it, and crushed where it has closed for good
+    as far as at its compressive strength, and by a part of what is elastic. Joints of the scene need a stiffness.
     """
     friction, tension, shear = wall_cones(scene, points.joint)
     stiffness, _ = wall_stiffness(scene, points.joint)
@@ -64,5 +81,7 @@ def states_under_load(
     strength = sound * shear + friction * np.maximum(0.0, sound * tension - normal)
     opens = opening > np.where(damage < 1, tension / stiffness, 0.0) * (1 + 1e-9)
     slides = np.abs(tangential) >= (1 - AT_THE_LIMIT) * strength
-    kinds = [JointState.OPEN, JointState.SLIDE, JointState.DEBONDED]
-    return np.select([opens, slides, damage >= 1], kinds, JointState.STICK)
+    cap, peak = wall_caps(scene, points.joint)
+    crushed = closure > np.maximum(peak, CRUSHED * cap / stiffness)
+    kinds = [JointState.OPEN, JointState.CRUSHED, JointState.SLIDE, JointState.DEBONDED]
+    return np.select([opens, crushed, slides, damage >= 1], kinds, JointState.STICK)

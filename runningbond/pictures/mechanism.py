@@ -10,7 +10,7 @@ from runningbond.scene import Scene
 
 from .deformed_shape import DeformedShape
 from .frame import Frame
-from .joint_state import joint_states, states_of_mechanism
+from .joint_state import states_of_mechanism
 
 
 def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
@@ -64,5 +64,4 @@ def mechanism_shape(scene: Scene, outcome: Outcome) -> DeformedShape | None:
     frame, check = mechanism_frame(scene, outcome), outcome_check(scene, outcome)
     if frame is None or check is None or not check.is_driven:
         return None
-    states = joint_states(frame.state.reshape(-1, 2))
-    return DeformedShape.of_rigid_blocks(scene, frame.motion, states, frame.multiplier)
+    return DeformedShape.of_rigid_blocks(scene, frame.motion, frame.state.reshape(-1, 2), frame.multiplier)

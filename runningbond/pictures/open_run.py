@@ -11,9 +11,11 @@ from paraview import simple
 FOLDER = Path()
 SCALE = 1.0
 FARTHEST = 1.0
+TIME = "time"
 
 AT_REST = (0.9, 0.9, 0.9)
 FASTEST = (0.5, 0.5, 0.5)
+EDGE = (0.5, 0.5, 0.5)
 STATES: dict[str, tuple[str, tuple[float, float, float]]] = {}
 
 
@@ -28,6 +30,32 @@ def moved(kind: str) -> tuple[Any, Any]:
     return series, shape
 
 
+def shown(shape: Any, height: float) -> Any:
+    """Show something at a height above the plane, in its own colours, without shades."""
+    display = simple.Show(shape, view)
+    display.Representation = "Surface"
+    display.Ambient, display.Diffuse, display.Specular = 1.0, 0.0, 0.0
+    display.Position = [0.0, 0.0, height]
+    return display
+
+
+def outlined(shape: Any, colour: tuple[float, float, float], height: float) -> None:
+    """Show the edges of blocks, which share no points."""
+    edges = simple.FeatureEdges(Input=simple.ExtractSurface(Input=shape))
+    edges.BoundaryEdges, edges.FeatureEdges, edges.NonManifoldEdges, edges.ManifoldEdges = 1, 0, 0, 0
+    display = shown(edges, height)
+    simple.ColorBy(display, None)
+    display.AmbientColor = display.DiffuseColor = list(colour)
+
+
+def key(colours: Any, title: str) -> Any:
+    """The key to some colours, its words black."""
+    bar = simple.GetScalarBar(colours, view)
+    bar.Title, bar.ComponentTitle = title, ""
+    bar.TitleColor = bar.LabelColor = [0.0, 0.0, 0.0]
+    return bar
+
+
 view = simple.GetActiveViewOrCreate("RenderView")
 view.UseColorPaletteForBackground = 0
 view.Background = [1.0, 1.0, 1.0]
@@ -35,22 +63,18 @@ view.InteractionMode = "2D"
 view.OrientationAxesVisibility = 0
 
 built, blocks = moved("blocks")
-outline = simple.Show(built, view)
-outline.Representation = "Wireframe"
-outline.AmbientColor = outline.DiffuseColor = [0.8, 0.8, 0.8]
-
-wall = simple.Show(blocks, view)
-wall.Representation = "Surface With Edges"
-wall.Position = [0.0, 0.0, 0.001]
+outlined(built, (0.8, 0.8, 0.8), 0.0)
+wall = shown(blocks, 0.001)
 simple.ColorBy(wall, ("POINTS", "displacement [m]", "Magnitude"))
-simple.GetColorTransferFunction("displacement [m]").RGBPoints = [0.0, *AT_REST, FARTHEST, *FASTEST]
+displacement = simple.GetColorTransferFunction("displacement [m]")
+displacement.ColorSpace = "RGB"
+displacement.RGBPoints = [0.0, *AT_REST, FARTHEST, *FASTEST]
 wall.SetScalarBarVisibility(view, True)
+key(displacement, "displacement [m]")
+outlined(blocks, EDGE, 0.002)
 
-_, joints = moved("joints")
-lines = simple.Show(joints, view)
-lines.Representation = "Surface With Edges"
+lines = shown(moved("joints")[1], 0.003)
 lines.LineWidth = 3.0
-lines.Position = [0.0, 0.0, 0.002]
 simple.ColorBy(lines, ("CELLS", "state"))
 states = simple.GetColorTransferFunction("state")
 states.InterpretValuesAsCategories = 1
@@ -58,8 +82,11 @@ states.AnnotationsInitialized = 1
 states.Annotations = [text for number, (name, _) in STATES.items() for text in (number, name)]
 states.IndexedColors = [part for _, colour in STATES.values() for part in colour]
 lines.SetScalarBarVisibility(view, True)
+key(states, "joints")
 
-simple.Show(simple.AnnotateTime(), view)
+clock = simple.AnnotateTime()
+clock.Format = f"{TIME} = {{time:.5g}}"
+simple.Show(clock, view).Color = [0.0, 0.0, 0.0]
 scene = simple.GetAnimationScene()
 scene.UpdateAnimationUsingDataTimeSteps()
 scene.GoToLast()

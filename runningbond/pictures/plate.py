@@ -46,8 +46,10 @@ def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> 
             show_extent(axes, extent)
             paint_mechanism(axes, shape, line_width(shape.scene, extent, (width, ratio * width)))
             _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
-    handles = mechanism_key((JointState.SLIDE, JointState.OPEN), hinges=True)
-    figure.legend(handles=handles, loc="outside lower center", ncols=5, frameon=False, fontsize=7, handlelength=1.6)
+    crushes = any(len(shape.crosses) for row in rows for shape in row.shapes)
+    handles = mechanism_key((JointState.SLIDE, JointState.OPEN), hinges=True, crushes=crushes)
+    looks = {"ncols": len(handles), "frameon": False, "fontsize": 7, "handlelength": 1.6}
+    figure.legend(handles=handles, loc="outside lower center", **looks)
     return to_png(figure, DPI)
 
 

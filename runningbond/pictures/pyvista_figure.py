@@ -38,7 +38,9 @@ def mechanism_figure(
     """Figure of an outcome's mechanism; of the undeformed wall where there is none that the loads drive."""
     mechanism = mechanism_shape(scene, outcome)
     shape = replace(mechanism or undeformed_shape(scene), colouring=colouring)
-    caption = mechanism_caption(scene, outcome, colour_key(shape.states, colouring), drawn=mechanism is not None)
+    caption = mechanism_caption(
+        scene, outcome, colour_key(shape.states, colouring, crushes=len(shape.crosses) > 0), drawn=mechanism is not None
+    )
     return _figure(shape, painter, caption, (shape,))
 
 
@@ -51,7 +53,7 @@ def frame_figure(
     load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}{unit}"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
     states = [state for state in STATE_COLOURS if any(state in one.drawn_state for one in film)]
-    key = colour_key(states, shape.colouring)
+    key = colour_key(states, shape.colouring, crushes=any(len(one.crosses) for one in film))
     return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), film)
 
 

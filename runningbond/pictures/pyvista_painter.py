@@ -9,13 +9,16 @@ from runningbond.scene import Array, Indices
 
 from .deformed_shape import DeformedShape, Extent, outline
 from .joint_state import JointState
-from .style import EDGE, OUTLINE, STATE_COLOURS, tint
+from .style import CRUSHED, EDGE, OUTLINE, STATE_COLOURS, tint
 from .vtk_safety import import_pyvista, uninterrupted_imports, vtk_errors_raised
 
 Image: TypeAlias = NDArray[np.uint8]
 
 WIDTHS = {JointState.SLIDE: 3.0, JointState.OPEN: 3.4, JointState.DEBONDED: 3.0}
 """Widths of the joints' lines, in pixels of an image of the reference's size."""
+
+CROSS = 0.09
+"""Half the width of a cross where a joint is crushed, in sides of the smaller blocks."""
 
 FINE, FAINTEST = 12.0, 0.25
 """Pixels of a block's height below which lines give way to what they lie on, and the least opacity of a joint's."""
@@ -102,6 +105,11 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
             plotter.add_mesh(gaps, color=tint(state), **flat)
             thin = {"line_width": WIDTHS[state] * width * strength, "opacity": max(strength, FAINTEST)}
             plotter.add_mesh(faces, color=colour, **thin, **flat)
+    if len(shape.crosses):
+        arm = CROSS * shape.scene.block_size * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
+        ends = (shape.crosses[:, None, None] + arm).reshape(-1, 2)
+        crosses = _lines(ends, np.arange(len(ends)).reshape(-1, 2), 8.0)
+        plotter.add_mesh(crosses, color=CRUSHED, line_width=3.4 * width, **flat)
 
 
 def _polygons(points: Array, first: Indices, height: float) -> Any:

@@ -155,9 +155,9 @@ class MotionRecorder(SeriesRecorder):
     def _frame(self, run: Run, state: State, multiplier: float) -> Frame:
         """The moment of a run."""
         wall = self.discretisation
-        opening, slip, normal_force, tangential_force, damage, _ = run.at_joints(state)
+        opening, slip, normal_force, tangential_force, damage, closure = run.at_joints(state)
         normal, tangential = np.array([normal_force, tangential_force]) / wall.points.area
-        kinds = states_under_load(wall.scene, wall.points, opening, normal, tangential, damage)
+        kinds = states_under_load(wall.scene, wall.points, opening, normal, tangential, damage, closure)
         # Where blocks may crack, the motion of whole blocks is one thing; here each piece is a block.
         motion, velocity = run.system.motion_of_bodies(state.motion), run.system.motion_of_bodies(state.velocity)
         frame = Frame(multiplier, motion, opening, slip, normal, tangential, kinds, velocity, damage)

@@ -28,7 +28,15 @@ STATE_COLOURS: dict[JointState, str] = {
     JointState.OPEN: "#d55e00",
     JointState.DEBONDED: "#000000",
 }
-STATE_NAMES = {JointState.SLIDE: "slides", JointState.OPEN: "opens", JointState.DEBONDED: "debonded"}
+CRUSHED = "#aa00e6"
+"""Colour of the crosses at ends of joints that crush, which have no line of their own."""
+
+STATE_NAMES = {
+    JointState.SLIDE: "slides",
+    JointState.OPEN: "opens",
+    JointState.DEBONDED: "debonded",
+    JointState.CRUSHED: "crushes",
+}
 
 DARK = "0.25"
 """Colour of annotations, live loads and notes."""

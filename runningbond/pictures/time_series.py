@@ -12,7 +12,7 @@ import numpy as np
 from runningbond.results.store import StoreError, write_atomically
 
 from .frame import Discretisation, Frame
-from .style import AT_REST, DRAWN, FASTEST, OUTLINE, STATE_COLOURS, STATE_NAMES
+from .style import AT_REST, CRUSHED, DRAWN, EDGE, FASTEST, OUTLINE, STATE_COLOURS, STATE_NAMES
 from .vtk_grids import DISPLACEMENT, Grid, GridBuilder
 from .vtk_safety import import_pyvista, vtk_errors_raised
 
@@ -77,9 +77,17 @@ class TimeSeries:
         from matplotlib.colors import to_rgb
 
         scale = DRAWN * self._size / self._farthest if self._farthest else 1.0
-        states = {str(int(state)): (name, to_rgb(STATE_COLOURS[state])) for state, name in STATE_NAMES.items()}
+        states = {
+            str(int(state)): (name, to_rgb(STATE_COLOURS.get(state, CRUSHED))) for state, name in STATE_NAMES.items()
+        }
         given = {"FOLDER": f"Path({str(self._folder.resolve())!r})", "SCALE": scale, "FARTHEST": self._farthest or 1.0}
-        given |= {"AT_REST": AT_REST, "FASTEST": FASTEST, "STATES": {"0": ("sticks", OUTLINE), **states}}
+        frames = list(self._frames.values())
+        seconds, shown = frames[0][0] is not None, times_shown(frames)
+        what = (
+            "t [s]" if seconds else "load" if np.allclose(shown, [load for _, load in frames], rtol=1e-3) else "moment"
+        )
+        given["TIME"] = repr(what)
+        given |= {"AT_REST": AT_REST, "FASTEST": FASTEST, "EDGE": EDGE, "STATES": {"0": ("sticks", OUTLINE), **states}}
         text = Path(__file__).with_name(MACRO).read_text(encoding="utf-8")
         for name, value in given.items():
             literal = str(value).replace("\\", r"\\")

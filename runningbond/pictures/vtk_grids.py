@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Blocks, Indices, Scene
 
-from .deformed_shape import DeformedShape, course_numbers, outer_edges, visible_scale
+from .deformed_shape import DeformedShape, course_numbers, crushed_ends, outer_edges, visible_scale
 from .frame import Discretisation, Frame
 from .joint_state import joint_states
 from .vtk_safety import import_pyvista
@@ -143,6 +143,7 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
         np.asarray(joints.cell_data["state"])[quads],
         float(blocks.field_data["multiplier"][0]),
         visible_scale(scene, displacement),
+        crushed=crushed_ends(np.asarray(joints.point_data["state"])[corners[:, :2]]),
     )
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runningbond.joints import JointPoints, wall_points
+from runningbond.joints import JointPoints, wall_caps, wall_points
 from runningbond.scene import Array, Blocks, Indices, Scene
 
 MAX_OVERLAP = 0.02
@@ -47,7 +47,7 @@ class MechanismCheck:
     scale
         Sum of the absolute values of those two [J], by which `total` is judged; inf where a support drives the motion.
     overlap
-        Largest overlap of two blocks at the ends of a joint, per motion of the fastest corner.
+        Largest overlap of two blocks at the ends of a joint that cannot crush, per motion of the fastest corner.
     """
 
     live: float | None
@@ -77,7 +77,7 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
     """Check the motion of a mechanism against the loads that are said to drive it.
 
     A velocity field of collapse satisfies ``f_live · u̇ > 0`` and ``(f_dead + λ f_live) · u̇ ≥ 0``, for the loads do the
-    work that friction dissipates, and no joint closes beyond contact.
+    work that friction and crushing dissipate, and no joint that cannot crush closes beyond contact.
 
     Parameters
     ----------
@@ -90,10 +90,12 @@ def check_mechanism(scene: Scene, motion: Array, dead: Array, live: Array, multi
     """
     motion = fastest_corner_by_one(scene.blocks, motion)
     by_dead, by_live = float(dead @ motion.ravel()), float(live @ motion.ravel())
-    opening, _ = rigid_jumps(scene.blocks, wall_points(scene), motion)
+    points = wall_points(scene)
+    opening, _ = rigid_jumps(scene.blocks, points, motion)
+    sound = np.isinf(wall_caps(scene, points.joint)[0])
     return MechanismCheck(
         by_live if multiplier and live.any() else None,
         by_dead + multiplier * by_live,
         abs(by_dead) + abs(multiplier * by_live) if scene.settlement is None else np.inf,
-        float(max(0.0, -opening.min(initial=0.0))),
+        float(max(0.0, -opening.min(initial=0.0, where=sound))),
     )

@@ -56,6 +56,11 @@ class Outcome:
         it rests (1) or falls (0). Without a curve one row at most, the collapse; not a number is what is not known.
     path_columns
         Names of the columns of `path`.
+    moments : (n nb, 3) float
+        Motions of all blocks [m, rad] since the wall was built, at some moments of its way and its fall, one after the
+        other. Empty where none were kept.
+    moment_loads : (n, 1) float
+        λ at those moments.
     fall
         Smallest load under which the wall was seen to fall, where `upper` takes in others that fell later; else None.
     """
@@ -79,6 +84,8 @@ class Outcome:
     far_pull: Array = field(default_factory=lambda: np.zeros((0, 1)))
     far_held: Array = field(default_factory=lambda: np.zeros((0, 1)))
     curve: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    moments: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    moment_loads: Array = field(default_factory=lambda: np.zeros((0, 1)))
     path: Array = field(default_factory=lambda: np.zeros((0, 0)))
     path_columns: tuple[str, ...] = ()
     fall: float | None = None
@@ -114,6 +121,7 @@ class Outcome:
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")
 FORCES = {"motion": 3, "force": 2, "pull": 1, "held": 1}
 ARRAYS = {**FORCES, **{f"far_{name}": columns for name, columns in FORCES.items()}, "curve": 2}
+ARRAYS |= {"moments": 3, "moment_loads": 1}
 """Array fields and their number of columns."""
 
 

@@ -3,10 +3,11 @@
 import html
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
 
+from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
@@ -18,6 +19,9 @@ from runningbond.results import write_atomically
 
 from .store import failures
 from .study import Edge, Rows, Study
+
+LONG = 30
+"""Rows beyond which a table is folded."""
 
 
 @dataclass(frozen=True)
@@ -119,15 +123,23 @@ def _markdown(block: Block) -> str:
 
 def _html(block: Block) -> str:
     if isinstance(block, Sheet):
-        return table_html(block, wrapped=any(len(cell) > 60 for row in block.rows for cell in row))
+        wrapped = any(len(cell) > 60 for row in block.rows for cell in row)
+        marked = replace(block, rows=[[Markup(_in_line(cell)) for cell in row] for row in block.rows])
+        return table_html(marked, wrapped, folded=len(block.rows) > LONG)
     if isinstance(block, Picture):
-        return f"{figure_html(block.path)}<p>{html.escape(block.caption)}</p>"
-    text = html.escape(block.lstrip("#").strip(), quote=False)
-    for mark, tag in ((r"\*\*", "b"), (r"\*", "i"), ("`", "code")):  # Markdown's within a line
-        text = re.sub(f"{mark}(.+?){mark}", rf"<{tag}>\1</{tag}>", text)
+        return figure_html(block.path, block.caption)
+    text = _in_line(block.lstrip("#").strip())
     level = len(block) - len(block.lstrip("#"))
     mark = f' id="{_identifier(block[3:])}"' if level == 2 else ""
     return f"<h{level}{mark}>{text}</h{level}>" if level else f"<p>{text}</p>"
+
+
+def _in_line(text: str) -> str:
+    """Markdown within a line as HTML."""
+    text = html.escape(text, quote=False)
+    for mark, tag in ((r"\*\*", "b"), (r"\*", "i"), ("`", "code")):
+        text = re.sub(f"{mark}(.+?){mark}", rf"<{tag}>\1</{tag}>", text)
+    return text
 
 
 def _identifier(head: str) -> str:

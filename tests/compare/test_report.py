@@ -1,14 +1,17 @@
 """The report of a comparison is one page that holds everything, and opens in a browser without a complaint."""
 
+import base64
 import csv
 import io
 import re
 import shutil
 import subprocess
 import xml.etree.ElementTree as ET
+import zlib
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -23,8 +26,9 @@ from runningbond.compare.report import FULL, report_html, verdict
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
 from runningbond.pictures.captions import is_force
 from runningbond.pictures.mechanism import mechanism_shape
+from runningbond.pictures.moments import MOMENTS, distances, with_moments
 from runningbond.results import Outcome, fastest_corner_by_one
-from runningbond.scene import Scene
+from runningbond.scene import Array, Scene
 from tests.walls import content, write_toml
 
 NAMES = ("limit", "dem-static", "dem-dynamic", "fem")
@@ -36,7 +40,15 @@ def outcome(scene: Scene, model: str) -> Outcome:
     low, high = scene.blocks.extent(scene.wall)
     above = scene.wall & (scene.blocks.centroid[:, 1] > low[1] + (high - low)[1] / 3) & ~scene.fixed
     motion = fastest_corner_by_one(scene.blocks, above[:, None] * np.array([1.0, 0.0, 0.0]))
-    return Outcome(scene.title, model, "collapse", 0.5, 0.4, 0.6, 100, 10, 0.1, "", motion)
+    found = Outcome(scene.title, model, "collapse", 0.5, 0.4, 0.6, 100, 10, 0.1, "", motion)
+    return found if model == "limit" else with_moments(scene, found, [State(k / 10, k * motion) for k in range(6)])
+
+
+class State(NamedTuple):
+    """A moment."""
+
+    multiplier: float
+    motion: Array
 
 
 @pytest.fixture(scope="module")
@@ -154,6 +166,41 @@ def test_a_report_has_every_chart_and_every_mechanism(page: Path, comparison: Co
     assert not any(list(drawing.iter("image")) for drawing in (*walls, *drawings(page, "chart")))
 
 
+def test_moments_of_a_collapse_are_under_a_slider(page: Path, comparison: Comparison) -> None:
+    """Motions of first corners and rotations, as the page holds them, are those of the outcome, to a step of 127."""
+    content = page.read_text(encoding="utf-8")
+    found = re.findall(r'data-of="(.*?)" data-motion="(.*?)" data-unit="(.*?)" data-said="(.*?)"', content)
+    kept = [(name, outcome) for (name, _), outcome in comparison.campaign.outcomes.items() if len(outcome.moments)]
+    assert len(found) == len(kept) == len(drawings(page, "moving wall"))
+    rest, packed, unit, said = found[0]
+    scene, (_, outcome) = comparison.scenes["panel-01"], kept[0]
+    whole = np.frombuffer(zlib.decompress(base64.b64decode(packed)), np.int8).reshape(3, 6, -1)
+    place, turn = map(float, unit.split())
+    moved = outcome.moments.reshape(6, -1, 3)[:, scene.wall]
+    assert whole.max() == 127
+    scale = 127 * place / moved.max()
+    assert np.abs(place * whole[:2].transpose(1, 2, 0) - scale * moved[..., :2] * [1, -1]).max() <= 0.51 * place
+    assert not whole[2].any()
+    assert turn > 0
+    assert said.split("|")[2] == "λ = 0.2000, farthest 2e+03 mm"
+    assert f'<path id="{rest}"' in content
+
+
+def test_an_outcome_keeps_the_first_the_last_and_the_largest_load() -> None:
+    """Of a wall that goes twice as far with every state, whose load is largest at the third."""
+    scene = published_scene("panel-01")
+    sway = np.where(scene.wall[:, None], [1e-3, 0.0, 0.0], 0.0)
+    states = [State(0.5 - 0.01 * abs(k - 3), 2**k * sway) for k in range(12)]
+    found = with_moments(scene, Outcome("", "fem", "undecided"), states)
+    assert len(found.moment_loads) <= MOMENTS + 1
+    assert len(found.moments) == len(found.moment_loads) * len(scene.blocks)
+    assert found.moment_loads[:, 0].max() == 0.5
+    far = distances(scene, found.moments.reshape(len(found.moment_loads), -1, 3))
+    assert (far[0], far[-1]) == pytest.approx((1e-3, 2.048))
+    pieces = [State(0.0, np.zeros((3, 3)))]
+    assert not len(with_moments(scene, Outcome("", "fem", "undecided"), pieces).moments)
+
+
 def test_colours_tell_how_far_an_entry_is_from_the_median(comparison: Comparison) -> None:
     """A model 15 % above the two others is coloured half as strongly as can be, a printed value far below fully."""
     outcomes = {("panel-12", "limit"): Outcome("", "limit", "collapse", 0.5 * (1 + FULL / 2))}
@@ -252,12 +299,18 @@ def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:
     """Headless Chromium: every drawing is laid out, heads take the focus and sort, the console is silent."""
     if BROWSER is None:
         pytest.skip("no Chromium on this machine")
-    probe = """<script>addEventListener("load", () => {
+    probe = """<script>addEventListener("load", () => setTimeout(() => {
+        const slider = document.querySelector(".moments input");
+        const block = document.querySelector(".moving .block:last-child");
+        const at = () => block.getBoundingClientRect().x, end = at();
+        slider.value = 0; slider.dispatchEvent(new Event("input"));
+        const moved = end > at() + 1 && slider.closest(".moments").querySelector("output").value;
         const seen = [...document.querySelectorAll("svg")].filter(one => one.getBoundingClientRect().width > 90);
         const table = document.querySelector("table"), first = () => table.tBodies[0].rows[0].cells[0].textContent;
         const before = first(), head = table.querySelector("th button");
         head.focus(); head.click(); head.click();
-        document.title = `${document.activeElement === head} ${seen.length} ${before} ${first()}`; });</script>"""
+        document.title = `${document.activeElement === head} ${seen.length} ${before} ${first()} ${moved}`;
+        }, 2000));</script>"""
     copy = page.parent / "probed.html"
     copy.write_text(page.read_text(encoding="utf-8").replace("<body>", probe + "<body>"), encoding="utf-8")
     seen = subprocess.run(
@@ -279,8 +332,8 @@ def test_a_report_opens_in_a_browser_without_a_complaint(page: Path) -> None:
         check=False,
     )
     assert seen.returncode == 0, seen.stderr
-    count = len(drawings(page, "chart")) + len(drawings(page, "wall"))
-    assert f"<title>true {count} panel-01 panel-12</title>" in seen.stdout
+    count = len(drawings(page, "chart")) + len(drawings(page, "wall")) + 2 * len(drawings(page, "moving wall"))
+    assert f"<title>true {count} panel-01 panel-12 λ = 0.0000, farthest 0 mm</title>" in seen.stdout
     assert "CONSOLE" not in seen.stderr
 
 

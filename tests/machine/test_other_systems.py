@@ -1,7 +1,9 @@
 """What Windows does not have, taken away here: locks of folders, masks of signals, limits of time. None ran this."""
 
+import ast
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -108,3 +110,67 @@ def test_a_process_that_works_too_long_ends_itself_without_limits_of_the_system(
     script = "from runningbond.studies import apart\napart.LONGEST = 1\napart.limit_time()\nwhile True: pass"
     assert without(script).returncode == 152
     assert apart.ENDED != 152
+
+
+HOUSE = [
+    path
+    for room in ("runningbond", "dem", "fem_interface", "homog", "meshing", "docs", "examples", "tools")
+    for path in (ROOT / room).rglob("*.py")
+]
+POSIX = {"fcntl", "grp", "pty", "pwd", "resource", "syslog", "termios", "tty"}
+HELD_BACK = {"O_DIRECTORY", "SIGXCPU", "pthread_sigmask"}
+"""What is asked for behind a guard, which the tests above take away."""
+
+
+def test_nothing_is_asked_for_that_only_posix_has() -> None:
+    """Modules outside a ``try``, names of `os` and `signal` that Windows lacks; text is read and written as UTF-8."""
+    lacking = {name for name in dir(os) if name in {"fork", "geteuid", "getuid", "killpg", "mkfifo", "setsid", "uname"}}
+    lacking |= {"SIGALRM", "SIGHUP", "SIGKILL", "SIGPIPE", "SIGQUIT", "SIGUSR1", "SIGUSR2", "alarm", "setitimer"}
+    found = []
+    for path in HOUSE:
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        guarded = {id(line) for node in ast.walk(tree) if isinstance(node, ast.Try) for line in node.body}
+        for node in ast.walk(tree):
+            asked: set[str] = set()
+            if isinstance(node, ast.Import) and id(node) not in guarded:
+                asked = {name.name.split(".")[0] for name in node.names} & POSIX
+            elif (
+                isinstance(node, ast.Attribute)
+                and isinstance(node.value, ast.Name)
+                and node.value.id in ("os", "signal")
+            ):
+                asked = {node.attr} & (lacking - HELD_BACK)
+            elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+                text = node.func.attr in ("read_text", "write_text") and "/proc/" not in ast.unparse(node.func)
+                if text and "encoding" not in {word.arg for word in node.keywords}:
+                    asked = {ast.unparse(node)}
+            found += [f"{path.relative_to(ROOT)}:{getattr(node, 'lineno', 0)}: {name}" for name in asked]
+    assert not found
+
+
+def test_names_of_shipped_files_are_taken_by_every_system() -> None:
+    """No character that Windows refuses, no name of one of its devices, and none that differs from another by case."""
+    kept = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=False)
+    names = [name for name in kept.stdout.decode().split("\0") if name] or [
+        path.relative_to(ROOT).as_posix() for path in HOUSE
+    ]
+    assert not [name for name in names if re.search(r'[<>:"|?*\\\x00-\x1f]|[. ](/|$)', name)]
+    devices = re.compile(r"(?i)(^|/)(con|prn|aux|nul|com\d|lpt\d)(\.[^/]*)?(/|$)")
+    assert not [name for name in names if devices.search(name)]
+    assert len({name.lower() for name in names}) == len(names)
+
+
+def test_the_first_load_needs_neither_a_compiler_nor_a_mesher_nor_vtk() -> None:
+    """What a browser's Python does not have: `limit` of the wall that ``new`` writes, with all of it taken away."""
+    absent = ("numba", "llvmlite", "gmsh", "skfem", "meshio", "pyvista", "vtkmodules", "matplotlib", "psutil")
+    script = f"""
+import sys
+for name in {absent}:
+    sys.modules[name] = None
+from runningbond.limit import limit
+from runningbond.scene import read_scene
+print(f"{{limit(read_scene('runningbond/commands/scene.toml')).multiplier:.4f}}")
+"""
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "0.4740\n"), done.stderr

@@ -14,6 +14,7 @@ from runningbond.pictures.style import (
     BEAM,
     BLOCK_COLOURS,
     CHART_COLOURS,
+    CRUSHED,
     DARK,
     DEAD,
     HELD,
@@ -42,11 +43,13 @@ MODEL_COLOURS = [model.colour for model in MODELS.values()]
 RUNGS = [rung.model.colour for rung in LADDER.values() if not rung.is_by_hand]
 TINTS = [tint(state) for state in STATE_COLOURS]
 JOINTS_DO = list(STATE_COLOURS.values())
+LINES = {"models": MODEL_COLOURS, "joints": [*JOINTS_DO, CRUSHED], "loads": [DARK, DEAD, MOTION]}
 PALETTES: dict[str, tuple[Sequence[object], float, float]] = {
     "models": (MODEL_COLOURS, 8.5, 20.0),
     "rungs of the laboratory": (RUNGS, 7.5, 7.5),
     "series": (CHART_COLOURS, 10.0, 20.0),
     "what joints do": (JOINTS_DO, 20.0, 30.0),
+    "crosses and lines": ([CRUSHED, *JOINTS_DO], 9.0, 30.0),
     "gaps of joints": (TINTS, 8.0, 10.0),
     "joints by material": (JOINT_COLOURS, 10.0, 20.0),
     "blocks by material": ([*BLOCK_COLOURS, HELD, BEAM], 3.5, 8.0),
@@ -90,7 +93,9 @@ def test_colours_are_told_apart(name: str) -> None:
     assert min(apart(colours, eyes) for eyes in EYES if eyes != "grey") >= distance
 
 
-@pytest.mark.parametrize("colours", [MODEL_COLOURS, JOINTS_DO, [DARK, DEAD, MOTION]], ids=["models", "joints", "loads"])
+@pytest.mark.parametrize(
+    "colours", [MODEL_COLOURS, [*JOINTS_DO, CRUSHED], [DARK, DEAD, MOTION]], ids=["models", "joints", "loads"]
+)
 def test_lines_stand_out_from_paper(colours: list[str]) -> None:
     """A contrast of 3 to 1 with white, as the W3C asks of what a picture needs to be understood."""
     luminance = linear(colours) @ TO_XYZ[1]

@@ -11,8 +11,13 @@ from runningbond.compare.published import published_scene
 from runningbond.joints import wall_points
 from runningbond.limit import limit
 from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.pictures.flat import figure_of
+from runningbond.pictures.frame import Discretisation
+from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import VISIBLE, JointState
 from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape, mechanism_warning, outcome_check
+from runningbond.pictures.style import CRUSHED
+from runningbond.pictures.vtk_grids import GridBuilder, shape_of_grids
 from runningbond.results import Outcome, check_mechanism
 from runningbond.results.mechanism import MAX_OVERLAP
 from runningbond.scene import Array, Scene
@@ -98,6 +103,36 @@ def test_a_joint_that_visibly_opens_is_open_however_far_it_slides() -> None:
     assert states(scene, 0.8, 0.2) == {JointState.OPEN}
     assert states(scene, 0.8, 0.5 * VISIBLE) == {JointState.SLIDE}
     assert states(scene, 0.5 * VISIBLE, 0.0) == {JointState.STICK}
+
+
+CRUSHING = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, "compressive_strength": 2e6}
+
+
+def test_ends_that_crush_are_crosses_and_no_fault() -> None:
+    """A block turns about a point a quarter of its width from its toe: its heel opens, its toe crushes the joint."""
+    scene = courses([[1]], width=0.4, height=0.8, joint=CRUSHING)
+    low, turn = scene.blocks.extent(scene.wall)[0], np.array([0.3, 0.0])
+    arm = scene.blocks.centroid[0] - low - turn
+    outcome = Outcome("", "limit", "collapse", 0.4, motion=np.array([[arm[1], -arm[0], -1.0], [0.0, 0.0, 0.0]]))
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    assert shape.state == [JointState.OPEN]
+    assert len(shape.hinges) == 0
+    toe = shape.placed[np.argmax(shape.points @ [1, -1])]
+    assert shape.crosses == pytest.approx(((toe + low + [0.4, 0.0]) / 2)[None], abs=1e-12)
+    assert mechanism_warning(scene, outcome) == ""
+    dry = courses([[1]], width=0.4, height=0.8, joint={"friction": 0.6})
+    assert "overlap" in mechanism_warning(dry, outcome)
+    key = figure_of(scene, outcome).axes[0].get_legend()
+    assert key is not None
+    assert "crushes" in [text.get_text() for text in key.get_texts()]
+    grids = GridBuilder(Discretisation.of_rigid_blocks(scene))
+    frame = mechanism_frame(scene, outcome)
+    assert frame is not None
+    read = shape_of_grids(scene, grids.blocks(frame), grids.joints(frame))
+    assert read.crosses == pytest.approx(shape.crosses, abs=1e-6)
+    seen = inline_mechanism(shape, shape.extent, "rest")
+    assert seen.count(CRUSHED) == 1
 
 
 def test_a_joint_with_associated_flow_slides_where_it_opens_by_its_dilatancy() -> None:

@@ -175,12 +175,12 @@ def test_joints_come_back_from_paraview_files(tmp_path: Path) -> None:
 
 
 def test_a_joint_is_shown_as_what_it_does_most_tellingly() -> None:
-    """Open before sliding, sliding before a spent bond, that before sticking."""
+    """Open before crushed, crushed before sliding, sliding before a spent bond, that before sticking."""
     from runningbond.pictures.vtk_grids import GridBuilder
 
     scene = courses([[1], [1]])
     frame = moved(scene)
-    order = [JointState.STICK, JointState.DEBONDED, JointState.SLIDE, JointState.OPEN]
+    order = [JointState.STICK, JointState.DEBONDED, JointState.SLIDE, JointState.CRUSHED, JointState.OPEN]
     for one in order:
         for other in order:
             state = np.array([one, other] * len(scene.joints))
@@ -326,6 +326,21 @@ def test_states_under_load_follow_the_law() -> None:
     assert state(-1e-6, -1e5, 0.5e5, 1.0) == JointState.DEBONDED
     assert state(-1e-6, -1e5, 0.6e5, 1.0) == JointState.SLIDE
     assert state(1e-7, 0.0, 0.0, 1.0) == JointState.OPEN
+
+
+CLOSING = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+
+
+def test_a_joint_is_crushed_once_it_has_closed_for_good_as_at_its_strength() -> None:
+    """2 MPa on 1e10 Pa/m, reached at a closure of 10 µm; what closed less hardens still, what opens is open."""
+    cap = {"compressive_strength": 2e6, "peak_closure": 1e-5, "compressive_fracture_energy": 1e3}
+    scene = courses([[1]], width=0.2, height=0.2, joint={**CLOSING, **cap})
+    points, one = wall_points(scene), np.ones(2)
+    closed = np.array([0.9e-5, 1.1e-5])
+    assert [*states_under_load(scene, points, -2e-4 * one, -2e6 * one, 0 * one, 0 * one, closed)] == [0, 4]
+    assert (states_under_load(scene, points, 1e-4 * one, 0 * one, 0 * one, 0 * one, closed) == JointState.OPEN).all()
+    sound = courses([[1]], width=0.2, height=0.2, joint=CLOSING)
+    assert (states_under_load(sound, points, -2e-4 * one, -2e6 * one, 0 * one, 0 * one, closed) == 0).all()
 
 
 def test_states_follow_the_cone_of_a_law_of_ones_own() -> None:

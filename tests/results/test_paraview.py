@@ -168,9 +168,10 @@ def test_the_macro_opens_the_series_that_it_lies_beside(
         assert all(path.is_file() for path in opened)
         assert simple.WarpByVector.return_value.Vectors == ["POINTS", DISPLACEMENT]
         asked = {call.args[1] for call in simple.ColorBy.call_args_list}
-        assert asked == {("POINTS", DISPLACEMENT, "Magnitude"), ("CELLS", "state")}
-        assert len(names["states"].Annotations) == 2 * len(names["STATES"]) == 8
-        assert len(names["states"].IndexedColors) == 12
+        assert asked == {("POINTS", DISPLACEMENT, "Magnitude"), ("CELLS", "state"), None}
+        assert len(names["states"].Annotations) == 2 * len(names["STATES"]) == 10
+        assert len(names["states"].IndexedColors) == 15
+        assert simple.AnnotateTime.return_value.Format == "moment = {time:.5g}"
     last = [pyvista.read(frame_files(out, kind)[-1]) for kind in ("blocks", "joints")]
     assert all(DISPLACEMENT in grid.point_data for grid in last)
     assert "state" in last[1].cell_data

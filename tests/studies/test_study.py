@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+import re
 import subprocess
 import sys
 import threading
@@ -10,7 +11,6 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from signal import SIGXCPU
 
 import numpy as np
 import psutil
@@ -19,9 +19,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
+from runningbond.compare.table import Sheet
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study, apart, store
 from runningbond.studies.apart import TOO_LONG, Ended, measure_apart
-from runningbond.studies.page import agreement, edges_sheet, section, write_page
+from runningbond.studies.page import LONG, agreement, edges_sheet, section, write_page
 from runningbond.studies.store import csv_text, failures, is_complete, read_csv, run_study, table_path
 from runningbond.studies.study import FAILURE, all_rows
 
@@ -223,7 +224,7 @@ def test_a_study_that_is_stopped_ends_its_processes() -> None:
 def test_the_system_ends_a_run_that_works_too_long() -> None:
     script = "from runningbond.studies import apart\napart.LONGEST = 1\napart.limit_time()\nwhile True: pass"
     ended = subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=False)
-    assert ended.returncode == -SIGXCPU
+    assert ended.returncode == apart.ENDED
 
 
 def test_a_run_that_takes_too_long_is_left_out_and_not_tried_again(
@@ -275,6 +276,14 @@ def test_the_page_needs_nothing_but_its_charts(tmp_path: Path) -> None:
     assert "<h1>All <b>beams</b></h1>" in page
     assert page.count("data:image/png;base64,") == 1
     assert "http" not in page.replace("http-equiv", "")
+
+
+def test_long_tables_are_folded_and_marks_in_cells_are_read(tmp_path: Path) -> None:
+    sizes = {"Few": 3, "All": LONG + 1}
+    sheets = [Sheet(title, ("answer",), [["`undecided` < 1"]] * rows) for title, rows in sizes.items()]
+    page = write_page("beams", sheets, tmp_path, "all")[1].read_text(encoding="utf-8")
+    assert page.count("<td><code>undecided</code> &lt; 1</td>") == LONG + 4
+    assert re.findall(r"<details><summary><h3>(\w+)</h3>, (\d+) rows", page) == [("All", str(LONG + 1))]
 
 
 def test_the_table_is_one_that_others_read(tmp_path: Path) -> None:

@@ -24,5 +24,5 @@ axes.set_xticks(strengths, map(str, strengths))
 axes.legend()
 
 # %%
-# At 4 MPa; crushed, blocks overlap.
+# At 4 MPa; crosses mark ends of joints that crush, where blocks overlap.
 results[2].plot()

@@ -13,10 +13,12 @@ from runningbond.compare.models import MODEL_LOOKS
 from runningbond.pictures.charts import in_units
 from runningbond.pictures.labels import Label, Spot, place_labels
 from runningbond.studies import Chart, Row, Rows
+from runningbond.studies.apart import LONGEST
 
 from .measure import REFERENCE
 from .parameters import VARIED
 from .tables import CHANGED, exponent, growth, stiffness
+from .walls import all_walls
 
 FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and the end of the axis
 RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1  # with three freedoms; apart by
@@ -78,6 +80,7 @@ def _name(axes: Axes, points: Sequence[Named]) -> None:
             "va": "center",
         }
         size: dict[str, Any] = {"fontsize": 8, "color": placed.label.colour, "annotation_clip": False}
+        size["bbox"] = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.85}  # over lines
         axes.annotate(
             placed.label.text, at, (float(placed.middle[0]), float(placed.middle[1])), **where, **size, **far
         ).set_in_layout(False)
@@ -158,19 +161,21 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
     """Processor seconds against the number of blocks, with fitted slopes."""
     axes = figure.add_subplot(xscale="log", yscale="log")
     result = growth(rows)
+    sizes = sorted({row["blocks"] for own in result.values() for row in own})
+    largest = max((all_walls()[row["wall"]].blocks for row in rows["growth"]), default=0)
     for model, own in result.items():
         (colour, marker), power = MODEL_LOOKS[model], exponent(own)
         columns = ("blocks", "cpu_s_min", "cpu_s", "cpu_s_max")
         blocks, least, middle, most = ([row[column] for row in own] for column in columns)
-        name = model if power is None else f"{model}: blocks to the power {power:.2f}"
+        name = model if power is None else f"{model}: {power:.2f}"
+        name += f"; more than {LONGEST} s beyond {max(blocks)}" if max(blocks) < largest else ""
         axes.plot(blocks, middle, marker=marker, color=colour, ms=8, lw=2, label=name)
         axes.vlines(blocks, least, most, color=colour)
-    sizes = sorted({row["blocks"] for own in result.values() for row in own})
     axes.set_xticks(sizes, [str(size) for size in sizes])
     axes.minorticks_off()
     axes.set(xlabel="blocks of a square panel, b/a = 2", ylabel="processor seconds to the collapse load")
     axes.grid(color="0.9", lw=0.7)
-    figure.legend(fontsize=10, loc="outside lower center", ncols=2)
+    figure.legend(fontsize=10, loc="outside lower center", ncols=2, title="processor seconds ∝ blocks to the power")
     if REFERENCE in result:
         ratio = axes.secondary_yaxis("right", functions=in_units(result[REFERENCE][0]["cpu_s"]))
         ratio.set_ylabel(f"times the {REFERENCE} program on {sizes[0]} blocks", color="0.35")

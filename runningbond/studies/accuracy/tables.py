@@ -84,7 +84,9 @@ def records(rows: Rows, walls: Sequence[str] | None = None) -> dict[Setting, Rec
     result = {}
     for setting, own in of_setting.items():
         certified = [row for row in own if row.get("known") == "certified" and row["model"] == "limit-nonassociated"]
-        judged = [row for row in own if row not in certified and row.get("error") is not None and row.get("ratio")]
+        judged = [
+            row for row in own if row not in certified and row.get("error") is not None and row.get("ratio") is not None
+        ]
         if judged:
             silent = [row["wall"] for row in own if row.get("value") is None]
             error, ratio = max(row["error"] for row in judged), statistics.median(row["ratio"] for row in judged)

@@ -1,0 +1,106 @@
+"""Moments of a collapse: which of them an outcome keeps, and walls that a slider in a page moves through them."""
+
+import base64
+import zlib
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from runningbond.results import Outcome
+from runningbond.results.mechanism import carried
+from runningbond.results.outcome import number
+from runningbond.scene import Array, Scene
+
+from .captions import is_force, load_symbol
+from .deformed_shape import DeformedShape, Extent
+from .flat import line_width
+from .inline import UNITS, WIDTH, hexadecimal
+from .style import AT_REST, DRAWN, FASTEST
+
+MOMENTS = 8
+"""Most moments that an outcome keeps, besides that of the largest load."""
+
+CHART = (16.0, 8.0, 296.0, 108.0)
+"""Left, top, width and height of the small chart of loads over displacements."""
+
+
+class Moment(Protocol):
+    """A wall at one moment: λ and the motions of its blocks ``(nb, 3)`` since it was built."""
+
+    @property
+    def multiplier(self) -> float: ...  # noqa: D102
+
+    @property
+    def motion(self) -> Array: ...  # noqa: D102
+
+
+def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Moment], most: int = MOMENTS) -> Outcome:
+    """The outcome with some of the states that it came by, in their order.
+
+    They are evenly apart by how far the wall has gone, in time where its ground moves, and that of the largest load.
+    None are kept where blocks have cracked into pieces that the scene does not know.
+    """
+    if not states or any(len(state.motion) != len(scene.blocks) for state in states):
+        return outcome
+    led = scene.is_led and len(outcome.curve) == len(states)
+    loads = outcome.curve[:, 1] if led else np.array([state.multiplier for state in states])
+    way = np.arange(float(len(states))) if scene.history else distances(scene, [state.motion for state in states])
+    even = [int(np.abs(way - x).argmin()) for x in np.linspace(way[0], way.max(), most)]
+    chosen = np.unique([*even, int(loads.argmax())])
+    kept = np.concatenate([states[i].motion for i in chosen])
+    return replace(outcome, moments=kept, moment_loads=loads[chosen])
+
+
+def distances(scene: Scene, motions: Sequence[Array] | Array) -> Array:
+    """How far the farthest corner of the wall has gone with each of some motions ``(nb, 3)``, ``(n,)`` [m]."""
+    blocks = scene.blocks
+    own = scene.wall[blocks.owner]
+    corners = (carried(blocks, blocks.owner[own], blocks.vertices[own], motion) for motion in motions)
+    return np.array([np.hypot(*corner.T).max() for corner in corners])
+
+
+def farthest_shape(scene: Scene, outcome: Outcome) -> DeformedShape:
+    """The wall where it has gone farthest, for the extent of all of its moments."""
+    motions = outcome.moments.reshape(len(outcome.moment_loads), -1, 3)
+    motion = motions[distances(scene, motions).argmax()]
+    return DeformedShape.of_rigid_blocks(scene, motion, np.zeros(len(scene.joints), np.int64), 0.0)
+
+
+def moving_wall(scene: Scene, outcome: Outcome, extent: Extent, name: str) -> dict[str, Any]:
+    """What the template ``moments`` draws, and ``moments.js`` moves, over the `inline_wall` of a name and extent.
+
+    Motions are of each block's first corner, in units of the drawing, and of its rotation, each a share of the largest
+    in 127 steps, moment after moment; all that deflated, in base 64.
+    """
+    left, right, bottom, top = extent
+    scale, wall = UNITS / (right - left), np.flatnonzero(scene.wall)
+    motions = outcome.moments.reshape(len(outcome.moment_loads), -1, 3)
+    far = distances(scene, motions)
+    factor = DRAWN * scene.size / (far.max() or 1.0)
+    corner = scene.blocks.vertices[scene.blocks.first[wall]]
+    moved = np.array([np.column_stack([carried(scene.blocks, wall, corner, x), x[wall, 2]]) for x in motions])
+    moved *= factor * np.array([scale, -scale, 1.0])
+    place, turn = float(np.abs(moved[..., :2]).max()) or 1.0, float(np.abs(moved[..., 2]).max()) or 1.0
+    whole = np.rint(127 * moved / [place, place, turn]).astype(np.int8)
+    height, loads = round((top - bottom) * scale), outcome.moment_loads[:, 0]
+    x, y, width, tall = CHART
+    most = float(loads.max()) if loads.max() > 0 else 1.0
+    path = zip(x + width * far / (far.max() or 1.0), y + tall * (1 - loads.clip(0) / most), strict=True)
+    symbol, unit = load_symbol(scene), " N" if is_force(scene) else ""
+    pairs = zip(loads, far, strict=True)
+    return {
+        "model": outcome.model,
+        "name": name,
+        "box": f"0 0 {UNITS} {height}",
+        "width": f"{0.5 * line_width(scene, extent, (WIDTH, WIDTH * height / UNITS)) * UNITS / (72 * WIDTH):.1f}",
+        "motion": base64.b64encode(zlib.compress(whole.transpose(2, 0, 1).tobytes(), 9)).decode(),
+        "unit": f"{place / 127:.4g} {turn / 127:.4g}",
+        "said": "|".join(f"{symbol} = {number(load)}{unit}, farthest {1000 * gone:.3g} mm" for load, gone in pairs),
+        "symbol": symbol,
+        "path": " ".join(f"{px:.0f},{py:.0f}" for px, py in path),
+        "factor": f"{factor:,.0f}" if factor >= 10 else f"{factor:.2g}",
+        "colours": f"{hexadecimal(AT_REST)} {hexadecimal(FASTEST)}",
+        "count": len(far),
+    }
