@@ -15,6 +15,7 @@ from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
 from runningbond.scene import Array, Indices, Scene
 
+from .finite_frequency import lanczos_frequency_squared
 from .rigid_system import contact_points, held_masses, system_on
 
 
@@ -40,6 +41,7 @@ class RigidContacts:
         self._rule = wall_rule(scene)
         self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
         self._scene, self._mass = scene, held_masses(scene)
+        self._frequency_squared = lanczos_frequency_squared if scene.history else bound_of_frequency_squared
         undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
         self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 
@@ -54,7 +56,7 @@ class RigidContacts:
         gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
         if not self._points:
             law = self._materials.law(contacts)
-            bound = _frequency_squared(ends, law.stiffest, law.shear_stiffness, self._mass)
+            bound = self._frequency_squared(ends, law.stiffest, law.shear_stiffness, self._mass)
             return Interface(law, contacts.area, gather_sides, scatter_sides, ends, bound)
         pairs = contacts.pairs
         law = self._materials.law(contacts, pairs, self._points)
@@ -62,7 +64,7 @@ class RigidContacts:
         # The points' consistent stiffness is not more than that of their ends alone.
         for of_ends, of_points in ((normal, law.stiffest), (shear, law.shear_stiffness)):
             of_ends[pairs] = of_points[: len(pairs), None]
-        bound = _frequency_squared(ends, normal, shear, self._mass)
+        bound = self._frequency_squared(ends, normal, shear, self._mass)
         geometry, area = along(ends, pairs, contacts.area, self._rule)
         return Interface(law, area, gather_along(gather_sides), scatter_along(scatter_sides), geometry, bound)
 
@@ -116,13 +118,13 @@ class RigidContacts:
         return 0.0
 
 
-def _frequency_squared(geometry: RigidSides, normal: Array, shear: Array, mass: Array) -> float:
+def bound_of_frequency_squared(geometry: RigidSides, normal: Array, shear: Array, mass: Array) -> float:
     """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
 
     The sides are as `gather_sides` placed them, their ends have stiffnesses ``(n,)`` [Pa/m], and the masses are modal
     ones ``(3 nb,)``.
     """
-    centroid, contact = geometry.placed.blocks[:, 2:], geometry.contact
+    centroid, contact = geometry.placed.blocks[2:].T, geometry.contact
     n = contact[:, 2:]
     t = np.column_stack([-n[:, 1], n[:, 0]])
     own = np.zeros((len(centroid), 3, 3))
