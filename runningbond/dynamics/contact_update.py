@@ -39,7 +39,9 @@ class ContactUpdate:
             return undeformed
         interface = self._search.interface_on(contacts, self._system)
         # Bodies that have flown apart have no frequency, and may meet again.
-        return replace(interface, frequency_squared=max(interface.frequency_squared, undeformed.frequency_squared))
+        closer = interface.closer and max(interface.closer, undeformed.closer or 0.0)
+        bound = max(interface.frequency_squared, undeformed.frequency_squared)
+        return replace(interface, frequency_squared=bound, closer=closer)
 
     def is_due(self, state: State) -> bool:
         """Whether the bodies have used up three quarters of the way on which no contact can have been missed."""

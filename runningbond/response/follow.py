@@ -29,7 +29,7 @@ RISE = 1e-4
 ROWS = 200
 """Rows of a response in a second, and in a record that is shorter; `follow` may be asked for fewer."""
 
-PART = 0.8
+PART = 0.9
 """Time step, in stable ones: an impact makes up or loses energy by its square."""
 
 SHAPE = 0.1

@@ -26,7 +26,7 @@ SOFT = {"normal_stiffness": 1e9, "shear_stiffness": 1e9}
 def wall(history: History | None, **changes: Any) -> Scene:
     """Four courses of two blocks."""
     size = {"wall__length": 0.48, "wall__height": 0.48, "wall__block_height": 0.12}
-    scene = panel(**size, **{f"joint__{key}": value for key, value in SOFT.items()}, **changes)
+    scene = panel(**{**size, **{f"joint__{key}": value for key, value in SOFT.items()}, **changes})
     return scene if history is None else replace(scene, load=Load(live=(history,)))
 
 
@@ -103,12 +103,15 @@ def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
 
 
 def test_deformable_blocks_follow_the_ground_as_rigid_ones() -> None:
-    """Blocks whose deformations are left out, in stiff joints; theirs have contacts at middles of sides besides."""
-    scene = wall(shaken("sine", 8.0, 0.3), block__young=1e10, block__poisson=0.2)
+    """Blocks whose deformations are left out, in stiff joints; theirs have contacts at middles of sides besides.
+
+    One block a course: drifts of two scatter by 5 % over time steps.
+    """
+    scene = wall(shaken("half-sine", 8.0, 0.3), wall__length=0.24, block__young=1e10, block__poisson=0.2)
     scene = scene.with_joint(elasticity=Stiffness(1e11, 1e11))
     rigid, deformable = respond("dem-dynamic", scene, rows=50), respond("fem", scene, rows=50, modes=3)
     assert rigid.verdict == deformable.verdict == "stands"
-    assert deformable.peak_drift == pytest.approx(rigid.peak_drift, rel=0.02)
+    assert deformable.peak_drift == pytest.approx(rigid.peak_drift, rel=0.01)
     assert deformable.unaccounted < 0.01
 
 
