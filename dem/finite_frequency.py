@@ -34,9 +34,7 @@ def frequencies_squared(sides: RigidSides, normal: Array, shear: Array, mass: Ar
 
 
 @kernel
-def _rows(
-    sides: RigidSides, normal: Array, shear: Array, root: Array, share: Array, rows: Array, own: Array
-) -> None:
+def _rows(sides: RigidSides, normal: Array, shear: Array, root: Array, share: Array, rows: Array, own: Array) -> None:
     """Opening, then slip of ends per motion of block b and of block a, in roots of stiffness and mass ``(n, 12)``.
 
     And the stiffness ``(nb, 3, 3)`` of each block against its share ``(n, 2)`` of its ends, in its masses.
