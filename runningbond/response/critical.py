@@ -21,7 +21,7 @@ from runningbond.scene import Scene
 from runningbond.scene.history import STANDARD_GRAVITY
 
 from .follow import AFTER, follow
-from .response import Response
+from .response import MISSED, Response
 from .resting import Resting
 
 START, MOST = 0.05, 50.0
@@ -29,9 +29,6 @@ START, MOST = 0.05, 50.0
 
 RATIO, BEYOND = 1.25, 2.0
 """From scale to scale; and how far beyond the first fall windows are looked for."""
-
-MISSED = 0.01
-"""Share of the energy supplied that the ledger may miss before a run is not believed."""
 
 ROWS = 50
 """Rows of a response in a second, of a search."""

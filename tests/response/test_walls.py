@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -123,3 +124,23 @@ def test_a_wall_that_falls_by_itself_is_not_shaken() -> None:
     assert response.summary()["residual_drift"] is None
     assert [len(column) for column in response.columns().values()] == [0] * len(response.columns())
     assert critical_scale(pushed, "dem-dynamic", finite_system(with_impacts(pushed)), 0.1).status == "infeasible"
+
+
+def test_a_wall_whose_energy_is_made_by_too_long_a_step_is_not_followed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At thrice the stable step it flies apart, which is no collapse."""
+    monkeypatch.setattr(import_module("runningbond.response.follow"), "PART", 3.0)
+    response = follow(resting(wall(shaken("sine", 12.0, 0.2))), 1.0)
+    assert response.verdict == "undecided"
+    assert response.time[-1] < 0.05
+    assert "more energy is missing than was supplied" in response.message
+    assert "unaccounted for: beyond 1% this is not to be relied on" in response.message
+
+
+def test_a_verdict_whose_ledger_does_not_close_says_so() -> None:
+    """A corner that bounces, for hardly any viscosity, loses more than is counted at each of its blows."""
+    housner = HousnerBlock()
+    pulse = shaken("sine", 1.6 * GRAVITY * housner.b / housner.h, 2 * math.pi / (4 * housner.p))
+    response = follow(replace(resting(block(housner.b, housner.h, pulse)), viscous=0.1), 1.0, rows=50)
+    assert response.verdict == "stands"
+    assert 0.01 < response.unaccounted < 1
+    assert f"{response.unaccounted:.1%} of the energy supplied is unaccounted for" in response.message
