@@ -109,6 +109,7 @@ def follow(
     after: float = 0.0,
     points: Array | None = None,
     rows: int = ROWS,
+    part: float | None = None,
     observe: Observer = no_observer,
 ) -> Response:
     """Follow a wall through the motion of its ground.
@@ -125,6 +126,8 @@ def follow(
         Points to follow [m], on the blocks with the nearest corners; without any the wall's upper corners.
     rows
         Rows in a second, and at least in the record.
+    part
+        Time step, in stable ones; `PART` unless given.
     observe
         Called with the run, its state and λ at the beginning and at every row.
 
@@ -136,7 +139,7 @@ def follow(
     begin, history = time.perf_counter(), rest.history
     if rest.trouble:
         return _not_shaken(rest, scale, rest.top if points is None else np.reshape(points, (-1, 2)), *rest.trouble)
-    run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=PART)
+    run = Run(replace(rest.system, live=scale * rest.system.live), local=0.0, viscous=rest.viscous, part=part or PART)
     run.led, state = True, rest.state.copy()
     ground = Ground(run, history, scale, state.time)
     log = _Log(rest, ground, state, rest.top if points is None else np.reshape(points, (-1, 2)))

@@ -144,3 +144,13 @@ def test_a_verdict_whose_ledger_does_not_close_says_so() -> None:
     assert response.verdict == "stands"
     assert 0.01 < response.unaccounted < 1
     assert f"{response.unaccounted:.1%} of the energy supplied is unaccounted for" in response.message
+
+
+def test_a_search_takes_half_the_step_where_the_ledger_does_not_close() -> None:
+    """A block on a soft joint misses more than 1 % just below its edge."""
+    housner = HousnerBlock()
+    unit = GRAVITY * housner.b / housner.h
+    scene = block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (4 * housner.p)), stiffness=1e8)
+    outcome = critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), 0.02)
+    assert (outcome.status, outcome.lower is not None) == ("collapse", True)
+    assert follow(resting(scene), outcome.lower or 0.0, rows=50).unaccounted > 0.01
