@@ -7,14 +7,15 @@ import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.rigid_sides import RigidSides, gather_sides, scatter_sides
+from runningbond.contacts.rigid_sides import RigidSides, gather_sharp, gather_sides, scatter_sides
 from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
-from runningbond.dynamics import BlockSystem, Interface, block_frequency_squared, joint_shares
+from runningbond.dynamics import BlockSystem, Interface
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
 from runningbond.scene import Array, Indices, Scene
 
+from .finite_frequency import frequencies_squared
 from .rigid_system import contact_points, held_masses, system_on
 
 
@@ -38,6 +39,7 @@ class RigidContacts:
     def __init__(self, scene: Scene) -> None:
         self.outline, self._materials = Outline.of(scene), ContactMaterials(scene)
         self._rule = wall_rule(scene)
+        self._gather = gather_sides if self.outline.radius.any() else gather_sharp
         self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
         self._scene, self._mass = scene, held_masses(scene)
         undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
@@ -54,17 +56,22 @@ class RigidContacts:
         gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
         if not self._points:
             law = self._materials.law(contacts)
-            bound = _frequency_squared(ends, law.stiffest, law.shear_stiffness, self._mass)
-            return Interface(law, contacts.area, gather_sides, scatter_sides, ends, bound)
+            frequencies = self._frequencies(ends, law.stiffest, law.shear_stiffness)
+            return Interface(law, contacts.area, self._gather, scatter_sides, ends, *frequencies)
         pairs = contacts.pairs
         law = self._materials.law(contacts, pairs, self._points)
         normal, shear = np.zeros((2, len(contacts)))
         # The points' consistent stiffness is not more than that of their ends alone.
         for of_ends, of_points in ((normal, law.stiffest), (shear, law.shear_stiffness)):
             of_ends[pairs] = of_points[: len(pairs), None]
-        bound = _frequency_squared(ends, normal, shear, self._mass)
         geometry, area = along(ends, pairs, contacts.area, self._rule)
-        return Interface(law, area, gather_along(gather_sides), scatter_along(scatter_sides), geometry, bound)
+        kernels = gather_along(self._gather), scatter_along(scatter_sides)
+        return Interface(law, area, *kernels, geometry, *self._frequencies(ends, normal, shear))
+
+    def _frequencies(self, ends: RigidSides, normal: Array, shear: Array) -> tuple[float, float | None]:
+        """The bound of the frequency, and a closer value where the ground moves."""
+        bound, closer = frequencies_squared(ends, normal, shear, self._mass)
+        return bound, closer if self._scene.history else None
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
         """A key of each point of the interface on contacts, and the end that it is or −1, two ``(np,)``."""
@@ -114,24 +121,3 @@ class RigidContacts:
     def deformation(self, motion: Array) -> float:
         """Nothing: the blocks are rigid."""
         return 0.0
-
-
-def _frequency_squared(geometry: RigidSides, normal: Array, shear: Array, mass: Array) -> float:
-    """Bound of the largest ω² [1/s²] with every contact closed, each block against its share of their stiffness.
-
-    The sides are as `gather_sides` placed them, their ends have stiffnesses ``(n,)`` [Pa/m], and the masses are modal
-    ones ``(3 nb,)``.
-    """
-    centroid, contact = geometry.placed.blocks[:, 2:], geometry.contact
-    n = contact[:, 2:]
-    t = np.column_stack([-n[:, 1], n[:, 0]])
-    own = np.zeros((len(centroid), 3, 3))
-    b, a = geometry.corners.freedom[geometry.ends[:, :2]].astype(np.int64).T // 3
-    for block, other in ((a, b), (b, a)):
-        arm = contact[:, :2] - centroid[block]
-        part = joint_shares(mass[3 * np.column_stack([block, other])], 0.5)[:, 0]
-        for direction, stiffness in ((n, normal), (t, shear)):
-            row = np.column_stack([direction, arm[:, 0] * direction[:, 1] - arm[:, 1] * direction[:, 0]])
-            np.add.at(own, block, (part * stiffness * geometry.area)[:, None, None] * row[:, :, None] * row[:, None, :])
-    movable = np.isfinite(mass[::3])
-    return float(block_frequency_squared(own[movable], mass.reshape(-1, 3)[movable]).max())

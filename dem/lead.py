@@ -58,7 +58,9 @@ class Lead:
     def goals(self) -> Array:
         """Values that are led to one after the other."""
         drive = self.scene.beam.drive if self.scene.beam else None
-        return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path) / self.metre
+        if self.scene.settlement is not None:
+            return np.array(self.scene.settlement.path)
+        return np.ones(1) if drive is None else drive.force[0] * np.array(drive.path) / self.metre
 
     @cached_property
     def elastic_step(self) -> float:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from runningbond.dynamics.lead import last_leg
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
@@ -146,7 +147,7 @@ def _arrays(outcome: Outcome, lead: Lead, run: Run) -> Outcome:
     system, states = lead.system, run.states
     value, force = np.array([(lead.value(state), lead.force(state)) for state in states]).T
     most = int(force.argmax()) if not lead.settles else len(states) - 1
-    farthest = int(value.argmax())
+    farthest = int((np.abs(value) if lead.settles else value).argmax())
     if run.fell and run.stopped is not None:
         moving = system.motion(np.append(run.stopped.last, np.zeros(system.unknowns - system.freedoms)))
     else:
@@ -185,7 +186,8 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     if formed:
         message = f"no answer: other steps change it by more than the bracket; {what}"
         return replace(outcome, lower=lower, upper=upper, message=message)
-    reached = f"{number(answers[-1])} at {outcome.curve[:, 0].max():.4g} m"
+    ended = outcome.curve[-1, 0] if lead.settles else outcome.curve[:, 0].max()
+    reached = f"{number(answers[-1])} at {ended:.4g} m"
     if lead.settles:
         message = f"no answer: the support still sheds load where its settlement ends, it bears {reached}; {what}"
         return replace(so_far, message=message)
@@ -198,7 +200,7 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
 
 def _formed(lead: Lead, curve: Array, tolerance: float) -> bool:
     """Whether a mechanism has formed: whether nothing grows, or changes, over the last part of the way."""
-    value, force = curve.T
+    value, force = (last_leg(curve) if lead.settles else curve).T
     late = value >= (1 - LAST) * value.max()
     if lead.settles:
         return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + STILL)

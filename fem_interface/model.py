@@ -184,7 +184,7 @@ def fem_pushover(
     arm = at - scene.blocks.centroid[held]
 
     def measure(motion: Array) -> tuple[float, float]:
-        cosine, sine, x, y = blocks.outline.placed(blocks.rigid(motion)).blocks[held].T
+        cosine, sine, x, y = blocks.outline.placed(blocks.rigid(motion)).blocks[:, held]
         px, py = (arm + rows @ motion).T
         control = np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py]) - at
         moved = (blocks.positions(motion)[corners] - scene.blocks.vertices) @ direction

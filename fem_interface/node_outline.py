@@ -62,7 +62,7 @@ class NodeOutline:
         mesh, blocks = self.wall.mesh, self.outline.blocks
         deformed = motion.copy()
         deformed[self.wall.rigid] = 0.0
-        cosine, sine, x, y = self.outline.placed(self.rigid(motion)).blocks[mesh.block].T
+        cosine, sine, x, y = self.outline.placed(self.rigid(motion)).blocks[:, mesh.block]
         px, py = (mesh.points - blocks.centroid[mesh.block] + self.wall.displacement(deformed)).T
         return np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py])
 

@@ -161,7 +161,9 @@ def _settlement(scene: Scene, load: Settlement) -> str:
     moving = counted(int(load.moving(scene).sum()), "support")
     parts = [f"by ({', '.join(millimetres(x) for x in load.by)})"] if any(load.by) else []
     parts += [f"turned by {minus(load.rotation_angle)}°"] if load.rotation_angle else []
-    return f"{moving} moved {' and '.join(parts)}; λ is the share of the reaction"
+    path = ", ".join(f"{share:g}" for share in load.path[:8]) + (", …" if len(load.path) > 8 else "")
+    times = "" if load.path == (1.0,) else f", {path} times that"
+    return f"{moving} moved {' and '.join(parts)}{times}; λ is the share of the reaction"
 
 
 def _assigned(scene: Scene) -> Iterator[Row]:

@@ -28,7 +28,8 @@ INTERFACE = SOFTENING | CRUSHING | {"joint.compressive_fracture_energy", "joint.
 ELASTIC = INTERFACE | {"block.young", "block.poisson"}
 
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
-EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # all of `Scene.extras` that a static model may know
+EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # of `Scene.extras` what a static model may know,
+FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follows a way
 KERNELS = 3.0  # seconds until the kernels of blocks in motion are loaded
 TOLERANCE = 0.01  # relative width of the bracket where none is asked for
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
@@ -47,7 +48,7 @@ def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
 _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(_late, "dem.dynamic", "dem_dynamic")
 _RECORDER = partial(_late, "runningbond.pictures.recording")
 _PROGRESS = partial(_late, "runningbond.pictures.progress")
-_IN_MOTION: dict[str, Any] = {"interruptible": True, "takes": EXTRAS | {"load.history"}}
+_IN_MOTION: dict[str, Any] = {"interruptible": True, "takes": FOLLOWED | {"load.history"}}
 _IN_MOTION |= {"observer": partial(_RECORDER, "motion_recorder"), "progress": partial(_PROGRESS, "MotionProgress")}
 
 _EVERY_MODEL = (
@@ -84,7 +85,7 @@ _EVERY_MODEL = (
         progress=partial(_PROGRESS, "StaticProgress"),
         interruptible=True,
         cost=Cost(0.56, 1.82, 1.55, weightless=0.72, finer=0.10),
-        takes=EXTRAS,
+        takes=FOLLOWED,
         colour="#420697",
         marker="v",
     ),

@@ -96,7 +96,7 @@ class Outline:
 
     def placed(self, motion: Array) -> Placed:
         """Blocks and arcs in space after a motion ``(3 nb,)``."""
-        placed = Placed(np.zeros((len(self.blocks), 4)), np.zeros((len(self.radius), 4)))
+        placed = Placed(np.zeros((4, len(self.blocks))), np.zeros((len(self.radius), 4)))
         place_outline(motion, self.corner_arrays, placed)
         return placed
 
@@ -106,7 +106,7 @@ class Outline:
 
     def points(self, block: Indices, at: Array, motion: Array) -> Array:
         """Points of blocks, given on the undeformed wall, after a motion ``(3 nb,)``, ``(n, 2)`` [m]."""
-        cosine, sine, x, y = self.placed(motion).blocks[block].T
+        cosine, sine, x, y = self.placed(motion).blocks[:, block]
         arm = at - self.blocks.centroid[block]
         return np.column_stack([x + cosine * arm[:, 0] - sine * arm[:, 1], y + sine * arm[:, 0] + cosine * arm[:, 1]])
 

@@ -25,6 +25,15 @@ from runningbond.scene import Array
 
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 
+QUARTER, REST = 1.57079632673412561417, 6.07710050650619224932e-11
+"""π / 2 in two parts, the first with so few digits that small multiples of it are exact (fdlibm's)."""
+
+S1, S2, S3 = -1.66666666666666324348e-01, 8.33333333332248946124e-03, -1.98412698298579493134e-04
+S4, S5, S6 = 2.75573137070700676789e-06, -2.50507602534068634195e-08, 1.58969099521155010221e-10
+C1, C2, C3 = 4.16666666666666019037e-02, -1.38888888888741095749e-03, 2.48015872894767294178e-05
+C4, C5, C6 = -2.75573143513906633035e-07, 2.08757232129817482790e-09, -1.13596475577881948265e-11
+"""Coefficients of sine and cosine up to π / 4 (fdlibm's `__kernel_sin` and `__kernel_cos`)."""
+
 
 class Corners(NamedTuple):
     """The corners of undeformed blocks, in the frame of the undeformed wall."""
@@ -38,7 +47,7 @@ class Corners(NamedTuple):
 class Placed(NamedTuple):
     """Where blocks and the arcs of their corners are in space."""
 
-    blocks: Array  # (nb, 4) cosine and sine of each block's rotation, and its centroid [m]
+    blocks: Array  # (4, nb) cosine and sine of each block's rotation, and its centroid [m]
     arcs: Array  # (nv, 4) centre of each corner's arc [m] and outward normal of the side that starts there
 
 
@@ -59,21 +68,41 @@ class RigidSides(NamedTuple):
 
 
 @kernel
+def turn(motion: Array, cosine: Array, sine: Array) -> None:
+    """Write cosines and sines ``(nb,)`` of rotations in a motion ``(3 nb,)``, to rounding.
+
+    In place of the library's: so the loop runs in vector registers.
+    """
+    for i in range(cosine.size):
+        spin = motion[3 * i + 2]
+        quarters = math.floor(spin * (2.0 / math.pi) + 0.5)
+        r = (spin - quarters * QUARTER) - quarters * REST
+        z = r * r
+        s = r + r * z * (S1 + z * (S2 + z * (S3 + z * (S4 + z * (S5 + z * S6)))))
+        c = 1.0 - (0.5 * z - z * z * (C1 + z * (C2 + z * (C3 + z * (C4 + z * (C5 + z * C6))))))
+        odd = quarters - 2.0 * math.floor(0.5 * quarters) > 0.5
+        turns = quarters - 4.0 * math.floor(0.25 * quarters)
+        along, across = (s if odd else c), (c if odd else s)
+        cosine[i] = -along if (turns > 0.5) & (turns < 2.5) else along
+        sine[i] = -across if turns > 1.5 else across
+
+
+@kernel
 def place_outline(motion: Array, corners: Corners, placed: Placed) -> None:
     """Write where blocks and arcs are after a motion ``(3 nb,)``."""
     centroid, freedom, centre, normal = corners
-    turned, arcs = placed
-    for i in range(turned.shape[0]):
-        spin = motion[3 * i + 2]
-        turned[i, 0] = math.cos(spin)
-        turned[i, 1] = math.sin(spin)
-        turned[i, 2] = centroid[i, 0] + motion[3 * i]
-        turned[i, 3] = centroid[i, 1] + motion[3 * i + 1]
-    for v in range(freedom.size):
+    blocks, arcs = placed
+    cosine, sine, x, y = blocks[0], blocks[1], blocks[2], blocks[3]
+    turn(motion, cosine, sine)
+    for i in range(x.size):
+        x[i] = centroid[i, 0] + motion[3 * i]
+        y[i] = centroid[i, 1] + motion[3 * i + 1]
+    for corner in range(freedom.size):
+        v = np.uint64(corner)
         b = freedom[v] // THREE
-        c, s = turned[b, 0], turned[b, 1]
-        arcs[v, 0] = turned[b, 2] + c * centre[v, 0] - s * centre[v, 1]
-        arcs[v, 1] = turned[b, 3] + s * centre[v, 0] + c * centre[v, 1]
+        c, s = cosine[b], sine[b]
+        arcs[v, 0] = x[b] + c * centre[v, 0] - s * centre[v, 1]
+        arcs[v, 1] = y[b] + s * centre[v, 0] + c * centre[v, 1]
         arcs[v, 2] = c * normal[v, 0] - s * normal[v, 1]
         arcs[v, 3] = s * normal[v, 0] + c * normal[v, 1]
 
@@ -103,7 +132,8 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
     place_outline(motion, corners, placed)
     freedom = corners.freedom
     arcs = placed.arcs
-    for k in range(inwards.size):
+    for row in range(inwards.size):
+        k = np.uint64(row)
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
         dx, dy = arcs[v, 0] - arcs[w, 0], arcs[v, 1] - arcs[w, 1]
         r_v, r_w = radius[v], radius[w]
@@ -154,6 +184,34 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
 
 
 @kernel
+def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
+    """As `gather_sides` where all corners are sharp: with choices in place of branches, for a third less."""
+    corners, _, straight, ends, inwards, _, _, placed, contact = geometry
+    place_outline(motion, corners, placed)
+    arcs = placed.arcs
+    for row in range(inwards.size):
+        k = np.uint64(row)
+        v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
+        x, y, sense = arcs[v, 0], arcs[v, 1], inwards[k]
+        x_w, y_w = arcs[w, 0], arcs[w, 1]
+        dx, dy = x - x_w, y - y_w
+        nx, ny, ex, ey = arcs[f, 2], arcs[f, 3], -arcs[e, 2], -arcs[e, 3]
+        along, along_e = dy * nx - dx * ny, dy * ex - dx * ey
+        on_f, on_e = sense * along, -sense * along_e
+        bears = (on_f < 0.0) & (on_e >= 0.0)
+        nx, ny = (ex if bears else nx), (ey if bears else ny)
+        away = dx * nx + dy * ny
+        beyond = on_e - straight[e] if bears else on_f - straight[f]
+        comes_out = ((on_f >= 0.0) | bears) & (away <= beyond)
+        opening[k] = 2.0 * beyond - away if comes_out else away  # `sharp_opening`
+        slip[k] = along_e if bears else along
+        contact[k, 0] = x_w if bears else x
+        contact[k, 1] = y_w if bears else y
+        contact[k, 2] = nx
+        contact[k, 3] = ny
+
+
+@kernel
 def angle(nx: float, ny: float, fx: float, fy: float) -> float:
     """Angle from one unit vector f to another n."""
     return math.atan2(fx * ny - fy * nx, fx * nx + fy * ny)
@@ -181,20 +239,24 @@ def far_arcs(
 def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force: Array) -> None:
     """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
     corners, _, _, ends, _, _, area, placed, contact = geometry
-    freedom, turned = corners.freedom, placed.blocks
-    for k in range(normal.size):
-        if normal[k] == 0.0 and tangential[k] == 0.0:
+    freedom, cx, cy = corners.freedom, placed.blocks[2], placed.blocks[3]
+    for row in range(normal.size):
+        k = np.uint64(row)
+        n, t = normal[k], tangential[k]
+        if n == 0.0 and t == 0.0:
             continue
-        v, w = ends[k, 0], ends[k, 1]
+        b, a = freedom[ends[k, 0]], freedom[ends[k, 1]]
         x, y, nx, ny = contact[k, 0], contact[k, 1], contact[k, 2], contact[k, 3]
-        pull, shear = area[k] * normal[k], area[k] * tangential[k]
+        pull, shear = area[k] * n, area[k] * t
         fx = pull * nx - shear * ny
         fy = pull * ny + shear * nx
-        b, a = freedom[v], freedom[w]
         p, q = b // THREE, a // THREE
+        # Before anything is written: what is written to might else have to be read again.
+        of_b = (x - cx[p]) * fy - (y - cy[p]) * fx
+        of_a = (x - cx[q]) * fy - (y - cy[q]) * fx
         force[b] -= fx
         force[b + ONE] -= fy
+        force[b + TWO] -= of_b
         force[a] += fx
         force[a + ONE] += fy
-        force[b + TWO] -= (x - turned[p, 2]) * fy - (y - turned[p, 3]) * fx
-        force[a + TWO] += (x - turned[q, 2]) * fy - (y - turned[q, 3]) * fx
+        force[a + TWO] += of_a

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from runningbond.scene import Array, Indices, Mask
 
+from .near import near_sides, reaches
 from .outline import FLAT, Outline, side_pair
 from .rigid_sides import Placed, RigidSides, gather_sides
 
@@ -82,7 +82,7 @@ class Contacts:
             self.inwards.copy(),
             self.tilt.copy(),
             self.area.copy(),
-            Placed(np.zeros((len(outline.blocks), 4)), np.zeros((len(outline.radius), 4))),
+            Placed(np.zeros((4, len(outline.blocks))), np.zeros((len(outline.radius), 4))),
             np.zeros((len(self), 4)),
         )
 
@@ -162,14 +162,10 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
     beside = (opening >= 0) & (along >= outline.straight[side])
     far = contacts.margin * np.where(outline.radius[v] + outline.radius[w] > 0, 1.0, FASTEST_OPENING)
     deep = np.where(beside, far, DEEP * outline.margin)
-    for end in np.flatnonzero(depth > deep):
-        sides = [
-            slice(*blocks.first[block : block + 2]) for block in blocks.owner[contacts.ends[end, 4:].astype(np.int64)]
-        ]
-        axes = np.concatenate([normals[own] for own in sides]).T
-        one, other = (corners[own] @ axes for own in sides)
-        reach = np.minimum(one.max(axis=0), other.max(axis=0)) - np.maximum(one.min(axis=0), other.min(axis=0))
-        found[end] = reach.min() < (depth[end] / 2 if opening[end] < 0 else 0.0)
+    asked = np.flatnonzero(depth > deep)
+    reach = np.empty(len(asked))
+    reaches(blocks.owner[np.column_stack([e, f])[asked]], blocks.first, corners, normals, reach)
+    found[asked] = reach < np.where(opening[asked] < 0, depth[asked] / 2, 0.0)
     return found
 
 
@@ -196,13 +192,17 @@ def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indice
     corners, arcs = outline.corners(motion), outline.placed(motion).arcs
     following = corners[blocks.successor]
     low, high = np.minimum(corners, following) - margin / 2, np.maximum(corners, following) + margin / 2
-    boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
-    e, f = shapely.STRtree(boxes).query(boxes)
-    a, b = blocks.owner[f], blocks.owner[e]
-    possible = (a < b) & ~(outline.held[a] & outline.held[b])
-    e, f = e[possible], f[possible]
-    facing = (arcs[e, 2:] * arcs[f, 2:]).sum(axis=1) < 0
-    return e[facing], f[facing]
+    of_sides, first = np.column_stack([low, high]), blocks.first
+    of_blocks = np.column_stack(
+        [np.minimum.reduceat(low, first[:-1], axis=0), np.maximum.reduceat(high, first[:-1], axis=0)]
+    )
+    arrays = (np.argsort(of_blocks[:, 0]), first, of_blocks, of_sides, np.ascontiguousarray(arcs[:, 2:]), outline.held)
+    found = np.empty((8 * len(corners), 2), dtype=np.int64)
+    if (count := near_sides(*arrays, found)) > len(found):
+        near_sides(*arrays, found := np.empty((count, 2), dtype=np.int64))
+    e, f = found[:count].T
+    order = np.argsort(e * len(corners) + f)
+    return e[order], f[order]
 
 
 def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Array) -> Array:

@@ -29,7 +29,8 @@ class ContactUpdate:
 
     def __init__(self, system: BlockSystem, search: ContactSearch) -> None:
         self._system, self._search = system, search
-        self._acceleration = self._travel((np.abs(system.dead) + np.abs(system.live)) / system.mass)
+        loads = (np.abs(system.dead) + np.abs(system.live)) / system.mass
+        self._acceleration = self._reach(loads[system.rigid], np.zeros(2))
 
     def interface_on(self, contacts: Contacts) -> Interface:
         """The interface on contacts, with a frequency no lower than that of the undeformed wall."""
@@ -38,7 +39,9 @@ class ContactUpdate:
             return undeformed
         interface = self._search.interface_on(contacts, self._system)
         # Bodies that have flown apart have no frequency, and may meet again.
-        return replace(interface, frequency_squared=max(interface.frequency_squared, undeformed.frequency_squared))
+        closer = interface.closer and max(interface.closer, undeformed.closer or 0.0)
+        bound = max(interface.frequency_squared, undeformed.frequency_squared)
+        return replace(interface, frequency_squared=bound, closer=closer)
 
     def is_due(self, state: State) -> bool:
         """Whether the bodies have used up three quarters of the way on which no contact can have been missed."""
@@ -104,16 +107,23 @@ class ContactUpdate:
 
     def _left(self, state: State) -> float:
         """How far [m] bodies may yet move before contacts that are not known of may touch."""
-        contacts, rigid = contacts_of(state), state.motion[self._system.rigid].ravel()
-        return contacts.margin / 2 - self._search.deformation(state.motion) - self._reach(rigid - contacts.motion)
+        contacts, rigid = contacts_of(state), state.motion[self._system.rigid]
+        moved = self._apart(rigid - contacts.motion.reshape(-1, 3))
+        return contacts.margin / 2 - self._search.deformation(state.motion) - moved
 
-    def _travel(self, motion: Array) -> float:
-        """At most how far any point of a body goes in a motion ``(nd,)`` [m], but for its deformation."""
-        return self._reach(motion[self._system.rigid].ravel())
+    def _travel(self, velocity: Array) -> float:
+        """At most half of how fast any two points of bodies come apart at a velocity ``(nd,)`` [m/s]."""
+        return self._apart(velocity[self._system.rigid])
 
-    def _reach(self, rigid: Array) -> float:
-        u, v, spin = rigid.reshape(-1, 3).T
-        return float((np.hypot(u, v) + np.abs(spin) * self._search.outline.reach).max())
+    def _apart(self, rigid: Array) -> float:
+        """At most half of how far any two points of bodies come apart in a motion ``(n, 3)``, but for deformation."""
+        u, v = rigid[:, 0], rigid[:, 1]
+        return self._reach(rigid, np.array([(u.max() + u.min()) / 2, (v.max() + v.min()) / 2]))
+
+    def _reach(self, rigid: Array, common: Array) -> float:
+        """At most how far any point of a body goes in a motion ``(n, 3)`` beyond what all have in common ``(2,)``."""
+        beyond = np.hypot(rigid[:, 0] - common[0], rigid[:, 1] - common[1])
+        return float((beyond + np.abs(rigid[:, 2]) * self._search.outline.reach).max())
 
 
 def _spread(interface: Interface, state: State, share: Array) -> float:

@@ -80,7 +80,9 @@ class Lead:
     def goals(self) -> Array:
         """Displacements along the first move [m], or parts of the settlement, one after the other."""
         drive = self.scene.beam.drive if self.scene.beam else None
-        return np.ones(1) if drive is None or self.settles else drive.force[0] * np.array(drive.path)
+        if self.scene.settlement is not None:
+            return np.array(self.scene.settlement.path)
+        return np.ones(1) if drive is None else drive.force[0] * np.array(drive.path)
 
     @property
     def beam(self) -> int:
@@ -177,12 +179,14 @@ class Lead:
         self.note(way, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
         pace = _pace(2 * SOFT)
         steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
-        shares = np.linspace(0.0, 1.0, STAGES + 1) ** 2  # small at first, where reactions change most
-        for before, settled in pairwise(shares.tolist()):
+        # Small at first on each leg, where reactions change most.
+        shares, legs = np.linspace(0.0, 1.0, STAGES + 1) ** 2, pairwise([0.0, *self.goals.tolist()])
+        stages = [0.0, *(at + (goal - at) * share for at, goal in legs if goal != at for share in shares.tolist()[1:])]
+        for number, (before, settled) in enumerate(pairwise(stages), start=2):
             for part in pace.tolist():
                 self.share(state, (settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
             state.velocity[motion != 0] = 0.0
-            rest = self.criteria.rest if settled == 1 else NEARLY_AT_REST
+            rest = self.criteria.rest if number == len(stages) else NEARLY_AT_REST
             way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
             way.motion = state.motion - self.start.motion
             if way.verdict != "stable":
@@ -191,6 +195,13 @@ class Lead:
             self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)
+
+
+def last_leg(curve: Array) -> Array:
+    """The rows of a way's curve ``(n, 2)`` since it last turned round, its displacement counted from there."""
+    ways = np.sign(np.diff(curve[:, 0]))
+    start = int(np.flatnonzero(ways != ways[-1])[-1]) + 1 if (ways != ways[-1:]).any() else 0
+    return np.column_stack([np.abs(curve[start:, 0] - curve[start, 0]), curve[start:, 1]])
 
 
 def failing(curve: Array) -> int:

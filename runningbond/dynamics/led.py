@@ -18,7 +18,7 @@ from runningbond.results.reactions import AT_REST, WORKS
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, settle
-from .lead import BEAM, Lead, Way
+from .lead import BEAM, Lead, Way, last_leg
 from .run import CALMING, Observer, Run, Unstable
 from .state import State
 
@@ -187,7 +187,7 @@ def formed(curve: Array, tolerance: float, least: float | None = None) -> bool:
     least
         Smallest force that matters, of one that is not to change at all.
     """
-    value, force = curve.T
+    value, force = (curve if least is None else last_leg(curve)).T
     late = value >= (1 - LAST) * value.max()
     if least is not None:
         return bool(np.ptp(force[late]) <= tolerance * max(float(np.abs(force[late]).max()), least))

@@ -77,7 +77,7 @@ class Run:
     local
         Local damping α: each freedom is resisted by α times its unbalanced force.
     viscous
-        Damping ratio of the stiffness-proportional viscosity of the joints, at the highest frequency.
+        Damping ratio of the stiffness-proportional viscosity of the joints, at the bound of the highest frequency.
     dt
         Time step [s]; where none is given a part of the stable one.
     part
@@ -105,10 +105,13 @@ class Run:
     def _take_up(self, interface: Interface, contacts: Contacts | None) -> None:
         """Go on with an interface, on contacts."""
         self.interface, self._contacts = interface, contacts
-        square = self.system.ties.frequency_squared(interface.frequency_squared, self.system.mass)
-        self.safe_step = stable_step(square, self.viscous, self.local)
+        bound, closer = (
+            self.system.ties.frequency_squared(square, self.system.mass)
+            for square in (interface.frequency_squared, interface.closer or interface.frequency_squared)
+        )
+        self.safe_step = stable_step(closer, self.viscous * math.sqrt(closer / bound), self.local)
         self.dt = self._given_step or self._part * self.safe_step
-        self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
+        self._viscosity = 2 * self.viscous / math.sqrt(bound) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
         self._step = {plain: stepper(*kernels, plain) for plain in (True, False)}
         self._plain = not len(self.system.ties) and self.system.rig is None

@@ -61,6 +61,7 @@ class Interface:
     geometry: NamedTuple  # the arrays that the two kernels share: a named tuple of the kernels' module
     # largest ω² [1/s²] of any body against its share of its joints: an upper bound of the system's
     frequency_squared: float
+    closer: float | None = None  # the system's own, where known to a hundredth: time steps go by it
 
     def jumps(self, motion: Array) -> tuple[Array, Array]:
         """Opening and slip of the points after a motion ``(nd,)``, ``(np,)`` each [m]."""

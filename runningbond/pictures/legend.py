@@ -128,12 +128,13 @@ def _loads(scene: Scene) -> list[Any]:
 
     look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
     path = scene.beam.drive.path if scene.beam and scene.beam.drive else ()
+    moves = ", ".join(minus(1e3 * u) for u in path[:8]) + (", …" if len(path) > 8 else "")
     has_live = scene.settlement is None and not path
     kinds = {
         "dead load": (DEAD, bool(scene.load.dead)),
         "live load P, which grows": (DARK, has_live and is_force(scene)),
         "live load, times λ": (DARK, has_live and bool(scene.load.dead) and not is_force(scene)),
-        _wrapped(f"given displacement: {', '.join(minus(1e3 * u) for u in path)} mm"): (MOTION, bool(path)),
+        _wrapped(f"given displacement: {moves} mm"): (MOTION, bool(path)),
     }
     return [
         Line2D([0, 1], [0, 0], color=colour, mfc="white" if colour == DEAD else colour, label=name, **look)

@@ -20,8 +20,8 @@ from runningbond.results.reactions import AT_REST
 from runningbond.scene import Scene
 from runningbond.scene.history import STANDARD_GRAVITY
 
-from .follow import AFTER, follow
-from .response import Response
+from .follow import AFTER, PART, follow
+from .response import MISSED, Response
 from .resting import Resting
 
 START, MOST = 0.05, 50.0
@@ -29,9 +29,6 @@ START, MOST = 0.05, 50.0
 
 RATIO, BEYOND = 1.25, 2.0
 """From scale to scale; and how far beyond the first fall windows are looked for."""
-
-MISSED = 0.01
-"""Share of the energy supplied that the ledger may miss before a run is not believed."""
 
 ROWS = 50
 """Rows of a response in a second, of a search."""
@@ -97,7 +94,7 @@ def critical_scale(
     outcome = replace(outcome, seconds=time.perf_counter() - start)
     if rest.trouble:
         return replace(outcome, status=rest.trouble[0], message=rest.trouble[1])
-    search, stopped = Search(lambda scale: follow(rest, scale, rows=ROWS, observe=observe), {}), False
+    search, stopped = Search(lambda scale: _accounted(rest, scale, observe), {}), False
     unit = STANDARD_GRAVITY / float(np.hypot(*rest.history.peak))
     try:
         _bracket(search, START * unit, MOST * unit, tolerance)
@@ -110,6 +107,15 @@ def critical_scale(
             follow(rest, outcome.upper, after=AFTER, rows=ROWS, observe=observe)
     message = "; ".join(filter(None, (outcome.message, note)))
     return replace(outcome, message=message, seconds=seconds)
+
+
+def _accounted(rest: Resting, scale: float, observe: Observer) -> Response:
+    """The response at a scale; of half the step, which misses about a third, where the first misses too much energy."""
+    response = follow(rest, scale, rows=ROWS, observe=observe)
+    if response.unaccounted <= MISSED:
+        return response
+    again = follow(rest, scale, rows=ROWS, part=PART / 2, observe=observe)
+    return replace(again, steps=again.steps + response.steps)
 
 
 def _bracket(search: Search, scale: float, most: float, tolerance: float) -> None:

@@ -16,6 +16,9 @@ ENERGIES = ("input", "weight", "kinetic", "stored", "friction", "damped")
 """Works of the ground's motion, in its frame, and of the dead load; energies; what is spent on friction and crushing
 or cracking, and on impacts and damping [J]."""
 
+MISSED = 0.01
+"""Share of the energy supplied that the ledger may miss before a run is not believed."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Response:

@@ -11,6 +11,7 @@ from .arrays import Array, Indices
 from .blocks import Blocks
 from .errors import SceneError
 from .forces import Forces
+from .protocol import read_protocol
 from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, NotNegative, Positive, Range, check_numbers, one_of, vector
 from .supports import NO_PINS, Pins
 from .table import Table
@@ -178,9 +179,12 @@ def read_beam(table: Table, joint_names: Sequence[str]) -> Beam:
 
 def _read_drive(table: Table) -> Drive:
     at, path = table.optional_number("at", Range()), table.value("displacement")
-    if (path is None) == ("force" not in table):
-        raise SceneError(table.name, "must have one of force and displacement")
-    if path is None:
+    to_and_fro = read_protocol(table)
+    if (path is not None) + (to_and_fro is not None) + ("force" in table) != 1:
+        raise SceneError(table.name, "must have one of force, displacement and amplitudes")
+    if to_and_fro is not None:
+        drive = Drive.along(to_and_fro, at, table.optional_number("rate", ABOVE_ZERO))
+    elif path is None:
         drive = Drive(table.vector("force"), at)
     else:
         if isinstance(path, list) and len(path) == 1 and isinstance(path[0], list) and path[0]:

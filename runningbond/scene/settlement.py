@@ -13,6 +13,7 @@ from .actions import Action
 from .arrays import Array, Mask
 from .errors import SceneError
 from .forces import Arrow, Forces
+from .protocol import read_protocol, turning_points
 from .ranges import Range, vector
 from .table import Table
 
@@ -37,12 +38,15 @@ class Settlement(Action):
         Rotation [degrees] at λ = 1, counter-clockwise.
     about
         Point about which it turns [m]; None is the middle of the box.
+    path
+        Multiples of all that which the support is taken to, one after the other.
     """
 
     box: tuple[tuple[float, float], tuple[float, float]]
     by: tuple[float, float] = (0.0, 0.0)
     rotation_angle: float = 0.0
     about: tuple[float, float] | None = None
+    path: tuple[float, ...] = (1.0,)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "box", read_box("load.live.box", self.box))
@@ -51,6 +55,7 @@ class Settlement(Action):
         object.__setattr__(self, "rotation_angle", angle)
         if self.about is not None:
             object.__setattr__(self, "about", vector("load.live.about", self.about))
+        object.__setattr__(self, "path", turning_points("load.live.path", self.path))
         if not any(self.by) and not self.rotation_angle:
             raise SceneError("load.live.by", "must move the support, or rotation_angle must turn it", list(self.by))
 
@@ -61,7 +66,10 @@ class Settlement(Action):
         by = table.vector("by") if "by" in table or "rotation_angle" not in table else (0.0, 0.0)
         angle = table.optional_number("rotation_angle", Range())
         about = table.vector("about") if "about" in table else None
-        return cls(box, by, angle or 0.0, about)
+        path, to_and_fro = table.value("path"), read_protocol(table)
+        if path is not None and to_and_fro is not None:
+            raise SceneError(table.name, "must have one of path and amplitudes, not both")
+        return cls(box, by, angle or 0.0, about, to_and_fro or ((1.0,) if path is None else path))
 
     def forces(self, scene: "Scene") -> Forces:
         """None: it moves the ground."""

@@ -184,6 +184,7 @@ class Scene:
             "beam.drive.displacement": len(path) == 1,
             "beam.drive.displacement, cyclic": len(path) > 1,
             "load.live settlement": self.settlement is not None,
+            "load.live settlement, along a path": self.settlement is not None and self.settlement.path != (1.0,),
             KEY: self.history is not None,
         }
         return tuple(key for key, there in given.items() if there)

@@ -1,11 +1,13 @@
 """Walls whose beam or supports are led through displacements: closed forms, loops, mirrors and honest answers."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from dem.dynamic import dem_dynamic
 from dem.pushover import LoadPath, StaticState
 from dem.relaxation import Rest
 from dem.static import dem_static
@@ -228,6 +230,19 @@ def test_portal_whose_pier_settles_hangs_its_lintel_between_two_edges() -> None:
     assert motion[2, 2] == pytest.approx(-0.5, rel=2e-3)
     assert motion[2, 1] == pytest.approx(-0.375, rel=2e-3)
     assert motion[3] == pytest.approx([0.0, -1.0, 0.0], abs=2e-3)
+
+
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic])
+@pytest.mark.parametrize(("path", "lever"), [((1.0, -1.0), 0.625), ((-1.0, 0.5, 1.0), 0.375)])
+def test_portal_whose_pier_goes_to_and_fro_ends_as_if_it_had_gone_there_at_once(
+    model: Callable[[Scene], Outcome], path: tuple[float, ...], lever: float
+) -> None:
+    """Where the pier rises, the lintel bears on its inner edge and the other's outer one: R 2 = W 1.25."""
+    outcome = model(wall(PORTAL, replace(ground_moves(1.8, 3.0, (0.0, -0.01)), path=path)))
+    check(outcome, (lever + 1) / 3, rel=1e-6 if model is dem_static else 1e-3)
+    assert outcome.curve[:, 0].max() == pytest.approx(0.01 * max(path))
+    assert outcome.curve[:, 0].min() == pytest.approx(0.01 * min(path))
+    assert outcome.curve[-1, 0] == pytest.approx(0.01 * path[-1])
 
 
 def test_block_over_a_cut_in_its_ground_leans_on_what_stays() -> None:

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -26,7 +27,7 @@ SOFT = {"normal_stiffness": 1e9, "shear_stiffness": 1e9}
 def wall(history: History | None, **changes: Any) -> Scene:
     """Four courses of two blocks."""
     size = {"wall__length": 0.48, "wall__height": 0.48, "wall__block_height": 0.12}
-    scene = panel(**size, **{f"joint__{key}": value for key, value in SOFT.items()}, **changes)
+    scene = panel(**{**size, **{f"joint__{key}": value for key, value in SOFT.items()}, **changes})
     return scene if history is None else replace(scene, load=Load(live=(history,)))
 
 
@@ -103,12 +104,15 @@ def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
 
 
 def test_deformable_blocks_follow_the_ground_as_rigid_ones() -> None:
-    """Blocks whose deformations are left out, in stiff joints; theirs have contacts at middles of sides besides."""
-    scene = wall(shaken("sine", 8.0, 0.3), block__young=1e10, block__poisson=0.2)
+    """Blocks whose deformations are left out, in stiff joints; theirs have contacts at middles of sides besides.
+
+    One block a course: drifts of two scatter by 5 % over time steps.
+    """
+    scene = wall(shaken("half-sine", 8.0, 0.3), wall__length=0.24, block__young=1e10, block__poisson=0.2)
     scene = scene.with_joint(elasticity=Stiffness(1e11, 1e11))
     rigid, deformable = respond("dem-dynamic", scene, rows=50), respond("fem", scene, rows=50, modes=3)
     assert rigid.verdict == deformable.verdict == "stands"
-    assert deformable.peak_drift == pytest.approx(rigid.peak_drift, rel=0.02)
+    assert deformable.peak_drift == pytest.approx(rigid.peak_drift, rel=0.01)
     assert deformable.unaccounted < 0.01
 
 
@@ -120,3 +124,33 @@ def test_a_wall_that_falls_by_itself_is_not_shaken() -> None:
     assert response.summary()["residual_drift"] is None
     assert [len(column) for column in response.columns().values()] == [0] * len(response.columns())
     assert critical_scale(pushed, "dem-dynamic", finite_system(with_impacts(pushed)), 0.1).status == "infeasible"
+
+
+def test_a_wall_whose_energy_is_made_by_too_long_a_step_is_not_followed_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At thrice the stable step it flies apart, which is no collapse."""
+    monkeypatch.setattr(import_module("runningbond.response.follow"), "PART", 3.0)
+    response = follow(resting(wall(shaken("sine", 12.0, 0.2))), 1.0)
+    assert response.verdict == "undecided"
+    assert response.time[-1] < 0.05
+    assert "more energy is missing than was supplied" in response.message
+    assert "unaccounted for: beyond 1% this is not to be relied on" in response.message
+
+
+def test_a_verdict_whose_ledger_does_not_close_says_so() -> None:
+    """A corner that bounces, for hardly any viscosity, loses more than is counted at each of its blows."""
+    housner = HousnerBlock()
+    pulse = shaken("sine", 1.6 * GRAVITY * housner.b / housner.h, 2 * math.pi / (4 * housner.p))
+    response = follow(replace(resting(block(housner.b, housner.h, pulse)), viscous=0.1), 1.0, rows=50)
+    assert response.verdict == "stands"
+    assert 0.01 < response.unaccounted < 1
+    assert f"{response.unaccounted:.1%} of the energy supplied is unaccounted for" in response.message
+
+
+def test_a_search_takes_half_the_step_where_the_ledger_does_not_close() -> None:
+    """A block on a soft joint misses more than 1 % just below its edge."""
+    housner = HousnerBlock()
+    unit = GRAVITY * housner.b / housner.h
+    scene = block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (4 * housner.p)), stiffness=1e8)
+    outcome = critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), 0.02)
+    assert (outcome.status, outcome.lower is not None) == ("collapse", True)
+    assert follow(resting(scene), outcome.lower or 0.0, rows=50).unaccounted > 0.01

@@ -1,12 +1,14 @@
 """Bad input in the keys of real walls: one clear line, exit code 2, nothing written."""
 
+import math
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from runningbond.commands.command_line import command
-from tests.walls import content, write_toml
+from runningbond.scene.beam import Drive
+from tests.walls import content, panel, write_toml
 
 OAK = {"materials": {"oak": {"density": 700.0}}}
 MORTAR = {"joints": {"mortar": {"friction": 0.75, "cohesion": 1e5}}}
@@ -102,6 +104,19 @@ def beam(**changes: Any) -> dict[str, Any]:
         (live(SINK | {"box": [[5, 5], [6, 6]]}), "load.live.box = [[5.0, 5.0], [6.0, 6.0]]: holds no ground"),
         (live(SINK | {"rotation_angle": 30}), "load.live[0].rotation_angle = 30.0: must be a number at least -10"),
         (live(SINK | {"about": [1]}), "load.live[0].about = [1]: must be a pair"),
+        (live(SINK | {"path": []}), "load.live[0].path = []: must be a list of finite numbers that are not all zero"),
+        (live(SINK | {"path": 2}), "load.live[0].path = 2: must be a list"),
+        (live(SINK | {"path": [0, 0]}), "load.live[0].path = [0, 0]: must be a list of finite numbers that are"),
+        (live(SINK | {"path": [1, "a"]}), "load.live[0].path = 'a': must be a number"),
+        (live(SINK | {"path": [1, True]}), "load.live[0].path = True: must be a number"),
+        (live(SINK | {"path": [1, math.inf]}), "load.live[0].path = inf: must be a number"),
+        (live(SINK | {"path": [1], "amplitudes": [1]}), "load.live[0]: must have one of path and amplitudes, not both"),
+        (live(SINK | {"cycles": 2}), "load.live[0].cycles = 2: needs amplitudes"),
+        (live(SINK | {"amplitudes": 1}), "load.live[0].amplitudes = 1: must be a list"),
+        (live(SINK | {"amplitudes": [1, 0]}), "load.live[0].amplitudes = [1, 0]: must not be zero"),
+        (live(SINK | {"amplitudes": [1], "cycles": 1.5}), "load.live[0].cycles = 1.5: must be a whole number"),
+        (live(SINK | {"amplitudes": [1], "rate": 1e-3}), "load.live[0].rate = 0.001: is not a key"),
+        (live(SINK | {"path": [1, -1]}), "load.live settlement, along a path: is not taken by model limit"),
         ({"load__live": [SINK, {"kind": "lateral"}]}, "load.live: must be alone where a support"),
         (live(SINK) | {"support__kind": "corners"}, "load.live: needs support.kind"),
         # ties
@@ -120,8 +135,24 @@ def beam(**changes: Any) -> dict[str, Any]:
         (beam(condition="levle"), "did you mean \"level\"?"),
         (beam(joint="mortar"), "beam.joint = 'mortar': must be one of \"joint\""),
         (beam(force=[1]), "beam.force = [1]: must be a pair"),
-        (beam(drive={}), "beam.drive: must have one of force and displacement"),
-        (beam(drive={"force": [1, 0], "displacement": [0.01, 0]}), "beam.drive: must have one of force and displ"),
+        (beam(drive={}), "beam.drive: must have one of force, displacement and amplitudes"),
+        (beam(drive={"force": [1, 0], "displacement": [0.01, 0]}), "beam.drive: must have one of force, displ"),
+        (beam(drive={"force": [1, 0], "amplitudes": [0.01]}), "beam.drive: must have one of force, displacement and"),
+        (beam(drive={"displacement": [0.01, 0], "amplitudes": [0.01]}), "beam.drive: must have one of force, displ"),
+        (beam(drive={"force": [1, 0], "cycles": 2}), "beam.drive.cycles = 2: needs amplitudes"),
+        (beam(drive={"displacement": [0.01, 0], "cycles": 2}), "beam.drive.cycles = 2: needs amplitudes"),
+        (beam(drive={"amplitudes": []}), "beam.drive.amplitudes = []: must be a list of finite numbers that are not"),
+        (beam(drive={"amplitudes": 0.01}), "beam.drive.amplitudes = 0.01: must be a list"),
+        (beam(drive={"amplitudes": "0.01"}), "beam.drive.amplitudes = '0.01': must be a list"),
+        (beam(drive={"amplitudes": [[0.01]]}), "beam.drive.amplitudes = [0.01]: must be a number"),
+        (beam(drive={"amplitudes": [0.01, 0]}), "beam.drive.amplitudes = [0.01, 0]: must not be zero"),
+        (beam(drive={"amplitudes": [math.nan]}), "beam.drive.amplitudes = nan: must be a number"),
+        (beam(drive={"amplitudes": [0.01], "cycles": 0}), "beam.drive.cycles = 0: must be a number at least 1"),
+        (beam(drive={"amplitudes": [0.01], "cycles": 1001}), "beam.drive.cycles = 1001: must be a number at least 1"),
+        (beam(drive={"amplitudes": [0.01], "cycles": 2.5}), "beam.drive.cycles = 2.5: must be a whole number"),
+        (beam(drive={"amplitudes": [0.01], "cycles": [2]}), "beam.drive.cycles = [2]: must be a number at least 1"),
+        (beam(drive={"amplitudes": [0.01], "rate": -1}), "beam.drive.rate = -1: must be a number above 0"),
+        (beam(drive={"amplitude": [0.01]}), "beam.drive: must have one of force, displacement and amplitudes"),
         (beam(drive={"force": [0, 0]}), "beam.drive.force = [0.0, 0.0]: must not be zero"),
         (beam(drive={"force": [1, 0], "rate": 1e-3}), "beam.drive.rate = 0.001: is not a key"),
         (beam(drive={"displacement": [0.01, 0.01]}), "must be horizontal"),
@@ -143,3 +174,15 @@ def test_a_scene_that_is_no_real_wall(
     assert said in printed.err
     assert printed.err.count("\n") == 1
     assert not out.exists()
+
+
+def test_a_protocol_is_the_way_to_its_turning_points() -> None:
+    """To and fro, in so many cycles of each amplitude, and back; a negative one begins on the other side."""
+    drive = {"amplitudes": [1e-3, -2e-3], "cycles": 2, "at": 0.8}
+    scene = panel(**beam(drive=drive))
+    assert scene.beam is not None
+    assert scene.beam.drive == Drive.along((*[1e-3, -1e-3] * 2, *[-2e-3, 2e-3] * 2, 0.0), 0.8)
+    sunk = panel(**live(SINK | {"amplitudes": [0.5]})).settlement
+    assert sunk is not None
+    assert sunk.path == (0.5, -0.5, 0.0)
+    assert panel(**live(SINK | {"path": [1]})).extras == ("load.live settlement",)

@@ -1,0 +1,37 @@
+"""Ways there and back: the turning points of a displacement that is prescribed."""
+
+from typing import Any
+
+from .errors import SceneError
+from .ranges import Range
+from .table import Table
+
+MOST = 1000
+"""Cycles of a protocol at most."""
+
+
+def turning_points(key: str, value: Any) -> tuple[float, ...]:
+    """The points that a way leads to, one after the other, from zero on: a list of numbers, not all zero."""
+    points = tuple(Range().take(key, x) for x in value) if isinstance(value, (list, tuple)) else ()
+    if not any(points):
+        raise SceneError(key, "must be a list of finite numbers that are not all zero", value)
+    return points
+
+
+def read_protocol(table: Table) -> tuple[float, ...] | None:
+    """The turning points of a table's amplitudes and cycles, and None of a table without.
+
+    Each amplitude is gone to and as far to the other side, in as many cycles, a negative one to the other side first;
+    in the end it goes back to zero.
+    """
+    if "amplitudes" not in table:
+        if "cycles" in table:
+            raise SceneError(table.key("cycles"), "needs amplitudes that are gone through", table.value("cycles"))
+        return None
+    amplitudes = turning_points(table.key("amplitudes"), value := table.value("amplitudes"))
+    if not all(amplitudes):
+        raise SceneError(table.key("amplitudes"), "must not be zero", value)
+    cycles = table.optional_number("cycles", Range(least=1, most=MOST)) or 1.0
+    if not cycles.is_integer():
+        raise SceneError(table.key("cycles"), "must be a whole number", cycles)
+    return (*(x for amplitude in amplitudes for x in (amplitude, -amplitude) * int(cycles)), 0.0)

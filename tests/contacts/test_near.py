@@ -1,0 +1,104 @@
+"""What is sought and placed by kernels, beside the same by hand."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dem.finite_frequency import frequencies_squared
+from dem.finite_system import finite_system
+from runningbond.contacts.outline import Outline
+from runningbond.contacts.rigid_sides import gather_sharp, gather_sides, turn
+from runningbond.contacts.search import facing_sides, find_contacts
+from runningbond.dynamics import State
+from runningbond.dynamics.contact_update import ContactUpdate, contacts_of
+from runningbond.limit.kinematics import mass_matrix_diagonal
+from runningbond.scene import Array
+from tests.dynamics.test_dynamics import STIFF
+from tests.walls import panel
+
+WALL = panel(wall__height=0.18, wall__length=0.72, joint__mortar=STIFF)
+
+
+def moved(seed: int, far: float, turned: float) -> Array:
+    """A motion of `WALL`, of blocks that are not held."""
+    motion = np.random.default_rng(seed).normal(size=(len(WALL.blocks), 3)) * [far, far, turned]
+    motion[WALL.fixed] = 0.0
+    return motion.ravel()
+
+
+@given(spins=st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=40))
+@settings(max_examples=60, deadline=None)
+def test_cosines_and_sines_are_those_of_the_library_to_rounding(spins: list[float]) -> None:
+    motion = np.zeros((len(spins), 3))
+    motion[:, 2] = spins
+    cosine, sine = np.zeros((2, len(spins)))
+    turn(motion.ravel(), cosine, sine)
+    assert cosine == pytest.approx([math.cos(spin) for spin in spins], abs=3e-16)
+    assert sine == pytest.approx([math.sin(spin) for spin in spins], abs=3e-16)
+
+
+@given(seed=st.integers(0, 10**6), far=st.sampled_from([0.0, 2e-3, 0.1]), turned=st.sampled_from([0.0, 0.1, 3.0]))
+@settings(max_examples=40, deadline=None)
+def test_near_sides_are_those_of_all_pairs_of_sides(seed: int, far: float, turned: float) -> None:
+    outline, motion, margin = Outline.of(WALL), moved(seed, far, turned), 0.01
+    corners, normal, owner = outline.corners(motion), outline.placed(motion).arcs[:, 2:], outline.blocks.owner
+    after = corners[outline.blocks.successor]
+    low, high = np.minimum(corners, after) - margin / 2, np.maximum(corners, after) + margin / 2
+    near = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2) & (normal @ normal.T < 0)
+    held = outline.held[owner]
+    e, f = np.nonzero(near & (owner[:, None] > owner) & ~(held[:, None] & held))
+    assert np.array_equal(facing_sides(outline, motion, margin), (e, f))
+
+
+@given(seed=st.integers(0, 10**6), turned=st.sampled_from([0.0, 0.02, 0.3]))
+@settings(max_examples=40, deadline=None)
+def test_sharp_corners_are_those_of_no_radius(seed: int, turned: float) -> None:
+    outline, motion = Outline.of(WALL), moved(seed, 2e-3, turned)
+    contacts = find_contacts(outline, motion, 4 * outline.margin)
+    found = []
+    for gather in (gather_sides, gather_sharp):
+        geometry, jumps = contacts.geometry(outline), np.zeros((2, len(contacts)))
+        gather(motion, tuple(geometry), *jumps)
+        found.append((*jumps, *geometry.contact.T))
+    assert np.array_equal(found[0], found[1])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_frequency_is_a_hundredth_below_that_of_all_closed_contacts_at_most(seed: int) -> None:
+    """Contacts with another stiffness each, the jumps' derivatives taken by differences."""
+    outline, motion = Outline.of(WALL), moved(seed, 2e-3, 0.02 * seed)
+    contacts = find_contacts(outline, motion, outline.margin)
+    sides, n, size = contacts.geometry(outline), len(contacts), len(motion)
+    mass = np.where(np.repeat(WALL.fixed, 3), np.inf, mass_matrix_diagonal(WALL))
+    spring = np.random.default_rng(seed).uniform(0.5e9, 1e9, (2, n))
+    rows = np.zeros((size, 2 * n))
+    for row, step in zip(rows, 1e-7 * np.eye(size), strict=True):
+        jumps = np.zeros((2, 2, n))
+        for side, sense in zip(jumps, (1.0, -1.0), strict=True):
+            gather_sides(motion + sense * step, tuple(sides), *side)
+        row[:] = (jumps[0] - jumps[1]).ravel() / 2e-7
+    gather_sides(motion, tuple(sides), *np.zeros((2, n)))
+    scaled = rows * np.sqrt(np.tile(sides.area, 2) * spring.ravel()) / np.sqrt(mass)[:, None]
+    largest = np.linalg.eigvalsh(scaled @ scaled.T)[-1]
+    bound, closer = frequencies_squared(sides, spring[0], spring[1], mass)
+    assert closer == pytest.approx(largest, rel=0.01)
+    assert largest < bound * (1 + 1e-5)
+
+
+def test_blocks_that_move_as_one_are_not_sought_anew_before_they_have_left_the_ground_by_twice_as_far() -> None:
+    """All go by the same, beside a ground that stays: half of that is what any two come apart by."""
+    system = finite_system(WALL)
+    assert system.contacts is not None
+    update, state = ContactUpdate(system, system.contacts), State.at_rest(system)
+    margin = contacts_of(state).margin
+    for far, due in ((0.74, False), (0.76, True)):
+        state.motion[system.rigid[~WALL.fixed, 0]] = far * margin
+        assert update.is_due(state) == due
+    state.motion[:] = 0.0
+    for far, due in ((0.37, False), (0.38, True)):
+        one, other = np.flatnonzero(~WALL.fixed)[:2]
+        state.motion[system.rigid[[one, other], 0]] = far * margin, -far * margin
+        assert update.is_due(state) == due
