@@ -97,7 +97,8 @@ def fem(
         wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
     else:
         wall = modal_wall(scene, cells, modes, rule, points, cracks)
-        run = Run(system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies))
+        from .coupled_masses import coupled
+        run = Run(coupled(wall, system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)))
     factor = largest_scaling(wall, run.system.mass)
     note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
     if scene.history:

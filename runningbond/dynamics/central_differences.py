@@ -87,7 +87,7 @@ def _project(force: Array, freedom: Indices, basis: Array) -> None:
 
 
 @kernel
-def _update(modes: Modes, state: StateArrays, local: float, dt: float) -> None:
+def _update(modes: Modes, coupling: Any, state: StateArrays, local: float, dt: float) -> None:
     stiffness, viscosity, mobility = modes
     motion, velocity, _, damped, force = state
     for i in range(motion.size):
@@ -100,6 +100,46 @@ def _update(modes: Modes, state: StateArrays, local: float, dt: float) -> None:
         after = before + dt * mobility[i] * (f - resisted)
         damped[i] += 0.5 * dt * (resisted + viscous) * (before + after)
         motion[i] += dt * after
+        velocity[i] = after
+
+
+@kernel
+def _multiply(matrix: Array, factor: Array, out: Array) -> None:
+    """Product with a symmetric matrix ``(n²,)``; row after row, in which vector registers of any width do the same."""
+    n = np.uint64(out.size)
+    out[:] = 0.0
+    for k in range(n):
+        value, row = factor[k], k * n
+        for i in range(n):
+            out[i] += value * matrix[row + i]
+
+
+@kernel
+def _update_coupled(modes: Modes, coupling: Any, state: StateArrays, local: float, dt: float) -> None:
+    """`_update` where some modes have inertia in common, M⁻¹ = `mobility`.
+
+    Local damping α is that of the force m a that accelerates a mode's own mass m, a = M⁻¹ f without damping. So it
+    takes energy from each mode, and M⁻¹ f becomes (M⁻¹ ∓ α M⁻¹ m M⁻¹) f: never more than 1 + α times what it was.
+    """
+    freedom, mobility, mass, before, place, force, free, drag = coupling
+    motion, velocity, _, damped, unbalanced = state
+    for k in range(freedom.size):
+        i = freedom[k]
+        before[k], place[k], drag[k] = velocity[i], motion[i], damped[i]
+    _update(modes, coupling, state, local, dt)
+    for k in range(freedom.size):  # these go on as they were, and then once more together
+        i = freedom[k]
+        damped[i], force[k] = drag[k], unbalanced[i]
+    _multiply(mobility, force, free)
+    for k in range(freedom.size):
+        sense = (1.0 if before[k] > 0.0 else 0.0) - (1.0 if before[k] < 0.0 else 0.0)
+        drag[k] = local * mass[k] * abs(free[k]) * sense
+        force[k] -= drag[k]
+    _multiply(mobility, force, free)
+    for k in range(freedom.size):
+        i, after = freedom[k], before[k] + dt * free[k]
+        damped[i] += 0.5 * dt * drag[k] * (before[k] + after)
+        motion[i] = place[k] + dt * after
         velocity[i] = after
 
 
@@ -174,7 +214,7 @@ def _give_back(
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: bool = False) -> Any:
     """Compile the loop of a model.
 
     Parameters
@@ -198,6 +238,8 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
         acts on nothing else.
     """
 
+    update = _update_coupled if coupled else _update
+
     @kernel
     def step(
         control: int,
@@ -214,6 +256,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
         restraint: tuple[Indices, Array],
         ties: Any,
         rig: Any,
+        coupling: Any,
         state: StateArrays,
         work: Work,
         watch: Watch,
@@ -270,7 +313,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
             if driven:
                 before = _dot(live, velocity)
                 multiplier = _drive(live, response, modes, state)
-            _update(modes, state, local, dt)
+            update(modes, coupling, state, local, dt)
             if driven:
                 multiplier += _give_back(live, response, speed, mobility, dt, motion, velocity)
                 total += multiplier

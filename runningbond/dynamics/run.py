@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -96,6 +96,11 @@ class Run:
         self.system, self.local, self.viscous, self._part = system, local, viscous, part
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
+        self._coupling: tuple[Any, ...] = ()
+        if n := len(system.coupling.freedom):
+            own = system.mass[system.coupling.freedom]
+            inverse = np.linalg.inv(np.diag(own) + system.coupling.inertia)
+            self._coupling = (system.coupling.freedom, inverse.ravel(), own, *np.zeros((5, n)))
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -110,7 +115,9 @@ class Run:
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._step = {plain: stepper(*kernels, plain) for plain in (True, False)}
+        coupling = self.system.coupling
+        coupled = len(coupling.freedom) > 0
+        self._step = {plain: stepper(*kernels, plain, coupled) for plain in (True, False)}
         self._plain = not len(self.system.ties) and self.system.rig is None
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
@@ -197,7 +204,7 @@ class Run:
             coefficients = (number, piece, self.dt, self.local, self._viscosity, load, live, speed)
             ties = (*system.ties, state.stretch)
             taken, stable, multipliers, work = self._step[plain](
-                *coefficients, *self._arrays, ties, self._rig, arrays, self._work, watch
+                *coefficients, *self._arrays, ties, self._rig, self._coupling, arrays, self._work, watch
             )
             total += multipliers
             if system.rig is not None:
@@ -303,7 +310,8 @@ class Run:
         moving = np.isfinite(system.mass)
         return Ledger(
             external=state.external,
-            kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum()),
+            kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum())
+            + system.coupling.energy(state.velocity),
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
             joint=float(area @ law.energy(opening, normal, tangential, state.history)),
             friction=float(area @ state.history[FRICTION_WORK]) + state.friction,
