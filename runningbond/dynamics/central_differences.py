@@ -121,7 +121,7 @@ def _update_coupled(modes: Modes, coupling: Any, state: StateArrays, local: floa
     Local damping α is that of the force m a that accelerates a mode's own mass m, a = M⁻¹ f without damping. So it
     takes energy from each mode, and M⁻¹ f becomes (M⁻¹ ∓ α M⁻¹ m M⁻¹) f: never more than 1 + α times what it was.
     """
-    freedom, mobility, mass, before, place, force, free, drag = coupling
+    freedom, mobility, mass, before, place, force, free, drag, last = coupling
     motion, velocity, _, damped, unbalanced = state
     for k in range(freedom.size):
         i = freedom[k]
@@ -133,7 +133,10 @@ def _update_coupled(modes: Modes, coupling: Any, state: StateArrays, local: floa
     _multiply(mobility, force, free)
     for k in range(freedom.size):
         sense = (1.0 if before[k] > 0.0 else 0.0) - (1.0 if before[k] < 0.0 else 0.0)
-        drag[k] = local * mass[k] * abs(free[k]) * sense
+        change = free[k] - last[k]
+        last[k] = free[k]
+        trend = (1.0 if change > 0.0 else 0.0) - (1.0 if change < 0.0 else 0.0)
+        drag[k] = 0.5 * local * mass[k] * abs(free[k]) * (sense - trend)
         force[k] -= drag[k]
     _multiply(mobility, force, free)
     for k in range(freedom.size):

@@ -100,7 +100,7 @@ class Run:
         if n := len(system.coupling.freedom):
             own = system.mass[system.coupling.freedom]
             inverse = np.linalg.inv(np.diag(own) + system.coupling.inertia)
-            self._coupling = (system.coupling.freedom, inverse.ravel(), own, *np.zeros((5, n)))
+            self._coupling = (system.coupling.freedom, inverse.ravel(), own, *np.zeros((6, n)))
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
