@@ -20,15 +20,10 @@ from runningbond.scene import Array, Indices
 from .rig import turn_rig
 from .system import Kernel
 from .ties import pull
+from .update import Modes, StateArrays, update, update_coupled
 
 kernel = compiled.kernel
 
-
-Modes: TypeAlias = tuple[Array, Array, Array]
-"""Stiffness [N/m], viscosity [N s/m] and one over the mass [1/kg] of each mode, ``(nd,)``; the last zero where held."""
-
-StateArrays: TypeAlias = tuple[Array, Array, Array, Array, Array]
-"""Motion, velocity, history, damped and unbalanced of a `State`, which the steps write to."""
 
 Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 """Buffers: motion and load ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
@@ -84,66 +79,6 @@ def _project(force: Array, freedom: Indices, basis: Array) -> None:
         x, y, m = force[freedom[r, 0]], force[freedom[r, 1]], force[freedom[r, 2]]
         for column in range(3):
             force[freedom[r, column]] = basis[r, 0, column] * x + basis[r, 1, column] * y + basis[r, 2, column] * m
-
-
-@kernel
-def _update(modes: Modes, coupling: Any, state: StateArrays, local: float, dt: float) -> None:
-    stiffness, viscosity, mobility = modes
-    motion, velocity, _, damped, force = state
-    for i in range(motion.size):
-        before = velocity[i]
-        viscous = viscosity[i] * before
-        f = force[i] - stiffness[i] * motion[i] - viscous
-        force[i] = f
-        sense = (1.0 if before > 0.0 else 0.0) - (1.0 if before < 0.0 else 0.0)
-        resisted = local * abs(f) * sense
-        after = before + dt * mobility[i] * (f - resisted)
-        damped[i] += 0.5 * dt * (resisted + viscous) * (before + after)
-        motion[i] += dt * after
-        velocity[i] = after
-
-
-@kernel
-def _multiply(matrix: Array, factor: Array, out: Array) -> None:
-    """Product with a symmetric matrix ``(n²,)``; row after row, in which vector registers of any width do the same."""
-    n = np.uint64(out.size)
-    out[:] = 0.0
-    for k in range(n):
-        value, row = factor[k], k * n
-        for i in range(n):
-            out[i] += value * matrix[row + i]
-
-
-@kernel
-def _update_coupled(modes: Modes, coupling: Any, state: StateArrays, local: float, dt: float) -> None:
-    """`_update` where some modes have inertia in common, M⁻¹ = `mobility`.
-
-    Local damping α is that of the force m a that accelerates a mode's own mass m, a = M⁻¹ f without damping. So it
-    takes energy from each mode, and M⁻¹ f becomes (M⁻¹ ∓ α M⁻¹ m M⁻¹) f: never more than 1 + α times what it was.
-    """
-    freedom, mobility, mass, before, place, force, free, drag, last = coupling
-    motion, velocity, _, damped, unbalanced = state
-    for k in range(freedom.size):
-        i = freedom[k]
-        before[k], place[k], drag[k] = velocity[i], motion[i], damped[i]
-    _update(modes, coupling, state, local, dt)
-    for k in range(freedom.size):  # these go on as they were, and then once more together
-        i = freedom[k]
-        damped[i], force[k] = drag[k], unbalanced[i]
-    _multiply(mobility, force, free)
-    for k in range(freedom.size):
-        sense = (1.0 if before[k] > 0.0 else 0.0) - (1.0 if before[k] < 0.0 else 0.0)
-        change = free[k] - last[k]
-        last[k] = free[k]
-        trend = (1.0 if change > 0.0 else 0.0) - (1.0 if change < 0.0 else 0.0)
-        drag[k] = 0.5 * local * mass[k] * abs(free[k]) * (sense - trend)
-        force[k] -= drag[k]
-    _multiply(mobility, force, free)
-    for k in range(freedom.size):
-        i, after = freedom[k], before[k] + dt * free[k]
-        damped[i] += 0.5 * dt * drag[k] * (before[k] + after)
-        motion[i] = place[k] + dt * after
-        velocity[i] = after
 
 
 @kernel
@@ -226,6 +161,8 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: 
         Of an `Interface`.
     plain
         Whether there is a load alone, no tie and no rig: steps of small walls are a tenth faster without the question.
+    coupled
+        Whether modes have inertia in common; the last but three of the arguments is `Coupled` then, else empty.
 
     Returns
     -------
@@ -240,8 +177,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: 
         With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
         acts on nothing else.
     """
-
-    update = _update_coupled if coupled else _update
+    advance = update_coupled if coupled else update
 
     @kernel
     def step(
@@ -316,7 +252,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: 
             if driven:
                 before = _dot(live, velocity)
                 multiplier = _drive(live, response, modes, state)
-            update(modes, coupling, state, local, dt)
+            advance(modes, coupling, state, local, dt)
             if driven:
                 multiplier += _give_back(live, response, speed, mobility, dt, motion, velocity)
                 total += multiplier

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from .state import State
 from .system import BlockSystem, Interface
 from .ties import YIELD
 from .time_step import stable_step
+from .update import coupled_modes
 
 LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
@@ -96,11 +97,7 @@ class Run:
         self.system, self.local, self.viscous, self._part = system, local, viscous, part
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
-        self._coupling: tuple[Any, ...] = ()
-        if n := len(system.coupling.freedom):
-            own = system.mass[system.coupling.freedom]
-            inverse = np.linalg.inv(np.diag(own) + system.coupling.inertia)
-            self._coupling = (system.coupling.freedom, inverse.ravel(), own, *np.zeros((6, n)))
+        self._coupling = coupled_modes(system)
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -115,8 +112,7 @@ class Run:
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        coupling = self.system.coupling
-        coupled = len(coupling.freedom) > 0
+        coupled = len(self._coupling) > 0
         self._step = {plain: stepper(*kernels, plain, coupled) for plain in (True, False)}
         self._plain = not len(self.system.ties) and self.system.rig is None
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
