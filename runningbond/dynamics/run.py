@@ -113,7 +113,8 @@ class Run:
         self._viscosity = 2 * self.viscous / math.sqrt(square) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
         coupled = len(self._coupling) > 0
-        self._step = {plain: stepper(*kernels, plain, coupled) for plain in (True, False)}
+        loaded = (True,) if coupled else (True, False)  # what is coupled bears a load alone
+        self._step = {plain: stepper(*kernels, plain, coupled) for plain in loaded}
         self._plain = not len(self.system.ties) and self.system.rig is None
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
