@@ -28,7 +28,7 @@ def coupled_modes(system: BlockSystem) -> Coupled | tuple[()]:
     if not len(freedom):
         return ()
     own = system.mass[freedom]
-    mobility: Array = np.linalg.inv(np.diag(own) + inertia).ravel()
+    mobility = np.asarray(np.linalg.inv(np.diag(own) + inertia).ravel(), dtype=np.float64)
     last, before, place, damping, force, free = np.zeros((6, len(freedom)))
     return freedom, mobility, own, last, before, place, damping, force, free
 

@@ -76,7 +76,9 @@ def test_a_coupled_step_is_that_of_dense_matrices(local: float) -> None:
     moving, M = masses(system)
     K, load = elastic_stiffness(found).toarray(), (system.dead + 0.7 * system.live)[moving]
     joined, own = np.isin(moving, system.coupling.freedom), system.mass[moving]
-    q = v = last = np.zeros(len(K))
+    q: Any = np.zeros(len(K))
+    v: Any = q
+    last: Any = q
     for _ in range(100):
         f = load - K @ q - system.viscosity[moving] * v
         free = np.linalg.solve(M, f)
