@@ -62,7 +62,7 @@ def frequency_shift(wall: ModalWall, count: int, highest: float) -> Callable[[Ar
     stiffness = csc_array(elastic_stiffness(wall) + diags_array(GROUND * highest * wall.mass[moving]))
     bodies, body = connected_components(stiffness, directed=False)
     rows = [np.flatnonzero(body == k) for k in range(bodies)]
-    lowest_of = [(own, _lowest_of(csc_array(stiffness[own][:, own]), count)) for own in rows]
+    lowest_of = [(own, lowest_frequencies(csc_array(stiffness[own][:, own]), count)) for own in rows]
 
     def lowest(mass: Array) -> Array:
         """The smallest ω² [1/s²] of all bodies, ascending."""
@@ -72,7 +72,7 @@ def frequency_shift(wall: ModalWall, count: int, highest: float) -> Callable[[Ar
     return lambda mass: float((1 - np.sqrt(lowest(mass) / exact)).max())
 
 
-def _lowest_of(stiffness: csc_array, count: int) -> Callable[[Array], Array]:
+def lowest_frequencies(stiffness: csc_array, count: int) -> Callable[[Array], Array]:
     """A function that gives a body's smallest ω² [1/s²] of its masses ``(n,)``.
 
     The blocks of a body hold together: Lanczos' method finds one of several equal frequencies, which equal bodies have.

@@ -84,7 +84,7 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
     mass_scaling
         Whether masses are scaled at all.
     """
-    kinds = min((_kinds(wall, exponent) for exponent in (0.0, 0.5, 1.0)), key=_rigid_bound)
+    kinds = _tightest(wall)
     if mass_scaling:
         square = _smallest(kinds, damping)
         fit = _square_to_scale_for(wall, square)
@@ -93,7 +93,17 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
     else:
         fit, square = np.inf, _smallest(kinds, damping, np.inf)
     mass = _scaled(wall.mass, wall.stiffness, fit)
-    return ScaledModes(square, mass, _viscosity(wall.stiffness, mass, damping))
+    return ScaledModes(square, mass, modal_viscosity(wall.stiffness, mass, damping))
+
+
+def rigid_frequency_squared(wall: ModalWall) -> float:
+    """ω² that bounds the wall if its blocks do not deform [1/s²]."""
+    return _rigid_bound(_tightest(wall))
+
+
+def _tightest(wall: ModalWall) -> list[_Kind]:
+    """Blocks with the shares of their joints that bound rigid ones most closely."""
+    return min((_kinds(wall, exponent) for exponent in (0.0, 0.5, 1.0)), key=_rigid_bound)
 
 
 def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> float:
@@ -136,7 +146,7 @@ def _scaled(mass: Array, stiffness: Array, square: float) -> Array:
     return np.asarray(mass * mass_factor(stiffness, mass, ROOM * 2 / np.sqrt(square)))
 
 
-def _viscosity(stiffness: Array, mass: Array, damping: float) -> Array:
+def modal_viscosity(stiffness: Array, mass: Array, damping: float) -> Array:
     """2 ξ (k m)^{1/2}, nothing for a mode without stiffness whatever its mass."""
     return np.where(stiffness > 0, 2 * damping * np.sqrt(stiffness * np.where(stiffness > 0, mass, 1.0)), 0.0)
 
@@ -154,7 +164,7 @@ def _rigid_bound(kinds: list[_Kind]) -> float:
 
 def _bound(kind: _Kind, square: float, damping: float, fit: float) -> float:
     mass = _scaled(kind.mass, kind.stiffness, fit)
-    viscosity = _viscosity(kind.stiffness, mass, damping)
+    viscosity = modal_viscosity(kind.stiffness, mass, damping)
     own = kind.stiffness + 2 / stable_step(square, VISCOUS, LOCAL) * viscosity
     return float(block_frequency_squared(kind.joints + np.diag(own), mass[None]).max())
 

@@ -14,7 +14,7 @@ import numpy as np
 from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
-from runningbond.dynamics.run import MOVING
+from runningbond.dynamics.run import CALMING, LOCAL, MOVING
 from runningbond.joints import Rule
 from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import is_self_locking, proved_bound
@@ -22,6 +22,7 @@ from runningbond.response import Response, Resting, Vibration, critical_scale, f
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
+from .coupled_masses import with_coupled_masses
 from .cracks import Cracks
 from .finite_system import finite_system
 from .fracture import Energies
@@ -97,9 +98,12 @@ def fem(
         wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
     else:
         wall = modal_wall(scene, cells, modes, rule, points, cracks)
-        run = Run(system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies))
+        system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
+        system = with_coupled_masses(wall, system) if mass_scaling else system
+        run = Run(system, local=CALMING if len(system.coupling.freedom) else LOCAL)
     factor = largest_scaling(wall, run.system.mass)
     note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
+    note += ", those of soft blocks coupled across joints" if len(run.system.coupling.freedom) else ""
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(

@@ -20,15 +20,10 @@ from runningbond.scene import Array, Indices
 from .rig import turn_rig
 from .system import Kernel
 from .ties import pull
+from .update import Modes, StateArrays, update, update_coupled
 
 kernel = compiled.kernel
 
-
-Modes: TypeAlias = tuple[Array, Array, Array]
-"""Stiffness [N/m], viscosity [N s/m] and one over the mass [1/kg] of each mode, ``(nd,)``; the last zero where held."""
-
-StateArrays: TypeAlias = tuple[Array, Array, Array, Array, Array]
-"""Motion, velocity, history, damped and unbalanced of a `State`, which the steps write to."""
 
 Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
 """Buffers: motion and load ``(nd,)``, then opening, slip, normal and tangential traction of the points, ``(np,)``."""
@@ -84,23 +79,6 @@ def _project(force: Array, freedom: Indices, basis: Array) -> None:
         x, y, m = force[freedom[r, 0]], force[freedom[r, 1]], force[freedom[r, 2]]
         for column in range(3):
             force[freedom[r, column]] = basis[r, 0, column] * x + basis[r, 1, column] * y + basis[r, 2, column] * m
-
-
-@kernel
-def _update(modes: Modes, state: StateArrays, local: float, dt: float) -> None:
-    stiffness, viscosity, mobility = modes
-    motion, velocity, _, damped, force = state
-    for i in range(motion.size):
-        before = velocity[i]
-        viscous = viscosity[i] * before
-        f = force[i] - stiffness[i] * motion[i] - viscous
-        force[i] = f
-        sense = (1.0 if before > 0.0 else 0.0) - (1.0 if before < 0.0 else 0.0)
-        resisted = local * abs(f) * sense
-        after = before + dt * mobility[i] * (f - resisted)
-        damped[i] += 0.5 * dt * (resisted + viscous) * (before + after)
-        motion[i] += dt * after
-        velocity[i] = after
 
 
 @kernel
@@ -174,7 +152,7 @@ def _give_back(
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: bool = False) -> Any:
     """Compile the loop of a model.
 
     Parameters
@@ -183,20 +161,24 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
         Of an `Interface`.
     plain
         Whether there is a load alone, no tie and no rig: steps of small walls are a tenth faster without the question.
+    coupled
+        Whether modes have inertia in common; the last but two of the arrays is `Coupled` then, else empty.
 
     Returns
     -------
     step
-        ``step(control, steps, dt, local, joint_viscosity, load, live, speed, …)``: held, it adds to a constant load
-        the live one, times a multiplier that rises from zero by the speed a step; driven, it keeps live · v at the
-        speed [W], by a multiplier of the live load; carried, held modes move at the speed [1/s] times `live`.
-        Returns the steps taken, whether no more energy is spent than was supplied, the sum of the multipliers that
-        drive, or of what presses on the carried modes per unit of their motion, and the work of all but the constant
-        load. It looks at the energy every `LOOK` steps of the state's life, and stops where it does not add up.
+        ``step(control, steps, dt, local, joint_viscosity, load, live, speed, arrays, watch)``: held, it adds to a
+        constant load the live one, times a multiplier that rises from zero by the speed a step; driven, it keeps
+        live·v at the speed [W], by a multiplier of the live load; carried, held modes move at the speed [1/s] times
+        `live`. Returns the steps taken, whether no more energy is spent than was supplied, the sum of the
+        multipliers that drive, or of what presses on the carried modes per unit of their motion, and the work of
+        all but the constant load. It looks at the energy every `LOOK` steps of the state's life, and stops where it
+        does not add up.
 
         With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
         acts on nothing else.
     """
+    advance = update_coupled if coupled else update
 
     @kernel
     def constant(
@@ -214,6 +196,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
         restraint: tuple[Indices, Array],
         ties: Any,
         rig: Any,
+        coupling: Any,
         state: StateArrays,
         work: Work,
         watch: Watch,
@@ -260,7 +243,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
             if driven:
                 before = _dot(live, velocity)
                 multiplier = _drive(live, response, modes, state)
-            _update(modes, state, local, dt)
+            advance(modes, coupling, state, local, dt)
             if driven:
                 multiplier += _give_back(live, response, speed, mobility, dt, motion, velocity)
                 total += multiplier
@@ -284,22 +267,15 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool) -> Any:
         load: Array,
         live: Array,
         speed: float,
-        geometry: Any,
-        parameters: Any,
-        modes: Modes,
-        restraint: tuple[Indices, Array],
-        ties: Any,
-        rig: Any,
-        state: StateArrays,
-        work: Work,
+        arrays: Any,
         watch: Watch,
     ) -> tuple[int, bool, float, float]:
-        arrays = (geometry, parameters, modes, restraint, ties, rig, state, work)
         if speed == 0.0 or not (plain or control == HELD):
             answer: tuple[int, bool, float, float] = constant(
                 control, steps, dt, local, joint_viscosity, load, live, speed, *arrays, watch
             )
             return answer
+        state, work = arrays[7:]
         motion, loaded = state[0], work[1]
         already, given, most = watch
         taken, stable, worked = 0, True, 0.0

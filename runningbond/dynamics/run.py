@@ -18,6 +18,7 @@ from .state import State
 from .system import BlockSystem, Interface
 from .ties import YIELD
 from .time_step import stable_step
+from .update import coupled_modes
 
 LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
@@ -96,6 +97,7 @@ class Run:
         self.system, self.local, self.viscous, self._part = system, local, viscous, part
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
+        self._coupling = coupled_modes(system)
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -113,7 +115,9 @@ class Run:
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(bound) / self.dt
         kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        self._step = {plain: stepper(*kernels, plain) for plain in (True, False)}
+        coupled = len(self._coupling) > 0
+        loaded = (True,) if coupled else (True, False)  # what is coupled bears a load alone
+        self._step = {plain: stepper(*kernels, plain, coupled) for plain in loaded}
         self._plain = not len(self.system.ties) and self.system.rig is None
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
@@ -199,9 +203,8 @@ class Run:
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             coefficients = (number, piece, self.dt, self.local, self._viscosity, load, live, speed)
             ties = (*system.ties, state.stretch)
-            taken, stable, multipliers, work = self._step[plain](
-                *coefficients, *self._arrays, ties, self._rig, arrays, self._work, watch
-            )
+            every = (*self._arrays, ties, self._rig, self._coupling, arrays, self._work)
+            taken, stable, multipliers, work = self._step[plain](*coefficients, every, watch)
             total += multipliers
             if system.rig is not None:
                 state.turned += float(self._rig[3][0])
@@ -306,7 +309,8 @@ class Run:
         moving = np.isfinite(system.mass)
         return Ledger(
             external=state.external,
-            kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum()),
+            kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum())
+            + system.coupling.energy(state.velocity),
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
             joint=float(area @ law.energy(opening, normal, tangential, state.history)),
             friction=float(area @ state.history[FRICTION_WORK]) + state.friction,

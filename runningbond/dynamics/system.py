@@ -48,6 +48,21 @@ class Carried(NamedTuple):
 NOTHING_CARRIED = Carried(np.zeros(0))
 
 
+class Coupling(NamedTuple):
+    """Inertia that modes have in common, besides the mass of each: a force on one of them accelerates the others."""
+
+    freedom: Indices  # (n,) the modes
+    inertia: Array  # (n, n) [kg]; positive semidefinite
+
+    def energy(self, velocity: Array) -> float:
+        """Kinetic energy at a velocity ``(nd,)`` [J]."""
+        own = velocity[self.freedom]
+        return float(0.5 * own @ self.inertia @ own)
+
+
+NOT_COUPLED = Coupling(np.zeros(0, dtype=np.int64), np.zeros((0, 0)))
+
+
 @dataclass(frozen=True, eq=False)
 class Interface:
     """Joint points between bodies."""
@@ -128,6 +143,7 @@ class BlockSystem:
     carried: Carried = NOTHING_CARRIED  # supports that move
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
     rig: Rig | None = None  # what drives its beam at finite displacements
+    coupling: Coupling = NOT_COUPLED  # inertia that modes have in common; only where a load alone acts on them
     # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
     block_motion: csr_array | None = None
     source: object = None  # what it was set up from, for observers: the wall in modal coordinates where blocks deform
