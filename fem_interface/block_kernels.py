@@ -8,11 +8,13 @@ counting from the end.
 """
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runningbond.dynamics.system import Kernel
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
@@ -33,8 +35,6 @@ class NodalTables(NamedTuple):
         The tables, ``(displacements, modes)`` each, and their transposes, one after the other.
     still : (1,) int
         Place of the first displacement that is always zero.
-    alone : (1,) int
-        Number of templates of one block only.
     nodal, product : float
         Buffers of the displacements, and of a product.
     """
@@ -43,7 +43,6 @@ class NodalTables(NamedTuple):
     forward: Array
     backward: Array
     still: Indices
-    alone: Indices
     nodal: Array
     product: Array
 
@@ -95,7 +94,6 @@ def nodal_tables(
         np.concatenate([np.zeros(0), *(table.ravel() for _, table in templates)]),
         np.concatenate([np.zeros(0), *(table.T.ravel() for _, table in templates)]),
         np.array([still]),
-        np.array([sum(shape[0] == 1 for shape, _ in templates)]),
         np.zeros(still + spare),
         np.zeros(max((shape[0] * shape[1] for shape, _ in templates), default=0)),
     )
@@ -134,24 +132,7 @@ def _product(
 
 
 @kernel
-def _alone_to_nodes(tables: NodalTables, motion: Array) -> None:
-    for k in range(tables.shapes.shape[0]):
-        blocks, modes, width, first, at, entry = tables.shapes[k]
-        if blocks == 1:
-            _product(tables.backward, entry, modes, width, motion, first, tables.nodal, at, False)
-
-
-@kernel
-def _alone_to_modes(tables: NodalTables, force: Array) -> None:
-    for k in range(tables.shapes.shape[0]):
-        blocks, modes, width, first, at, entry = tables.shapes[k]
-        if blocks == 1:
-            _product(tables.forward, entry, width, modes, tables.nodal, at, force, first, True)
-
-
-@kernel
-def to_nodes(tables: NodalTables, motion: Array) -> None:
-    """Displacements of the nodes, from modal coordinates ``(nd,)``."""
+def _alike_to_nodes(tables: NodalTables, motion: Array) -> None:
     shapes, table, nodal = tables.shapes, tables.forward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
@@ -159,13 +140,10 @@ def to_nodes(tables: NodalTables, motion: Array) -> None:
             phi = table[entry : entry + width * modes].reshape(width, modes)
             Q = motion[first : first + modes * blocks].reshape(modes, blocks)
             np.dot(phi, Q, nodal[at : at + width * blocks].reshape(width, blocks))
-    if tables.alone[0]:  # in a loop of their own: the others' would be slower for the question
-        _alone_to_nodes(tables, motion)
 
 
 @kernel
-def to_modes(tables: NodalTables, force: Array) -> None:
-    """Subtract from modal forces ``(nd,)`` those of the nodes."""
+def _alike_to_modes(tables: NodalTables, force: Array) -> None:
     shapes, table, nodal, product = tables.shapes, tables.backward, tables.nodal, tables.product
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
@@ -177,8 +155,26 @@ def to_modes(tables: NodalTables, force: Array) -> None:
             into = force[first : first + modes * blocks]
             for i in range(into.size):
                 into[i] -= out[i]
-    if tables.alone[0]:
-        _alone_to_modes(tables, force)
+
+
+@kernel
+def to_nodes(tables: NodalTables, motion: Array) -> None:
+    """Displacements of the nodes, from modal coordinates ``(nd,)``."""
+    _alike_to_nodes(tables, motion)
+    for k in range(tables.shapes.shape[0]):
+        blocks, modes, width, first, at, entry = tables.shapes[k]
+        if blocks == 1:
+            _product(tables.backward, entry, modes, width, motion, first, tables.nodal, at, False)
+
+
+@kernel
+def to_modes(tables: NodalTables, force: Array) -> None:
+    """Subtract from modal forces ``(nd,)`` those of the nodes."""
+    _alike_to_modes(tables, force)
+    for k in range(tables.shapes.shape[0]):
+        blocks, modes, width, first, at, entry = tables.shapes[k]
+        if blocks == 1:
+            _product(tables.forward, entry, width, modes, tables.nodal, at, force, first, True)
 
 
 @kernel
@@ -244,75 +240,84 @@ def fold(tables: FoldedTables, nodal: Array, force: Array) -> None:
         _combine(backward, row, modes, n, nodal, at, force, first, True)
 
 
-@kernel
-def gather_modes(motion: Array, geometry: ModalJoints, opening: Array, slip: Array) -> None:
-    """Opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``."""
-    tables, folded, start, places, shares, _ = geometry
-    nodal = tables.nodal
-    to_nodes(tables, motion)
-    if folded.shapes.size:  # a small wall has none, and would pay for the call
-        unfold(folded, motion, nodal)
-    # What does not move shares the last entries, which scatter has written to.
-    nodal[tables.still[0] :] = 0.0
-    points = np.uint64(shares.shape[1])
-    ne = np.uint64(opening.size) // points
-    for run in range(places.shape[0]):
-        low, high = start[run], start[np.uint64(run + 1)]
-        if high - low == 1:  # as all are where no two joints are alike
-            for p in range(points):
-                u = v = 0.0
-                for k in range(4):
-                    along = nodal[places[run, k + 4] + low] - nodal[places[run, k] + low]
-                    u += shares[run, p, 0, k] * along
-                    v += shares[run, p, 1, k] * along
-                opening[p * ne + low], slip[p * ne + low] = u, v
-            continue
-        for p in range(points):
-            for axis in range(2):
-                out = opening[p * ne : (p + 1) * ne] if axis == 0 else slip[p * ne : (p + 1) * ne]
-                begun = False
-                for k in range(4):
-                    share = shares[run, p, axis, k]
-                    a, b = places[run, k], places[run, k + 4]
-                    if share != 0.0 and begun:
-                        for e in range(low, high):
-                            out[e] += share * (nodal[b + e] - nodal[a + e])
-                    elif share != 0.0:
-                        begun = True
-                        for e in range(low, high):
-                            out[e] = share * (nodal[b + e] - nodal[a + e])
+@cache
+def modal_kernels(alone: bool) -> tuple[Kernel, Kernel]:
+    """Compile gather and scatter of `ModalJoints`, for walls in which blocks may be `alone` among their like or not.
 
+    Steps of small walls would be some hundredths slower for the question. ``gather(motion, geometry, opening, slip)``
+    writes opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``, and ``scatter(normal,
+    tangential, geometry, force)`` subtracts from modal forces ``(nd,)`` what the tractions at the points [Pa] do.
+    """
+    nodes_of, modes_of = (to_nodes, to_modes) if alone else (_alike_to_nodes, _alike_to_modes)
 
-@kernel
-def scatter_modes(normal: Array, tangential: Array, geometry: ModalJoints, force: Array) -> None:
-    """Subtract from modal forces ``(nd,)`` what the tractions at the points ``(np,)`` [Pa] do on the modes."""
-    tables, folded, start, places, _, shares = geometry
-    nodal = tables.nodal
-    points = np.uint64(shares.shape[1])
-    ne = np.uint64(normal.size) // points
-    nodal[:] = 0.0
-    for run in range(places.shape[0]):
-        low, high = start[run], start[np.uint64(run + 1)]
-        if high - low == 1:
+    @kernel
+    def gather_modes(motion: Array, geometry: ModalJoints, opening: Array, slip: Array) -> None:
+        tables, folded, start, places, shares, _ = geometry
+        nodal = tables.nodal
+        nodes_of(tables, motion)
+        if folded.shapes.size:  # a small wall has none, and would pay for the call
+            unfold(folded, motion, nodal)
+        # What does not move shares the last entries, which scatter has written to.
+        nodal[tables.still[0] :] = 0.0
+        points = np.uint64(shares.shape[1])
+        ne = np.uint64(opening.size) // points
+        for run in range(places.shape[0]):
+            low, high = start[run], start[np.uint64(run + 1)]
+            if high - low == 1:  # as all are where no two joints are alike
+                for p in range(points):
+                    u = v = 0.0
+                    for k in range(4):
+                        along = nodal[places[run, k + 4] + low] - nodal[places[run, k] + low]
+                        u += shares[run, p, 0, k] * along
+                        v += shares[run, p, 1, k] * along
+                    opening[p * ne + low], slip[p * ne + low] = u, v
+                continue
             for p in range(points):
-                n, t = normal[p * ne + low], tangential[p * ne + low]
-                for k in range(4):
-                    force_there = shares[run, p, 0, k] * n + shares[run, p, 1, k] * t
-                    nodal[places[run, k] + low] -= force_there
-                    nodal[places[run, k + 4] + low] += force_there
-            continue
-        for p in range(points):
-            for axis in range(2):
-                traction = normal[p * ne : (p + 1) * ne] if axis == 0 else tangential[p * ne : (p + 1) * ne]
-                for k in range(4):
-                    share = shares[run, p, axis, k]
-                    a, b = places[run, k], places[run, k + 4]
-                    if share != 0.0:
-                        # The two sides apart, for a run may have one side's blocks a step behind the other's.
-                        for e in range(low, high):
-                            nodal[a + e] -= share * traction[e]
-                        for e in range(low, high):
-                            nodal[b + e] += share * traction[e]
-    to_modes(tables, force)
-    if folded.shapes.size:
-        fold(folded, nodal, force)
+                for axis in range(2):
+                    out = opening[p * ne : (p + 1) * ne] if axis == 0 else slip[p * ne : (p + 1) * ne]
+                    begun = False
+                    for k in range(4):
+                        share = shares[run, p, axis, k]
+                        a, b = places[run, k], places[run, k + 4]
+                        if share != 0.0 and begun:
+                            for e in range(low, high):
+                                out[e] += share * (nodal[b + e] - nodal[a + e])
+                        elif share != 0.0:
+                            begun = True
+                            for e in range(low, high):
+                                out[e] = share * (nodal[b + e] - nodal[a + e])
+
+    @kernel
+    def scatter_modes(normal: Array, tangential: Array, geometry: ModalJoints, force: Array) -> None:
+        tables, folded, start, places, _, shares = geometry
+        nodal = tables.nodal
+        points = np.uint64(shares.shape[1])
+        ne = np.uint64(normal.size) // points
+        nodal[:] = 0.0
+        for run in range(places.shape[0]):
+            low, high = start[run], start[np.uint64(run + 1)]
+            if high - low == 1:
+                for p in range(points):
+                    n, t = normal[p * ne + low], tangential[p * ne + low]
+                    for k in range(4):
+                        force_there = shares[run, p, 0, k] * n + shares[run, p, 1, k] * t
+                        nodal[places[run, k] + low] -= force_there
+                        nodal[places[run, k + 4] + low] += force_there
+                continue
+            for p in range(points):
+                for axis in range(2):
+                    traction = normal[p * ne : (p + 1) * ne] if axis == 0 else tangential[p * ne : (p + 1) * ne]
+                    for k in range(4):
+                        share = shares[run, p, axis, k]
+                        a, b = places[run, k], places[run, k + 4]
+                        if share != 0.0:
+                            # The two sides apart, for a run may have one side's blocks a step behind the other's.
+                            for e in range(low, high):
+                                nodal[a + e] -= share * traction[e]
+                            for e in range(low, high):
+                                nodal[b + e] += share * traction[e]
+        modes_of(tables, force)
+        if folded.shapes.size:
+            fold(folded, nodal, force)
+
+    return gather_modes, scatter_modes

@@ -10,7 +10,7 @@ from runningbond.joints.wall_points import wall_strength
 from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.scene import Array, Indices
 
-from .block_kernels import ModalJoints, gather_modes, nodal_tables, scatter_modes
+from .block_kernels import ModalJoints, modal_kernels, nodal_tables
 from .cracks import motion_of_blocks
 from .fracture import Energies, fractured
 from .loads import Loads
@@ -54,7 +54,9 @@ def system_of(
     scaled = scaled_modes(wall, damping, mass_scaling=mass_scaling)
     materials, of_joint = fractured(wall.scene, energies)
     law = kernel_law(materials, of_joint[points.joint])
-    interface = Interface(law, points.area, gather_modes, scatter_modes, _geometry(wall), scaled.frequency_squared)
+    geometry = _geometry(wall)
+    kernels = modal_kernels(alone=bool((geometry.tables.shapes[:, 0] == 1).any()))
+    interface = Interface(law, points.area, *kernels, geometry, scaled.frequency_squared)
     return block_system(wall, scaled, interface, loads)
 
 
