@@ -24,7 +24,7 @@ from runningbond.results.outcome import number
 from .figures import wall_curves
 from .fingerprint import LIBRARIES, code_digest
 from .page import inline_svg, templates
-from .table import CORRECTED, Comparison, Sheet, answer, cost_sheets, multiplier_sheets
+from .table import CORRECTED, Comparison, Sheet, answer, cost_sheets, multiplier_sheets, seconds
 
 DRAWN_WITH = ("pyvista", "vtk", "matplotlib", "jinja2")
 FULL, STRONGEST, AGREE, WORST = 0.3, 0.55, 0.05, 4
@@ -159,7 +159,7 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
     load = f"{load_symbol(scene)} [N]" if is_force(scene) else load_symbol(scene)
     heads = ("model", load, "freedoms", "steps", "seconds", "message")
     rows = [
-        (model, answer(x), *("–" if k is None else k for k in (x.dofs, x.steps)), f"{x.seconds:.2g}", said(x))
+        (model, answer(x), *("–" if k is None else k for k in (x.dofs, x.steps)), seconds(x), said(x))
         for model, x in outcomes.items()
     ]
     refused = [(model, why) for (wall, model), why in comparison.campaign.inapplicable.items() if wall == name]

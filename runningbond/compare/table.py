@@ -168,4 +168,9 @@ def bracket(outcome: Outcome) -> str:
 
 def _cost(outcome: Outcome) -> str:
     dofs, steps = ("–" if count is None else str(count) for count in (outcome.dofs, outcome.steps))
-    return f"{dofs} / {steps} / {float(f'{outcome.seconds:.2g}'):g}"
+    return f"{dofs} / {steps} / {seconds(outcome)}"
+
+
+def seconds(outcome: Outcome) -> str:
+    """Seconds, with two digits that count."""
+    return f"{float(f'{outcome.seconds:.2g}'):g}"

@@ -78,6 +78,8 @@ class Task:
             return run_model(self.model, self.scene, self.tolerance)
         recorder = self.model.observer(self.scene, None)
         outcome = run_model(self.model, self.scene, self.tolerance, recorder)
+        if outcome.status == "failed":
+            return outcome
         recorder.finish(outcome)
         return with_moments(self.scene, outcome, recorder.frames)
 

@@ -76,7 +76,7 @@ def restore() -> None:
     SPOILT.clear()
 
 
-def deadly(model: Model, scene: Scene, tolerance: float) -> Outcome:
+def deadly(model: Model, scene: Scene, tolerance: float, observe: object = None) -> Outcome:
     """A model that takes all the memory of one wall's worker, and the kernel ends that."""
     if scene.title == "too large":
         os.kill(os.getpid(), signal.SIGKILL)
@@ -102,7 +102,7 @@ def test_a_worker_with_other_sources_is_noticed(
     assert not list(tmp_path.glob("*/*"))
 
 
-def dies_once(model: Model, scene: Scene, tolerance: float, *, note: str) -> Outcome:
+def dies_once(model: Model, scene: Scene, tolerance: float, observe: object = None, *, note: str) -> Outcome:
     """`run_model` in a process that is killed when the first wall in motion bears some of its load."""
 
     def die(run: object, state: object, multiplier: float) -> None:
