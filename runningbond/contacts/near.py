@@ -1,4 +1,4 @@
-"""Which sides face each other and are near, and how far blocks reach into each other, as compiled kernels."""
+"""Which sides face each other and are near, where corners rest, and how far blocks overlap, as compiled kernels."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,3 +65,14 @@ def reaches(pairs: Indices, first: Indices, corners: Array, normals: Array, reac
                     low, high = max(low, nearest), min(high, farthest)
                 least = min(least, high - low)
         reach[pair] = least
+
+
+@kernel
+def resting_ends(arcs: Array, ends: NDArray[np.uint64], inwards: Array, corner: Indices, side: Indices) -> None:
+    """Write the corner of each end ``(n, 6)`` that is farther in, and the side that it rests on, two ``(n,)``."""
+    for row in range(inwards.size):
+        k = np.uint64(row)
+        v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
+        along = (arcs[v, 1] - arcs[w, 1]) * arcs[f, 2] - (arcs[v, 0] - arcs[w, 0]) * arcs[f, 3]
+        on_f = inwards[k] * along >= 0.0
+        corner[k], side[k] = (v if on_f else w), (f if on_f else e)

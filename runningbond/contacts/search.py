@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runningbond.scene import Array, Indices, Mask
 
-from .near import near_sides, reaches
+from .near import near_sides, reaches, resting_ends
 from .outline import FLAT, Outline, side_pair
 from .rigid_sides import Placed, RigidSides, gather_sides
 
@@ -178,12 +178,9 @@ def jumps(outline: Outline, contacts: Contacts, motion: Array) -> Array:
 
 def resting(outline: Outline, contacts: Contacts, motion: Array) -> tuple[Indices, Indices]:
     """Of each end, the corner that is farther in and the side it rests on after a motion ``(3 nb,)``, two ``(n,)``."""
-    arcs = outline.placed(motion).arcs
-    v, w, _, _, e, f = contacts.ends.astype(np.int64).T
-    apart = arcs[v, :2] - arcs[w, :2]
-    inwards = contacts.inwards * (apart[:, 1] * arcs[f, 2] - apart[:, 0] * arcs[f, 3])
-    on_f = inwards >= 0
-    return np.where(on_f, v, w), np.where(on_f, f, e)
+    corner, side = np.empty((2, len(contacts)), dtype=np.int64)
+    resting_ends(outline.placed(motion).arcs, contacts.ends, contacts.inwards, corner, side)
+    return corner, side
 
 
 def facing_sides(outline: Outline, motion: Array, margin: float) -> tuple[Indices, Indices]:
