@@ -44,19 +44,36 @@ def stiffness_matrix(
 
     With constant strain the nodes are the vertices; see `nodes_of_degree`.
     """
-    basis = _basis(points, triangles, degree)
-    return csr_array(thickness * asm(linear_elasticity(*plane_stress(young, poisson)), basis))
+    return thickness * elasticity(displacements(points, triangles, degree), np.array([young]), np.array([poisson]))
 
 
 def mass_matrix(points: Array, triangles: Indices, density: float, thickness: float, degree: int = 1) -> csr_array:
     """Consistent mass of vertices ``(nv, 2)`` [m] and triangles ``(nt, 3)``, ``(2 nn, 2 nn)`` [kg]."""
-    basis = _basis(points, triangles, degree)
-    return csr_array(density * thickness * asm(BilinearForm(lambda u, v, _: dot(u, v)), basis))
+    return density * thickness * inertia(displacements(points, triangles, degree))
 
 
-def strain_matrix(points: Array, triangles: Indices, degree: int = 1) -> csr_array:
+def nodes_of_degree(points: Array, triangles: Indices, degree: int) -> Array:
+    """Nodes of triangles whose displacement has some degree, ``(nn, 2)`` [m]; the vertices stand first."""
+    return np.ascontiguousarray(displacements(points, triangles, degree).doflocs[:, ::2].T)
+
+
+def displacements(points: Array, triangles: Indices, degree: int) -> Basis:
+    """Displacements of vertices ``(nv, 2)`` [m] and triangles ``(nt, 3)``, of some degree."""
+    return Basis(_mesh(points, triangles), ElementVector(ELEMENTS[degree]()))
+
+
+def elasticity(basis: Basis, young: Array, poisson: Array) -> csr_array:
+    """Plane-stress stiffness of unit thickness, of moduli and ratios of all triangles or of each ``(nt,)`` [Pa]."""
+    return csr_array(asm(linear_elasticity(*plane_stress(young[:, None], poisson[:, None])), basis))
+
+
+def inertia(basis: Basis) -> csr_array:
+    """Consistent mass of unit density and thickness [m²]."""
+    return csr_array(asm(BilinearForm(lambda u, v, _: dot(u, v)), basis))
+
+
+def mean_strains(basis: Basis) -> csr_array:
     """Mean strains ε_x, ε_y and γ_xy of each triangle per nodal displacement, ``(3 nt, 2 nn)`` [1/m]."""
-    basis = _basis(points, triangles, degree)
     uniform = basis.with_element(ElementTriP0())
     area = asm(LinearForm(lambda v, _: v), uniform)
     forms = [
@@ -65,17 +82,8 @@ def strain_matrix(points: Array, triangles: Indices, degree: int = 1) -> csr_arr
         lambda u, v, _: (grad(u)[0, 1] + grad(u)[1, 0]) * v,
     ]
     strains = [asm(BilinearForm(form), basis, uniform) / area[:, None] for form in forms]
-    order = np.arange(3 * len(triangles)).reshape(3, -1).T.ravel()
+    order = np.arange(3 * len(area)).reshape(3, -1).T.ravel()
     return csr_array(vstack(strains, format="csr")[order])
-
-
-def nodes_of_degree(points: Array, triangles: Indices, degree: int) -> Array:
-    """Nodes of triangles whose displacement has some degree, ``(nn, 2)`` [m]; the vertices stand first."""
-    return np.ascontiguousarray(_basis(points, triangles, degree).doflocs[:, ::2].T)
-
-
-def _basis(points: Array, triangles: Indices, degree: int) -> Basis:
-    return Basis(_mesh(points, triangles), ElementVector(ELEMENTS[degree]()))
 
 
 def lumped_mass(points: Array, triangles: Indices, density: float, thickness: float) -> Array:

@@ -7,8 +7,8 @@ import numpy as np
 from meshing import WallMesh
 from runningbond.scene import Array, Indices, Mask, Scene, SceneError, table_of
 
+from .block_operators import BlockOperators, block_operators
 from .modes import ModeCount, Modes, block_modes, degree_of
-from .operators import mass_matrix, nodes_of_degree, stiffness_matrix, strain_matrix
 
 LARGE = 200_000
 """Multiplications of one matrix product; larger ones are cut up, or the library would start threads."""
@@ -52,9 +52,10 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
         held = held_displacements(mesh, scene, block).tobytes()
         key = int(mesh.shape[block]), int(scene.material_of_block[block]), held, block if stiff[block] else -1
         alike.setdefault(key, []).append(block)
+    kinds = list(alike.values())
+    counts: list[ModeCount] = [3 if stiff[blocks[0]] else count for blocks in kinds]
     result = []
-    for blocks in alike.values():
-        modes, strain = _modes(mesh, scene, blocks[0], 3 if stiff[blocks[0]] else count)
+    for blocks, (modes, strain) in zip(kinds, _modes(mesh, scene, [one[0] for one in kinds], counts), strict=True):
         if carried[blocks[0]]:
             modes = replace(modes, mass=np.full(3, np.inf), inert=np.zeros((3, 2)))
         most = max(4, LARGE // modes.shape.size)
@@ -104,23 +105,42 @@ def held_displacements(mesh: WallMesh, scene: Scene, block: int) -> Array:
     return rows.reshape(len(own), 2 * len(points))
 
 
-def _modes(mesh: WallMesh, scene: Scene, block: int, count: ModeCount) -> tuple[Modes, Array]:
+def _modes(mesh: WallMesh, scene: Scene, blocks: list[int], counts: list[ModeCount]) -> list[tuple[Modes, Array]]:
+    """Modes of some blocks, and their strains."""
+    young, poisson = _moduli(scene, blocks, counts)
+    degrees = np.array([degree_of(count) for count in counts])
+    found: dict[int, tuple[Modes, Array]] = {}
+    for degree in np.unique(degrees).tolist():
+        which = np.flatnonzero(degrees == degree)
+        operators = block_operators(mesh, np.array(blocks)[which].tolist(), young[which], poisson[which], degree)
+        for k, each in zip(which.tolist(), operators, strict=True):
+            found[k] = _modes_of(mesh, scene, blocks[k], each, counts[k])
+    return [found[k] for k in range(len(blocks))]
+
+
+def _moduli(scene: Scene, blocks: list[int], counts: list[ModeCount]) -> Array:
+    """Young's modulus, zero of what does not deform, and Poisson's ratio ``(2, n)``."""
+    moduli = np.zeros((2, len(blocks)))
+    for k, (block, count) in enumerate(zip(blocks, counts, strict=True)):
+        material = scene.block_materials[scene.material_of_block[block]]
+        if count != 3 and material.young is None:
+            key = f"{table_of(material)}.young"
+            raise SceneError(key, "is missing; this model needs it unless its blocks are rigid")
+        moduli[:, k] = 0.0 if count == 3 else material.young or 0.0, material.poisson
+    return moduli
+
+
+def _modes_of(
+    mesh: WallMesh, scene: Scene, block: int, operators: BlockOperators, count: ModeCount
+) -> tuple[Modes, Array]:
     """Modes of a block, found on triangles of their own degree and taken at the nodes of the mesh; their strains."""
-    material = scene.block_materials[scene.material_of_block[block]]
-    degree = degree_of(count)
-    corners, triangles = mesh.points[nodes_of(mesh, block)], triangles_of(mesh, block)
-    points = nodes_of_degree(corners, triangles, degree)
-    if count == 3:
-        K = np.zeros((2 * len(points), 2 * len(points)))
-    elif material.young is None:
-        raise SceneError(f"{table_of(material)}.young", "is missing; this model needs it unless its blocks are rigid")
-    else:
-        K = stiffness_matrix(corners, triangles, material.young, material.poisson, scene.thickness, degree).toarray()
-    density = float(scene.inertial_density[block])
-    M = mass_matrix(corners, triangles, density, scene.thickness, degree).toarray()
+    points, K, M, strain = operators
+    density, nodes = float(scene.inertial_density[block]), nodes_of(mesh, block)
     held = held_displacements(mesh, scene, block)
     further = np.zeros((len(held), len(M) - held.shape[1]))
+    K, M = scene.thickness * K, density * scene.thickness * M
     modes = block_modes(points, K, M, np.hstack([held, further]), count)
     modes = replace(modes, inert=modes.inert * (scene.density[block] / density))
-    strain = strain_matrix(corners, triangles, degree) @ modes.shape
-    return replace(modes, rigid=modes.rigid[: 2 * len(corners)], shape=modes.shape[: 2 * len(corners)]), strain
+    vertices = 2 * (nodes.stop - nodes.start)
+    strains = np.asarray(strain @ modes.shape)
+    return replace(modes, rigid=modes.rigid[:vertices], shape=modes.shape[:vertices]), strains
