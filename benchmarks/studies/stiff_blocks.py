@@ -13,6 +13,7 @@ from pathlib import Path
 
 import ezdxf
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from runningbond.compare import published_scene, run_model
 from runningbond.compare.table import bracket
@@ -65,9 +66,10 @@ def wall(name: str) -> Scene:
 
 
 def timed(model: str, scene: Scene) -> tuple[Outcome, float]:
-    """Outcome of a model, and the processor time that it took [s]."""
-    start = time.process_time()
-    return run_model(model, scene), time.process_time() - start
+    """Outcome of a model, and the processor time that it took [s], with one thread as in campaigns."""
+    with threadpool_limits(1):
+        start = time.process_time()
+        return run_model(model, scene), time.process_time() - start
 
 
 def is_beside(one: Outcome, other: Outcome) -> bool:
