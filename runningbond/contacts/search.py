@@ -165,7 +165,9 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
     asked = np.flatnonzero(depth > deep)
     reach = np.empty(len(asked))
     reaches(blocks.owner[np.column_stack([e, f])[asked]], blocks.first, corners, normals, reach)
-    found[asked] = reach < np.where(opening[asked] < 0, depth[asked] / 2, 0.0)
+    # Nor may those come in that are beneath a side, and deeper than blocks go before contacts are sought again.
+    inside = (opening < 0) | (~beside & (depth > contacts.margin))
+    found[asked] = reach < np.where(inside, depth / 2, 0.0)[asked]
     return found
 
 
