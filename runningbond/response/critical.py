@@ -20,7 +20,7 @@ from runningbond.results.reactions import AT_REST
 from runningbond.scene import Scene
 from runningbond.scene.history import STANDARD_GRAVITY
 
-from .follow import AFTER, PART, follow
+from .follow import AFTER, follow
 from .response import MISSED, Response
 from .resting import Resting
 
@@ -94,7 +94,7 @@ def critical_scale(
     outcome = replace(outcome, seconds=time.perf_counter() - start)
     if rest.trouble:
         return replace(outcome, status=rest.trouble[0], message=rest.trouble[1])
-    search, stopped = Search(lambda scale: _accounted(rest, scale, observe), {}), False
+    search, stopped = Search(lambda scale: follow(rest, scale, rows=ROWS, observe=observe), {}), False
     unit = STANDARD_GRAVITY / float(np.hypot(*rest.history.peak))
     try:
         _bracket(search, START * unit, MOST * unit, tolerance)
@@ -107,15 +107,6 @@ def critical_scale(
             follow(rest, outcome.upper, after=AFTER, rows=ROWS, observe=observe)
     message = "; ".join(filter(None, (outcome.message, note)))
     return replace(outcome, message=message, seconds=seconds)
-
-
-def _accounted(rest: Resting, scale: float, observe: Observer) -> Response:
-    """The response at a scale; of half the step, which misses about a third, where the first misses too much energy."""
-    response = follow(rest, scale, rows=ROWS, observe=observe)
-    if response.unaccounted <= MISSED:
-        return response
-    again = follow(rest, scale, rows=ROWS, part=PART / 2, observe=observe)
-    return replace(again, steps=again.steps + response.steps)
 
 
 def _bracket(search: Search, scale: float, most: float, tolerance: float) -> None:
