@@ -1,7 +1,7 @@
 """The largest frequency of rigid blocks on contacts at finite displacements: a bound, and by Lanczos' method.
 
-The bound, from each block alone, is a fifth too large on running bond. A few steps of Lanczos' method come from below
-to a hundredth of ω, whatever the wall: a tenth of what a stable step is shortened by.
+The bound, from each block alone, is too large where several move together. A few steps of Lanczos' method come from
+below to a hundredth of ω, whatever the wall: a tenth of what a stable step is shortened by.
 """
 
 import numpy as np

@@ -244,7 +244,7 @@ def fold(tables: FoldedTables, nodal: Array, force: Array) -> None:
 def modal_kernels(alone: bool) -> tuple[Kernel, Kernel]:
     """Compile gather and scatter of `ModalJoints`, for walls in which blocks may be `alone` among their like or not.
 
-    Steps of small walls would be some hundredths slower for the question. ``gather(motion, geometry, opening, slip)``
+    Steps of small walls would be slower for the question. ``gather(motion, geometry, opening, slip)``
     writes opening and slip at all points, ``(np,)`` [m], from modal coordinates ``(nd,)``, and ``scatter(normal,
     tangential, geometry, force)`` subtracts from modal forces ``(nd,)`` what the tractions at the points [Pa] do.
     """

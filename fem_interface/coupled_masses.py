@@ -1,9 +1,10 @@
 """Masses of soft blocks between stiffer joints, whose own masses no scaling makes fit for a long step.
 
-A wall of soft blocks vibrates slowly, but two of its blocks on their joint as fast as rigid ones do: a period takes ten
-times as many steps as that of rigid blocks. Heavier deformations do not help, for it is the rigid motions r that limit
-the step, and heavier blocks would slow the wall as well. So they are given inertia across their joints, which moves
-only with the jumps between blocks: central differences are stable at ω if
+A wall of soft blocks vibrates slowly, but two of its blocks on their joint as fast as rigid ones do: a period takes
+ten times as many steps as that of rigid blocks, and more (`benchmarks/studies/stiff_blocks.py`). Heavier deformations
+do not help, for it is the rigid motions r that limit the step, and heavier blocks would slow the wall as well. So they
+are given inertia across their joints, which moves only with the jumps between blocks: central differences are stable
+at ω if
 
     K ≤ ω² M*,   M* = diag(m_r) + (1 + a) K_rr / ω²  ⊕  diag(m_d + β (k_b + (1 + 1/a) s) / ω²),
 

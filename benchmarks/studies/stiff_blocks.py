@@ -1,22 +1,34 @@
 """Deformable blocks of 1 to 1000 GPa beside rigid ones: walls with inset contacts and arches, brackets and cost.
 
-Prints a Markdown table, a row a wall and Young's modulus as it ends; processor seconds, and the ratio of both models'.
+Prints two Markdown tables, a row a wall and Young's modulus as it ends: time steps in the lowest period of the wall as
+it stands, with the masses of modes scaled each by itself and as `fem` has them, and what the lowest frequency loses by
+that; then brackets, time steps, processor seconds, and the ratio of both models'.
 
     python benchmarks/studies/stiff_blocks.py
     python benchmarks/studies/stiff_blocks.py --young 1 100 wall-w1 arch-27
 """
 
 import argparse
+import math
 import tempfile
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import ezdxf
 import numpy as np
+from scipy.linalg import eigh
 from threadpoolctl import threadpool_limits
 
+from dem.rigid_system import rigid_system
+from fem_interface.coupled_masses import with_coupled_masses
+from fem_interface.modal_wall import modal_wall
+from fem_interface.system import system_of
 from runningbond.compare import published_scene, run_model
 from runningbond.compare.table import bracket
+from runningbond.dynamics import BlockSystem, Run
+from runningbond.dynamics.run import CALMING, LOCAL
+from runningbond.dynamics.vibrations import elastic_stiffness
 from runningbond.results import Outcome
 from runningbond.scene import Scene, scene_from_dict
 
@@ -72,6 +84,32 @@ def timed(model: str, scene: Scene) -> tuple[Outcome, float]:
         return run_model(model, scene), time.process_time() - start
 
 
+def steps_in_a_period(system: BlockSystem, local: float) -> tuple[float, float]:
+    """Time steps of a run with local damping α in the lowest period, and its frequency [1/s]."""
+    stiffness, own = elastic_stiffness(system)
+    mass, place = np.diag(own), np.cumsum(np.isfinite(system.mass)) - 1
+    coupled = place[system.coupling.freedom]
+    mass[np.ix_(coupled, coupled)] += system.coupling.inertia
+    frequency = math.sqrt(eigh(stiffness, mass, eigvals_only=True, subset_by_index=(0, 0))[0])
+    return 2 * math.pi / (frequency * Run(system, local=local).dt), frequency
+
+
+def periods(names: list[str], moduli: list[float]) -> Iterator[str]:
+    """Rows of the first table."""
+    yield "| wall | E [GPa] | rigid blocks | each mode by itself | `fem` | lowest frequency lost |"
+    yield "|---|---|---|---|---|---|"
+    for name in names:
+        scene = wall(name)
+        rigid, _ = steps_in_a_period(rigid_system(scene), LOCAL)
+        for young in moduli:
+            blocks = modal_wall(scene.with_block(young=1e9 * young))
+            system = system_of(blocks)
+            alone, exact = steps_in_a_period(system, LOCAL)
+            coupled = with_coupled_masses(blocks, system)
+            steps, slowed = (alone, exact) if coupled is system else steps_in_a_period(coupled, CALMING)
+            yield f"| {name} | {young:g} | {rigid:.0f} | {alone:.0f} | {steps:.0f} | {1 - slowed / exact:.1%} |"
+
+
 def is_beside(one: Outcome, other: Outcome) -> bool:
     """Whether two brackets have a load in common."""
     if one.lower is None or one.upper is None or other.lower is None or other.upper is None:
@@ -85,8 +123,12 @@ def main() -> None:
     parser.add_argument("walls", nargs="*", default=WALLS)
     parser.add_argument("--young", nargs="+", type=float, default=YOUNG, help="in GPa")
     asked = parser.parse_args()
-    print("| wall | E [GPa] | dem-dynamic | fem | agree | dem-dynamic [s] | fem [s] | ratio | fem says |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    for row in periods(asked.walls, asked.young):
+        print(row, flush=True)
+    print(
+        "\n| wall | E [GPa] | `dem-dynamic` | `fem` | agree | steps | steps | seconds | seconds | ratio | `fem` says |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
     for name in ("wall-w1", "arch-9"):  # kernels are compiled before anything is measured
         for young in (min(YOUNG), max(YOUNG)):
             run_model("fem", wall(name).with_block(young=1e9 * young), 0.5)
@@ -97,7 +139,9 @@ def main() -> None:
         for young in asked.young:
             found, seconds = timed("fem", scene.with_block(young=1e9 * young))
             brackets = f"{bracket(rigid)} | {bracket(found)} | {'yes' if is_beside(rigid, found) else 'no'}"
-            costs = f"{rigid_seconds:.2g} | {seconds:.2g} | {seconds / rigid_seconds:.1f}"
+            costs = (
+                f"{rigid.steps} | {found.steps} | {rigid_seconds:.2g} | {seconds:.2g} | {seconds / rigid_seconds:.1f}"
+            )
             print(f"| {name} | {young:g} | {brackets} | {costs} | {found.message} |", flush=True)
 
 

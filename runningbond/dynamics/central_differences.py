@@ -35,6 +35,9 @@ it is not watched; the largest energy supplied so far ``(1,)`` [J], brought up t
 These are plain tuples: to take a named one apart costs a call of the kernels a tenth of the steps of a small wall.
 """
 
+Scales: TypeAlias = tuple[float, float, float]
+"""Time step [s], local damping α, and the joints' viscosity per stiffness, in time steps."""
+
 Control: TypeAlias = Literal["held", "driven", "carried"]
 """What the steps prescribe: a load alone, the live load's power besides, or the velocity of held modes."""
 
@@ -151,56 +154,15 @@ def _give_back(
     return returned
 
 
-@cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: bool = False) -> Any:
-    """Compile the loop of a model.
-
-    Parameters
-    ----------
-    gather, law, scatter
-        Of an `Interface`.
-    plain
-        Whether there is a load alone, no tie and no rig: steps of small walls are a tenth faster without the question.
-    coupled
-        Whether modes have inertia in common; the last but two of the arrays is `Coupled` then, else empty.
-
-    Returns
-    -------
-    step
-        ``step(control, steps, dt, local, joint_viscosity, load, live, speed, arrays, watch)``: held, it adds to a
-        constant load the live one, times a multiplier that rises from zero by the speed a step; driven, it keeps
-        live·v at the speed [W], by a multiplier of the live load; carried, held modes move at the speed [1/s] times
-        `live`. Returns the steps taken, whether no more energy is spent than was supplied, the sum of the
-        multipliers that drive, or of what presses on the carried modes per unit of their motion, and the work of
-        all but the constant load. It looks at the energy every `LOOK` steps of the state's life, and stops where it
-        does not add up.
-
-        With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
-        acts on nothing else.
-    """
-    advance = update_coupled if coupled else update
+def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain: bool) -> Any:
+    """Compile the loop of `stepper` over steps in which loads stay as they are; its arguments are those of that."""
 
     @kernel
     def constant(
-        control: int,
-        steps: int,
-        dt: float,
-        local: float,
-        joint_viscosity: float,
-        load: Array,
-        live: Array,
-        speed: float,
-        geometry: Any,
-        parameters: Any,
-        modes: Modes,
-        restraint: tuple[Indices, Array],
-        ties: Any,
-        rig: Any,
-        coupling: Any,
-        state: StateArrays,
-        work: Work,
-        watch: Watch,
+        control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
+        dt, local, joint_viscosity = scales
+        geometry, parameters, modes, restraint, ties, rig, coupling, state, work = arrays
         _, _, mobility = modes
         motion, velocity, history, _, force = state
         freedom, basis = restraint
@@ -257,23 +219,44 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: 
                 return taken + 1, False, total, worked
         return steps, True, total, worked
 
+    return constant
+
+
+@cache
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: bool = False) -> Any:
+    """Compile the loop of a model.
+
+    Parameters
+    ----------
+    gather, law, scatter
+        Of an `Interface`.
+    plain
+        Whether there is a load alone, no tie and no rig: steps of small walls are a tenth faster without the question.
+    coupled
+        Whether modes have inertia in common; the last but two of the arrays is `Coupled` then, else empty.
+
+    Returns
+    -------
+    step
+        ``step(control, steps, scales, load, live, speed, arrays, watch)``: held, it adds to a constant load the live
+        one, times a multiplier that rises from zero by the speed a step; driven, it keeps live·v at the speed [W], by
+        a multiplier of the live load; carried, held modes move at the speed [1/s] times `live`. Returns the steps
+        taken, whether no more energy is spent than was supplied, the sum of the multipliers that drive, or of what
+        presses on the carried modes per unit of their motion, and the work of all but the constant load. It looks at
+        the energy every `LOOK` steps of the state's life, and stops where it does not add up.
+
+        With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
+        acts on nothing else.
+    """
+    advance = update_coupled if coupled else update
+    constant = _steps_at_constant_loads(gather, law, scatter, advance, plain)
+
     @kernel
     def step(
-        control: int,
-        steps: int,
-        dt: float,
-        local: float,
-        joint_viscosity: float,
-        load: Array,
-        live: Array,
-        speed: float,
-        arrays: Any,
-        watch: Watch,
+        control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
         if speed == 0.0 or not (plain or control == HELD):
-            answer: tuple[int, bool, float, float] = constant(
-                control, steps, dt, local, joint_viscosity, load, live, speed, *arrays, watch
-            )
+            answer: tuple[int, bool, float, float] = constant(control, steps, scales, load, live, speed, arrays, watch)
             return answer
         state, work = arrays[7:]
         motion, loaded = state[0], work[1]
@@ -286,9 +269,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: 
                 loaded[i] = load[i] + multiplier * live[i]
             before = multiplier * _dot(live, motion)
             watched = (already + taken, given + worked - before, most)
-            more, stable, _, turned = constant(
-                control, piece, dt, local, joint_viscosity, loaded, live, 0.0, *arrays, watched
-            )
+            more, stable, _, turned = constant(control, piece, scales, loaded, live, 0.0, arrays, watched)
             taken += more
             worked += turned + multiplier * _dot(live, motion) - before
         return taken, stable, 0.0, worked

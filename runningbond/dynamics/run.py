@@ -201,10 +201,10 @@ class Run:
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
-            coefficients = (number, piece, self.dt, self.local, self._viscosity, load, live, speed)
+            scales = (self.dt, self.local, self._viscosity)
             ties = (*system.ties, state.stretch)
             every = (*self._arrays, ties, self._rig, self._coupling, arrays, self._work)
-            taken, stable, multipliers, work = self._step[plain](*coefficients, every, watch)
+            taken, stable, multipliers, work = self._step[plain](number, piece, scales, load, live, speed, every, watch)
             total += multipliers
             if system.rig is not None:
                 state.turned += float(self._rig[3][0])
