@@ -20,7 +20,7 @@ from runningbond.scene import Array, Indices
 from .rig import turn_rig
 from .system import Kernel
 from .ties import pull
-from .update import Modes, StateArrays, update, update_coupled
+from .update import Modes, StateArrays
 
 kernel = compiled.kernel
 
@@ -162,7 +162,7 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
         control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
         dt, local, joint_viscosity = scales
-        geometry, parameters, modes, restraint, ties, rig, coupling, state, work = arrays
+        geometry, parameters, modes, restraint, ties, rig, memory, state, work = arrays
         _, _, mobility = modes
         motion, velocity, history, _, force = state
         freedom, basis = restraint
@@ -205,7 +205,7 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
             if driven:
                 before = _dot(live, velocity)
                 multiplier = _drive(live, response, modes, state)
-            advance(modes, coupling, state, local, dt)
+            advance(modes, memory, state, local, dt)
             if driven:
                 multiplier += _give_back(live, response, speed, mobility, dt, motion, velocity)
                 total += multiplier
@@ -223,17 +223,17 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: bool = False) -> Any:
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain: bool) -> Any:
     """Compile the loop of a model.
 
     Parameters
     ----------
     gather, law, scatter
         Of an `Interface`.
+    advance
+        The update (`update_of`), whose memory is the last but two of the arrays.
     plain
         Whether there is a load alone, no tie and no rig: steps of small walls are a tenth faster without the question.
-    coupled
-        Whether modes have inertia in common; the last but two of the arrays is `Coupled` then, else empty.
 
     Returns
     -------
@@ -248,7 +248,6 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, plain: bool, coupled: 
         With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
         acts on nothing else.
     """
-    advance = update_coupled if coupled else update
     constant = _steps_at_constant_loads(gather, law, scatter, advance, plain)
 
     @kernel

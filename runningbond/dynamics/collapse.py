@@ -19,6 +19,12 @@ A wall without weight may slip as far and be caught by the pressure that the sli
 enough it does not.
 """
 
+DRAGGED = 1 / 8
+"""Part of a budget after which a wall that neither rests nor falls is damped so that it is not dragged on.
+
+Contacts that slip without an end may shake for as long, and local damping drags on what drifts while it shakes.
+"""
+
 Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
 """What a wall does under a load."""
 
@@ -71,8 +77,10 @@ def hold_load(
     start, given = state.motion.copy(), run.given(state)
     detector = CollapseDetector(elastic=sudden or run.system.weightless)
     halfway = start
-    calm = 0
-    for _ in range(criteria.budget // criteria.interval):
+    calm, looks = 0, criteria.budget // criteria.interval
+    for look in range(looks):
+        if look == round(DRAGGED * looks):
+            run = run.drifting
         run.hold(state, multiplier, criteria.interval, given=given)
         observe(run, state, multiplier)
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0

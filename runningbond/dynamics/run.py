@@ -3,6 +3,7 @@
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -18,7 +19,7 @@ from .state import State
 from .system import BlockSystem, Interface
 from .ties import YIELD
 from .time_step import stable_step
-from .update import coupled_modes
+from .update import Damping, update_of
 
 LOCAL, VISCOUS = 0.5, 0.1
 """Local damping α, and the joints' viscous damping ratio at the highest frequency."""
@@ -83,6 +84,8 @@ class Run:
         Time step [s]; where none is given a part of the stable one.
     part
         That part.
+    damping
+        How `local` resists: at all times, or so that what drifts is not dragged on (`update`).
     """
 
     def __init__(
@@ -93,11 +96,12 @@ class Run:
         viscous: float = VISCOUS,
         dt: float | None = None,
         part: float = 1.0,
+        damping: Damping = "local",
     ) -> None:
         self.system, self.local, self.viscous, self._part = system, local, viscous, part
+        self._advance_modes, self._memory = update_of(system, damping)
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
-        self._coupling = coupled_modes(system)
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -114,10 +118,9 @@ class Run:
         self.safe_step = stable_step(closer, self.viscous * math.sqrt(closer / bound), self.local)
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(bound) / self.dt
-        kernels = (interface.gather, interface.law.kernel, interface.scatter)
-        coupled = len(self._coupling) > 0
-        loaded = (True,) if coupled else (True, False)  # what is coupled bears a load alone
-        self._step = {plain: stepper(*kernels, plain, coupled) for plain in loaded}
+        kernels = (interface.gather, interface.law.kernel, interface.scatter, self._advance_modes)
+        loaded = (True,) if len(self.system.coupling.freedom) else (True, False)  # what is coupled bears a load alone
+        self._step = {plain: stepper(*kernels, plain) for plain in loaded}
         self._plain = not len(self.system.ties) and self.system.rig is None
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
@@ -203,7 +206,7 @@ class Run:
             arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
             scales = (self.dt, self.local, self._viscosity)
             ties = (*system.ties, state.stretch)
-            every = (*self._arrays, ties, self._rig, self._coupling, arrays, self._work)
+            every = (*self._arrays, ties, self._rig, self._memory, arrays, self._work)
             taken, stable, multipliers, work = self._step[plain](number, piece, scales, load, live, speed, every, watch)
             total += multipliers
             if system.rig is not None:
@@ -228,7 +231,16 @@ class Run:
         # What is held from now on has been damped; the ledger counts the damping of what moves.
         state.absorbed += float(state.damped[late].sum())
         state.damped[late] = 0.0
-        return Run(system, local=self.local, viscous=self.viscous, dt=self._given_step, part=self._part)
+        return self._of(system, "local")
+
+    @cached_property
+    def drifting(self) -> "Run":
+        """The same run with combined damping, which does not drag on what drifts."""
+        return self._of(self.system, "combined")
+
+    def _of(self, system: BlockSystem, damping: Damping) -> "Run":
+        step, part = self._given_step, self._part
+        return Run(system, local=self.local, viscous=self.viscous, dt=step, part=part, damping=damping)
 
     def unaccounted(self, state: State, least: float = 0.0) -> float:
         """Share of the work of the loads, or of a least one [J], that the energy ledger misses.

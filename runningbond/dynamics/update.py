@@ -1,13 +1,18 @@
-"""The update of a step: velocities and motions from forces, with damping; of modes alone, or of some together."""
+"""The update of a step: velocities and motions from forces, with damping; of modes alone, or of some together.
 
-from typing import TypeAlias
+Local damping α resists every mode by α times the force on it (Cundall 1987). That comes to rest soonest, and drags on
+what drifts while it shakes: a wall may creep under it that would fall. Combined damping resists by the same only while
+that force changes against the velocity, as in a vibration it does all the time (Itasca), and lets drift what drifts.
+"""
+
+from typing import Any, Literal, TypeAlias, cast
 
 import numpy as np
 
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
-from .system import BlockSystem
+from .system import BlockSystem, Kernel
 
 kernel = compiled.kernel
 
@@ -22,33 +27,51 @@ Coupled: TypeAlias = tuple[Indices, Array, Array, Array, Array, Array, Array, Ar
 accelerations of the step before, which steps write to, and five buffers, ``(n,)`` each."""
 
 
-def coupled_modes(system: BlockSystem) -> Coupled | tuple[()]:
-    """What steps take of modes with inertia in common; nothing where there are none."""
+Damping: TypeAlias = Literal["local", "combined"]
+"""How modes with masses of their own are damped; those with inertia in common are by combined damping."""
+
+
+def update_of(system: BlockSystem, damping: Damping) -> tuple[Kernel, tuple[Any, ...]]:
+    """The update of a system, and its memory: what it takes and writes to besides modes and state."""
     freedom, inertia = system.coupling
     if not len(freedom):
-        return ()
+        return (update, ()) if damping == "local" else (update_combined, (np.zeros(len(system.mass)),))
     own = system.mass[freedom]
     mobility = np.asarray(np.linalg.inv(np.diag(own) + inertia).ravel(), dtype=np.float64)
-    last, before, place, damping, force, free = np.zeros((6, len(freedom)))
-    return freedom, mobility, own, last, before, place, damping, force, free
+    last, before, place, damped, force, free = np.zeros((6, len(freedom)))
+    coupled: Coupled = (freedom, mobility, own, last, before, place, damped, force, free)
+    return update_coupled, coupled
 
 
-@kernel
-def update(modes: Modes, coupling: Coupled | tuple[()], state: StateArrays, local: float, dt: float) -> None:
-    """Bring each mode forward by its own mass; `coupling` is `update_coupled`'s."""
-    stiffness, viscosity, mobility = modes
-    motion, velocity, _, damped, force = state
-    for i in range(motion.size):
-        before = velocity[i]
-        viscous = viscosity[i] * before
-        f = force[i] - stiffness[i] * motion[i] - viscous
-        force[i] = f
-        sense = (1.0 if before > 0.0 else 0.0) - (1.0 if before < 0.0 else 0.0)
-        resisted = local * abs(f) * sense
-        after = before + dt * mobility[i] * (f - resisted)
-        damped[i] += 0.5 * dt * (resisted + viscous) * (before + after)
-        motion[i] += dt * after
-        velocity[i] = after
+def _alone(combined: bool) -> Kernel:
+    """Compile the update of modes by their own masses, `combined` or by local damping."""
+
+    @kernel
+    def alone(modes: Modes, memory: Any, state: StateArrays, local: float, dt: float) -> None:
+        stiffness, viscosity, mobility = modes
+        motion, velocity, _, damped, force = state
+        for i in range(motion.size):
+            before = velocity[i]
+            viscous = viscosity[i] * before
+            f = force[i] - stiffness[i] * motion[i] - viscous
+            force[i] = f
+            sense = (1.0 if before > 0.0 else 0.0) - (1.0 if before < 0.0 else 0.0)
+            if combined:
+                last = memory[0]
+                change = f - last[i]
+                last[i] = f
+                if sense * change >= 0.0:
+                    sense = 0.0
+            resisted = local * abs(f) * sense
+            after = before + dt * mobility[i] * (f - resisted)
+            damped[i] += 0.5 * dt * (resisted + viscous) * (before + after)
+            motion[i] += dt * after
+            velocity[i] = after
+
+    return cast(Kernel, alone)
+
+
+update, update_combined = _alone(combined=False), _alone(combined=True)
 
 
 @kernel
@@ -64,11 +87,10 @@ def _multiply(matrix: Array, factor: Array, out: Array) -> None:
 
 @kernel
 def update_coupled(modes: Modes, coupling: Coupled, state: StateArrays, local: float, dt: float) -> None:
-    """`update` where some modes have inertia in common, and damping that does not drag on what drifts.
+    """`update` where some modes have inertia in common, which combined damping resists.
 
-    It is local damping α of the force m a that accelerates a mode's own mass m, a = M⁻¹ f without damping, while that
-    force changes against the velocity, as in a vibration it does all the time (Itasca's combined damping). It takes
-    energy from each mode, and makes a at most 1 + α times as large: 0 ≤ M⁻¹ m M⁻¹ ≤ M⁻¹.
+    It is α of the force m a that accelerates a mode's own mass m, a = M⁻¹ f without damping. It takes energy from each
+    mode, and makes a at most 1 + α times as large: 0 ≤ M⁻¹ m M⁻¹ ≤ M⁻¹.
     """
     freedom, mobility, mass, last, before, place, damping, force, free = coupling
     motion, velocity, _, damped, unbalanced = state

@@ -1,0 +1,74 @@
+"""Local and combined damping: what vibrates, what drifts, and a load that is held for long."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.dynamics.update import Damping
+from tests.dynamics.test_dynamics import oscillator
+
+LOCAL = 0.5
+
+
+def _run(damping: Damping, stiffness: float = 1.0, dt: float = 0.01) -> Run:
+    system = replace(oscillator(), stiffness=np.array([stiffness]))
+    return Run(system, local=LOCAL, viscous=0.0, dt=dt, damping=damping)
+
+
+@pytest.mark.parametrize(("damping", "share"), [("local", 1 - LOCAL), ("combined", 1.0)])
+def test_what_drifts_under_a_constant_force_is_dragged_by_local_damping_alone(damping: Damping, share: float) -> None:
+    run, steps = _run(damping, stiffness=0.0), 1000
+    state = State.at_rest(run.system)
+    run.bear(state, np.ones(1), steps)
+    # The first step starts from rest, where there is no velocity to resist.
+    assert state.velocity[0] == pytest.approx((1 + (steps - 1) * share) * run.dt, rel=1e-9)
+    way = state.motion[0] - run.dt * (run.dt + state.velocity[0]) / 2  # by the trapezoidal rule, from the first step on
+    assert state.damped[0] == pytest.approx((1 - share) * way, rel=1e-9)
+
+
+def test_both_damp_a_vibration_alike() -> None:
+    """The force of a spring changes against the velocity at all times; α makes each half swing 1 − α over 1 + α."""
+    swings = {}
+    for damping in ("local", "combined"):
+        run = _run(damping, dt=1e-4)
+        state = State.at_rest(run.system)
+        state.motion[0] = 1.0
+        lowest = 0.0
+        while state.velocity[0] <= 0.0:
+            run.hold(state, 0.0, 1)
+            lowest = min(lowest, state.motion[0])
+        swings[damping] = lowest
+    assert swings["combined"] == pytest.approx(swings["local"], rel=1e-6)
+    # (1 − α) k over the first quarter and (1 + α) k over the second conserve energy: A² (1 − α) = B² (1 + α).
+    assert swings["combined"] == pytest.approx(-math.sqrt((1 - LOCAL) / (1 + LOCAL)), rel=1e-3)
+
+
+@pytest.mark.parametrize(("part", "grows"), [(0.98, False), (1.05, True)])
+def test_combined_damping_narrows_the_step_as_local_damping_does(part: float, grows: bool) -> None:
+    run = _run("combined", dt=part * 2 / math.sqrt(1 + LOCAL))
+    state = State.at_rest(run.system)
+    state.motion[0] = 1e-3
+    run.hold(state, 0.0, 20_000)
+    assert (not abs(state.motion[0]) < 1.0) is grows
+
+
+@pytest.mark.parametrize(("unit", "verdict"), [(0.4, "collapse"), (0.5, "undecided")])
+def test_a_load_that_is_held_for_long_no_longer_drags(unit: float, verdict: str) -> None:
+    """A mass that a unit force pushes comes .25 T² far in T under local damping, .44 T² with the last 7/8 of T free.
+
+    It is in collapse at a unit, as it has no weight; that of .4 T² is a fall that local damping leaves undecided.
+    """
+    steps = 8000
+    run = _run("local", stiffness=0.0)
+    run.system.live[:] = 1.0
+    time = steps * run.dt
+    criteria = Criteria(collapse=unit * time**2, budget=steps, interval=100)
+    state = State.at_rest(run.system)
+    assert settle(run, state, 1.0, criteria) == verdict
+    if verdict == "undecided":
+        free = 7 / 8
+        exact = 0.25 * (1 - free) ** 2 + 0.5 * (1 - free) * free + 0.5 * free**2
+        assert state.motion[0] == pytest.approx(exact * time**2, rel=1e-3)
