@@ -2,7 +2,8 @@
 
 Both are corrected in the metric of the interior point's last step, where what is far from its bounds gives way first.
 Forces are balanced by weighted least squares, and moved towards those of the wall at rest, well inside all bounds, by
-as much as brings all of them inside. The mechanism is fitted, again and again, to reduced costs that are nowhere
+as much as brings all of them inside; where no such forces are known, those that leave their bounds are held there, and
+the others balanced again. The mechanism is fitted, again and again, to reduced costs that are nowhere
 negative; points that go on closing count ten times more from time to time. The results are judged by what they are,
 to `ROUNDING`.
 """
@@ -22,10 +23,14 @@ ROUNDING = 1e-11
 """Imbalance relative to the largest force, and closing relative to the largest motion, that count as rounding."""
 
 ROUNDS, STEPS = 12, 40
-"""Metrics in which a mechanism is corrected until none of its points closes, and corrections in each."""
+"""Metrics in which forces are balanced until all are inside, or a mechanism is corrected until none of its points
+closes, and corrections of a mechanism in each."""
 
 HEAVIEST = 1e10
 """Largest weight of a point that goes on closing; with larger ones the others are lost beside it."""
+
+HELD = 1e-6
+"""How much stiffer a force becomes that has left its bounds."""
 
 DAMPING = 1e-13
 """Stiffness, relative, of motions that no force resists."""
@@ -65,16 +70,22 @@ def balanced(program: dict[str, Any], point: InteriorPoint, resting: Array | Non
     """
     matrix, weights, forces = program["A_eq"], point.compliance.copy(), point.forces.copy()
     weights[-1] = 0.0
-    solve = metric(program, weights)
-    for _ in range(3):
-        multipliers, change = solve(program["b_eq"] - matrix @ forces)
-        forces += weights * (matrix.T @ multipliers)
-        forces[-1] += change
-    if resting is not None:
-        forces = _inside(program, forces, resting)
-    unbalanced = float(np.abs(program["b_eq"] - matrix @ forces).max())
-    inside = bool((_room(program, forces) >= 0).all())
-    return forces if inside and unbalanced <= ROUNDING * np.abs(forces).max() else None
+    for _ in range(ROUNDS):
+        solve = metric(program, weights)
+        for _ in range(3):
+            multipliers, change = solve(program["b_eq"] - matrix @ forces)
+            forces += weights * (matrix.T @ multipliers)
+            forces[-1] += change
+        if resting is not None:
+            forces = _inside(program, forces, resting)
+        inside: Array = forces.clip(*program["bounds"].T)
+        if np.abs(program["b_eq"] - matrix @ inside).max() <= ROUNDING * np.abs(inside).max():
+            return inside
+        if resting is not None or not np.isfinite(inside).all():
+            return None
+        weights[inside != forces] *= HELD
+        forces = inside
+    return None
 
 
 def _room(program: dict[str, Any], forces: Array) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from dem.dynamic import dem_dynamic
+from runningbond.compare import published_scene
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state, proved_bound
 from runningbond.limit.associated import is_self_locking, judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
@@ -131,6 +132,22 @@ def test_what_the_repair_leaves_is_exact_from_a_rough_interior_point() -> None:
     upper = -float(program["b_eq"] @ motion / (system.live @ motion))
     assert forces[-1] < exact < upper
     assert upper - forces[-1] < 1e-2 * exact
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-5])
+def test_forces_that_leave_their_bounds_are_held_there(tolerance: float) -> None:
+    """Where a wall slides as a whole many forces end at their bounds, and no state of rest is given to go to."""
+    system = equilibrium(published_scene("panel-01")).under_live_load()
+    forces = coulomb(system.strength)
+    program = force_program(system, forces)
+    point = interior_point(program, tolerance)
+    found = balanced(program, point, None)
+    assert found is not None
+    low, high = program["bounds"].T
+    assert ((low <= found) & (found <= high)).all()
+    assert np.abs(program["A_eq"] @ found - program["b_eq"]).max() <= ROUNDING * np.abs(found).max()
+    exact = solve_forces(system, forces).multiplier
+    assert 0 < exact - found[-1] < 10 * tolerance * exact
 
 
 def test_forces_that_cannot_be_brought_inside_prove_nothing() -> None:
