@@ -22,7 +22,7 @@ from .system import Kernel
 from .ties import pull
 from .update import Modes, StateArrays
 
-kernel = compiled.kernel
+kernel, inlined = compiled.kernel, compiled.inlined
 
 
 Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
@@ -157,7 +157,7 @@ def _give_back(
 def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain: bool) -> Any:
     """Compile the loop of `stepper` over steps in which loads stay as they are; its arguments are those of that."""
 
-    @kernel
+    @inlined
     def constant(
         control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
@@ -254,23 +254,28 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain
     def step(
         control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
-        if speed == 0.0 or not (plain or control == HELD):
-            answer: tuple[int, bool, float, float] = constant(control, steps, scales, load, live, speed, arrays, watch)
-            return answer
+        rises = speed != 0.0 and (plain or control == HELD)
         state, work = arrays[7:]
         motion, loaded = state[0], work[1]
         already, given, most = watch
-        taken, stable, worked = 0, True, 0.0
+        loaded[:] = load
+        taken, stable, total, worked, multiplier, before = 0, True, 0.0, 0.0, 0.0, 0.0
         while stable and taken < steps:
-            piece = min(RISE, steps - taken)
-            multiplier = speed * (taken + 0.5 * piece)
-            for i in range(live.size):
-                loaded[i] = load[i] + multiplier * live[i]
-            before = multiplier * _dot(live, motion)
+            piece = steps
+            if rises:
+                piece = min(RISE, steps - taken)
+                multiplier = speed * (taken + 0.5 * piece)
+                for i in range(live.size):
+                    loaded[i] = load[i] + multiplier * live[i]
+                before = multiplier * _dot(live, motion)
             watched = (already + taken, given + worked - before, most)
-            more, stable, _, turned = constant(control, piece, scales, loaded, live, 0.0, arrays, watched)
+            pace = 0.0 if rises else speed
+            more, stable, summed, turned = constant(control, piece, scales, loaded, live, pace, arrays, watched)
             taken += more
-            worked += turned + multiplier * _dot(live, motion) - before
-        return taken, stable, 0.0, worked
+            total += summed
+            worked += turned
+            if rises:
+                worked += multiplier * _dot(live, motion) - before
+        return taken, stable, total, worked
 
     return step

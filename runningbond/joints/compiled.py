@@ -105,3 +105,8 @@ def kernel(function: Callable[..., Any]) -> Any:
             return dispatcher
         dispatcher._cache = SharedCache(function)
     return dispatcher
+
+
+def inlined(function: Callable[..., Any]) -> Any:
+    """Decorator of a long kernel that one other calls: part of that, and not compiled by itself as well."""
+    return numba.njit(error_model="numpy", nogil=True, inline="always")(function)
