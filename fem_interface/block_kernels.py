@@ -35,8 +35,8 @@ class NodalTables(NamedTuple):
         The tables, ``(displacements, modes)`` each, and their transposes, one after the other.
     still : (1,) int
         Place of the first displacement that is always zero.
-    nodal, product : float
-        Buffers of the displacements, and of a product.
+    nodal : float
+        Buffer of the displacements.
     """
 
     shapes: Indices
@@ -44,7 +44,6 @@ class NodalTables(NamedTuple):
     backward: Array
     still: Indices
     nodal: Array
-    product: Array
 
 
 class ModalJoints(NamedTuple):
@@ -95,7 +94,6 @@ def nodal_tables(
         np.concatenate([np.zeros(0), *(table.T.ravel() for _, table in templates)]),
         np.array([still]),
         np.zeros(still + spare),
-        np.zeros(max((shape[0] * shape[1] for shape, _ in templates), default=0)),
     )
 
 
@@ -132,29 +130,62 @@ def _product(
 
 
 @kernel
+def _products(
+    table: Array,
+    rows: Any,
+    terms: Any,
+    n: Any,
+    source: Array,
+    source_at: Any,
+    into: Array,
+    at: Any,
+    subtract: bool,
+) -> None:
+    """Rows of `into`, n long, become a table ``(rows, terms)`` times rows of `source`, or less by that.
+
+    A library's call takes as long, and its sums have another order on another machine.
+    """
+    n, two, three = np.uint64(n), np.uint64(2), np.uint64(3)
+    sense = -1.0 if subtract else 1.0
+    for r in range(rows):
+        out = np.uint64(at) + np.uint64(r) * n
+        if not subtract:
+            for e in range(n):
+                into[out + e] = 0.0
+        k, i = 0, np.uint64(source_at)
+        while k < terms:  # four terms at once, for rows are read and written as often as there are sums
+            a, b, c, d = sense * table[r, k], 0.0, 0.0, 0.0
+            i1 = i2 = i3 = i
+            if k + 1 < terms:
+                b, i1 = sense * table[r, k + 1], i + n
+            if k + 2 < terms:
+                c, i2 = sense * table[r, k + 2], i + two * n
+            if k + 3 < terms:
+                d, i3 = sense * table[r, k + 3], i + three * n
+            for e in range(n):
+                into[out + e] += a * source[i + e] + b * source[i1 + e] + c * source[i2 + e] + d * source[i3 + e]
+            k += 4
+            i += np.uint64(4) * n
+
+
+@kernel
 def _alike_to_nodes(tables: NodalTables, motion: Array) -> None:
     shapes, table, nodal = tables.shapes, tables.forward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
         if blocks > 1:
             phi = table[entry : entry + width * modes].reshape(width, modes)
-            Q = motion[first : first + modes * blocks].reshape(modes, blocks)
-            np.dot(phi, Q, nodal[at : at + width * blocks].reshape(width, blocks))
+            _products(phi, width, modes, blocks, motion, first, nodal, at, False)
 
 
 @kernel
 def _alike_to_modes(tables: NodalTables, force: Array) -> None:
-    shapes, table, nodal, product = tables.shapes, tables.backward, tables.nodal, tables.product
+    shapes, table, nodal = tables.shapes, tables.backward, tables.nodal
     for k in range(shapes.shape[0]):
         blocks, modes, width, first, at, entry = shapes[k]
         if blocks > 1:
             phi = table[entry : entry + width * modes].reshape(modes, width)
-            S = nodal[at : at + width * blocks].reshape(width, blocks)
-            out = product[: modes * blocks]
-            np.dot(phi, S, out.reshape(modes, blocks))
-            into = force[first : first + modes * blocks]
-            for i in range(into.size):
-                into[i] -= out[i]
+            _products(phi, modes, width, blocks, nodal, at, force, first, True)
 
 
 @kernel

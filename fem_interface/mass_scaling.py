@@ -131,7 +131,8 @@ def _square_to_scale_for(wall: ModalWall, square: float) -> float:
     if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE:
         return square
     shift = frequency_shift(wall, lowest, square)
-    while (lost := shift(_scaled(wall.mass, wall.stiffness, square)) / LOST) > 1:
+    # Rounded, for a library's frequencies differ in their last bits from machine to machine.
+    while (lost := round(shift(_scaled(wall.mass, wall.stiffness, square)) / LOST, 6)) > 1:
         square *= lost * (1 + CLOSE)
     return square
 

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
@@ -89,18 +90,21 @@ def fem(
         `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
-    if scene.history or is_finite(displacements, "fem", scene):
+    finite = is_finite(displacements, "fem", scene)
+    if scene.history or finite:
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
             if value != only:
                 raise SceneError(f"model fem: {name}", "is not taken at finite displacements; leave it out", value)
-        blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
-        wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
-    else:
-        wall = modal_wall(scene, cells, modes, rule, points, cracks)
-        system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
-        system = with_coupled_masses(wall, system) if mass_scaling else system
-        run = Run(system, local=CALMING if len(system.coupling.freedom) else LOCAL)
+    with threadpool_limits(limits=1, user_api="blas"):  # as in `collapse_by_steps`
+        if scene.history or finite:
+            blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
+            wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
+        else:
+            wall = modal_wall(scene, cells, modes, rule, points, cracks)
+            system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
+            system = with_coupled_masses(wall, system) if mass_scaling else system
+            run = Run(system, local=CALMING if len(system.coupling.freedom) else LOCAL)
     factor = largest_scaling(wall, run.system.mass)
     note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
     note += ", those of soft blocks coupled across joints" if len(run.system.coupling.freedom) else ""

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.linalg import eigh, null_space
+from scipy.sparse import csr_array
 
 from runningbond.scene import Array, free_motions
 
+from .eigenvectors import eigenvectors, sum_of_products, symmetric_eigenvectors
 from .mirror_symmetry import facing
 
 ModeCount: TypeAlias = int | Literal["all"]
@@ -84,8 +85,8 @@ def rigid_motions(points: Array, M: Array) -> Array:
     translations = R.reshape(-1, 3)[:, :2]
     # The origin need not be near: the centroid is taken from it first.
     x, y = (points - points[0]).T
-    total = float(translations[:, 0] @ M @ translations[:, 0])
-    centre = (translations.T @ M @ np.column_stack([x, y]).ravel()) / total
+    total = sum_of_products(translations[:, :1], M, translations[:, :1])[0]
+    centre = sum_of_products(translations, M, np.column_stack([x, y]).reshape(-1, 1)) / total
     R[:, 0, 2], R[:, 1, 2] = centre[1] - y, x - centre[0]
     return R.reshape(-1, 3)
 
@@ -105,9 +106,9 @@ def block_modes(points: Array, K: Array, M: Array, held: Array, count: ModeCount
         How many modes an unsupported block has; more where others are as soft as the last of them.
     """
     R = rigid_motions(points, M)
-    inertia = np.diag(R.T @ M @ R)
-    free, mass = free_motions(held @ R, inertia)
-    rigid, stiffness = R @ free, np.zeros(3)
+    inertia = sum_of_products(R, M, R)
+    free, mass = free_motions(np.einsum("kn,ni->ki", held, R), inertia)
+    rigid, stiffness = np.einsum("ni,ij->nj", R, free), np.zeros(3)
     shape = rigid
     if count != 3:
         candidates = np.eye(len(M)) if count == "all" else _softest(points, K, M, count)
@@ -116,7 +117,7 @@ def block_modes(points: Array, K: Array, M: Array, held: Array, count: ModeCount
         shape = np.hstack([rigid, np.sqrt(inertia[0]) * bending])
         mass = np.concatenate([mass, np.full(len(own), inertia[0])])
         stiffness = np.concatenate([stiffness, inertia[0] * own])
-    inert = shape.T @ M @ R[:, :2]
+    inert = np.einsum("nm,ni->mi", shape, _momenta(R[:, :2], M).T)
     if len(held) == 0:
         inert[:] = 0.0  # but for rounding
         inert[0, 0] = inert[1, 1] = inertia[0]
@@ -136,11 +137,13 @@ def _softest(points: Array, K: Array, M: Array, count: int) -> Array:
     first = polynomials(points, 1)
     if count == 6:
         return first
-    further = polynomials(points, 3)
-    further = further @ null_space(first.T @ M @ further, rcond=1e-9)
-    own, mix = eigh(further.T @ K @ further, further.T @ M @ further)
-    soft = own <= own[count - 7] * (1 + ALIKE)
-    return np.hstack([first, further @ mix[:, soft]])
+    own, further = eigenvectors(K, M, polynomials(points, 3), _momenta(first, M))
+    return np.hstack([first, further[:, own <= own[count - 7] * (1 + ALIKE)]])
+
+
+def _momenta(motions: Array, M: Array) -> Array:
+    """Momenta of some motions ``(n, k)``, a row each: zero on what is orthogonal to them."""
+    return np.asarray(csr_array(M) @ motions).T
 
 
 def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Array) -> tuple[Array, Array]:
@@ -153,12 +156,10 @@ def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Arr
     (d,) float
         ω² of each [1/s²].
     """
-    inert = rigid.T @ M
-    zero = np.vstack([held, inert / np.linalg.norm(inert, axis=1)[:, None]]) if len(inert) else held
-    candidates = candidates / np.linalg.norm(candidates, axis=0)
-    space = candidates @ null_space(zero @ candidates, rcond=1e-9)
-    own, mix = eigh(space.T @ K @ space, space.T @ M @ space)
-    return space @ mix, own
+    inert = _momenta(rigid, M)
+    zero = np.vstack([held, inert / np.sqrt((inert**2).sum(axis=1))[:, None]]) if len(inert) else held
+    own, shapes = eigenvectors(K, M, candidates / np.sqrt((candidates**2).sum(axis=0)), zero)
+    return shapes, own
 
 
 def _even_or_odd(points: Array, shapes: Array, own: Array, M: Array) -> Array:
@@ -181,6 +182,7 @@ def _even_or_odd(points: Array, shapes: Array, own: Array, M: Array) -> Array:
     mirrored[:, 0] *= -1
     image, result = mirrored.reshape(shapes.shape), shapes.copy()
     for alike in np.split(np.arange(len(own)), np.flatnonzero(np.diff(own) > EQUAL * own[1:]) + 1):
-        _, turn = np.linalg.eigh(shapes[:, alike].T @ M @ image[:, alike])
-        result[:, alike] = shapes[:, alike] @ turn
+        seen = np.einsum("ni,jn->ij", shapes[:, alike], _momenta(image[:, alike], M))
+        _, turn = symmetric_eigenvectors((seen + seen.T) / 2)
+        result[:, alike] = np.einsum("ni,ij->nj", shapes[:, alike], turn)
     return result
