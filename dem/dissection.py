@@ -1,8 +1,10 @@
-"""Linear systems of one pattern by nested dissection (George 1973), on walls of so many blocks that bands lose.
+"""Linear systems of one pattern by nested dissection (George 1973).
 
 Blocks are parted by a line of blocks across them, and the parts again, down to a few blocks. Parts are eliminated
 first, then the lines between them, each as a dense front. From one system to the next few joint points open, close,
-slip or stick: only fronts that hold one of these, and those above, are factorised anew.
+slip or stick: only fronts that hold one of these, and those above, are factorised anew. Sums have one order, whatever
+vector registers there are: a library's factors differ in their last bits from machine to machine, and the path of a
+wall of many blocks with them.
 """
 
 from dataclasses import dataclass
@@ -43,7 +45,8 @@ class Dissection:
         changed = np.full(len(self.fronts.above) + 1, self.is_new)
         renew(tangent, self.tangent, self.jump, self.front, changed, self.terms)
         self.tangent, self.is_new = tangent, True  # should a front be singular
-        factorise(self.fronts, changed, self.terms, self.store)
+        if not factorise(self.fronts, changed, self.terms, self.store):
+            raise np.linalg.LinAlgError("singular tangent")
         self.is_new = False
         x = np.empty(right.shape[::-1])
         x[:, self.place] = right.T

@@ -48,8 +48,11 @@ def renew(tangent: Array, last: Array, jump: Array, front: Indices, changed: Mas
 
 
 @kernel
-def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> None:
-    """Eliminate the unknowns of changed fronts ``(nf,)`` and, which are marked then, of those above them."""
+def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> bool:
+    """Eliminate the unknowns of changed fronts ``(nf,)`` and, which are marked then, of those above them.
+
+    False where a front is singular.
+    """
     own, begin, _, place, above, first, below, at, term, order, address = fronts
     for f in range(above.size):
         if not changed[f]:
@@ -65,15 +68,96 @@ def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> None
         for b in below[first[f] : first[f + 1]]:
             theirs = place[begin[b] : begin[b + 1]]
             _add_own(store[at[b + 1] - theirs.size**2 : at[b + 1]], theirs, s, u, store[at[f] : last])
-        inverse = np.ascontiguousarray(np.linalg.inv(store[at[f] : middle].reshape((s, s))))
-        store[at[f] : middle] = inverse.ravel()
+        if not _invert(store[at[f] : middle].reshape((s, s))):
+            return False
         if u > 0:
-            right = np.dot(inverse, -store[middle:low].reshape((s, u)))
+            right = np.zeros((s, u))
+            _add_product(store[at[f] : middle].reshape((s, s)), -store[middle:low].reshape((s, u)), right)
             store[middle:low] = right.ravel()
-            np.dot(store[low:last].reshape((u, s)), right, store[last : at[f + 1]].reshape((u, u)))
+            store[last : at[f + 1]] = 0.0
+            _add_product(store[low:last].reshape((u, s)), right, store[last : at[f + 1]].reshape((u, u)))
             for b in below[first[f] : first[f + 1]]:
                 theirs = place[begin[b] : begin[b + 1]]
                 _add_left(store[at[b + 1] - theirs.size**2 : at[b + 1]], theirs, s, u, store[last : at[f + 1]])
+    return True
+
+
+@kernel
+def _invert(matrix: Array) -> bool:
+    """Invert a matrix ``(s, s)`` in place, by Gauss and Jordan with the largest pivot of each column.
+
+    False where there is none.
+    """
+    s = len(matrix)
+    order = np.arange(s)
+    for k in range(s):
+        best = k
+        for i in range(k + 1, s):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if not abs(matrix[best, k]) > 0.0:
+            return False
+        if best != k:
+            for j in range(s):
+                matrix[k, j], matrix[best, j] = matrix[best, j], matrix[k, j]
+            order[k], order[best] = order[best], order[k]
+        inverse = 1 / matrix[k, k]
+        matrix[k, k] = 1.0
+        for j in range(s):
+            matrix[k, j] *= inverse
+        for i in range(s):
+            if i != k:
+                factor = matrix[i, k]
+                matrix[i, k] = 0.0
+                if factor != 0.0:
+                    for j in range(s):
+                        matrix[i, j] -= factor * matrix[k, j]
+    row = np.empty(s)
+    for i in range(s):
+        for k in range(s):
+            row[order[k]] = matrix[i, k]
+        matrix[i] = row
+    return True
+
+
+@kernel
+def _add_product(left: Array, right: Array, out: Array) -> None:
+    """Add a product of matrices ``(r, k)`` and ``(k, n)`` to a matrix ``(r, n)``, in one order of sums."""
+    rows, terms = left.shape
+    n = right.shape[1]
+    paired, fours = rows - rows % 2, terms - terms % 4
+    for r in range(0, paired, 2):  # two rows and four terms at once: what is read serves eight products
+        for k in range(0, fours, 4):
+            a, b, c, d = left[r, k], left[r, k + 1], left[r, k + 2], left[r, k + 3]
+            e, f, g, h = left[r + 1, k], left[r + 1, k + 1], left[r + 1, k + 2], left[r + 1, k + 3]
+            for j in range(n):
+                one, two, three, four = right[k, j], right[k + 1, j], right[k + 2, j], right[k + 3, j]
+                out[r, j] += a * one + b * two + c * three + d * four
+                out[r + 1, j] += e * one + f * two + g * three + h * four
+    for r in range(rows):
+        for k in range(fours if r < paired else 0, terms):
+            a = left[r, k]
+            for j in range(n):
+                out[r, j] += a * right[k, j]
+
+
+@kernel
+def _add_times(matrix: Array, vector: Array, out: Array) -> None:
+    """Add a matrix ``(r, k)`` times a vector ``(k,)``; eight sums side by side, in one order whatever the registers."""
+    rows, terms = matrix.shape
+    part = np.empty(8)
+    for r in range(rows):
+        part[:] = 0.0
+        k = 0
+        while k + 8 <= terms:
+            for lane in range(8):
+                part[lane] += matrix[r, k + lane] * vector[k + lane]
+            k += 8
+        rest = 0.0
+        while k < terms:
+            rest += matrix[r, k] * vector[k]
+            k += 1
+        out[r] += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7])) + rest
 
 
 @kernel
@@ -113,10 +197,12 @@ def substitute(fronts: Fronts, store: Array, x: Array) -> None:
         for f in range(own.size - 1):
             s, u = own[f + 1] - own[f], begin[f + 1] - begin[f]
             low = at[f] + s * s + s * u
-            solved = np.dot(store[at[f] : at[f] + s * s].reshape((s, s)), v[own[f] : own[f + 1]])
+            solved = np.zeros(s)
+            _add_times(store[at[f] : at[f] + s * s].reshape((s, s)), v[own[f] : own[f + 1]], solved)
             v[own[f] : own[f + 1]] = solved
             if u > 0:
-                less = np.dot(store[low : low + u * s].reshape((u, s)), solved)
+                less = np.zeros(u)
+                _add_times(store[low : low + u * s].reshape((u, s)), solved, less)
                 for i in range(u):
                     v[left[begin[f] + i]] -= less[i]
         for f in range(own.size - 2, -1, -1):
@@ -124,4 +210,4 @@ def substitute(fronts: Fronts, store: Array, x: Array) -> None:
             if u > 0:
                 middle = at[f] + s * s
                 there = v[left[begin[f] : begin[f + 1]]]
-                v[own[f] : own[f + 1]] += np.dot(store[middle : middle + s * u].reshape((s, u)), there)
+                _add_times(store[middle : middle + s * u].reshape((s, u)), there, v[own[f] : own[f + 1]])

@@ -11,7 +11,7 @@ from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.scene import Array, Scene
 
 from .pushover import StaticState
-from .static_system import Control, StaticSystem
+from .static_system import Control, StaticSystem, dot
 
 STEPS = 25
 """Least number of steps in the longest leg of a way."""
@@ -70,7 +70,7 @@ class Lead:
             return self.first_step / float(np.abs(system.support_jump).max())
         load = np.append(np.zeros(system.unknowns - 1), self.first_step)
         step = system.solve(system.elastic, Control(self.first_step, multiplier=True), load)
-        return abs(float(system.equilibrium.live @ step[: system.freedoms]))
+        return abs(dot(system.equilibrium.live, step[: system.freedoms]))
 
     def stops(self, share: float) -> Iterator[tuple[float, bool]]:
         """Values to hold on the way, each with whether it is the first of a leg, in steps of that share's length."""

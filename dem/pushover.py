@@ -13,7 +13,7 @@ import numpy as np
 from runningbond.scene import Array
 
 from .relaxation import LONGEST, Rest, relax
-from .static_system import Control, StaticSystem
+from .static_system import Control, StaticSystem, dot
 
 NOISE = 1e-6
 """Multiplier, in scaled units, below which a bracket need not be relatively narrow."""
@@ -134,5 +134,5 @@ def lengthened(solves: int) -> float:
 def state_of(system: StaticSystem, rest: Rest) -> StaticState:
     """A state of rest as it is kept."""
     force, joints = np.column_stack([rest.response.normal, rest.response.tangential]), len(system.equilibrium.points)
-    displacement = float(system.equilibrium.live @ rest.x[: system.freedoms])
+    displacement = dot(system.equilibrium.live, rest.x[: system.freedoms])
     return StaticState(rest.x, rest.response.plastic_slip, force[:joints], displacement, force[joints:, 0])

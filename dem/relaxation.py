@@ -18,6 +18,7 @@ takes, so that (2) turns into Newton's method for equilibrium as the wall comes 
 continuation* (Kelley & Keyes 1998) with a path that means something.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -26,7 +27,7 @@ import numpy as np
 from runningbond.joints import PointResponse
 from runningbond.scene import Array
 
-from .static_system import Control, StaticSystem
+from .static_system import Control, StaticSystem, dot
 
 RestVerdict: TypeAlias = Literal["rest", "fall", "undecided"]
 
@@ -104,7 +105,7 @@ def relax(
     path: list[tuple[float, float]] = []
     while True:
         residual = system.unbalanced(x, response, control)
-        path.append((float(np.abs(x[:nd] - guess[:nd]).max()), float(np.linalg.norm(residual[:nd]))))
+        path.append((float(np.abs(x[:nd] - guess[:nd]).max()), _norm(residual[:nd])))
         if _balanced(residual, response):
             return Rest("rest", x, response, last, solves)
         if path[-1][0] > far and _steady(path, STEADY):
@@ -139,7 +140,7 @@ def _creep(
 ) -> tuple[tuple[Array, PointResponse] | None, int]:
     """One time step (2) from `start`: unknowns and response after it, or None; and the linear systems it took."""
     nd, x, drag = system.freedoms, start, np.zeros(system.freedoms)
-    first = size = float(np.linalg.norm(residual))
+    first = size = _norm(residual)
     for taken in range(1, PATIENCE + 1):
         try:
             step = system.solve(tangent + rate * system.elastic, control, -residual)
@@ -153,14 +154,14 @@ def _creep(
             answer = system.respond(tried, plastic_slip)
             left = system.unbalanced(tried, answer, control)
             left[:nd] += dragged
-            error = float(np.linalg.norm(left))
+            error = _norm(left)
             if error < best:
                 best, kept = error, (tried, dragged, answer, left)
             if error < (1 - share / 4) * size:
                 break
         x, drag, response, residual = kept
         size, tangent = best, response.tangent
-        if size <= max(FOLLOWED * float(np.linalg.norm(drag)), EXACT * _largest(response)):
+        if size <= max(FOLLOWED * _norm(drag), EXACT * _largest(response)):
             return (x, response), taken
         if size > HOPELESS * first:
             return None, taken
@@ -180,3 +181,7 @@ def _balanced(residual: Array, response: PointResponse) -> bool:
 
 def _largest(response: PointResponse) -> float:
     return float(max(np.abs(response.normal).max(initial=0.0), np.abs(response.tangential).max(initial=0.0), 1.0))
+
+
+def _norm(vector: Array) -> float:
+    return math.sqrt(dot(vector, vector))

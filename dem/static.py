@@ -100,7 +100,6 @@ def dem_static(
     outcome = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)
     far = collapse * scene.lowest_block / system.length_unit
     nothing = np.zeros(len(system.law.normal_stiffness))
-    # Bands and fronts are too narrow for a second thread to gain anything.
     try:
         with threadpool_limits(limits=1, user_api="blas"):
             rest = relax(system, np.zeros(system.unknowns), nothing, Control(0.0, multiplier=True), far, budget)

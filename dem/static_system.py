@@ -11,7 +11,6 @@ of the blocks; then λ is given, and nothing is a live load.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.linalg import qr
@@ -23,14 +22,8 @@ from runningbond.limit.kinematics import jump_operator, movable_freedoms, pin_op
 from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Indices, Scene
 
-from .band import Band, band
+from .dissection import Dissection, dissection
 from .tied_law import TiedLaw, elongation, tie_ends
-
-if TYPE_CHECKING:
-    from .dissection import Dissection
-
-MANY = 800
-"""Movable blocks from which on systems are dissected: on fewer, bands are as fast, and need no kernels."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +90,7 @@ class StaticSystem:
         q, reaction, multiplier = x[:nd], x[nd:-1], x[-1]
         force = self._opened @ response.normal + self._slid @ response.tangential
         force += self._reactions @ reaction - system.dead - multiplier * system.live
-        last = multiplier if control.multiplier else system.live @ q
+        last = multiplier if control.multiplier else dot(system.live, q)
         return np.concatenate([force, self._held @ q - self.held, [last - control.value]])
 
     def viscous(self, motion: Array) -> Array:
@@ -134,14 +127,14 @@ class StaticSystem:
         if given:
             return np.append(solved[0], 0.0)
         a, b = solved
-        multiplier = right[-1] if control.multiplier else (right[-1] - border @ a) / (border @ b)
+        multiplier = right[-1] if control.multiplier else (right[-1] - dot(border, a)) / dot(border, b)
         return np.append(a + multiplier * b, multiplier)
 
     def _tied(self, tangent: Array, solved: Array, ends: Array) -> Array:
         """Solutions ``(k, n - 1)`` with ties of a tangent ``(nt,)`` from those with springs in their place.
 
-        Ties couple what lies far apart, and a band would be as wide. Each of a tie's ends is a spring to the ground in
-        the band, as stiff as the tie: where the tied wall has a regular tangent, so has that one. In the springs' stead
+        Ties couple what lies far apart, and fronts would be as large. Each of a tie's ends is a spring to the ground
+        instead, as stiff as the tie: where the tied wall has a regular tangent, so has that one. In the springs' stead
         come the ties (Woodbury), by the solutions ``(2 nt, n - 1)`` for unit forces at the ends.
         """
         far, spring = np.diag(tangent), np.diag(tangent - self.law.normal_stiffness[-len(tangent) :])
@@ -223,7 +216,7 @@ class StaticSystem:
         return jump
 
     @cached_property
-    def _factors(self) -> "Band | Dissection":
+    def _factors(self) -> Dissection:
         """Where the entries of the tangent go: the joint points' 6 × 6 tangents, the springs at ties' ends, C twice."""
         nd, own, scene = self.freedoms, self._freedoms_of_points, self.equilibrium.scene
         pins, ends = self.equilibrium.reaction.tocoo(), self._freedoms_of_ends
@@ -232,11 +225,7 @@ class StaticSystem:
         row, column = np.concatenate([row, pins.row, nd + pins.col]), np.concatenate([column, nd + pins.col, pins.row])
         position, home = scene.blocks.centroid[~scene.fixed], np.arange(nd + pins.shape[1]) // 3
         home[nd + pins.col] = pins.row // 3
-        if len(position) >= MANY:
-            from .dissection import dissection  # and what compiles its kernels
-
-            return dissection(row, column, home, position, self._jump, self._constant)
-        return band(row, column, position[home], 0.1 * scene.lowest_block, self._jump, self._constant)
+        return dissection(row, column, home, position, self._jump, self._constant)
 
 
 def _independent(pins: csc_array) -> csc_array:
@@ -246,6 +235,11 @@ def _independent(pins: csc_array) -> csc_array:
     _, triangle, order = qr(pins.toarray(), mode="economic", pivoting=True)
     size = np.abs(np.diag(triangle))
     return csc_array(pins[:, np.sort(order[: len(size)][size > 1e-9 * size[0]])])
+
+
+def dot(one: Array, other: Array) -> float:
+    """Scalar product, summed in one order: that of a library differs in its last bits from machine to machine."""
+    return float(np.einsum("i,i", one, other))
 
 
 def _rows(system: Equilibrium, operator: csr_array) -> csc_array:

@@ -1,24 +1,20 @@
-"""Systems by nested dissection beside banded ones: the same solutions, whatever has changed, and the same collapses."""
+"""Systems by nested dissection beside full ones: the same solutions, whatever has changed."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from dem import static_system as systems
-from dem.dissection import Dissection, dissection
-from dem.static import dem_static
+from dem.dissection import dissection
 from dem.static_system import Control, StaticSystem, static_system
 from runningbond.compare import published_scene
-from runningbond.scene import Array, Lateral, Scene, scene_from_dict
+from runningbond.scene import Array, Lateral
 from runningbond.scene.beam import Drive
 from tests.dem.test_led import ground_moves, under_beam, wall
 from tests.dem.test_static import ferris
 from tests.dem.test_ties import tie, tied
 from tests.limit.test_limit import rectangle
-from tests.walls import content, courses
 
-MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 SCENES = {
     "one block": wall([rectangle(0, 0, 1, 1)], Lateral()),
     "panel": published_scene("panel-05"),
@@ -30,13 +26,22 @@ SCENES = {
 }
 
 
-def both(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> tuple[StaticSystem, StaticSystem]:
-    """Its system in a band, and dissected."""
-    band, dissected = static_system(scene), static_system(scene)
-    assert not isinstance(band._factors, Dissection)
-    monkeypatch.setattr(systems, "MANY", 0)
-    assert isinstance(dissected._factors, Dissection)
-    return band, dissected
+def full(system: StaticSystem, tangent: Array, control: Control) -> Array:
+    """Matrix of all equations, ``(n, n)``, from the operators of the jumps."""
+    nd, equations = system.freedoms, system.equilibrium
+    jump = [operator.toarray() for operator in (system.opening, system.slip)]
+    matrix = np.zeros((system.unknowns, system.unknowns))
+    for i in range(2):
+        for j in range(2):
+            matrix[:nd, :nd] += jump[i].T @ (tangent[:, i, j, None] * jump[j])
+    pins = equations.reaction.toarray()
+    matrix[:nd, nd:-1], matrix[nd:-1, :nd] = pins, pins.T
+    matrix[:nd, -1] = -equations.live
+    if control.multiplier:
+        matrix[-1, -1] = 1.0
+    else:
+        matrix[-1, :nd] = equations.live
+    return matrix
 
 
 def tangents(system: StaticSystem, generator: np.random.Generator, share: float) -> Array:
@@ -51,19 +56,17 @@ def tangents(system: StaticSystem, generator: np.random.Generator, share: float)
 
 @pytest.mark.parametrize("name", SCENES)
 @pytest.mark.parametrize("by_multiplier", [True, False])
-def test_dissected_systems_have_the_solutions_of_banded_ones(
-    name: str, by_multiplier: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_dissected_systems_have_the_solutions_of_full_ones(name: str, by_multiplier: bool) -> None:
     """One after the other: points change, many, few and none, and change back."""
-    band, dissected = both(SCENES[name], monkeypatch)
+    system = static_system(SCENES[name])
     generator = np.random.default_rng(1)
-    many = tangents(band, generator, 0.5)
-    few = np.where((generator.random(len(many)) < 0.02)[:, None, None], band.elastic, many)
-    controlled = by_multiplier or not band.equilibrium.live.any()
-    for tangent, value in ((band.elastic, 0.7), (many, 0.0), (few, 0.3), (few, 0.0), (many, 0.7)):
-        right = np.append(generator.normal(size=band.unknowns - 1), value)
-        exact, found = (one.solve(tangent, Control(0.0, controlled), right) for one in (band, dissected))
-        assert found == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
+    many = tangents(system, generator, 0.5)
+    few = np.where((generator.random(len(many)) < 0.02)[:, None, None], system.elastic, many)
+    control = Control(0.0, by_multiplier or not system.equilibrium.live.any())
+    for tangent, value in ((system.elastic, 0.7), (many, 0.0), (few, 0.3), (few, 0.0), (many, 0.7)):
+        right = np.append(generator.normal(size=system.unknowns - 1), value)
+        exact = np.linalg.solve(full(system, tangent, control), right)
+        assert system.solve(tangent, control, right) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
 
 
 @settings(max_examples=15, deadline=None)
@@ -90,35 +93,10 @@ def test_solutions_do_not_depend_on_the_order_of_unknowns_terms_and_blocks(seed:
     assert factors.solve(np.zeros((0, 2, 2)), loads)[place] == pytest.approx(np.linalg.solve(matrix, right), abs=1e-10)
 
 
-def test_a_singular_system_is_refused_and_the_next_one_solved(monkeypatch: pytest.MonkeyPatch) -> None:
-    band, dissected = both(ferris("W1"), monkeypatch)
-    right, control = np.ones(band.unknowns), Control(0.0, multiplier=True)
+def test_a_singular_system_is_refused_and_the_next_one_solved() -> None:
+    system = static_system(ferris("W1"))
+    right, control = np.ones(system.unknowns), Control(0.0, multiplier=True)
     with pytest.raises(np.linalg.LinAlgError):
-        dissected.solve(0.0 * band.elastic, control, right)
-    exact = band.solve(band.elastic, control, right)
-    assert dissected.solve(band.elastic, control, right) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
-
-
-def random_wall(seed: int) -> Scene:
-    """Courses of four blocks each, of any quarters of a width, on rounded corners."""
-    generator = np.random.default_rng(seed)
-    cuts = [np.sort(generator.choice(np.arange(1, 16), 3, replace=False)) for _ in range(generator.integers(3, 7))]
-    pattern = [list(np.diff(np.concatenate([[0], cut, [16]])) / 4) for cut in cuts]
-    return courses(pattern, joint__mortar=MORTAR, joint__friction=0.65, joint__inset=0.02)
-
-
-@pytest.mark.parametrize("scene", [*[ferris(f"W{k}", 0.02) for k in (1, 2, 3)], *map(random_wall, range(5))])
-def test_walls_collapse_at_the_load_that_bands_find(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Brackets that overlap, within their width of 1 %."""
-    band = dem_static(scene)
-    monkeypatch.setattr(systems, "MANY", 0)
-    dissected = dem_static(scene)
-    assert band.status == dissected.status == "collapse"
-    assert dissected.multiplier == pytest.approx(band.multiplier, rel=0.01)
-
-
-def test_walls_of_many_blocks_are_dissected() -> None:
-    tables = content(joint__mortar=MORTAR, wall__length=5.76, wall__height=2.4)
-    assert isinstance(static_system(scene_from_dict(tables))._factors, Dissection)
-    tables["wall"]["height"] = 1.2
-    assert not isinstance(static_system(scene_from_dict(tables))._factors, Dissection)
+        system.solve(0.0 * system.elastic, control, right)
+    exact = np.linalg.solve(full(system, system.elastic, control), right)
+    assert system.solve(system.elastic, control, right) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
