@@ -309,11 +309,14 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
 
 
 def proved_bound(scene: Scene) -> float | None:
-    """Multiplier above which nothing stands, if `limit` proves one; Ctrl-C, with which `limit` ends, is raised."""
+    """Multiplier above which nothing stands, if `limit` proves one; Ctrl-C, with which `limit` ends, is raised.
+
+    It is rounded up, to nine digits: its last ones differ from machine to machine, and loads are tried beside it.
+    """
     outcome = limit(scene)
     if outcome.message.startswith(INTERRUPTED):
         raise KeyboardInterrupt
-    return outcome.upper
+    return None if outcome.upper is None else float(f"{outcome.upper + 1e-9 * abs(outcome.upper):.9g}")
 
 
 def so_far(state: LimitState) -> dict[str, Any]:
