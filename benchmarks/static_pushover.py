@@ -1,6 +1,6 @@
 """`dem-static` on every published wall: its bracket, that with other load steps, and what they cost.
 
-Then a linear system as it is solved, in banded form or dissected, beside a sparse one.
+Then a linear system as it is solved, dissected, beside a sparse one.
 """
 
 import argparse
