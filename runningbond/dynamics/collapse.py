@@ -39,6 +39,7 @@ class Criteria:
     rest: float = 1e-5  # unbalanced force, in the system's units, below which the wall is at rest
     budget: int = 2_000_000  # steps after which the question is left undecided
     interval: int = 200  # steps between two looks
+    dragged: float = DRAGGED  # part of the budget after which what drifts is not dragged on
 
 
 def settle(
@@ -79,7 +80,7 @@ def hold_load(
     halfway = start
     calm, looks = 0, criteria.budget // criteria.interval
     for look in range(looks):
-        if look == round(DRAGGED * looks):
+        if look == round(criteria.dragged * looks):
             run = run.drifting
         run.hold(state, multiplier, criteria.interval, given=given)
         observe(run, state, multiplier)

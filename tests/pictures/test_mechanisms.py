@@ -29,7 +29,10 @@ POINT = {"kind": "point", "at": [0.2, 0.35], "force": [0.0, -1.0]}
 @pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static"])
 @pytest.mark.parametrize("name", ["panel-01", "panel-04", "point-load-4", "wall-w1", "wall-w2", "wall-w3"])
 def test_loads_drive_the_mechanisms_of_published_walls(name: str, model: str) -> None:
-    """The live load does positive work, and all loads together what friction takes: none or more. Nothing overlaps."""
+    """The live load does positive work, and all loads together what friction takes: none or more. Nothing overlaps.
+
+    In the fall of `dem-static` joints still give by their springs, a thousandth of what blocks move.
+    """
     scene = published_scene(name)
     settings: dict[str, Any] = {"starts": 1} if model == "limit-nonassociated" else {}
     outcome = run_model(model, scene, 0.01, **settings)
@@ -38,7 +41,7 @@ def test_loads_drive_the_mechanisms_of_published_walls(name: str, model: str) ->
     assert check.live is not None
     assert check.live > 0
     assert check.total >= -1e-6 * check.scale
-    assert check.overlap < 1e-6
+    assert check.overlap < (1e-3 if model == "dem-static" else 1e-6)
     assert check.warning == ""
     backwards = replace(outcome, motion=-outcome.motion)
     assert mechanism_shape(scene, backwards) is None

@@ -49,12 +49,13 @@ def judged(
 ) -> Row:
     """Bring a wall to rest, ramp up to a load in λ_c, hold it: is the verdict right, and after which steps.
 
-    Damped locally, by the joints' viscous ratio and by a mass-proportional rate [1/s], within a budget of steps.
+    Damped locally to the end, by the joints' viscous ratio and by a mass-proportional rate [1/s], within a budget of
+    steps.
     """
     wall = known_wall(name)
     drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)
     run = Run(replace(wall.system, viscosity=wall.system.viscosity + drag), local=local, viscous=viscous)
-    state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget)
+    state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget, dragged=1.0)
     verdict, right = settle(run, state, 0.0, criteria, sudden=True), False
     if verdict == "stable":
         ramp(run, state, 0.0, load * wall.multiplier, RAMP * state.steps)
