@@ -23,13 +23,6 @@ DEPENDENT = 1e-9
 """Length, of the longest one's, below which a vector counts as a sum of others."""
 
 
-def sum_of_products(left: Array, matrix: Array, right: Array) -> Array:
-    """xᵀ A y of each pair of columns x ``(n, k)`` and y ``(n, k)``, or of each x and the only y; ``(k,)``."""
-    row, column = np.nonzero(matrix)
-    each = left[row] * matrix[row, column][:, None] * right[column]
-    return np.array([math.fsum(terms) for terms in each.T.tolist()])
-
-
 def symmetric_eigenvectors(matrix: Array) -> tuple[Array, Array]:
     """Eigenvalues ``(n,)`` of a symmetric matrix ``(n, n)``, ascending, and eigenvectors ``(n, n)``, a column each."""
     rest, vectors = matrix.copy(), np.eye(len(matrix))

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from runningbond.scene import Array, free_motions
 
-from .eigenvectors import eigenvectors, sum_of_products, symmetric_eigenvectors
+from .eigenvectors import eigenvectors, symmetric_eigenvectors
 from .mirror_symmetry import facing
 
 ModeCount: TypeAlias = int | Literal["all"]
@@ -85,8 +84,8 @@ def rigid_motions(points: Array, M: Array) -> Array:
     translations = R.reshape(-1, 3)[:, :2]
     # The origin need not be near: the centroid is taken from it first.
     x, y = (points - points[0]).T
-    total = sum_of_products(translations[:, :1], M, translations[:, :1])[0]
-    centre = sum_of_products(translations, M, np.column_stack([x, y]).reshape(-1, 1)) / total
+    momenta = _momenta(translations, M)
+    centre = np.einsum("kn,n->k", momenta, np.column_stack([x, y]).ravel()) / momenta[0, ::2].sum()
     R[:, 0, 2], R[:, 1, 2] = centre[1] - y, x - centre[0]
     return R.reshape(-1, 3)
 
@@ -106,7 +105,7 @@ def block_modes(points: Array, K: Array, M: Array, held: Array, count: ModeCount
         How many modes an unsupported block has; more where others are as soft as the last of them.
     """
     R = rigid_motions(points, M)
-    inertia = sum_of_products(R, M, R)
+    inertia = np.einsum("kn,nk->k", _momenta(R, M), R)
     free, mass = free_motions(np.einsum("kn,ni->ki", held, R), inertia)
     rigid, stiffness = np.einsum("ni,ij->nj", R, free), np.zeros(3)
     shape = rigid
@@ -129,7 +128,9 @@ def polynomials(points: Array, degree: int) -> Array:
     # The origin need not be near nor the block of size one.
     x, y = ((points - points.mean(axis=0)) / np.ptp(points, axis=0).max()).T
     monomials = [x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)]
-    return np.hstack([np.kron(monomial[:, None], np.eye(2)) for monomial in monomials])
+    result = np.zeros((len(points), 2, len(monomials), 2))
+    result[:, 0, :, 0] = result[:, 1, :, 1] = np.column_stack(monomials)
+    return result.reshape(2 * len(points), -1)
 
 
 def _softest(points: Array, K: Array, M: Array, count: int) -> Array:
@@ -143,7 +144,7 @@ def _softest(points: Array, K: Array, M: Array, count: int) -> Array:
 
 def _momenta(motions: Array, M: Array) -> Array:
     """Momenta of some motions ``(n, k)``, a row each: zero on what is orthogonal to them."""
-    return np.asarray(csr_array(M) @ motions).T
+    return np.asarray(np.einsum("nm,mk->kn", M, motions))
 
 
 def _deformations(candidates: Array, rigid: Array, held: Array, K: Array, M: Array) -> tuple[Array, Array]:
