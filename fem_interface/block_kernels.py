@@ -143,7 +143,7 @@ def _products(
 ) -> None:
     """Rows of `into`, n long, become a table ``(rows, terms)`` times rows of `source`, or less by that.
 
-    A library's call takes as long, and its sums have another order on another machine.
+    The sums of a library's product have another order on another machine.
     """
     n, two, three = np.uint64(n), np.uint64(2), np.uint64(3)
     sense = -1.0 if subtract else 1.0

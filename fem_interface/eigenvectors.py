@@ -17,7 +17,7 @@ from runningbond.scene import Array
 kernel = compiled.kernel
 
 SWEEPS = 30
-"""Most sweeps of rotations; about ten are needed."""
+"""Most sweeps of rotations, which converge quadratically."""
 
 DEPENDENT = 1e-9
 """Length, of the longest one's, below which a vector counts as a sum of others."""

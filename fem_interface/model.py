@@ -90,14 +90,14 @@ def fem(
         `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
-    finite = is_finite(displacements, "fem", scene)
-    if scene.history or finite:
+    finite = bool(scene.history) or is_finite(displacements, "fem", scene)
+    if finite:
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
             if value != only:
                 raise SceneError(f"model fem: {name}", "is not taken at finite displacements; leave it out", value)
     with threadpool_limits(limits=1, user_api="blas"):  # as in `collapse_by_steps`
-        if scene.history or finite:
+        if finite:
             blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
             wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
         else:

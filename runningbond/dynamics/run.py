@@ -99,6 +99,7 @@ class Run:
         damping: Damping = "local",
     ) -> None:
         self.system, self.local, self.viscous, self._part = system, local, viscous, part
+        self._damping = damping
         self._advance_modes, self._memory = update_of(system, damping)
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
@@ -231,7 +232,7 @@ class Run:
         # What is held from now on has been damped; the ledger counts the damping of what moves.
         state.absorbed += float(state.damped[late].sum())
         state.damped[late] = 0.0
-        return self._of(system, "local")
+        return self._of(system, self._damping)
 
     @cached_property
     def drifting(self) -> "Run":

@@ -1,4 +1,4 @@
-"""Systems by nested dissection beside full ones: the same solutions, whatever has changed."""
+"""Systems by nested dissection beside full ones: the same solutions, whatever has changed, and the same collapses."""
 
 import numpy as np
 import pytest
@@ -6,15 +6,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dem.dissection import dissection
+from dem.static import dem_static
 from dem.static_system import Control, StaticSystem, static_system
 from runningbond.compare import published_scene
-from runningbond.scene import Array, Lateral
+from runningbond.scene import Array, Lateral, Scene
 from runningbond.scene.beam import Drive
 from tests.dem.test_led import ground_moves, under_beam, wall
 from tests.dem.test_static import ferris
 from tests.dem.test_ties import tie, tied
 from tests.limit.test_limit import rectangle
+from tests.walls import courses
 
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 SCENES = {
     "one block": wall([rectangle(0, 0, 1, 1)], Lateral()),
     "panel": published_scene("panel-05"),
@@ -100,3 +103,25 @@ def test_a_singular_system_is_refused_and_the_next_one_solved() -> None:
         system.solve(0.0 * system.elastic, control, right)
     exact = np.linalg.solve(full(system, system.elastic, control), right)
     assert system.solve(system.elastic, control, right) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
+
+
+def random_wall(seed: int) -> Scene:
+    """Courses of four blocks each, of any quarters of a width, on rounded corners."""
+    generator = np.random.default_rng(seed)
+    cuts = [np.sort(generator.choice(np.arange(1, 16), 3, replace=False)) for _ in range(generator.integers(3, 7))]
+    pattern = [list(np.diff(np.concatenate([[0], cut, [16]])) / 4) for cut in cuts]
+    return courses(pattern, joint__mortar=MORTAR, joint__friction=0.65, joint__inset=0.02)
+
+
+@pytest.mark.parametrize("scene", [*[ferris(f"W{k}", 0.02) for k in (1, 2, 3)], *map(random_wall, range(5))])
+def test_walls_collapse_at_the_load_that_full_systems_find(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Brackets that overlap, within their width of 1 %."""
+    dissected = dem_static(scene)
+    monkeypatch.setattr(
+        StaticSystem,
+        "solve",
+        lambda system, tangent, control, right: np.linalg.solve(full(system, tangent, control), right),
+    )
+    exact = dem_static(scene)
+    assert exact.status == dissected.status == "collapse"
+    assert dissected.multiplier == pytest.approx(exact.multiplier, rel=0.01)

@@ -31,7 +31,7 @@ POINT = {"kind": "point", "at": [0.2, 0.35], "force": [0.0, -1.0]}
 def test_loads_drive_the_mechanisms_of_published_walls(name: str, model: str) -> None:
     """The live load does positive work, and all loads together what friction takes: none or more. Nothing overlaps.
 
-    In the fall of `dem-static` joints still give by their springs, a thousandth of what blocks move.
+    A wall without weight whose slip presses it together creeps in `dem-static` while its springs still give, steadily.
     """
     scene = published_scene(name)
     settings: dict[str, Any] = {"starts": 1} if model == "limit-nonassociated" else {}
@@ -41,7 +41,8 @@ def test_loads_drive_the_mechanisms_of_published_walls(name: str, model: str) ->
     assert check.live is not None
     assert check.live > 0
     assert check.total >= -1e-6 * check.scale
-    assert check.overlap < (1e-3 if model == "dem-static" else 1e-6)
+    gives = model == "dem-static" and not scene.dead_forces.acceleration.any()
+    assert check.overlap < (1e-3 if gives else 1e-6)
     assert check.warning == ""
     backwards = replace(outcome, motion=-outcome.motion)
     assert mechanism_shape(scene, backwards) is None
