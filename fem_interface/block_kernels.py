@@ -20,7 +20,7 @@ from runningbond.scene import Array, Indices
 
 from .mirror_symmetry import FoldedTables, TableRows
 
-kernel = compiled.kernel
+kernel, inlined = compiled.kernel, compiled.inlined
 
 
 class NodalTables(NamedTuple):
@@ -97,7 +97,7 @@ def nodal_tables(
     )
 
 
-@kernel
+@inlined
 def _product(
     table: Array, entry: Any, rows: Any, n: Any, factor: Array, first: Any, out: Array, at: Any, subtract: bool
 ) -> None:

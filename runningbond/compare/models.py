@@ -46,6 +46,13 @@ def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
 
 
 _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(_late, "dem.dynamic", "dem_dynamic")
+
+
+def _fem(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
+    outcome: Outcome = _late("fem_interface.model", "fem", scene, tolerance, rigid=_DEM_DYNAMIC, **settings)
+    return outcome
+
+
 _RECORDER = partial(_late, "runningbond.pictures.recording")
 _PROGRESS = partial(_late, "runningbond.pictures.progress")
 _IN_MOTION: dict[str, Any] = {"interruptible": True, "takes": FOLLOWED | {"load.history"}}
@@ -71,7 +78,7 @@ _EVERY_MODEL = (
         *("limit-nonassociated", "limit analysis with friction that does not dilate", limit_nonassociated, STRENGTH),
         kind="certificate",
         takes=EXTRAS,
-        parameters=("starts", "workers"),
+        parameters=("starts", "workers", "programs"),
         progress=partial(_PROGRESS, "SearchProgress"),
         interruptible=True,
         cost=Cost(1.8, 1.03, 1.34, weightless=0.56),
@@ -101,7 +108,7 @@ _EVERY_MODEL = (
         line=":",
     ),
     Model(
-        *("fem", "deformable blocks in motion", partial(_late, "fem_interface.model", "fem"), ELASTIC, "history"),
+        *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS, "displacements"),
         cost=Cost(5.7, 1.05, 1.46, weightless=0.97, finer=0.06, start=KERNELS, cracked=6.0),
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),

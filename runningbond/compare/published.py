@@ -40,6 +40,9 @@ PUBLISHED: tuple[PublishedCase, ...] = (  # sixteen panels of Baraldi, Reccia & 
     PublishedCase("wall-w3", FERRIS, {"associated": 0.404, "non-associated": 0.356}),
 )
 
+FURTHER = tuple(PublishedCase(f"wall-w{k}", FERRIS) for k in (4, 5, 6))
+"""Walls with more openings, by their names; `runningbond compare` runs them where they are asked for."""
+
 
 def cases_of(source: str) -> tuple[PublishedCase, ...]:
     """Cases of one source, in the order in which they were published."""
@@ -53,7 +56,7 @@ def published_scene(name: str) -> Scene:
 
 def published_case(path: Path) -> PublishedCase | None:
     """The published case whose own file this is; a file of the same name elsewhere is somebody's own wall."""
-    return next((case for case in PUBLISHED if case.path.resolve() == path.resolve()), None)
+    return next((case for case in (*PUBLISHED, *FURTHER) if case.path.resolve() == path.resolve()), None)
 
 
 def find_scene(scene: str) -> Path:
@@ -61,9 +64,11 @@ def find_scene(scene: str) -> Path:
     path = Path(scene)
     if path.is_file():
         return path
-    if scene in (names := [case.name for case in PUBLISHED]):
-        return PUBLISHED[names.index(scene)].path
+    cases = {case.name: case for case in (*PUBLISHED, *FURTHER)}
+    if scene in cases:
+        return cases[scene].path
     if path.exists():
         raise SceneError(scene, f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
+    names = list(cases)
     what = f"there is no such file, nor a published scene of that name ({names[0]} … {names[-1]})"
     raise SceneError(scene, what + suggestion(scene, names))

@@ -5,16 +5,17 @@ what drifts while it shakes: a wall may creep under it that would fall. Combined
 that force changes against the velocity, as in a vibration it does all the time (Itasca), and lets drift what drifts.
 """
 
-from typing import Any, Literal, TypeAlias, cast
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runningbond.joints import compiled
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array
 
 from .system import BlockSystem, Kernel
 
-kernel = compiled.kernel
+kernel, inlined = compiled.kernel, compiled.inlined
 
 Modes: TypeAlias = tuple[Array, Array, Array]
 """Stiffness [N/m], viscosity [N s/m] and one over the mass [1/kg] of each mode, ``(nd,)``; the last zero where held."""
@@ -22,9 +23,12 @@ Modes: TypeAlias = tuple[Array, Array, Array]
 StateArrays: TypeAlias = tuple[Array, Array, Array, Array, Array]
 """Motion, velocity, history, damped and unbalanced of a `State`, which the steps write to."""
 
-Coupled: TypeAlias = tuple[Indices, Array, Array, Array, Array, Array, Array, Array, Array]
-"""Modes with inertia in common ``(n,)``, M⁻¹ of them row by row ``(n²,)`` [1/kg] and their own masses [kg]; their
-accelerations of the step before, which steps write to, and five buffers, ``(n,)`` each."""
+ROW = 8
+"""Numbers that rows of M⁻¹ below are filled up to a multiple of with nothing, for registers take so many at once."""
+
+Coupled: TypeAlias = tuple[NDArray[np.uint64], Array, Array, Array, Array, Array, Array, Array, Array, Array]
+"""Modes with inertia in common ``(n,)``; M⁻¹ of them row by row [1/kg] and their own masses [kg], as long as a row;
+their accelerations of the step before, which steps write to, and six buffers."""
 
 
 Damping: TypeAlias = Literal["local", "combined"]
@@ -36,14 +40,17 @@ def update_of(system: BlockSystem, damping: Damping) -> tuple[Kernel, tuple[Any,
     freedom, inertia = system.coupling
     if not len(freedom):
         return (update, ()) if damping == "local" else (update_combined, (np.zeros(len(system.mass)),))
-    own = system.mass[freedom]
-    mobility = np.asarray(np.linalg.inv(np.diag(own) + inertia).ravel(), dtype=np.float64)
-    last, before, place, damped, force, free = np.zeros((6, len(freedom)))
-    coupled: Coupled = (freedom, mobility, own, last, before, place, damped, force, free)
-    return update_coupled, coupled
+    n = len(freedom)
+    rows = -(-n // ROW) * ROW
+    mobility, mass = np.zeros((rows, rows)), np.zeros(rows)
+    mass[:n] = system.mass[freedom]
+    mobility[:n, :n] = np.linalg.inv(np.diag(mass[:n]) + inertia)
+    buffers = np.zeros((7, rows))
+    modes = freedom.astype(np.uint64)  # an index that may be negative is asked about
+    return update_coupled, (modes, mobility.ravel(), mass, *buffers)
 
 
-def _alone(combined: bool) -> Kernel:
+def _alone(combined: bool) -> Any:
     """Compile the update of modes by their own masses, `combined` or by local damping."""
 
     @kernel
@@ -68,7 +75,7 @@ def _alone(combined: bool) -> Kernel:
             motion[i] += dt * after
             velocity[i] = after
 
-    return cast(Kernel, alone)
+    return alone
 
 
 update, update_combined = _alone(combined=False), _alone(combined=True)
@@ -76,42 +83,53 @@ update, update_combined = _alone(combined=False), _alone(combined=True)
 
 @kernel
 def _multiply(matrix: Array, factor: Array, out: Array) -> None:
-    """Product with a symmetric matrix ``(n²,)``; row after row, in which vector registers of any width do the same."""
-    n = np.uint64(out.size)
+    """Product with a symmetric matrix ``(n²,)``; row after row, in which vector registers of any width do the same.
+
+    Four rows at once, for sums are read and written as often as there are turns.
+    """
+    n, k, four = np.uint64(out.size), np.uint64(0), np.uint64(4)
     out[:] = 0.0
-    for k in range(n):
-        value, row = factor[k], k * n
-        for i in range(n):
-            out[i] += value * matrix[row + i]
+    while k < n:
+        i1 = k * n
+        i2, i3, i4 = i1 + n, i1 + n + n, i1 + n + n + n
+        a, b, c, d = factor[k], factor[k + np.uint64(1)], factor[k + np.uint64(2)], factor[k + np.uint64(3)]
+        for e in range(n):
+            out[e] += a * matrix[i1 + e] + b * matrix[i2 + e] + c * matrix[i3 + e] + d * matrix[i4 + e]
+        k += four
 
 
-@kernel
+_update_here = inlined(update.py_func)  # a call takes longer than the update of a hundred modes
+
+
+@inlined
 def update_coupled(modes: Modes, coupling: Coupled, state: StateArrays, local: float, dt: float) -> None:
     """`update` where some modes have inertia in common, which combined damping resists.
 
     It is α of the force m a that accelerates a mode's own mass m, a = M⁻¹ f without damping. It takes energy from each
     mode, and makes a at most 1 + α times as large: 0 ≤ M⁻¹ m M⁻¹ ≤ M⁻¹.
     """
-    freedom, mobility, mass, last, before, place, damping, force, free = coupling
+    freedom, mobility, mass, last, before, place, spent, damping, force, free = coupling
     motion, velocity, _, damped, unbalanced = state
     for k in range(freedom.size):
         i = freedom[k]
-        before[k], place[k], damping[k] = velocity[i], motion[i], damped[i]
-    update(modes, coupling, state, local, dt)
+        before[k], place[k], spent[k] = velocity[i], motion[i], damped[i]
+    _update_here(modes, coupling, state, local, dt)
     for k in range(freedom.size):  # these go on together, from where they were
-        i = freedom[k]
-        damped[i], force[k] = damping[k], unbalanced[i]
+        force[k] = unbalanced[freedom[k]]
     _multiply(mobility, force, free)
-    for k in range(freedom.size):
+    for k in range(force.size):
         change = free[k] - last[k]
         last[k] = free[k]
-        against = (before[k] > 0.0 and change < 0.0) or (before[k] < 0.0 and change > 0.0)
-        sense = (1.0 if before[k] > 0.0 else -1.0) if against else 0.0
-        damping[k] = local * mass[k] * abs(free[k]) * sense
+        sense = (1.0 if before[k] > 0.0 else 0.0) - (1.0 if before[k] < 0.0 else 0.0)
+        resisted = local * mass[k] * abs(free[k]) * sense
+        damping[k] = resisted if sense * change < 0.0 else 0.0
         force[k] -= damping[k]
     _multiply(mobility, force, free)
+    for k in range(force.size):
+        after = before[k] + dt * free[k]
+        spent[k] += 0.5 * dt * damping[k] * (before[k] + after)
+        place[k] += dt * after
+        before[k] = after
     for k in range(freedom.size):
-        i, after = freedom[k], before[k] + dt * free[k]
-        damped[i] += 0.5 * dt * damping[k] * (before[k] + after)
-        motion[i] = place[k] + dt * after
-        velocity[i] = after
+        i = freedom[k]
+        motion[i], velocity[i], damped[i] = place[k], before[k], spent[k]

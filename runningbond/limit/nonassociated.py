@@ -32,6 +32,7 @@ def limit_nonassociated(
     *,
     starts: int = STARTS,
     workers: int = 1,
+    programs: int | None = None,
     observe: Observer = lambda found: None,
 ) -> Outcome:
     """Limit analysis of a scene with true Coulomb friction.
@@ -44,6 +45,9 @@ def limit_nonassociated(
     starts, workers
         Most starts of the search, and how many are made at a time, which changes nothing of what is found. Fewer are
         made where none of the last ones brought a smaller load, and of very large walls one alone.
+    programs
+        Linear programs after which no further start is made; where they are not given, as many as half a minute takes
+        on walls of 150 blocks, and fewer where they are dearer.
     observe
         Is shown what the search has found, from time to time.
 
@@ -72,7 +76,7 @@ def limit_nonassociated(
     dofs = system.freedoms - system.has_support
     outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=dofs, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        outcome = _collapse(outcome, system, state, tolerance, starts, workers, observe)
+        outcome = _collapse(outcome, system, state, tolerance, (starts, workers, programs), observe)
     else:
         outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
@@ -83,8 +87,7 @@ def _collapse(
     system: Equilibrium,
     state: LimitState,
     tolerance: float,
-    starts: int,
-    workers: int,
+    effort: tuple[int, int, int | None],
     observe: Observer,
 ) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
@@ -92,11 +95,12 @@ def _collapse(
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
     ordered = order.applied(cut)
+    starts, workers, programs = effort
     associated = None if takes_one_start(ordered) else solve_forces(ordered, coulomb(ordered.strength))
     result = (
         search_large(ordered, order.places(cut.scene), observe)
         if associated is None
-        else search(ordered, associated, starts, workers, observe)
+        else search(ordered, associated, starts, workers, observe, programs)
     )
     proved = _proved_again(system, cut, order, result)
     outcome = replace(outcome, steps=1 + result.programs)

@@ -38,6 +38,13 @@ SHORT = 16
 STARTS = 160
 """Most starts."""
 
+DRY = 100
+"""Starts in a row that bring nothing lower, after which the search ends: of walls of some hundred blocks one start in
+a hundred finds the lowest mechanism."""
+
+AFFORDED = 22_000
+"""Joint points up to which one program more is afforded: programs cost as the power of 2.5 of the points."""
+
 PIVOTS = 400
 """Corners passed on the way to random forces to start from."""
 
@@ -94,16 +101,13 @@ Observer = Callable[[Search], None]
 
 
 def programs_allowed(system: Equilibrium) -> int:
-    """Programs after which no further start is made: fewer where each costs more."""
-    return 20 + 150_000 // max(1, len(system.points))
+    """Programs after which no further start is made: fewer where each costs more, so that all cost about as much."""
+    return 20 + int((AFFORDED / max(1, len(system.points))) ** 2.5)
 
 
 def dry_allowed(system: Equilibrium) -> int:
-    """Starts in a row that bring nothing lower, after which the search ends.
-
-    Fewer where each costs more, and where there is little to find.
-    """
-    return min(max(6, 12_000 // max(1, len(system.points))), max(8, 2 * system.freedoms), 100)
+    """Starts in a row that bring nothing lower, after which the search ends: fewer where there is little to find."""
+    return min(DRY, max(8, 2 * system.freedoms))
 
 
 @dataclass(eq=False)
@@ -176,16 +180,19 @@ def search(
     starts: int = STARTS,
     workers: int = 1,
     observe: Observer = lambda found: None,
+    most: int | None = None,
 ) -> Search:
     """Look for certificates from many starts, seeded; a keyboard interrupt keeps those that were found.
 
-    `observe` is shown what was found after every round; starts are made by so many `workers` at a time.
+    `observe` is shown what was found after every round; starts are made by so many `workers` at a time, and none after
+    the `most` linear programs, `programs_allowed` where they are not given.
     """
     found, stopped = Search(), Event()
     crew = [Programs(system, stopped) for _ in range(workers)]
     known: dict[bytes, ForceSolution | None] = {}
     corners: Corners = (None, None, None)
     patient = len(system.points) >= MANY_CORNERS
+    most = programs_allowed(system) if most is None else most
     while found.starts < starts:
         for programs in crew:
             programs.asks_interior_point = patient
@@ -203,7 +210,7 @@ def search(
         observe(found)
         if found.interrupted or found.frictionless:
             break
-        if found.dry >= dry_allowed(system) or found.programs > programs_allowed(system):
+        if found.dry >= dry_allowed(system) or found.programs > most:
             if patient or found.certificates:
                 break
             patient = True  # what was given up may be all there is

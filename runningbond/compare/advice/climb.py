@@ -16,7 +16,7 @@ from runningbond.compare.scatter import Scatter
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
-from .costs import Estimate
+from .costs import Estimate, short_search
 from .experiment import ModelError, error_of
 from .knowledge import Knowledge, ladder
 from .steps import Step, after_refusal, next_step
@@ -96,6 +96,7 @@ class Advice:
             return [finite_peak(known, step)]
         # No curve past the peak, which is no part of the bracket; and cracks in blocks where they may crack.
         wanted: dict[str, Any] = {"past": 0, "cracks": "blocks" if known.cracks else "joints"}
+        wanted["programs"] = short_search(known.scene)
         settings = {name: value for name, value in wanted.items() if name in model.parameters}
         # Draws that agree are to lie within the tolerance together.
         tolerance, found = known.tolerance / min(step.draws, 2), list[Outcome]()

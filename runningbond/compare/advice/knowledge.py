@@ -124,7 +124,8 @@ class Knowledge:
 
     def estimate(self, model: Model) -> Estimate:
         """What a model is going to cost, at the pace of those run so far."""
-        return estimate(model, self.scene, self.tolerance, pace(self.scene, self.tolerance, self.outcomes))
+        at = pace(self.scene, self.tolerance, self.outcomes)
+        return estimate(model, self.scene, self.tolerance, at, advised=True)
 
     def meaning(self) -> str:
         """What the bracket of the answer means; empty without one."""

@@ -1,0 +1,72 @@
+"""Soft blocks beside rigid ones: where both fall at one load, where not, and what is said then."""
+
+from dataclasses import replace
+
+import pytest
+
+from dem.dynamic import dem_dynamic
+from fem_interface.model import fem
+from fem_interface.second_opinion import beside_others, is_soft
+from runningbond.compare import PUBLISHED, published_scene, run_model
+from runningbond.joints.stiffness import block_compliance
+from runningbond.results import Outcome
+
+
+def bracket(lower: float, upper: float, steps: int = 10) -> Outcome:
+    return Outcome("", "fem", "collapse", (lower + upper) / 2, lower, upper, steps=steps, message="found")
+
+
+def never() -> Outcome:
+    raise AssertionError("asked though there is no need")
+
+
+def test_a_bracket_that_rigid_blocks_share_stays_as_it_is() -> None:
+    found = beside_others(bracket(0.50, 0.51), lambda: bracket(0.51, 0.52), never)
+    assert (found.lower, found.upper, found.message) == (0.50, 0.51, "found")
+    assert found.steps == 20
+
+
+@pytest.mark.parametrize("rigid", [(0.45, 0.46), (0.55, 0.56)])
+def test_where_rigid_blocks_fall_elsewhere_the_finer_mesh_is_taken_in(rigid: tuple[float, float]) -> None:
+    found = beside_others(bracket(0.50, 0.51), lambda: bracket(*rigid), lambda: bracket(0.46, 0.47))
+    assert (found.lower, found.upper) == (0.46, 0.51)
+    assert found.multiplier == pytest.approx(0.485)
+    assert found.steps == 30
+    for loads in ("0.5000–0.5100", "0.4600–0.4700", f"{rigid[0]:.4f}–{rigid[1]:.4f}"):
+        assert loads in found.message
+
+
+def test_what_others_cannot_answer_is_said_and_changes_no_bracket() -> None:
+    lost = replace(bracket(0.4, 0.6), status="undecided", multiplier=None, message="the budget ran out")
+    found = beside_others(bracket(0.50, 0.51), lambda: lost, never)
+    assert (found.lower, found.upper) == (0.50, 0.51)
+    assert "undecided: the budget ran out" in found.message
+    found = beside_others(bracket(0.50, 0.51), lambda: bracket(0.45, 0.46), lambda: lost)
+    assert (found.lower, found.upper) == (0.50, 0.51)
+    assert "as fine undecided" in found.message
+    assert beside_others(lost, never, never) is lost
+
+
+def test_published_blocks_are_stiff_and_stone_between_thin_mortar_is_soft() -> None:
+    """k_n h / (k_n h + E) with h = 175 mm and 10 mm of mortar of 1 GPa that cannot spread along the joint."""
+    for case in PUBLISHED:
+        assert not is_soft(published_scene(case.name))
+    column = 1e9 / (1 - 0.2**2) / 0.01 * 0.175
+    for young, soft in ((1e12, False), (1e10, True)):
+        wall = published_scene("wall-w4").with_block(young=young)
+        assert block_compliance(wall) == pytest.approx(column / (column + young))
+        assert is_soft(wall) is soft
+
+
+def test_a_coarse_mesh_that_leads_a_soft_wall_astray_is_told() -> None:
+    """55 blocks of 10 GPa, contacts 20 mm in: one cell in half a block ends 3 % above rigid blocks, three do not."""
+    wall = published_scene("wall-w4").with_joint(inset=0.02).with_block(young=1e10)
+    rigid, alone, found = dem_dynamic(wall), fem(wall), run_model("fem", wall)
+    assert rigid.lower is not None
+    assert rigid.upper is not None
+    assert alone.lower is not None
+    assert found.lower is not None
+    assert rigid.upper < alone.lower
+    assert found.lower <= rigid.upper
+    assert found.upper == alone.upper
+    assert "how blocks deform decides where this wall falls" in found.message
