@@ -36,7 +36,7 @@ INSET = 0.02
 ARCHES = {"arch-9": (9, 180.0), "arch-15": (15, 180.0), "arch-21": (21, 120.0), "arch-27": (27, 180.0)}
 """Voussoirs and the angle [degrees] that they span."""
 
-WALLS = ["wall-w1", "wall-w2", "wall-w3", *ARCHES]
+WALLS = ["wall-w1", "wall-w2", "wall-w3", "wall-w4", *ARCHES]
 YOUNG = [1.0, 10.0, 100.0, 1000.0]
 RADIUS, RING = 2.0, 0.4
 
