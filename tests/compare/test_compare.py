@@ -26,6 +26,7 @@ from runningbond.compare import MODELS, PUBLISHED, published_scene, run_campaign
 from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
 from runningbond.compare.fingerprint import fingerprint
 from runningbond.compare.model import Model
+from runningbond.compare.published import FURTHER
 from runningbond.compare.table import corrected_homo
 from runningbond.results import Outcome, load_outcome
 from runningbond.scene import Scene, SceneError
@@ -312,6 +313,16 @@ def test_comparison_writes_every_case_with_printed_values(tmp_path: Path, capsys
         assert all(name in text for name in walls)
         assert "0.1865" in text
     assert (tmp_path / "figure-6.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_walls_with_openings_are_known_by_name_and_stand_in_their_table(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ferris & Tin-Loi's W4 to W6 have 55, 61 and 146 blocks; a comparison runs them where they are asked for."""
+    walls = {case.name: published_scene(case.name).wall.sum() for case in FURTHER}
+    assert walls == {"wall-w4": 55, "wall-w5": 61, "wall-w6": 146}
+    assert command(["compare", *walls, "--models", "limit", "--out", str(tmp_path)]) == 0
+    assert "Ferris & Tin-Loi (2001)" in (tmp_path / "table.md").read_text()
 
 
 def test_published_walls_are_the_sixteen_panels_and_three_walls() -> None:
