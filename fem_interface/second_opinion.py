@@ -25,8 +25,9 @@ Solver: TypeAlias = Callable[[], Outcome]
 
 
 def is_soft(scene: Scene) -> bool:
-    """Whether blocks are so soft that others are asked where the wall falls."""
-    return block_compliance(scene) > SOFT
+    """Whether blocks of any material are so soft that others are asked where the wall falls."""
+    moduli = [each.young for each in scene.block_materials if each.young is not None]
+    return bool(moduli) and block_compliance(scene.with_block(young=min(moduli))) > SOFT
 
 
 def beside_others(outcome: Outcome, without: Solver, finer_by: Solver) -> Outcome:

@@ -81,7 +81,7 @@ _EVERY_MODEL = (
         parameters=("starts", "workers", "programs"),
         progress=partial(_PROGRESS, "SearchProgress"),
         interruptible=True,
-        cost=Cost(1.8, 1.03, 1.34, weightless=0.56),
+        cost=Cost(4.2, 0.87, 2.23, weightless=1.8),
         colour="#9b471c",
         marker="s",
     ),
