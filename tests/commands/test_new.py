@@ -48,7 +48,7 @@ def test_nothing_is_overwritten(tmp_path: Path, name: str, capsys: pytest.Captur
 
 @pytest.mark.parametrize(
     ("given", "meant"),
-    [("pannel-01", "panel-01"), ("panel_07", "panel-07"), ("wall-w4", "wall-w3"), ("pointload-2", "point-load-2")],
+    [("pannel-01", "panel-01"), ("panel_07", "panel-07"), ("wal-w4", "wall-w4"), ("pointload-2", "point-load-2")],
 )
 @pytest.mark.parametrize("verb", [["run", "--model", "limit"], ["show"], ["compare", "--models", "limit"]])
 def test_a_scene_nearly_named_is_asked_for(
