@@ -4,6 +4,7 @@ Loads are held one after the other until the wall rests or falls (`LoadPath.push
 displacement f_live · q that does the live load's work is prescribed instead, and λ follows (`LoadPath.follow`).
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeAlias
@@ -128,7 +129,7 @@ class LoadPath:
 
 def lengthened(solves: int) -> float:
     """Factor of the next step after one that took some linear systems."""
-    return float(np.clip((EASY / max(solves, 1)) ** 0.5, SHORTER, LONGER))
+    return float(np.clip(math.sqrt(EASY / max(solves, 1)), SHORTER, LONGER))
 
 
 def state_of(system: StaticSystem, rest: Rest) -> StaticState:

@@ -43,8 +43,8 @@ FOLLOWED, EXACT = 0.3, 1e-10
 PATIENCE, HOPELESS = 25, 100.0
 """Linear systems after which a time step is given up, and growth of its error at which it is."""
 
-PART, PARTS = 0.4, 4
-"""Shortening of a Newton step that errs more after it than before, and how many lengths are tried."""
+LENGTHS = 1.0, 0.4, 0.16, 0.064
+"""Lengths of a Newton step that are tried in turn while it errs more after it than before."""
 
 USUAL, SMALLER, LARGER, REFUSAL = 8.0, 0.1, 2.0, 10.0
 """Linear systems after which ε stays, bounds of its factor after a time step, and its factor after one given up."""
@@ -149,7 +149,7 @@ def _creep(
         if not np.isfinite(step).all():
             return None, taken
         by_step, best = rate * system.viscous(step), np.inf
-        for share in PART ** np.arange(PARTS):
+        for share in LENGTHS:
             tried, dragged = x + share * step, drag + share * by_step
             answer = system.respond(tried, plastic_slip)
             left = system.unbalanced(tried, answer, control)

@@ -114,7 +114,7 @@ def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw)
 def _restrain(row: Array, restraint: Restraint) -> Array:
     """A row per motion of the blocks ``(3 nb,)``, in place turned into one per restrained coordinates."""
     for freedom, basis in zip(*restraint, strict=True):
-        row[freedom] = basis.T @ row[freedom]
+        row[freedom] = np.einsum("ij,i->j", basis, row[freedom])
     return row
 
 

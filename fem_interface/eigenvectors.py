@@ -12,15 +12,12 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from runningbond.joints import compiled
-from runningbond.scene import Array
+from runningbond.scene import Array, complement
 
 kernel = compiled.kernel
 
 SWEEPS = 30
 """Most sweeps of rotations, which converge quadratically."""
-
-DEPENDENT = 1e-9
-"""Length, of the longest one's, below which a vector counts as a sum of others."""
 
 
 def symmetric_eigenvectors(matrix: Array) -> tuple[Array, Array]:
@@ -50,30 +47,12 @@ def eigenvectors(K: Array, M: Array, within: Array, zero: Array) -> tuple[Array,
         ω², ascending, and as many x as there are, of xᵀ M x = 1.
     """
     rows = np.einsum("kn,nm->km", zero, within)
-    free = _complement(rows / np.sqrt((rows**2).sum(axis=1)).max(initial=1e-300))
-    basis = np.ascontiguousarray(np.einsum("nm,md->dn", within, free))
+    basis = np.ascontiguousarray(np.einsum("nm,md->dn", within, complement(rows)))
     mass, stiffness = csr_array(M), csr_array(K)
     for _ in range(2):  # once leaves them as orthogonal as the basis was well-conditioned
         _orthonormalise(basis, mass.indptr, mass.indices, mass.data)
     own, turn = symmetric_eigenvectors(np.einsum("in,nj->ij", basis, stiffness @ basis.T))
     return own, np.einsum("in,ij->nj", basis, turn)
-
-
-def _complement(rows: Array) -> Array:
-    """Orthonormal vectors ``(m, d)`` on which rows ``(k, m)`` are zero; the longest that is left is next each time."""
-    k, m = rows.shape
-    left, found = np.vstack([rows, np.eye(m)]), [np.zeros((m, 0))]
-    for part in (slice(k), slice(k, None)):
-        while True:
-            length = np.sqrt(np.einsum("ij,ij->i", left[part], left[part]))
-            if length.max(initial=0.0) <= DEPENDENT:
-                break
-            one = left[part][length.argmax()] / length.max()
-            for _ in range(2):
-                left = left - np.einsum("i,j->ij", np.einsum("ij,j->i", left, one), one)
-            if part.start == k:
-                found.append(one[:, None])
-    return np.hstack(found)
 
 
 @kernel

@@ -162,8 +162,10 @@ class ModalWall:
         """
         template, row = self.place[block]
         points, triangles = self.mesh.points[nodes_of(self.mesh, block)], triangles_of(self.mesh, block)
-        corners = np.concatenate([points[triangles], np.ones((*triangles.shape, 1))], axis=2)
-        shares = np.linalg.solve(corners.transpose(0, 2, 1), np.array([*at, 1.0])[:, None])[:, :, 0]
+        (x1, y1), (x2, y2), (x3, y3) = (points[triangles] - at).transpose(1, 2, 0)
+        # Each corner's share is that of the triangle between the point and the other two.
+        areas = np.column_stack([x2 * y3 - x3 * y2, x3 * y1 - x1 * y3, x1 * y2 - x2 * y1])
+        shares = areas / areas.sum(axis=1, keepdims=True)
         best = int(np.argmax(shares.min(axis=1)))
         shape = self.templates[template].modes.shape.reshape(len(points), 2, -1)[triangles[best]]
         result = np.zeros(self.first[-1] + 1)

@@ -127,7 +127,9 @@ def polynomials(points: Array, degree: int) -> Array:
     """Polynomial displacements up to a degree, at points ``(nn, 2)``, ``(2 nn, (degree + 1)(degree + 2))``."""
     # The origin need not be near nor the block of size one.
     x, y = ((points - points.mean(axis=0)) / np.ptp(points, axis=0).max()).T
-    monomials = [x**i * y**j for i in range(degree + 1) for j in range(degree + 1 - i)]
+    # Products of more digits: powers of a library differ in their last bits from machine to machine.
+    of_x, of_y = (np.vander(each.astype(np.longdouble), degree + 1, increasing=True).T.astype(float) for each in (x, y))
+    monomials = [of_x[i] * of_y[j] for i in range(degree + 1) for j in range(degree + 1 - i)]
     result = np.zeros((len(points), 2, len(monomials), 2))
     result[:, 0, :, 0] = result[:, 1, :, 1] = np.column_stack(monomials)
     return result.reshape(2 * len(points), -1)

@@ -183,7 +183,7 @@ class BlockSystem:
         """Motion or velocity with restrained coordinates turned back into those of their bodies, ``(nd,)``."""
         moved = motion.copy()
         for freedom, basis in zip(*self.restraint, strict=True):
-            moved[freedom] = basis @ motion[freedom]
+            moved[freedom] = np.einsum("ij,j->i", basis, motion[freedom])
         return moved
 
     def motion_of_blocks(self, motion: Array) -> Array:

@@ -83,7 +83,7 @@ update, update_combined = _alone(combined=False), _alone(combined=True)
 
 @kernel
 def _multiply(matrix: Array, factor: Array, out: Array) -> None:
-    """Product with a symmetric matrix ``(n²,)``; row after row, in which vector registers of any width do the same.
+    """Product with a symmetric matrix ``(n²,)``, n a multiple of four: vector registers of any width do the same.
 
     Four rows at once, for sums are read and written as often as there are turns.
     """

@@ -5,6 +5,7 @@ from .arrays import Array, Indices, Mask, frozen
 from .beam import Beam, BeamLoad, Drive
 from .blocks import Blocks
 from .bond import Bond, course_pattern, running_bond
+from .complement import complement
 from .errors import SceneError
 from .file import read_description, read_scene, scene_from_dict
 from .forces import Arrow, Forces
@@ -56,6 +57,7 @@ __all__ = [
     "Ties",
     "Tilt",
     "build_scene",
+    "complement",
     "course_pattern",
     "find_joints",
     "free_motions",

@@ -7,6 +7,7 @@ import numpy as np
 
 from .arrays import Array, Indices, Mask, frozen
 from .blocks import Blocks
+from .complement import complement
 
 SupportKind: TypeAlias = Literal["base", "fixed-first-course", "corners", "pinned-corners"]
 SUPPORT_KINDS: tuple[str, ...] = get_args(SupportKind)
@@ -87,9 +88,9 @@ def free_motions(held: Array, inertia: Array) -> tuple[Array, Array]:
         turns = not held.any()
         return np.diag([1.0, 1.0, float(turns)]), np.array([*inertia[:2], inertia[2] if turns else np.inf])
     root = np.sqrt(inertia)
-    _, size, vectors = np.linalg.svd(held / root)
-    rank = int((size > 1e-9 * size.max()).sum())
+    free = complement(held / root)
+    count = free.shape[1]
     motions, mass = np.zeros((3, 3)), np.full(3, np.inf)
-    motions[:, : 3 - rank] = (vectors[rank:] / root).T * root[0]
-    mass[: 3 - rank] = inertia[0]
+    motions[:, :count] = free / root[:, None] * root[0]
+    mass[:count] = inertia[0]
     return motions, mass
