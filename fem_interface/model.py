@@ -6,9 +6,7 @@ lost and stiff deformations can be slowed down one by one.
 """
 
 import time
-from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -35,7 +33,6 @@ from .modal_wall import modal_wall
 from .modes import ModeCount
 from .node_outline import node_outline
 from .operators import PointsOn
-from .second_opinion import FINER, beside_others, is_soft
 from .system import system_of
 
 
@@ -52,7 +49,6 @@ def fem(
     mass_scaling: bool = True,
     energies: Energies = "given",
     displacements: Displacements = "small",
-    rigid: Callable[..., Outcome] | None = None,
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
@@ -84,9 +80,6 @@ def fem(
         Whether a wall that is led by its beam is followed through finite displacements, as `dem.dynamic.dem_dynamic`
         follows it. Contacts are then at nodes, `rule`, `points`, `loads` and `energies` are not taken, and blocks
         crack on their axes.
-    rigid
-        Model of rigid blocks, as `dem.dynamic.dem_dynamic`, that soft blocks in their usual mesh are set beside
-        (`second_opinion`); nothing is where none is given.
     tolerance, collapse, first_step, budget, observe
         As in `collapse_by_steps`.
 
@@ -94,8 +87,7 @@ def fem(
     -------
     Outcome
         As of `collapse_by_steps`. `force` lists the points joint element by joint element, those inside blocks last;
-        `motion` is the blocks' rigid part. The bracket of soft blocks that are set beside others may
-        be wider than asked for.
+        `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
     finite = bool(scene.history) or is_finite(displacements, "fem", scene)
@@ -133,12 +125,6 @@ def fem(
         budget=budget,
         observe=observe,
     )
-    as_usual = cells == 1 and modes is None and rule is None and points == "elements" and cracks == "joints"
-    if rigid is not None and as_usual and not scene.is_led and not finite and is_soft(scene):
-        steps: dict[str, Any] = {"collapse": collapse, "first_step": first_step, "budget": budget}
-        others: dict[str, Any] = {"loads": loads, "mass_scaling": mass_scaling, "energies": energies}
-        finer = partial(fem, scene, tolerance, cells=FINER, **steps, **others)
-        outcome = beside_others(outcome, partial(rigid, scene, tolerance, **steps), finer)
     return replace(outcome, seconds=time.perf_counter() - start)
 
 

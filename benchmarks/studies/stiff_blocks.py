@@ -25,6 +25,7 @@ from fem_interface.coupled_masses import with_coupled_masses
 from fem_interface.modal_wall import modal_wall
 from fem_interface.system import system_of
 from runningbond.compare import published_scene, run_model
+from runningbond.compare.second_opinion import share_loads
 from runningbond.compare.table import bracket
 from runningbond.dynamics import BlockSystem, Run
 from runningbond.dynamics.run import CALMING, LOCAL
@@ -110,13 +111,6 @@ def periods(names: list[str], moduli: list[float]) -> Iterator[str]:
             yield f"| {name} | {young:g} | {rigid:.0f} | {alone:.0f} | {steps:.0f} | {1 - slowed / exact:.1%} |"
 
 
-def is_beside(one: Outcome, other: Outcome) -> bool:
-    """Whether two brackets have a load in common."""
-    if one.lower is None or one.upper is None or other.lower is None or other.upper is None:
-        return False
-    return one.lower <= other.upper and other.lower <= one.upper
-
-
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -138,7 +132,7 @@ def main() -> None:
         rigid, rigid_seconds = timed("dem-dynamic", scene)
         for young in asked.young:
             found, seconds = timed("fem", scene.with_block(young=1e9 * young))
-            brackets = f"{bracket(rigid)} | {bracket(found)} | {'yes' if is_beside(rigid, found) else 'no'}"
+            brackets = f"{bracket(rigid)} | {bracket(found)} | {'yes' if share_loads(rigid, found) else 'no'}"
             costs = (
                 f"{rigid.steps} | {found.steps} | {rigid_seconds:.2g} | {seconds:.2g} | {seconds / rigid_seconds:.1f}"
             )

@@ -18,6 +18,7 @@ from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
+from .second_opinion import FINER, asks_others, beside_others
 
 DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
@@ -49,8 +50,14 @@ _DEM_STATIC, _DEM_DYNAMIC = partial(_late, "dem.static", "dem_static"), partial(
 
 
 def _fem(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
-    outcome: Outcome = _late("fem_interface.model", "fem", scene, tolerance, rigid=_DEM_DYNAMIC, **settings)
-    return outcome
+    deformable = partial(_late, "fem_interface.model", "fem", scene, tolerance)
+    outcome: Outcome = deformable(**settings)
+    if not asks_others(scene, settings):
+        return outcome
+    chosen = {key: value for key, value in settings.items() if key in (*IN_STEPS, *OF_BLOCKS)}
+    steps = {key: value for key, value in chosen.items() if key in IN_STEPS}
+    rigid_blocks = partial(_DEM_DYNAMIC, scene, tolerance, **steps)
+    return beside_others(outcome, rigid_blocks, partial(deformable, **chosen | {"cells": FINER}))
 
 
 _RECORDER = partial(_late, "runningbond.pictures.recording")

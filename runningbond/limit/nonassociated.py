@@ -6,7 +6,9 @@ found (`search`); nobody knows how to prove that there is none below.
 """
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from runningbond.results import Outcome, collapse_state
@@ -46,8 +48,8 @@ def limit_nonassociated(
         Most starts of the search, and how many are made at a time, which changes nothing of what is found. Fewer are
         made where none of the last ones brought a smaller load, and of very large walls one alone.
     programs
-        Linear programs after which no further start is made; where they are not given, as many as half a minute takes
-        on walls of 150 blocks, and fewer where they are dearer.
+        Linear programs after which no further start is made; where they are not given, as many as take up to a
+        minute on walls of 150 to 600 blocks.
     observe
         Is shown what the search has found, from time to time.
 
@@ -76,7 +78,8 @@ def limit_nonassociated(
     dofs = system.freedoms - system.has_support
     outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=dofs, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        outcome = _collapse(outcome, system, state, tolerance, (starts, workers, programs), observe)
+        look = partial(search, starts=starts, workers=workers, observe=observe, most=programs)
+        outcome = _collapse(outcome, system, state, tolerance, look, observe)
     else:
         outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
@@ -87,7 +90,7 @@ def _collapse(
     system: Equilibrium,
     state: LimitState,
     tolerance: float,
-    effort: tuple[int, int, int | None],
+    look: Callable[[Equilibrium, ForceSolution], Search],
     observe: Observer,
 ) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
@@ -95,12 +98,9 @@ def _collapse(
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
     ordered = order.applied(cut)
-    starts, workers, programs = effort
     associated = None if takes_one_start(ordered) else solve_forces(ordered, coulomb(ordered.strength))
     result = (
-        search_large(ordered, order.places(cut.scene), observe)
-        if associated is None
-        else search(ordered, associated, starts, workers, observe, programs)
+        search_large(ordered, order.places(cut.scene), observe) if associated is None else look(ordered, associated)
     )
     proved = _proved_again(system, cut, order, result)
     outcome = replace(outcome, steps=1 + result.programs)

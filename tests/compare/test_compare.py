@@ -143,7 +143,7 @@ def test_the_parameters_of_a_model_are_those_that_it_takes() -> None:
     for name, model in MODELS.items():
         taken = inspect.signature(solvers.get(name, model.solve)).parameters.values()
         own = {parameter.name for parameter in taken if parameter.kind == parameter.KEYWORD_ONLY}
-        assert set(model.parameters) == own - {"observe", "rigid"}  # which the suite hands over itself
+        assert set(model.parameters) == own - {"observe"}
     with pytest.raises(SceneError, match="model limit: modes = 3: is no parameter"):
         run_model("limit", panel(), modes=3)
 

@@ -9,6 +9,7 @@ from scipy.spatial import Voronoi
 from shapely.geometry import Polygon, box
 from shapely.geometry.polygon import orient
 
+import runningbond as rb
 from runningbond.compare import published_scene
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state
 from runningbond.limit.canonical import canonical_order
@@ -81,6 +82,19 @@ def test_rare_mechanisms_of_walls_with_openings_are_found(name: str, inset: floa
     outcome = limit_nonassociated(published_scene(name).with_joint(inset=inset))
     assert outcome.lower is not None
     assert outcome.lower <= OPENINGS[name, inset] + 5e-5
+
+
+@pytest.mark.long
+def test_a_coarse_panel_of_upright_blocks_loses_half_its_load() -> None:
+    """75 blocks, twelve wide and six high, H/L = 2, b/a = 1/4: .0717 to the associated bound, .1391."""
+    panel = rb.Wall.running_bond(
+        length=1.44, height=2.88, block_width=0.12, block_height=0.48, thickness=0.12, density=1800.0, friction=0.6
+    ).scene
+    outcome = limit_nonassociated(panel)
+    assert panel.wall.sum() == 75
+    assert outcome.lower is not None
+    assert outcome.lower <= 0.07175
+    assert outcome.upper == pytest.approx(0.1391, abs=5e-5)
 
 
 def test_a_search_ends_after_so_many_programs() -> None:

@@ -6,8 +6,8 @@ import pytest
 
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
-from fem_interface.second_opinion import beside_others, is_soft
 from runningbond.compare import PUBLISHED, published_scene, run_model
+from runningbond.compare.second_opinion import asks_others, beside_others
 from runningbond.joints.stiffness import block_compliance
 from runningbond.results import Outcome
 
@@ -50,12 +50,14 @@ def test_what_others_cannot_answer_is_said_and_changes_no_bracket() -> None:
 def test_published_blocks_are_stiff_and_stone_between_thin_mortar_is_soft() -> None:
     """k_n h / (k_n h + E) with h = 175 mm and 10 mm of mortar of 1 GPa that cannot spread along the joint."""
     for case in PUBLISHED:
-        assert not is_soft(published_scene(case.name))
+        assert not asks_others(published_scene(case.name), {})
     column = 1e9 / (1 - 0.2**2) / 0.01 * 0.175
     for young, soft in ((1e12, False), (1e10, True)):
         wall = published_scene("wall-w4").with_block(young=young)
         assert block_compliance(wall) == pytest.approx(column / (column + young))
-        assert is_soft(wall) is soft
+        assert asks_others(wall, {}) is soft
+        assert asks_others(wall, {"cells": 1, "budget": 10}) is soft
+        assert not asks_others(wall, {"cells": 2})
 
 
 def test_a_coarse_mesh_that_leads_a_soft_wall_astray_is_told() -> None:
