@@ -53,6 +53,9 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
     - Numba knows a kernel that is closed over other kernels, as the loop over a law is, by names that these have in
       one process only, and never finds it again. Here it is known by what they are called in their source; those of
       a user's own, which the name of the folder does not tell apart, by what they are made of as well.
+    - Numba numbers functions process by process, and two of one source, closed over different values in different
+      processes, may come by one number, and so one symbol: a third process that loads both would go by the first it
+      met in place of the other. Here what a kernel is known by is part of its symbols.
     - A cache that is damaged, or on a disk that takes no more, costs a compilation and not the answer.
     """
 
@@ -60,7 +63,8 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
         return sig, codegen.magic_tuple(), identity(self._py_func)
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Give the compiled kernel for a signature, or None."""
+        """Give the compiled kernel for a signature, or None; what is compiled next has symbols of its own."""
+        self._py_func.__qualname__ = symbol(self._py_func)
         try:
             return super().load_overload(sig, target_context)
         except Exception:  # whatever unpickling half a file raises
@@ -94,7 +98,15 @@ def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
         for value in used
         if not isinstance(value, Dispatcher) or value.py_func not in callers
     )
-    return function.__module__, function.__qualname__, repr(own), *known_by
+    return function.__module__, code.co_qualname, repr(own), *known_by
+
+
+def symbol(function: Any) -> str:
+    """Name that a function's symbols go by: that in its source, and a digest of what else it is known by, if any."""
+    module, name, *known_by = identity(function)
+    if known_by == [repr(())]:
+        return str(name)
+    return f"{name}_{hashlib.sha256(repr((module, known_by)).encode()).hexdigest()[:16]}"
 
 
 def kernel(function: Callable[..., Any]) -> Any:

@@ -1,5 +1,6 @@
 """Compiled kernels are kept for other processes, and never mistaken for one another."""
 
+import math
 import os
 import subprocess
 import sys
@@ -57,9 +58,52 @@ print([loop(5.0) for loop in loops], sum(len(loop.stats.cache_misses) for loop i
     assert printed == ["[11.0, 16.0] 2\n", "[11.0, 16.0] 0\n"]
 
 
+def ramp(factor: float) -> Any:
+    """A kernel that stays one of its own in its caller, for it is long and called often; both know a number."""
+
+    @kernel
+    def raised(x: Any) -> None:
+        for i in range(x.size):
+            x[i] += factor
+        for i in range(x.size):
+            x[i] += math.sin(factor * x[i]) * math.exp(-x[i]) / math.sqrt(1.0 + x[i] ** 2)
+        for i in range(x.size - 1):
+            x[i] = x[i] + x[i + 1]
+
+    @kernel
+    def loop(x: Any) -> float:
+        raised(x)
+        raised(x[:5])
+        raised(x[3:])
+        raised(x[1:])
+        return float(x[0])
+
+    return loop
+
+
+def test_kernels_of_two_processes_are_not_taken_for_one_another_by_a_third(tmp_path: Path) -> None:
+    """Numba numbers functions process by process: the first of one source have one symbol in both, whatever they do."""
+    program = """
+import numpy as np
+from tests.joints.test_compiled import ramp
+print([ramp(float(k))(np.ones(8)) for k in {}])
+"""
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    two, three, both, turned = (
+        subprocess.run(
+            [sys.executable, "-c", program.format(k)], env=environment, capture_output=True, text=True
+        ).stdout
+        for k in ([2], [3], [2, 3], [3, 2])
+    )
+    assert float(two[1:-2]) != float(three[1:-2])
+    assert both == f"{two[:-2]}, {three[1:]}"
+    assert turned == f"{three[:-2]}, {two[1:]}"
+
+
 def test_two_that_save_at_once_do_not_share_a_file(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each dwells where it has read the index and not yet written its own: left alone, both would choose one name."""
     loops = plus_one(doubled), plus_one(tripled)
+    caches = [SharedCache(loop.py_func) for loop in loops]
     for loop in loops:
         loop._cache.disable()
         loop(1.0)
@@ -72,7 +116,6 @@ def test_two_that_save_at_once_do_not_share_a_file(cache: Path, monkeypatch: pyt
 
     save = IndexDataCacheFile._save_index
     monkeypatch.setattr(IndexDataCacheFile, "_save_index", dwelling)
-    caches = [SharedCache(loop.py_func) for loop in loops]
     compiled = [next(iter(loop.overloads.values())) for loop in loops]
     savers = [
         threading.Thread(target=shared.save_overload, args=(code.signature, code))
