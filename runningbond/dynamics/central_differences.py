@@ -66,8 +66,15 @@ TOO_MUCH_SPENT = 2.0
 
 
 @kernel
+def _copy(source: Array, into: Array) -> None:
+    """As ``into[:] = source``, which takes seconds to compile: it asks for memory where the two may overlap."""
+    for i in range(into.size):
+        into[i] = source[i]
+
+
+@kernel
 def _restrained(motion: Array, freedom: Indices, basis: Array, moved: Array) -> None:
-    moved[:] = motion
+    _copy(motion, moved)
     for r in range(freedom.shape[0]):
         for row in range(3):
             total = 0.0
@@ -174,22 +181,23 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
         if driven:
             for i in range(live.size):
                 response += live[i] * mobility[i] * live[i]
+        restrained = freedom.size > 0
+        unrestrained = moved if restrained else motion
         for taken in range(steps):
-            if freedom.size:
+            if restrained:
                 _restrained(motion, freedom, basis, moved)
-                gather(moved, geometry, opening, slip)
-            else:
-                gather(motion, geometry, opening, slip)
+            # Each kernel is called in one place: what is compiled into the loop twice takes twice as long to compile.
+            gather(unrestrained, geometry, opening, slip)
             law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
-            if freedom.size:
+            if restrained:
                 force[:] = 0.0
-                scatter(normal, tangential, geometry, force)
+            else:
+                _copy(load, force)
+            scatter(normal, tangential, geometry, force)
+            if restrained:
                 _project(force, freedom, basis)
                 for i in range(force.size):
                     force[i] += load[i]
-            else:
-                force[:] = load  # twice as fast as a loop
-                scatter(normal, tangential, geometry, force)
             if not plain:
                 pull(ties, motion, force)
             if rigged:
@@ -258,7 +266,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain
         state, work = arrays[7:]
         motion, loaded = state[0], work[1]
         already, given, most = watch
-        loaded[:] = load
+        _copy(load, loaded)
         taken, stable, total, worked, multiplier, before = 0, True, 0.0, 0.0, 0.0, 0.0
         while stable and taken < steps:
             piece = steps
