@@ -6,6 +6,7 @@ file, has changed. So the cache lies in a folder named after the digest of every
 
 import hashlib
 import os
+import shutil
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -18,6 +19,9 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.serialize import dumps
 
 from runningbond.scene.folder_lock import locked
+
+KEPT = 4
+"""Folders of kernels that are kept beside a new one: those of other versions, and of the code before a change."""
 
 _ROOMS = ("runningbond/joints", "runningbond/contacts", "runningbond/dynamics", "dem", "fem_interface")
 
@@ -38,8 +42,19 @@ def _cache_folder() -> str:
         return os.environ["NUMBA_CACHE_DIR"]
     with suppress(RuntimeError):
         cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-        return str(Path(cache) / "runningbond" / _digest())
+        folder = Path(cache) / "runningbond" / _digest()
+        if not folder.exists():
+            _forget_old(folder)
+        return str(folder)
     return ""
+
+
+def _forget_old(folder: Path) -> None:
+    """Delete all but the latest of the folders beside one that is new; whoever still uses another compiles again."""
+    with suppress(OSError):
+        others = folder.parent.glob("[0-9a-f]" * len(folder.name))
+        for old in sorted(others, key=lambda other: other.stat().st_mtime)[:-KEPT]:
+            shutil.rmtree(old, ignore_errors=True)
 
 
 numba.config.CACHE_DIR = _cache_folder()

@@ -145,6 +145,24 @@ def test_a_damaged_or_full_cache_costs_a_compilation(cache: Path, monkeypatch: p
     assert plus_one(tripled)(5.0) == 16.0
 
 
+def test_a_new_folder_of_kernels_takes_the_place_of_the_oldest(tmp_path: Path) -> None:
+    """And of nothing that is not such a folder."""
+    cache = tmp_path / "runningbond"
+    names = [f"{k:016x}" for k in range(7)]
+    for k, name in enumerate([*names, "mine", "0123"]):
+        (cache / name / "dem").mkdir(parents=True)
+        os.utime(cache / name, (k, k))
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path), "PYTHONPATH": str(ROOT)}
+    program = (
+        "from runningbond.joints.coulomb import shear_within\nfor _ in range(2): print(shear_within(1.0, 0.0, 0.5))"
+    )
+    for _ in range(2):
+        subprocess.run([sys.executable, "-c", program], env=environment, check=True, capture_output=True)
+        (new,) = {path.name for path in cache.iterdir()} - {*names, "mine", "0123"}
+        assert {path.name for path in cache.iterdir()} == {*names[-4:], "mine", "0123", new}
+        assert list((cache / new).rglob("*.nbc"))
+
+
 def test_where_nothing_can_be_kept_kernels_are_compiled_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
