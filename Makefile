@@ -25,7 +25,7 @@ test: $(ready) ## style, types, and the tests that take seconds
 	$(bin)/ruff check
 	$(bin)/ruff format --check
 	$(bin)/mypy
-	$(bin)/pytest -q -n logical --maxprocesses 8 --dist worksteal -m "not long" $(ARGS)
+	OPENBLAS_NUM_THREADS=1 $(bin)/pytest -q -n logical --maxprocesses 8 --dist worksteal -m "not long" $(ARGS)
 
 test-long: $(ready) ## the studies that take minutes
 	$(bin)/pytest -q -m long $(ARGS)
