@@ -32,10 +32,15 @@ def frequencies_squared(sides: RigidSides, normal: Array, shear: Array, mass: Ar
     start = np.random.default_rng(0).standard_normal(len(mass)) * (root > 0)
     diagonal, beside = np.zeros((2, STEPS))
     _lanczos(rows, 3 * block, start / np.linalg.norm(start), diagonal, beside)
-    tridiagonal = np.diag(diagonal) + np.diag(beside[1:], 1) + np.diag(beside[1:], -1)
-    bound, found = (float(np.linalg.eigvalsh(each).max()) for each in (own, tridiagonal))
+    bound, found = float(np.linalg.eigvalsh(own).max()), largest_of_tridiagonal(diagonal, beside)
     # A library's last digits differ from machine to machine, and blocks that bounce tell the last one of a time step.
     return float(f"{bound:.{DIGITS}g}"), float(f"{found:.{DIGITS}g}")
+
+
+def largest_of_tridiagonal(diagonal: Array, beside: Array) -> float:
+    """Largest eigenvalue of a symmetric matrix that Lanczos' method leaves; the first entry beside is of no use."""
+    matrix = np.diag(diagonal) + np.diag(beside[1:], 1) + np.diag(beside[1:], -1)
+    return float(np.linalg.eigvalsh(matrix).max(initial=0.0))
 
 
 @kernel

@@ -14,6 +14,9 @@ import numpy as np
 from runningbond.dynamics import BlockSystem
 from runningbond.scene import Array
 
+from .finite_frequency import largest_of_tridiagonal
+from .rigid_system import restrain
+
 STEPS = 60
 """Most steps of Lanczos' method, which comes from below to a thousandth and has places where it hardly moves."""
 
@@ -41,9 +44,7 @@ def _closed_joints(system: BlockSystem, motion: Array) -> Array:
     law = interface.law
     geometry = tuple(interface.geometry)
     interface.scatter(law.stiffest * opening, law.shear_stiffness * slip, geometry, force)
-    for freedom, basis in zip(*system.restraint, strict=True):
-        force[freedom] = np.einsum("ij,i->j", basis, force[freedom])
-    return -force
+    return -restrain(force, system.restraint)
 
 
 def _largest_eigenvalue(product: Callable[[Array], Array], vector: Array) -> float:
@@ -60,8 +61,7 @@ def _largest_eigenvalue(product: Callable[[Array], Array], vector: Array) -> flo
         for one in basis:
             vector = vector - np.einsum("i,i", one, vector) * one
         length = _length(vector)
-    tridiagonal = np.diag(diagonal) + np.diag(beside[1:], 1) + np.diag(beside[1:], -1)
-    return float(np.linalg.eigvalsh(tridiagonal).max(initial=0.0))
+    return largest_of_tridiagonal(np.array(diagonal), np.array(beside))
 
 
 def _length(vector: Array) -> float:

@@ -64,13 +64,13 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
     restraint, mass = _restraint(scene, held_masses(scene))
     dead, live, control = dead_load(scene), live_load(scene), control_row(scene)
     for row in (dead, live, control):
-        _restrain(row, restraint)
+        restrain(row, restraint)
     dead[np.isinf(mass)] = live[np.isinf(mass)] = 0.0
     order, still = np.argsort(rigid.ravel()), np.zeros_like(mass)
 
     def displacement(block: int, at: Array, direction: Array) -> Array:
         row = point_operator(np.array([block]), at[None], direction[None], scene.blocks.centroid).toarray()[0]
-        return _restrain(row, restraint)[order]
+        return restrain(row, restraint)[order]
 
     moved, carried = scene.support_motion.ravel()[order], NOTHING_CARRIED
     if scene.settlement:
@@ -111,7 +111,7 @@ def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw)
     return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0)) or 1.0
 
 
-def _restrain(row: Array, restraint: Restraint) -> Array:
+def restrain(row: Array, restraint: Restraint) -> Array:
     """A row per motion of the blocks ``(3 nb,)``, in place turned into one per restrained coordinates."""
     for freedom, basis in zip(*restraint, strict=True):
         row[freedom] = np.einsum("ij,i->j", basis, row[freedom])
