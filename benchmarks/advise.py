@@ -11,9 +11,10 @@ import argparse
 import time
 import warnings
 
-from runningbond.compare import MODELS, PUBLISHED, published_scene, run_model
+from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, advise
 from runningbond.compare.table import bracket
+from runningbond.models import MODELS, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 

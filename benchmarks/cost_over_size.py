@@ -20,7 +20,7 @@ import numpy as np
 from limit_large import wall
 from matplotlib.figure import Figure
 
-from runningbond.compare import MODELS, run_model
+from runningbond.models import MODELS, run_model
 from runningbond.scene import Mortar, Scene
 
 ACROSS = (4, 6, 9, 12, 17, 24, 35, 50, 70, 100, 158, 223)

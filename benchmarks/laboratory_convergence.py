@@ -17,13 +17,13 @@ import numpy as np
 
 from dem.finite_system import finite_system
 from dem.rigid_system import contact_points
-from runningbond.compare.models import TOLERANCE
 from runningbond.dynamics import Run, State, collapse_by_steps
 from runningbond.dynamics.run import MOVING
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.laboratory.scores import Marks, marks_of
+from runningbond.models import TOLERANCE
 from runningbond.scene import Scene
 
 RATE = 0.04

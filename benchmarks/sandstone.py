@@ -11,13 +11,13 @@ from dataclasses import replace
 from typing import Any
 from unittest.mock import patch
 
-from runningbond.compare.models import TOLERANCE
 from runningbond.joints import joint_stiffness
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import scene_of
 from runningbond.laboratory.stones import STONES
+from runningbond.models import TOLERANCE
 from runningbond.scene import Scene, Stiffness
 
 RUNG = LADDER["rigid-splitting"]

@@ -3,7 +3,7 @@
 import time
 
 import runningbond as rb
-from runningbond.compare.model import Model
+from runningbond.models import Model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 

@@ -10,8 +10,7 @@ import numpy as np
 from scipy.special import ndtr
 from scipy.stats import CensoredData, lognorm
 
-from .compare.model import Model
-from .compare.models import TOLERANCE
+from .models import TOLERANCE, Model
 from .scene import Array, Mask, SceneError
 from .scene.history import STANDARD_GRAVITY
 from .sweeps import sweep

@@ -9,7 +9,7 @@ from .joints import JointPoints
 from .scene import Array
 
 if TYPE_CHECKING:
-    from .compare.model import Recorder
+    from .models import Recorder
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from .compare.model import Model
-from .compare.models import find_model, run_model
 from .joints import listed_points, wall_points
+from .models import Model, find_model, run_model
 from .path_states import PathState, collected
 from .pictures.captions import to_png, to_svg
 from .pictures.flat import draw_mechanism, figure_of

@@ -7,10 +7,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from .compare.campaign import Campaign, ctrl_c_passed_on, run_campaign
-from .compare.fingerprint import fingerprint
-from .compare.model import Model
-from .compare.models import TOLERANCE, find_model
+from .campaigns import Campaign, ctrl_c_passed_on, run_campaign
+from .campaigns.fingerprint import fingerprint
+from .models import TOLERANCE, Model, find_model
 from .scene import Scene, SceneError
 from .tables import Table, table
 from .wall import Wall

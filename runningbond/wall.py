@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from .compare.draws import Draws
-    from .compare.model import Model
     from .drawn_response import DrawnResponse
+    from .models import Model
     from .run_result import Result
 
 TABLES = {
@@ -230,9 +230,9 @@ class Wall:
         SceneError
             For a model that follows no path, or no number of draws; and as of `run`.
         """
-        from .compare.campaign import ctrl_c_passed_on
+        from .campaigns import ctrl_c_passed_on
         from .compare.draws import Drawing
-        from .compare.models import find_model
+        from .models import find_model
 
         drawing = Drawing(self.scene, find_model(model), number, scatter)
         with ctrl_c_passed_on():
@@ -251,8 +251,8 @@ class Wall:
             ``points``, to be followed instead of the upper corners (m, ``(k, 2)``), and ``after``, the time for which
             the wall is followed once a block has fallen [s].
         """
-        from .compare.models import respond
         from .drawn_response import DrawnResponse
+        from .models import respond
 
         return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)))
 

@@ -33,8 +33,8 @@ from load_steps import Bracket
 from peer import Peer
 from walls import TRIAL, WALLS, wall_of
 
-from runningbond.compare.fingerprint import code_digest
-from runningbond.compare.models import run_model
+from runningbond.campaigns.fingerprint import code_digest
+from runningbond.models import run_model
 from runningbond.scene import Scene
 
 MODELS = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem")

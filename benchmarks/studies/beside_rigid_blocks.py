@@ -29,8 +29,9 @@ from joblib import Parallel, delayed
 
 from fem_interface.model import fem
 from fem_interface.operators import PointsOn
-from runningbond.compare import published_scene, run_model
+from runningbond.compare import published_scene
 from runningbond.compare.table import answer
+from runningbond.models import run_model
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Array, Scene

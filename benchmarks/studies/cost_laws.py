@@ -15,9 +15,10 @@ from pathlib import Path
 import numpy as np
 
 from dem.dynamic import dem_dynamic
-from runningbond.compare import MODELS, published_scene
+from runningbond.compare import published_scene
 from runningbond.compare.advice import TOLERANCE
 from runningbond.compare.advice.costs import COARSE
+from runningbond.models import MODELS
 
 BRACKETING = [model.name for model in MODELS.values() if model.kind == "history"]
 

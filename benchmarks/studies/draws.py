@@ -10,9 +10,10 @@ import argparse
 import time
 from pathlib import Path
 
-from runningbond.compare import MODELS, published_scene, run_model
+from runningbond.compare import published_scene
 from runningbond.compare.draws import Drawing, Draws
 from runningbond.compare.table import bracket
+from runningbond.models import MODELS, run_model
 from runningbond.results.outcome import number
 
 WALLS = ["panel-07", "panel-10", "panel-11", "panel-12"]

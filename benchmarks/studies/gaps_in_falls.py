@@ -11,9 +11,10 @@ import argparse
 import numpy as np
 
 from dem.dynamic import dem_dynamic
-from runningbond.compare import published_scene, run_model
+from runningbond.compare import published_scene
 from runningbond.compare.table import bracket
 from runningbond.dynamics import Run, State
+from runningbond.models import run_model
 from runningbond.scene import Array
 
 CLOSES = 1e-3

@@ -14,11 +14,11 @@ from typing import Any
 
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
-from runningbond.compare.models import TOLERANCE
 from runningbond.joints import joint_stiffness
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.rig import Features, scene_of
 from runningbond.laboratory.scores import marks_of
+from runningbond.models import TOLERANCE
 from runningbond.results import Outcome
 from runningbond.scene import Scene, Stiffness
 

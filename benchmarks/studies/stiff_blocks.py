@@ -24,12 +24,13 @@ from dem.rigid_system import rigid_system
 from fem_interface.coupled_masses import with_coupled_masses
 from fem_interface.modal_wall import modal_wall
 from fem_interface.system import system_of
-from runningbond.compare import published_scene, run_model
-from runningbond.compare.second_opinion import share_loads
+from runningbond.compare import published_scene
 from runningbond.compare.table import bracket
 from runningbond.dynamics import BlockSystem, Run
 from runningbond.dynamics.run import CALMING, LOCAL
 from runningbond.dynamics.vibrations import elastic_stiffness
+from runningbond.models import run_model
+from runningbond.models.second_opinion import share_loads
 from runningbond.results import Outcome
 from runningbond.scene import Scene, scene_from_dict
 

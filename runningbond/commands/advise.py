@@ -5,9 +5,9 @@ from typing import Any
 
 from runningbond.compare.advice import TOLERANCE, Advice, Rung
 from runningbond.compare.advice.knowledge import Knowledge
-from runningbond.compare.models import check_tolerance
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import bracket
+from runningbond.models import check_tolerance
 from runningbond.results import Outcome
 from runningbond.scene import read_scene
 

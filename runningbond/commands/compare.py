@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
-from runningbond.compare.campaign import Interrupted, run_campaign
-from runningbond.compare.models import MODELS, TOLERANCE, check_tolerance, find_model
+from runningbond.campaigns import Interrupted, run_campaign
 from runningbond.compare.published import PUBLISHED, PublishedCase, find_scene, published_case
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
+from runningbond.models import MODELS, TOLERANCE, check_tolerance, find_model
 from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem

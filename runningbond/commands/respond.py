@@ -8,10 +8,10 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from runningbond.compare.models import MODELS, check_response
-from runningbond.compare.models import respond as respond_with
 from runningbond.compare.published import find_scene
 from runningbond.compare.table import csv_lines
+from runningbond.models import MODELS, check_response
+from runningbond.models import respond as respond_with
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.response import Response
 from runningbond.response.follow import AFTER

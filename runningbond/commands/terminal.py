@@ -16,8 +16,8 @@ from rich.table import Table
 from rich.text import Text
 
 from runningbond.compare.advice.costs import estimate
-from runningbond.compare.model import Model
 from runningbond.compare.table import Sheet
+from runningbond.models import Model
 from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.plausibility import warnings

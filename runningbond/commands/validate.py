@@ -5,7 +5,7 @@ import signal
 import sys
 from pathlib import Path
 
-from runningbond.compare.campaign import Interrupted
+from runningbond.campaigns import Interrupted
 from runningbond.results import make_folder
 from runningbond.scene import SceneError
 

@@ -10,14 +10,13 @@ from typing import Any
 
 import numpy as np
 
+from runningbond.campaigns import run_campaign
+from runningbond.models import TOLERANCE, Model
 from runningbond.results import Outcome, make_folder
 from runningbond.results.outcome import number
 from runningbond.scene import Array, Scene, SceneError
 from runningbond.scene.ranges import Range
 
-from .campaign import run_campaign
-from .model import Model
-from .models import TOLERANCE
 from .scatter import Scatter
 from .table import Sheet
 

@@ -9,13 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from homog import crack_slope, lateral_multiplier
+from runningbond.models import Model
 from runningbond.pictures.captions import is_force, to_png
 from runningbond.pictures.charts import bare, mark
 from runningbond.pictures.style import CHART_COLOURS, DARK
 from runningbond.results import write_atomically
 from runningbond.scene import Array
 
-from .model import Model
 from .published import BARALDI, CONCENTRATED, FERRIS, PublishedCase, cases_of
 from .table import Comparison, csv_lines
 

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from runningbond.models import Model
 from runningbond.pictures.captions import multiplier_text
 from runningbond.pictures.deformed_shape import undeformed_shape
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
@@ -12,7 +13,6 @@ from runningbond.pictures.plate import PlateRow, draw_plate
 from runningbond.results import Outcome, write_atomically
 
 from .figures import SLENDERNESS, TEXTURES
-from .model import Model
 from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
 from .table import Comparison
 

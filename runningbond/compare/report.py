@@ -12,6 +12,7 @@ from typing import Any
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
+from runningbond.campaigns.fingerprint import LIBRARIES, code_digest
 from runningbond.pictures.captions import is_force, load_symbol, multiplier_text
 from runningbond.pictures.deformed_shape import common_extent, undeformed_shape
 from runningbond.pictures.inline import inline_mechanism, inline_wall
@@ -22,7 +23,6 @@ from runningbond.results import Outcome
 from runningbond.results.outcome import number
 
 from .figures import wall_curves
-from .fingerprint import LIBRARIES, code_digest
 from .page import inline_svg, templates
 from .table import CORRECTED, Comparison, Sheet, answer, cost_sheets, multiplier_sheets, seconds
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 
 from homog import homog
+from runningbond.campaigns import Campaign
+from runningbond.models import Model
 from runningbond.pictures.captions import is_force
 from runningbond.results import Outcome
 from runningbond.results.outcome import SCALARS, number
 from runningbond.scene import Scene
 
-from .campaign import Campaign
-from .model import Model
 from .published import BARALDI, PublishedCase
 
 OWN = "Your scenes"

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from runningbond.compare.model import Model
-from runningbond.compare.models import EXTRAS, MODELS, STIFFNESS
+from runningbond.models import MODELS, Model
+from runningbond.models.registry import EXTRAS, STIFFNESS
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import suggestion

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from runningbond.compare.campaign import Campaign, run_tasks
-from runningbond.compare.models import TOLERANCE
-from runningbond.compare.tasks import Cell, Task
+from runningbond.campaigns import Campaign, Cell, Task, run_tasks
+from runningbond.models import TOLERANCE
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 

@@ -17,7 +17,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from runningbond.compare.fingerprint import code_digest
+from runningbond.campaigns.fingerprint import code_digest
 from runningbond.compare.table import csv_lines
 from runningbond.results import write_atomically
 

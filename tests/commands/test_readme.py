@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from runningbond.commands.command_line import command
-from runningbond.compare import MODELS
+from runningbond.models import MODELS
 from runningbond.pictures.offscreen import why_not_drawn
 
 README = (Path(__file__).parents[2] / "README.md").read_text()

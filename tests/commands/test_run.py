@@ -19,8 +19,8 @@ import pytest
 
 from runningbond.commands import terminal
 from runningbond.commands.command_line import command
-from runningbond.compare.models import MODELS, run_model
 from runningbond.compare.published import published_scene
+from runningbond.models import MODELS, run_model
 from runningbond.pictures.curve import curve_figure
 from runningbond.results import load_outcome
 

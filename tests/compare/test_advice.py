@@ -12,7 +12,7 @@ from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.model import fem
 from runningbond.commands.command_line import command
-from runningbond.compare import MODELS, PUBLISHED, published_scene
+from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, Advice, advise, experiment
 from runningbond.compare.advice.climb import together
 from runningbond.compare.advice.costs import estimate, pace
@@ -24,6 +24,7 @@ from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
 from runningbond.limit.dilatancy import sliding_dilates
+from runningbond.models import MODELS
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 from tests.walls import courses, panel

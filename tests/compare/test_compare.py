@@ -21,13 +21,14 @@ import pytest
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.model import fem
+from runningbond.campaigns import run_campaign
+from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.commands.command_line import command
-from runningbond.compare import MODELS, PUBLISHED, published_scene, run_campaign, run_model
+from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
-from runningbond.compare.fingerprint import fingerprint
-from runningbond.compare.model import Model
 from runningbond.compare.published import FURTHER
 from runningbond.compare.table import corrected_homo
+from runningbond.models import MODELS, Model, run_model
 from runningbond.results import Outcome, load_outcome
 from runningbond.scene import Scene, SceneError
 from tests.walls import content, courses, panel, write_toml

@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 
 import runningbond as rb
+from runningbond.campaigns import Interrupted, tasks
 from runningbond.commands.command_line import command
-from runningbond.compare import models, published_scene, tasks
-from runningbond.compare.campaign import Interrupted
+from runningbond.compare import published_scene
 from runningbond.compare.draws import Drawing, Draws
-from runningbond.compare.models import MODELS
 from runningbond.compare.scatter import Scatter
+from runningbond.models import MODELS, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.segments import find_joints
@@ -133,7 +133,7 @@ def test_draws_of_which_none_or_one_collapses_have_no_spread() -> None:
 
 def test_draws_go_on_where_they_were(small: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """More of them are the old ones and new ones; another scatter's are others. Processes find what one does."""
-    wall, run_model, computed = rb.read(small), models.run_model, []
+    wall, computed = rb.read(small), []
 
     def counted(*arguments: Any) -> Outcome:
         computed.append(arguments)

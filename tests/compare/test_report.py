@@ -18,12 +18,14 @@ import pytest
 from matplotlib.colors import to_rgba
 from PIL import Image
 
+from runningbond.campaigns import Campaign
 from runningbond.commands.command_line import command
-from runningbond.compare import MODELS, PUBLISHED, Campaign, published_scene
+from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.figures import BORNE, charts_of, draw_figures, table_2, wall_curves
 from runningbond.compare.plates import draw_plates, plates
 from runningbond.compare.report import FULL, report_html, verdict
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
+from runningbond.models import MODELS
 from runningbond.pictures.captions import is_force
 from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.moments import MOMENTS, distances, with_moments

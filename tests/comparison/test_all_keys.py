@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from runningbond.compare.models import MODELS, run_model
 from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.models import MODELS, run_model
 from runningbond.results import Outcome, save_outcome
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from tests.checker import SCRIPT, check

@@ -8,7 +8,7 @@ import ezdxf
 import numpy as np
 import pytest
 
-from runningbond.compare.models import run_model
+from runningbond.models import run_model
 from runningbond.scene import Array, Scene, read_scene, scene_from_dict
 from tests.walls import content, write_toml
 

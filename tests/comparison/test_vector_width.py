@@ -12,7 +12,7 @@ from runningbond.compare.published import PUBLISHED
 
 CODE = """
 import json, sys
-from runningbond.compare.models import run_model
+from runningbond.models import run_model
 from runningbond.compare.published import published_scene
 found = run_model(sys.argv[2], published_scene(sys.argv[1]))
 print(json.dumps([found.status, found.lower, found.upper, found.steps]))

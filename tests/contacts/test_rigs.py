@@ -10,10 +10,10 @@ from scipy.optimize import brentq
 
 from dem.dynamic import dem_dynamic, finite_pushover
 from dem.finite_system import finite_system
-from runningbond.compare import run_model
 from runningbond.dynamics import Carried, Run, State
 from runningbond.dynamics.contact_update import contacts_of
 from runningbond.joints import wall_rule
+from runningbond.models import run_model
 from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, scene_from_dict

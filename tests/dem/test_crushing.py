@@ -9,9 +9,9 @@ from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from dem.static import dem_static
 from fem_interface.model import fem
-from runningbond.compare.models import MODELS
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.joints import lobatto, wall_points, wall_rule
+from runningbond.models import MODELS
 from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.results import Outcome, Supports
 from runningbond.scene import Scene, SceneError

@@ -12,8 +12,8 @@ from dem.pushover import LoadPath, StaticState
 from dem.relaxation import Rest
 from dem.static import dem_static
 from dem.static_system import Control
-from runningbond.compare import MODELS, run_model
 from runningbond.limit.settlement import reaction_unit
+from runningbond.models import MODELS, run_model
 from runningbond.pictures.recording import StaticRecorder
 from runningbond.results import Outcome
 from runningbond.scene import (

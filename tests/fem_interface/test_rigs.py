@@ -12,8 +12,8 @@ import dem.finite_system
 from fem_interface.finite_system import finite_system
 from fem_interface.model import fem
 from fem_interface.node_outline import node_outline
-from runningbond.compare import run_model
 from runningbond.dynamics import Carried, Run, State
+from runningbond.models import run_model
 from runningbond.scene import Scene, SceneError
 from tests.contacts.test_rigs import GLUE, column, force_at, rig
 

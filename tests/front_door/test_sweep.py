@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import runningbond as rb
-from runningbond.compare import models, tasks
-from runningbond.compare.fingerprint import fingerprint
+from runningbond.campaigns import tasks
+from runningbond.campaigns.fingerprint import fingerprint
+from runningbond.models import run_model
 from runningbond.results import Outcome
 from runningbond.scene import Action, Array, Forces, Indices, Scene
 
@@ -61,7 +62,7 @@ def test_a_model_that_breaks_is_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_sweep_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Answers in the folder are not computed again, whatever stands before or after them now."""
     rb.sweep(WALL, {"joint.friction": [0.3, 0.2]}, "limit", folder=tmp_path, jobs=1)
-    run_model, computed = models.run_model, []
+    computed = []
 
     def counted(*arguments: Any) -> Outcome:
         computed.append(arguments)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import runningbond as rb
-from runningbond.compare.fingerprint import fingerprint
+from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.compare.published import PUBLISHED, published_scene
 from runningbond.scene import Scene
 

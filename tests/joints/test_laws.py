@@ -12,7 +12,7 @@ import pytest
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from dem.static import dem_static
-from runningbond.compare.fingerprint import fingerprint
+from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.joints import KernelLaw, Law, joint_stiffness
 from runningbond.joints.compiled import kernel
@@ -112,7 +112,7 @@ def test_what_is_no_law_is_refused_in_files_and_in_python() -> None:
 def test_what_is_kept_of_a_wall_is_kept_for_its_law_in_every_process() -> None:
     """The fingerprint of an outcome tells laws apart, and is the same in another process."""
     program = """
-from runningbond.compare.fingerprint import fingerprint
+from runningbond.campaigns.fingerprint import fingerprint
 from tests.joints.test_laws import SPRINGS, tower
 print(fingerprint(tower(law=SPRINGS), "limit", 0.01))
 """

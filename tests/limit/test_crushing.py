@@ -13,13 +13,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csc_matrix, eye_array, hstack, vstack
 
-from runningbond.compare.models import run_model
 from runningbond.compare.published import published_scene
 from runningbond.limit import equilibrium, limit, limit_state
 from runningbond.limit.crushed import InnerProgram, first_resultants
 from runningbond.limit.crushing import Crushing, _boundary
 from runningbond.limit.kinematics import dead_load, live_load, movable_freedoms
 from runningbond.limit.proved import is_large
+from runningbond.models import run_model
 from runningbond.results import save_outcome
 from runningbond.scene import (
     Array,

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from runningbond.compare.models import run_model
 from runningbond.limit import equilibrium, limit, limit_state
 from runningbond.limit.kinematics import dead_load
 from runningbond.limit.settlement import largest_displacement
+from runningbond.models import run_model
 from runningbond.results import Outcome, load_outcome, save_outcome
 from runningbond.scene import (
     Array,

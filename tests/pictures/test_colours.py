@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from runningbond.compare.models import MODELS
 from runningbond.laboratory.ladder import LADDER
+from runningbond.models import MODELS
 from runningbond.pictures.response import SPENT
 from runningbond.pictures.style import (
     BEAM,

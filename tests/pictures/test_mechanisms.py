@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from runningbond.compare.models import run_model
 from runningbond.compare.published import published_scene
 from runningbond.joints import wall_points
 from runningbond.limit import limit
 from runningbond.limit.kinematics import dead_load, live_load
+from runningbond.models import run_model
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.frame import Discretisation
 from runningbond.pictures.inline import inline_mechanism

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runningbond.compare.models import respond
 from runningbond.dynamics import Run
+from runningbond.models import respond
 from runningbond.response.ground import Ground
 from runningbond.response.resting import VISCOUS
 from runningbond.scene import Array, BlockMaterial, History, JointMaterial, Load, Scene, Stiffness, build_scene

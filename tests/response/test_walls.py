@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from dem.finite_system import finite_system
-from runningbond.compare.models import respond, run_model
 from runningbond.compare.published import published_scene
 from runningbond.joints.wall_law import with_impacts
+from runningbond.models import respond, run_model
 from runningbond.response import critical_scale, follow
 from runningbond.response.critical import Search
 from runningbond.scene import History, Lateral, Load, Scene, Stiffness

@@ -13,11 +13,11 @@ import pyvista
 
 from fem_interface.modal_wall import modal_wall
 from fem_interface.modes import ModeCount
-from runningbond.compare.fingerprint import fingerprint
-from runningbond.compare.models import run_model
+from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.joints import wall_points
 from runningbond.joints.coulomb import COULOMB
 from runningbond.limit import limit
+from runningbond.models import run_model
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.pictures.joint_state import JointState, states_of_mechanism, states_under_load
 from runningbond.pictures.mechanism import mechanism_frame

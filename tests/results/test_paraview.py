@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 import pyvista
 
-from runningbond.compare.models import respond, run_model
 from runningbond.joints import wall_points
 from runningbond.limit import limit
+from runningbond.models import respond, run_model
 from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.recording import motion_recorder, record_mechanism

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from runningbond.compare.models import run_model
 from runningbond.joints import wall_points
+from runningbond.models import run_model
 from runningbond.results import Outcome, Supports, load_outcome, save_outcome
 from runningbond.results.reactions import AT_REST, WORKS
 from runningbond.scene import Array, Scene

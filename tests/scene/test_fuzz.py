@@ -17,8 +17,8 @@ from dem.static import dem_static
 from fem_interface.model import fem
 from homog import homog
 from runningbond.commands.command_line import command
-from runningbond.compare.models import MODELS
 from runningbond.limit import equilibrium, limit, limit_nonassociated
+from runningbond.models import MODELS
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError, read_scene
 from tests.scenes import drawn, outlines, small_walls, write_drawing

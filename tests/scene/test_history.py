@@ -9,8 +9,7 @@ import pytest
 from scipy.integrate import quad
 
 from runningbond.commands.command_line import command
-from runningbond.compare import MODELS
-from runningbond.compare.models import run_model
+from runningbond.models import MODELS, run_model
 from runningbond.scene import History, Scene, SceneError, scene_from_dict
 from runningbond.scene.history import STANDARD_GRAVITY, pulse
 from runningbond.scene.records import read_record

@@ -16,8 +16,8 @@ from matplotlib.image import imread
 from matplotlib.text import Text
 
 from runningbond.commands.command_line import command
-from runningbond.compare import MODELS
 from runningbond.joints import joint_stiffness
+from runningbond.models import MODELS
 from runningbond.studies import Row, Rows
 from runningbond.studies.accuracy.charts import MARKS, pareto_front
 from runningbond.studies.accuracy.measure import machine, measure

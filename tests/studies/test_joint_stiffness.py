@@ -9,10 +9,11 @@ from dem.highest_frequency import with_highest_frequency
 from dem.rigid_system import rigid_system
 from dem.static import dem_static
 from fem_interface.model import fem
-from runningbond.compare import published_scene, run_model
+from runningbond.compare import published_scene
 from runningbond.dynamics import Run
 from runningbond.joints import stiffness_note
 from runningbond.joints.stiffness import EPSILON, SOFT, STIFF
+from runningbond.models import run_model
 from runningbond.studies.stability.joint_stiffness import OVERLAP, at_rest, condition, overlap, wall
 from runningbond.studies.stability.joint_stiffness import stiffness_note as said_in
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from runningbond.compare.models import check_tolerance, run_model
 from runningbond.compare.scatter import Scatter
+from runningbond.models import check_tolerance, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 

@@ -11,8 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runningbond.compare.model import Cost, Model
-from runningbond.compare.models import MODELS
+from runningbond.models import MODELS, Cost, Model
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 

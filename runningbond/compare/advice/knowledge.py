@@ -7,10 +7,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from dem.stiffness_update import elastic_displacement
-from runningbond.compare.model import Kind, Model
-from runningbond.compare.models import MODELS
 from runningbond.joints.stiffness import block_compliance
 from runningbond.limit.dilatancy import sliding_dilates
+from runningbond.models import MODELS, Kind, Model
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene

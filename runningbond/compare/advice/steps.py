@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from runningbond.compare.model import Model
+from runningbond.models import Model
 from runningbond.results import Outcome
 
 from .knowledge import Knowledge, deforms, ladder

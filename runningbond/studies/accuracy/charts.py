@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from runningbond.compare.models import MODEL_LOOKS
+from runningbond.models import MODEL_LOOKS
 from runningbond.pictures.charts import in_units
 from runningbond.pictures.labels import Label, Spot, place_labels
 from runningbond.studies import Chart, Row, Rows

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
-from runningbond.compare.models import MODELS
 from runningbond.joints import gauss, lobatto
+from runningbond.models import MODELS
 
 VARIED = ("stack-of-5", "wall-w1-inset", "wall-w3-inset", "panel-02")  # walls on which parameters are varied
 COLLAPSE = tuple(name for name in MODELS if name != "homog")  # models that answer for any wall, the cheapest first

@@ -14,8 +14,8 @@ from fem_interface.modes import ModeCount
 from fem_interface.periodic_cell import deformable_cell, rigid_cell
 from fem_interface.system import system_of
 from homog import rigid_moduli
-from runningbond.compare.models import MODELS, TOLERANCE
 from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Drive, Run, State, drive, settle
+from runningbond.models import MODELS, TOLERANCE
 from runningbond.scene import Scene, SceneError, Stiffness
 
 from .walls import TURNED, Question

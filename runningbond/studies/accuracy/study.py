@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from fem_interface.modes import BENDING
-from runningbond.compare.fingerprint import fingerprint
+from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.studies import Case, Part, Rows, Study
 from runningbond.studies.apart import LONGEST
 from runningbond.studies.page import Block, draw_charts, edges_sheet
@@ -63,7 +63,7 @@ def depends(case: Case) -> str:
 
 COLUMNS = ("wall", "model", "parameter", "setting")
 OWN = [Path(__file__).parent / f"{name}.py" for name in ("walls", "questions", "measure")]
-SOURCES = (*OWN, PACKAGE / "studies" / "walls.py", PACKAGE / "compare" / "models.py")
+SOURCES = (*OWN, PACKAGE / "studies" / "walls.py")
 CASES = {
     "accuracy": [*_cases(accuracy_walls())],
     "stiffness": [*_cases(stiffness_walls()), (STIFF[-1], "dem-dynamic", "", "")],

@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from dem.rigid_system import rigid_system
 from dem.static_system import static_system
-from runningbond.compare.models import MODEL_LOOKS, MODELS, TOLERANCE
 from runningbond.dynamics import U_CRIT, Criteria, Run, State, settle
 from runningbond.joints.stiffness import SOFT
+from runningbond.models import MODEL_LOOKS, MODELS, TOLERANCE
 from runningbond.pictures.charts import LOOKS, bracket
 from runningbond.scene import Scene, Stiffness
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study

@@ -8,11 +8,11 @@ from itertools import product
 import numpy as np
 from matplotlib.figure import Figure
 
-from runningbond.compare.models import MODEL_LOOKS, MODELS, TOLERANCE
 from runningbond.compare.published import published_scene
 from runningbond.limit import equilibrium
 from runningbond.limit.associated import LimitState
 from runningbond.limit.force_program import coulomb, solve_forces
+from runningbond.models import MODEL_LOOKS, MODELS, TOLERANCE
 from runningbond.pictures.charts import LOOKS, floor, level
 from runningbond.scene import JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
 from runningbond.studies import Chart, Part, Row, Rows, Study

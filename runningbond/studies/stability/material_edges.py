@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from runningbond.compare.models import MODELS, TOLERANCE
+from runningbond.models import MODELS, TOLERANCE
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError, scene_from_dict

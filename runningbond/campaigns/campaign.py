@@ -9,11 +9,10 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from runningbond.models import MODELS, TOLERANCE, Model, check_tolerance, find_model
 from runningbond.results import Outcome, StoreError, load_outcome, save_outcome
 from runningbond.scene import Scene
 
-from .model import Model
-from .models import MODELS, TOLERANCE, check_tolerance, find_model
 from .tasks import Answer, Cell, ClusterError, Task, in_processes
 
 

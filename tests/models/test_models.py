@@ -5,7 +5,7 @@ from importlib import import_module
 
 import pytest
 
-from runningbond.compare import MODELS
+from runningbond.models import MODELS
 
 
 @pytest.mark.parametrize("name", MODELS)

@@ -6,9 +6,10 @@ import pytest
 
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
-from runningbond.compare import PUBLISHED, published_scene, run_model
-from runningbond.compare.second_opinion import asks_others, beside_others
+from runningbond.compare import PUBLISHED, published_scene
 from runningbond.joints.stiffness import block_compliance
+from runningbond.models import run_model
+from runningbond.models.second_opinion import asks_others, beside_others
 from runningbond.results import Outcome
 
 

@@ -15,13 +15,12 @@ from typing import TypeAlias
 from joblib import Parallel, cpu_count, delayed, parallel_config
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
+from runningbond.models import Model, run_model
 from runningbond.pictures.moments import with_moments
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 
 from .fingerprint import fingerprint
-from .model import Model
-from .models import run_model
 
 Cell: TypeAlias = tuple[str, str]  # name of a scene and of a model
 _ONE_AT_A_TIME = threading.Lock()

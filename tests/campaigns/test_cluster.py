@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
+from runningbond.campaigns import Campaign, Cell, run_campaign
 from runningbond.commands.command_line import command
-from runningbond.compare import Campaign, published_scene, run_campaign, run_model
-from runningbond.compare.model import Model
-from runningbond.compare.tasks import Cell
+from runningbond.compare import published_scene
+from runningbond.models import Model, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 from tests.walls import courses, panel
@@ -92,7 +92,7 @@ def test_a_worker_with_other_sources_is_noticed(
 ) -> None:
     """Also where it is the only one, with one core, for which joblib alone would compute in this process."""
     with connected(local_cluster) as client:
-        client.run(spoil, {"runningbond.compare.fingerprint:code_digest": other_sources})
+        client.run(spoil, {"runningbond.campaigns.fingerprint:code_digest": other_sources})
         line = ["compare", "panel-04", "--models", "limit", "--out", str(tmp_path), "--cluster", scheduler(client)]
         assert command(line) == 3
         client.run(restore, on_error="ignore")  # a worker may have died meanwhile, and is then as new
@@ -130,7 +130,7 @@ def test_a_killed_worker_changes_nothing(client: Any, tmp_path: Path) -> None:
         done.append(cell)
         assert (there.joinpath(*cell) / "outcome.json").exists() == (cell in kept), "is kept as soon as it is there"
 
-    client.run(spoil, {"runningbond.compare.tasks:run_model": partial(dies_once, note=str(note))})
+    client.run(spoil, {"runningbond.campaigns.tasks:run_model": partial(dies_once, note=str(note))})
     found = run_campaign(scenes, models, folder=there, cluster=scheduler(client), progress=look)
     assert note.exists()
     assert sorted(done) == sorted(expected)
@@ -143,7 +143,7 @@ def test_a_wall_that_kills_its_workers_is_given_up_and_no_other(
     client: Any, local_cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(local_cluster.scheduler, "allowed_failures", 0)
-    client.run(spoil, {"runningbond.compare.tasks:run_model": deadly})
+    client.run(spoil, {"runningbond.campaigns.tasks:run_model": deadly})
     scenes = {"large": panel(title="too large"), "small": panel()}
     campaign = run_campaign(scenes, ["limit"], folder=tmp_path, cluster=scheduler(client))
     assert campaign.outcomes["small", "limit"].status == "collapse"
@@ -175,7 +175,7 @@ def test_what_is_no_cluster_is_refused(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setattr("runningbond.compare.cluster.PATIENCE", 1)
+    monkeypatch.setattr("runningbond.campaigns.cluster.PATIENCE", 1)
     assert command(["compare", "panel-04", "--models", "limit", "--out", str(tmp_path), *arguments]) == 2
     printed = capsys.readouterr()
     assert said in printed.err

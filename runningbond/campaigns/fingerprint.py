@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 
 from runningbond.joints import Law
+from runningbond.models import Model
 from runningbond.scene import Action, Scene
-
-from .model import Model
 
 COMPUTING_ROOMS = (  # packages in which a change can change a number
     *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics", "response")),
-    *("meshing", "fem_interface", "dem", "homog"),
+    *("meshing", "fem_interface", "dem", "homog", "runningbond.models"),
 )
 LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh")
 

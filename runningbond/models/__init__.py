@@ -1,0 +1,29 @@
+"""The models: how a scene becomes an outcome, each one object, and all of them by name."""
+
+from .model import Cost, Kind, Model, Progress, Recorder
+from .registry import (
+    MODEL_LOOKS,
+    MODELS,
+    TOLERANCE,
+    check_response,
+    check_tolerance,
+    find_model,
+    respond,
+    run_model,
+)
+
+__all__ = [
+    "MODELS",
+    "MODEL_LOOKS",
+    "TOLERANCE",
+    "Cost",
+    "Kind",
+    "Model",
+    "Progress",
+    "Recorder",
+    "check_response",
+    "check_tolerance",
+    "find_model",
+    "respond",
+    "run_model",
+]
