@@ -65,13 +65,13 @@ def _formula(scene: Scene, tolerance: float, *, what: str) -> Outcome:
     return Outcome(scene.title, what, "collapse", load, load, load, message="worked out by hand")
 
 
-def _run(scene: Scene, tolerance: float, *, base: str, settings: Mapping[str, Any]) -> Outcome:
-    """Run a model of the package with some settings, by the clock of the processor."""
+def _run(scene: Scene, tolerance: float, *, base: str, settings: Mapping[str, Any], **observed: Any) -> Outcome:
+    """Run a model of the package with some settings, and the observer it is handed, by the clock of the processor."""
     for key in settings:
         if key not in MODELS[base].parameters:
             raise SceneError(f"model {base}: {key}", "is no parameter of it")
     start = time.process_time()
-    outcome = MODELS[base].solve(scene, tolerance, **settings)
+    outcome = MODELS[base].solve(scene, tolerance, **settings, **observed)
     return replace(outcome, seconds=time.process_time() - start)
 
 
@@ -123,15 +123,29 @@ LADDER: dict[str, Rung] = {
             "D",
             **FINITE,
         ),
+        _rung(
+            "fem-cracking",
+            "deformable blocks that crack between all of their triangles, small displacements",
+            "fem",
+            replace(SPLITS, deformable=True),
+            "#12240a",
+            "X",
+            "-.",
+            cells=3,
+            cracks="blocks",
+        ),
     )
 }
 """Every rung by its name, the cheapest first."""
 
+ON_REQUEST = ("fem-cracking",)
+"""Rungs that are so dear that they run only where they are named."""
+
 
 def find_rungs(names: str | None) -> list[Rung]:
-    """Rungs by their names, separated by commas; all of them where none is given."""
+    """Rungs by their names, separated by commas; where none is given, all of them but those on request."""
     if names is None:
-        return list(LADDER.values())
+        return [rung for name, rung in LADDER.items() if name not in ON_REQUEST]
     found = []
     for name in dict.fromkeys(each.strip() for each in names.split(",")):
         if name not in LADDER:

@@ -6,19 +6,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from runningbond.campaigns import Task
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
-from runningbond.results import Outcome
-from runningbond.scene import scene_from_dict
+from runningbond.scene import Scene, scene_from_dict
 from runningbond.scene.file import read_description
 
 WALLS = {wall.name: wall for wall in read_folder(SHIPPED[1])}
 HEIGHT = 0.248
 
 
-def squat(softening: str) -> Outcome:
-    """Four courses of J7D, two bricks long, pushed by 0.6 mm."""
+def squat(softening: str, way: float = 6e-4) -> Scene:
+    """Four courses of J7D, two bricks long, pushed by 0.6 mm or another way [m]."""
     path = WALLS["J7D"].scene_file
     assert path is not None
     tables: dict[str, Any] = copy.deepcopy(read_description(path))
@@ -26,14 +26,15 @@ def squat(softening: str) -> Outcome:
     tables["joint"]["softening"] = softening
     tables["beam"] |= {
         "force": [0, -44e3],
-        "drive": {"displacement": [6e-4, 0], "rate": 0.04, "at": HEIGHT},
+        "drive": {"displacement": [way, 0], "rate": 0.04, "at": HEIGHT},
     }
-    return LADDER["fem-small"].model.solve(scene_from_dict(tables), 0.01)
+    return scene_from_dict(tables)
 
 
 def test_a_wall_held_at_its_height_is_a_strut_whose_ledger_closes() -> None:
     """All that pushes it goes into the ground, V H into the moments of ground and beam, and joints spend their work."""
-    outcomes = {softening: squat(softening) for softening in ("exponential", "linear")}
+    solve = LADDER["fem-small"].model.solve
+    outcomes = {softening: solve(squat(softening), 0.01) for softening in ("exponential", "linear")}
     peaks = {}
     for softening, outcome in outcomes.items():
         assert outcome.status != "failed", outcome.message
@@ -44,6 +45,16 @@ def test_a_wall_held_at_its_height_is_a_strut_whose_ledger_closes() -> None:
         peaks[softening] = float(force.max())
         assert np.diff(known["work spent in joints [J]"]).min() > -1e-6
     assert peaks["exponential"] < peaks["linear"] < 1.2 * peaks["exponential"]
+
+
+@pytest.mark.parametrize("name", [name for name, rung in LADDER.items() if rung.base in ("dem-dynamic", "fem")])
+def test_rungs_that_follow_a_wall_do_so_in_campaigns_which_watch_it(name: str) -> None:
+    """As `runningbond validate` runs them: under an observer, whose moments are kept but of pieces of blocks."""
+    answer = Task("squat", squat("exponential", 5e-5), LADDER[name].model, 0.01).run()
+    assert answer.outcome is not None, answer.reason
+    assert answer.outcome.status in ("collapse", "unbounded", "undecided"), answer.outcome.message
+    assert len(answer.outcome.curve) > 10
+    assert (len(answer.outcome.moments) > 1) == (name != "fem-cracking")
 
 
 @pytest.mark.parametrize("name", ["J4D", "J5D", "J6D", "J7D"])
