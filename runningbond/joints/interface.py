@@ -19,6 +19,7 @@ from .dry_points import CRUSHED, SEAT, SLIPPED, dry_points, dry_within, is_beyon
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
 from .softening import DAMAGE, damage_at, softening_constants, way_to
 from .softening import HISTORY as SOFTENING_HISTORY
+from .sound_points import are_sound, can_be_sound, sound_points
 
 HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, "crushed")
 """Beside the rows of softening points: plastic closure δ_p and κ of the cap, both [m]."""
@@ -186,13 +187,15 @@ def interface_kernel(
     for segment in range(constants.shape[0]):
         of = constants[segment]
         first, last = segments[segment], segments[np.uint64(segment + 1)]
-        bounds = dry_within(of, viscosity)
+        bounds, strong = dry_within(of, viscosity), can_be_sound(of)
         while first < last:
             rows = (first, min(first + ROW, last))
-            if bounds[0] < 0.0 or is_beyond(rows, opening, history, bounds):
-                any_points(rows, of, opening, slip, history, viscosity, normal, tangential)
-            else:
+            if bounds[0] >= 0.0 and not is_beyond(rows, opening, history, bounds):
                 dry_points(rows, of, opening, slip, history, viscosity, normal, tangential)
+            elif strong and are_sound(rows, of, opening, slip, history, viscosity):
+                sound_points(rows, of, opening, slip, history, viscosity, normal, tangential)
+            else:
+                any_points(rows, of, opening, slip, history, viscosity, normal, tangential)
             first = rows[1]
 
 

@@ -1,0 +1,91 @@
+"""Points of whole strength in vector registers answer, to the last bit, as points one by one."""
+
+import numpy as np
+import pytest
+
+from runningbond.joints.interface import HISTORY, any_points, interface_constants
+from runningbond.joints.sound_points import are_sound, can_be_sound, sound_points
+from runningbond.scene import Closure, JointMaterial, Stiffness
+
+N = 200
+ROWS = (np.uint64(0), np.uint64(N))
+VISCOSITY = 0.1
+DAMAGE, SLIPPED, CRUSHED = (HISTORY.index(name) for name in ("damage", "slipped", "crushed"))
+
+
+def glued(**changes: object) -> JointMaterial:
+    """A joint of 1 MPa that softens exponentially and crushes at 5 MPa."""
+    given: dict[str, object] = {
+        "cohesion": 1.4e6,
+        "tensile_strength": 1e6,
+        "elasticity": Stiffness(1e11, 4e10),
+        "fracture_energy_1": 80.0,
+        "fracture_energy_2": 200.0,
+        "softening": "exponential",
+        "compressive_strength": 5e6,
+    }
+    return JointMaterial(0.6, **(given | changes))  # type: ignore[arg-type]
+
+
+MATERIALS = {
+    "softens and crushes": glued(),
+    "hardens": glued(peak_closure=1e-5),
+    "never crushes": glued(compressive_strength=None),
+    "straight branches": glued(softening="linear"),
+    "plastic": glued(softening="linear", fracture_energy_1=None, fracture_energy_2=None),
+    "no tension": glued(tensile_strength=0.0),
+}
+
+
+@pytest.mark.parametrize("name", MATERIALS)
+def test_points_of_whole_strength_answer_as_any_points_to_the_last_bit(name: str) -> None:
+    """Random jumps within the strength, step by step, opened, pressed and sheared to and fro."""
+    rng, of = np.random.default_rng(1), np.array(interface_constants(MATERIALS[name]))
+    farthest = 1e6 / 1e11
+    fast, slow = np.zeros((2, len(HISTORY), N))
+    opening, slip = np.zeros((2, N))
+    opens = farthest if MATERIALS[name].tension > 0 else 0.0
+    assert can_be_sound(of)
+    for _ in range(100):
+        opening = np.clip(opening + 0.1 * farthest * rng.normal(size=N), -farthest, 0.9 * opens)
+        slip = np.clip(slip + 0.1 * farthest * rng.normal(size=N), -0.5 * farthest, 0.5 * farthest)
+        (n, t), (n_slow, t_slow) = np.zeros((2, 2, N))
+        assert are_sound(ROWS, of, opening, slip, fast, VISCOSITY)
+        sound_points(ROWS, of, opening, slip, fast, VISCOSITY, n, t)
+        any_points(ROWS, of, opening, slip, slow, VISCOSITY, n_slow, t_slow)
+        assert np.array_equal(n, n_slow)
+        assert np.array_equal(t, t_slow)
+        assert np.array_equal(fast, slow)
+    assert (n > 0).any() == (opens > 0)
+    assert (n < 0).any()
+
+
+@pytest.mark.parametrize(
+    ("row", "value"), [(DAMAGE, 1e-9), (SLIPPED, 1e-9), (CRUSHED, 1e-12)], ids=["damaged", "slipped", "crushed"]
+)
+def test_points_that_have_lost_strength_are_looked_at_one_by_one(row: int, value: float) -> None:
+    of, history, still = np.array(interface_constants(glued())), np.zeros((len(HISTORY), N)), np.zeros(N)
+    assert are_sound(ROWS, of, still, still, history, VISCOSITY)
+    history[row, 17] = value
+    assert not are_sound(ROWS, of, still, still, history, VISCOSITY)
+
+
+@pytest.mark.parametrize(
+    ("opening", "slip"),
+    [(1.01e-5, 0.0), (-5.01e-5, 0.0), (0.0, 3.6e-5), (-3e-5, 3.5e-5), (np.nan, 0.0), (0.0, np.nan)],
+    ids=["torn", "crushed", "slid", "in the corner", "no number", "no slip"],
+)
+def test_points_that_reach_their_strength_are_looked_at_one_by_one(opening: float, slip: float) -> None:
+    """1 MPa in tension, 1.4 MPa in shear, 5 MPa in compression at 1e11 and 4e10 Pa/m; without viscosity."""
+    of, history = np.array(interface_constants(glued())), np.zeros((len(HISTORY), N))
+    jumps = np.zeros((2, N))
+    jumps[:, 17] = 0.98 * opening, 0.9 * slip
+    assert are_sound(ROWS, of, *jumps, history, 0.0) == np.isfinite(jumps).all()
+    jumps[:, 17] = opening, slip
+    assert not are_sound(ROWS, of, *jumps, history, 0.0)
+
+
+def test_joints_without_strength_or_of_a_growing_stiffness_are_none_of_these() -> None:
+    dry = glued(cohesion=0.0, tensile_strength=0.0)
+    for material in (dry, glued(closure=Closure(1e4, 1e12))):
+        assert not can_be_sound(np.array(interface_constants(material)))
