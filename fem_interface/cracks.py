@@ -98,29 +98,34 @@ class PassedOn(Action):
 
 
 def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
-    """Leave blocks whole, or part the movable ones into triangles.
+    """Leave blocks whole, or part the movable ones but a beam into triangles.
 
     Raises
     ------
     SceneError
-        If blocks are to crack and the scene does not say at what strength.
+        If blocks are to crack and the scene does not say at what strength, or has ties or supports that move.
     """
     if cracks not in ("joints", "blocks"):
         raise ValueError(f'cracks = {cracks!r}: must be "joints" or "blocks"')
     if cracks == "joints":
         return Pieces(scene, mesh, np.arange(len(scene.blocks)), np.arange(len(mesh.points)))
-    if scene.extras:
-        raise SceneError(scene.extras[0], 'does not go with cracks = "blocks", in triangles that are not held by it')
+    if other := [key for key in scene.extras if not key.startswith("beam")]:
+        raise SceneError(other[0], 'does not go with cracks = "blocks", in triangles that are not held by it')
     if scene.inner_joint is None:
         raise SceneError("inner_joint", "is missing; cracks inside blocks need its strength and its stiffness")
     return _in_triangles(scene, mesh)
 
 
 def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
-    loose = ~scene.fixed[mesh.triangle_block]
-    parts = np.where(scene.fixed, 1, np.bincount(mesh.triangle_block, minlength=len(scene.blocks)))
+    whole, beam = scene.fixed.copy(), scene.beam
+    if beam is not None and beam.block is not None:
+        whole[beam.block] = True
+    loose = ~whole[mesh.triangle_block]
+    parts = np.where(whole, 1, np.bincount(mesh.triangle_block, minlength=len(scene.blocks)))
     owner = np.repeat(np.arange(len(parts)), parts)
-    held = scene.fixed[owner]
+    held = whole[owner]
+    if beam is not None and beam.block is not None:
+        beam = replace(beam, block=int(np.searchsorted(owner, beam.block)))
     # Triangles come in the order of their blocks, so the movable ones in that of their pieces.
     piece = (np.cumsum(parts) - parts)[mesh.triangle_block]
     piece[loose] = np.flatnonzero(~held)
@@ -143,9 +148,10 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
         scene,
         blocks=Blocks.from_polygons(outlines),
         load=Load(scene.load.gravity, *(tuple(map(passed_on, loads)) for loads in (scene.load.live, scene.load.dead))),
-        fixed=held,
+        fixed=scene.fixed[owner],
+        beam=beam,
         wall=scene.wall[owner],
-        pins=_pins(scene, mesh, block, node),
+        pins=_pins(scene, mesh, block, node, whole),
         joints=Joints(
             np.column_stack([block[side[first, 0]] for side in sides]),
             np.concatenate([scene.joints.ends, points[inside[0]]]),
@@ -208,12 +214,12 @@ def _shapes(points: Array, first_node: Indices, held: Mask) -> Indices:
     return result
 
 
-def _pins(scene: Scene, mesh: WallMesh, block: Indices, node: Indices) -> Pins:
-    """Pins of the pieces: each of those that meet at a pinned corner is held there."""
+def _pins(scene: Scene, mesh: WallMesh, block: Indices, node: Indices, whole: Mask) -> Pins:
+    """Pins of the pieces: those that meet at a pinned corner are held there, a block that is `whole` as it was."""
     result = []
     for k, (owner, point) in enumerate(zip(scene.pins.block, scene.pins.point, strict=True)):
         there = np.flatnonzero(mesh.block[node] == owner)
         near = np.hypot(*(mesh.points[node[there]] - point).T) <= scene.blocks.tolerance
-        result += [(k, piece) for piece in block[there[near]]]
+        result += [(k, piece) for piece in np.unique(block[there[near | whole[owner]]])]
     pin, piece = np.array(result, dtype=np.int64).reshape(-1, 2).T
-    return Pins(piece, scene.pins.point[pin], scene.pins.direction[pin])
+    return Pins(piece, scene.pins.point[pin], scene.pins.direction[pin], scene.pins.turn[pin])

@@ -127,7 +127,8 @@ class Lead:
 
     @cached_property
     def _is_inner(self) -> Mask:
-        return self.scene.joints.inner[self.points.joint]
+        inner, joint = self.scene.joints.inner, self.points.joint
+        return np.append(inner, True)[np.minimum(joint, len(inner))]  # joints beyond the scene's are between triangles
 
     @cached_property
     def _toes(self) -> tuple[Mask, Mask]:

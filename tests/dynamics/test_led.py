@@ -378,7 +378,14 @@ def test_finite_displacements_refuse_joints_of_several_insets(pushover: Any) -> 
         pushover(block(joints=joints, assign=assign), 0.01)
 
 
-@pytest.mark.parametrize("extra", [{"tie": [TIE]}, {"beam": {"height": 0.1}}])
+@pytest.mark.parametrize(
+    "extra",
+    [
+        {"tie": [TIE]},
+        {"load__live": {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}},
+        {"beam": {"height": 0.1}, "tie": [TIE]},
+    ],
+)
 def test_cracks_between_all_triangles_refuse_what_they_would_tear(extra: dict[str, Any]) -> None:
     scene = block(inner_joint={"friction": 0.6, "mortar": MORTAR}, **extra)
     with pytest.raises(SceneError, match='does not go with cracks = "blocks"'):

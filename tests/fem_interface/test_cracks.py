@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
+from fem_interface.cracks import Cracks
 from fem_interface.fracture import fractured
 from fem_interface.frequency_shift import elastic_stiffness
 from fem_interface.modal_wall import ModalWall, modal_wall
@@ -49,6 +50,9 @@ def wall(inner: dict[str, Any] | None, stiffness: float = 1e12, **changes: Any) 
 
 
 STRONG = {"cohesion": 1e9}
+BRITTLE = {"tensile_strength": 1e5, "fracture_energy_1": 0.5, "fracture_energy_2": 5.0}
+PRESSED = 2e4
+"""What a beam presses with on a wall [N]."""
 SPEED = 2e-3
 """At which a block is torn apart [m/s]."""
 
@@ -228,6 +232,27 @@ def test_strong_blocks_do_not_crack() -> None:
     assert whole.dofs is not None
     assert cracked.dofs > 2 * whole.dofs
     assert cracked.motion.shape == (len(wall(STRONG, **size).blocks), 3)
+
+
+def strut(inner: dict[str, Any], cracks: Cracks) -> tuple[float, dict[str, Array]]:
+    """The force at which a wall between a base and a beam that stays at its height has been pushed by 0.2 mm."""
+    size = {"wall__length": 0.24, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.12}
+    beam = {"height": 0.1, "condition": "fixed-height", "force": [0, -PRESSED]}
+    beam["drive"] = {"displacement": [2e-4, 0], "rate": 0.02, "at": 0.24}
+    scene = wall(inner, 1e13, **size, joint__friction=1.5, load={"gravity": 9.81}, beam=beam)
+    outcome = fem(scene, cracks=cracks, modes="all")
+    return outcome.curve[-1, 1], dict(zip(outcome.path_columns, outcome.path.T, strict=True))
+
+
+def test_a_wall_under_a_beam_that_stays_level_cracks_between_its_triangles() -> None:
+    """As whole blocks where they are strong; weak ones bear less. The beam neither turns nor rises, and so N grows."""
+    whole, _ = strut(STRONG, "joints")
+    strong, way = strut(STRONG, "blocks")
+    weak, _ = strut({"cohesion": 1e5, **BRITTLE}, "blocks")
+    assert strong == pytest.approx(whole, rel=0.005)
+    assert np.abs(way["beam rotation [rad]"]).max() == np.abs(way["beam uplift [m]"]).max() == 0.0
+    assert way["ground vertical [N]"][-1] > 1.4 * PRESSED
+    assert weak < 0.7 * strong
 
 
 # --- weak inner joints ---------------------------------------------------------------------------------------
