@@ -117,17 +117,14 @@ def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
 
 
 def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
-    whole, beam = scene.fixed.copy(), scene.beam
-    if beam is not None and beam.block is not None:
-        whole[beam.block] = True
+    number = np.arange(len(scene.blocks))
+    whole = scene.fixed | (number == (scene.beam.block if scene.beam else -1))
     loose = ~whole[mesh.triangle_block]
-    parts = np.where(whole, 1, np.bincount(mesh.triangle_block, minlength=len(scene.blocks)))
-    owner = np.repeat(np.arange(len(parts)), parts)
+    parts = np.where(whole, 1, np.bincount(mesh.triangle_block, minlength=len(number)))
+    owner, first_piece = np.repeat(number, parts), np.cumsum(parts) - parts
     held = whole[owner]
-    if beam is not None and beam.block is not None:
-        beam = replace(beam, block=int(np.searchsorted(owner, beam.block)))
     # Triangles come in the order of their blocks, so the movable ones in that of their pieces.
-    piece = (np.cumsum(parts) - parts)[mesh.triangle_block]
+    piece = first_piece[mesh.triangle_block]
     piece[loose] = np.flatnonzero(~held)
     first_node, node, triangles = _apart(mesh, owner, held, piece)
     points, block = mesh.points[node], np.repeat(np.arange(len(owner)), np.diff(first_node))
@@ -149,7 +146,7 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
         blocks=Blocks.from_polygons(outlines),
         load=Load(scene.load.gravity, *(tuple(map(passed_on, loads)) for loads in (scene.load.live, scene.load.dead))),
         fixed=scene.fixed[owner],
-        beam=beam,
+        beam=scene.beam and replace(scene.beam, block=int(first_piece[scene.beam.block])),
         wall=scene.wall[owner],
         pins=_pins(scene, mesh, block, node, whole),
         joints=Joints(

@@ -239,7 +239,8 @@ def strut(inner: dict[str, Any], cracks: Cracks) -> tuple[float, dict[str, Array
     size = {"wall__length": 0.24, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.12}
     beam = {"height": 0.1, "condition": "fixed-height", "force": [0, -PRESSED]}
     beam["drive"] = {"displacement": [2e-4, 0], "rate": 0.02, "at": 0.24}
-    scene = wall(inner, 1e13, **size, joint__friction=1.5, load={"gravity": 9.81}, beam=beam)
+    crushes = {"joint__friction": 1.5, "joint__compressive_strength": 1e9}  # the law of the mortared walls
+    scene = wall(inner, 1e13, **size, **crushes, load={"gravity": 9.81}, beam=beam)
     outcome = fem(scene, cracks=cracks, modes="all")
     return outcome.curve[-1, 1], dict(zip(outcome.path_columns, outcome.path.T, strict=True))
 
@@ -251,7 +252,7 @@ def test_a_wall_under_a_beam_that_stays_level_cracks_between_its_triangles() -> 
     weak, _ = strut({"cohesion": 1e5, **BRITTLE}, "blocks")
     assert strong == pytest.approx(whole, rel=0.005)
     assert np.abs(way["beam rotation [rad]"]).max() == np.abs(way["beam uplift [m]"]).max() == 0.0
-    assert way["ground vertical [N]"][-1] > 1.4 * PRESSED
+    assert way["ground vertical [N]"][-1] > 1.25 * PRESSED
     assert weak < 0.7 * strong
 
 
