@@ -84,8 +84,7 @@ class PassedOn(Action):
         """Forces on the pieces."""
         forces = self.load.forces(self.wall)
         share = scene.blocks.area / self.wall.blocks.area[self.owner]
-        touching = [scene.blocks.containing(at) for at in forces.at]
-        of_block = [near[self.owner[near] == block] for near, block in zip(touching, forces.block, strict=True)]
+        of_block = [self._bearing(scene, block, at) for block, at in zip(forces.block, forces.at, strict=True)]
         count = np.array([len(near) for near in of_block], dtype=np.int64)
         return Forces.on(
             scene,
@@ -95,6 +94,11 @@ class PassedOn(Action):
             at=np.repeat(forces.at, count, axis=0),
             force=np.repeat(forces.force / np.maximum(count, 1)[:, None], count, axis=0),
         )
+
+    def _bearing(self, scene: Scene, block: int, at: Array) -> Indices:
+        """The pieces that bear a force on a block: those that touch its point, or a block that is whole, anywhere."""
+        own = np.flatnonzero(self.owner == block)
+        return own if len(own) == 1 else np.intersect1d(own, scene.blocks.containing(at))
 
 
 def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:

@@ -33,7 +33,8 @@ def validate(
     out
         Folder for results, charts and the page.
     models
-        Names of models of the laboratory, separated by commas; all of them where none is given.
+        Names of models of the laboratory, separated by commas; where none is given, all of them but those
+        that take minutes a wall (fem-cracking).
     jobs
         Number of processes; -1 is one a core.
     fresh

@@ -1,7 +1,7 @@
 """Joint points whose strength is whole and not reached: those that `interface` leaves to loops in vector registers.
 
-Most points of cracks that are only possible, and of mortar away from where a wall fails, are such for ever. What is
-asked of them and what they answer is, bit by bit, what `interface.any_points` does with them.
+Most points of cracks that are only possible, and of mortar away from where a wall fails, are such for ever. They answer
+bit by bit as `interface.any_points` has them answer, but for the sign of a zero.
 """
 
 import numpy as np
@@ -21,7 +21,8 @@ def traction_when_sound(
 ) -> tuple[float, float, float, float]:
     """Normal traction without and with viscosity, shear without and with it [Pa], of a point of whole strength.
 
-    From its jumps and their changes in a step, and its plastic slip [m].
+    From its jumps and their changes in a step, and its plastic slip [m]. Shear without viscosity is that of its spring,
+    which a point within its strength holds.
     """
     (jump_n, jump_t), (change_n, change_t) = jumps, changes
     k_t, tension, shear, friction, first, k_n = of[1], of[2], of[3], of[4], of[6], of[13]
@@ -29,7 +30,7 @@ def traction_when_sound(
     is_open = jump_n > 0.0
     elastic = (secant if is_open else k_n) * jump_n
     n = elastic + (0.0 if is_open else viscosity * k_n * change_n)
-    n = n if n < tension else tension
+    n = tension if n > tension else n  # so spelt, what is no number stays none
     most = shear + friction * tension - friction * n
     most = most if most > 0.0 else 0.0
     trial = k_t * (jump_t - plastic)

@@ -1,7 +1,7 @@
 """The ladder that walls are predicted with: two formulas worked out by hand, and models with ever more in them."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -65,13 +65,21 @@ def _formula(scene: Scene, tolerance: float, *, what: str) -> Outcome:
     return Outcome(scene.title, what, "collapse", load, load, load, message="worked out by hand")
 
 
-def _run(scene: Scene, tolerance: float, *, base: str, settings: Mapping[str, Any], **observed: Any) -> Outcome:
-    """Run a model of the package with some settings, and the observer it is handed, by the clock of the processor."""
+def _run(
+    scene: Scene,
+    tolerance: float,
+    *,
+    base: str,
+    settings: Mapping[str, Any],
+    observe: Callable[..., None] | None = None,
+) -> Outcome:
+    """Run a model of the package with some settings, and an observer if there is one, by the processor's clock."""
+    watched = {} if observe is None else {"observe": observe}
     for key in settings:
         if key not in MODELS[base].parameters:
             raise SceneError(f"model {base}: {key}", "is no parameter of it")
     start = time.process_time()
-    outcome = MODELS[base].solve(scene, tolerance, **settings, **observed)
+    outcome = MODELS[base].solve(scene, tolerance, **settings, **watched)
     return replace(outcome, seconds=time.process_time() - start)
 
 
@@ -84,7 +92,8 @@ def _rung(
     name: str, title: str, base: str, features: Features, colour: str, marker: str, line: Any = "-", **settings: Any
 ) -> Rung:
     solve = partial(_run, base=base, settings=settings)
-    model = replace(MODELS[base], name=name, title=title, solve=solve, colour=colour, marker=marker, line=line)
+    looks: dict[str, Any] = {"colour": colour, "marker": marker, "line": line}
+    model = replace(MODELS[base], name=name, title=title, solve=solve, parameters=(), **looks)
     return Rung(model, features, base, settings == FINITE)
 
 

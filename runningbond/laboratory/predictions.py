@@ -158,7 +158,7 @@ def predict(
 ) -> tuple[list[Prediction], Campaign]:
     """Predict walls with rungs, on their scenes; what a folder holds of the same computation is taken from there.
 
-    Parameters and errors as of `runningbond.compare.run_campaign`.
+    Parameters and errors as of `runningbond.campaigns.run_tasks`.
     """
     cells = [(wall, rung) for rung in rungs for wall in sorted(walls, key=lambda wall: not wall.is_cyclic)]
     reasons = {

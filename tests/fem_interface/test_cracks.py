@@ -1,7 +1,8 @@
 """Cracks inside deformable blocks: triangles held together by inner joints of a strength of their own."""
 
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from fem_interface.model import fem
 from fem_interface.operators import nodal_jump
 from fem_interface.system import system_of
 from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.dynamics.lead import Lead
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.joints.softening import DAMAGE
 from runningbond.scene import (
@@ -254,6 +256,31 @@ def test_a_wall_under_a_beam_that_stays_level_cracks_between_its_triangles() -> 
     assert np.abs(way["beam rotation [rad]"]).max() == np.abs(way["beam uplift [m]"]).max() == 0.0
     assert way["ground vertical [N]"][-1] > 1.25 * PRESSED
     assert weak < 0.7 * strong
+
+
+@pytest.mark.parametrize("at", [0.05, 0.12, 0.3, 0.5])
+def test_a_beam_is_pushed_at_any_height(at: float) -> None:
+    """Below it, at its underside, at its top and above: its force is the same on pieces as on blocks."""
+    scene = wall(STRONG, beam={"height": 0.1, "drive": {"force": [1, 0], "at": at}}, load={"gravity": 9.81})
+    parted = modal_wall(scene, cracks="blocks").scene
+    whole, pieces = scene.live_forces, parted.live_forces
+    assert scene.beam is not None
+    assert parted.beam is not None
+    assert pieces.block.tolist() == [parted.beam.block]
+    assert np.array_equal(pieces.force, whole.force)
+    assert np.array_equal(pieces.at, whole.at)
+    (before, after) = (each.blocks.centroid[each.beam.block] for each in (scene, parted) if each.beam)
+    assert np.array_equal(before, after)
+
+
+def test_cracks_between_triangles_are_inner_joints_to_who_looks_at_toes() -> None:
+    """As those on axes, which the scene numbers; joints between blocks are none."""
+    scene = wall(STRONG)
+    found = modal_wall(scene, 2, cracks="blocks")
+    lead = cast(Lead, SimpleNamespace(scene=scene, points=found.elements.points))
+    inner = cast(Any, vars(Lead)["_is_inner"]).func(lead)
+    assert np.array_equal(inner, found.scene.joints.inner[found.elements.points.joint])
+    assert inner.sum() > scene.joints.inner.sum() > 0
 
 
 # --- weak inner joints ---------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ import pytest
 from runningbond.dynamics.lead import TOE, failing
 from runningbond.laboratory import read_folder
 from runningbond.laboratory.folder import SHIPPED
-from runningbond.laboratory.ladder import by_hand, find_rungs
+from runningbond.laboratory.ladder import LADDER, by_hand, find_rungs
 from runningbond.laboratory.modes import DIAGONAL, ROCKING, SLIDING, bed_slips, measured_modes, predicted_mode
 from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import Features, scene_of
@@ -191,6 +191,11 @@ def test_model_that_is_none_of_the_ladder_is_refused() -> None:
     with pytest.raises(SceneError, match="--models = 'limt': must be of .*; did you mean \"limit\""):
         find_rungs("rocking, limt")
     assert [rung.name for rung in find_rungs("limit,rocking,limit")] == ["limit", "rocking"]
+
+
+def test_dear_models_run_where_they_are_named_alone() -> None:
+    assert {*LADDER} - {rung.name for rung in find_rungs(None)} == {"fem-cracking"}
+    assert [rung.name for rung in find_rungs("fem-cracking")] == ["fem-cracking"]
 
 
 def test_two_curves_of_the_campaign_are_what_their_files_say() -> None:
