@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from meshing import WallMesh, wall_mesh
-from runningbond.joints import Rule
+from runningbond.joints import Rule, wall_rule
 from runningbond.scene import Array, Forces, Indices, Scene
 
 from .cracks import Cracks, Pieces, pieces
@@ -227,6 +227,7 @@ def modal_wall(
 ) -> ModalWall:
     """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_interface.model.fem`."""
     parts = pieces(scene, wall_mesh(scene, cells), cracks)
+    rule = rule or wall_rule(scene, cells if points == "elements" else 1)
     joints = joint_elements(parts.mesh, parts.scene, rule, points)
     if modes is None:
         modes = BENDING if cracks == "joints" else "all"

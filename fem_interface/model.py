@@ -33,6 +33,7 @@ from .modal_wall import modal_wall
 from .modes import ModeCount
 from .node_outline import node_outline
 from .operators import PointsOn
+from .piece_masses import with_heavier_pieces
 from .system import system_of
 
 
@@ -65,7 +66,7 @@ def fem(
     modes
         Modes of each block (`ModeCount`): 10 by default, all where blocks may crack.
     rule
-        Quadrature rule of the joints; two Lobatto points where none is given.
+        Quadrature rule of the joints; `wall_rule` where none is given.
     points
         Whether the rule is laid on each joint element or on each joint whole, as for rigid blocks.
     cracks
@@ -103,11 +104,13 @@ def fem(
         else:
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
-            system = with_coupled_masses(wall, system) if mass_scaling else system
+            if mass_scaling:
+                system = with_heavier_pieces(wall, with_coupled_masses(wall, system))
             run = Run(system, local=CALMING if len(system.coupling.freedom) else LOCAL)
     factor = largest_scaling(wall, run.system.mass)
     note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
     note += ", those of soft blocks coupled across joints" if len(run.system.coupling.freedom) else ""
+    note += ", pieces of blocks heavier against one another" if len(run.system.clusters.cluster) else ""
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(

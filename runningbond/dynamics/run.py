@@ -323,7 +323,8 @@ class Run:
         return Ledger(
             external=state.external,
             kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum())
-            + system.coupling.energy(state.velocity),
+            + system.coupling.energy(state.velocity)
+            + system.clusters.energy(state.velocity, system.mass),
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
             joint=float(area @ law.energy(opening, normal, tangential, state.history)),
             friction=float(area @ state.history[FRICTION_WORK]) + state.friction,

@@ -19,6 +19,7 @@ from runningbond.joints import PointStrength
 from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
 
+from .clusters import NO_CLUSTERS, Clusters
 from .rig import Rig
 from .ties import NO_TIE_ROWS, TieRows
 
@@ -144,6 +145,7 @@ class BlockSystem:
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
     rig: Rig | None = None  # what drives its beam at finite displacements
     coupling: Coupling = NOT_COUPLED  # inertia that modes have in common; only where a load alone acts on them
+    clusters: Clusters = NO_CLUSTERS  # bodies with more inertia against one another; without live load on them
     # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
     block_motion: csr_array | None = None
     source: object = None  # what it was set up from, for observers: the wall in modal coordinates where blocks deform

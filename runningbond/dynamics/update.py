@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from runningbond.joints import compiled
 from runningbond.scene import Array
 
+from .clusters import Clusters, sum_up
 from .system import BlockSystem, Kernel
 
 kernel, inlined = compiled.kernel, compiled.inlined
@@ -31,12 +32,19 @@ Coupled: TypeAlias = tuple[NDArray[np.uint64], Array, Array, Array, Array, Array
 their accelerations of the step before, which steps write to, and six buffers."""
 
 
+Clustered: TypeAlias = tuple[Any, ...]
+"""The first four of `Clusters`, three motions of clusters ``(nc, 3)`` and 1 / (1 + β); masses of the modes [kg], zero
+where held, and three accelerations, ``(nd,)`` each: without damping, of their own masses, and in their clusters."""
+
 Damping: TypeAlias = Literal["local", "combined"]
-"""How modes with masses of their own are damped; those with inertia in common are by combined damping."""
+"""How modes with masses of their own are damped; those with inertia in common are by combined damping, and bodies in
+clusters by local damping."""
 
 
 def update_of(system: BlockSystem, damping: Damping) -> tuple[Kernel, tuple[Any, ...]]:
     """The update of a system, and its memory: what it takes and writes to besides modes and state."""
+    if len(system.clusters.cluster):
+        return update_clusters, _memory_of(system.clusters, system.mass)
     freedom, inertia = system.coupling
     if not len(freedom):
         return (update, ()) if damping == "local" else (update_combined, (np.zeros(len(system.mass)),))
@@ -48,6 +56,13 @@ def update_of(system: BlockSystem, damping: Damping) -> tuple[Kernel, tuple[Any,
     buffers = np.zeros((7, rows))
     modes = freedom.astype(np.uint64)  # an index that may be negative is asked about
     return update_coupled, (modes, mobility.ravel(), mass, *buffers)
+
+
+def _memory_of(clusters: Clusters, mass: Array) -> Clustered:
+    """Memory of the update of bodies in clusters, of modes of some masses ``(nd,)`` [kg]."""
+    *arrays, motion, more = clusters
+    motions = (np.zeros_like(motion) for _ in range(3))
+    return *arrays, *motions, 1 / (1 + more), np.where(np.isfinite(mass), mass, 0.0), *np.zeros((3, len(mass)))
 
 
 def _alone(combined: bool) -> Any:
@@ -133,3 +148,58 @@ def update_coupled(modes: Modes, coupling: Coupled, state: StateArrays, local: f
     for k in range(freedom.size):
         i = freedom[k]
         motion[i], velocity[i], damped[i] = place[k], before[k], spent[k]
+
+
+@inlined
+def _damped(pace: float, drift: float, local: float) -> float:
+    """An acceleration less what local damping takes of it against a velocity."""
+    sense = (1.0 if drift > 0.0 else 0.0) - (1.0 if drift < 0.0 else 0.0)
+    return pace - local * abs(pace) * sense
+
+
+@kernel
+def update_clusters(modes: Modes, memory: Clustered, state: StateArrays, local: float, dt: float) -> None:
+    """`update` of bodies in clusters: local damping resists the clusters, and what bodies do beside them.
+
+    A body that is resisted by α times the force on it would be dragged on by what its cluster shakes with, and its
+    share of that is 1 + β times as large as what accelerates it.
+    """
+    stiffness, viscosity, mobility = modes
+    motion, velocity, _, damped, force = state
+    freedom, cluster, arm, part, together, moving, excess, least, mass, undamped, free, pace = memory
+    for i in range(motion.size):
+        f = force[i] - stiffness[i] * motion[i] - viscosity[i] * velocity[i]
+        force[i] = f
+        undamped[i] = mobility[i] * f
+        pace[i] = free[i] = _damped(undamped[i], velocity[i], local)
+    sum_up(freedom, cluster, arm, part, undamped, together)
+    sum_up(freedom, cluster, arm, part, velocity, moving)
+    excess[:] = 0.0  # what damping beside the clusters must not do to them
+    for k in range(cluster.size):
+        c, x, y = cluster[k], arm[k, 0], arm[k, 1]
+        i, j, r = freedom[k, 0], freedom[k, 1], freedom[k, 2]
+        spin, turn = together[c, 2], moving[c, 2]
+        u = _damped(undamped[i] - together[c, 0] + y * spin, velocity[i] - moving[c, 0] + y * turn, local)
+        v = _damped(undamped[j] - together[c, 1] - x * spin, velocity[j] - moving[c, 1] - x * turn, local)
+        w = _damped(undamped[r] - spin, velocity[r] - turn, local)
+        free[i], free[j], free[r] = u, v, w
+        excess[c, 0] += part[k, 0] * u
+        excess[c, 1] += part[k, 0] * v
+        excess[c, 2] += part[k, 1] * (x * v - y * u) + part[k, 2] * w
+    for c in range(together.shape[0]):
+        for d in range(3):
+            together[c, d] = _damped(together[c, d], moving[c, d], local)
+    for k in range(cluster.size):
+        c, x, y = cluster[k], arm[k, 0], arm[k, 1]
+        i, j, r = freedom[k, 0], freedom[k, 1], freedom[k, 2]
+        spin, turn = together[c, 2], excess[c, 2]
+        u, v = together[c, 0] - y * spin, together[c, 1] + x * spin
+        along, across, about = free[i] - excess[c, 0] + y * turn, free[j] - excess[c, 1] - x * turn, free[r] - turn
+        free[i], free[j], free[r] = u + along, v + across, spin + about
+        pace[i], pace[j], pace[r] = u + least * along, v + least * across, spin + least * about
+    for i in range(motion.size):
+        before = velocity[i]
+        after = before + dt * pace[i]
+        damped[i] += 0.5 * dt * (mass[i] * (undamped[i] - free[i]) + viscosity[i] * before) * (before + after)
+        motion[i] += dt * after
+        velocity[i] = after

@@ -140,21 +140,18 @@ LADDER: dict[str, Rung] = {
             "#12240a",
             "X",
             "-.",
-            cells=3,
+            cells=4,
             cracks="blocks",
         ),
     )
 }
 """Every rung by its name, the cheapest first."""
 
-ON_REQUEST = ("fem-cracking",)
-"""Rungs that are so dear that they run only where they are named."""
-
 
 def find_rungs(names: str | None) -> list[Rung]:
-    """Rungs by their names, separated by commas; where none is given, all of them but those on request."""
+    """Rungs by their names, separated by commas; all of them where none is given."""
     if names is None:
-        return [rung for name, rung in LADDER.items() if name not in ON_REQUEST]
+        return list(LADDER.values())
     found = []
     for name in dict.fromkeys(each.strip() for each in names.split(",")):
         if name not in LADDER:

@@ -1,0 +1,58 @@
+"""Bodies in clusters, which move against one another with more inertia than together (selective mass scaling).
+
+A cluster has the rigid motion R that has the linear and the angular momentum of its bodies; the rest of their rigid
+motions carries neither. With P what bodies have of their clusters' motion and M their masses, that rest has 1 + β
+times their inertia (`olovsson2005`):
+
+    M* = M + β (M − Pᵀ M P),    M*⁻¹ f = P a + (a − P a) / (1 + β),    a = M⁻¹ f.
+
+What is at rest knows no masses, and a cluster that moves as one feels its own.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runningbond.joints.compiled import kernel
+from runningbond.scene import Array
+
+
+class Clusters(NamedTuple):
+    """Which bodies are in clusters, and what they have of the motion of these."""
+
+    freedom: NDArray[np.uint64]  # (n, 3) translations and rotation of each body that is in a cluster
+    cluster: NDArray[np.uint64]  # (n,) its cluster
+    arm: Array  # (n, 2) its centroid, from that of the cluster [m]
+    # (n, 3) its part of the cluster's mass, its mass over the cluster's moment of inertia [1/m²], and its part of that
+    part: Array
+    motion: Array  # (nc, 3) buffer of motions of the clusters
+    more: float = 0.0  # β
+
+    def energy(self, velocity: Array, mass: Array) -> float:
+        """Kinetic energy at a velocity ``(nd,)`` beyond that of masses ``(nd,)`` [J]."""
+        if not len(self.cluster):
+            return 0.0
+        sum_up(self.freedom, self.cluster, self.arm, self.part, velocity, self.motion)
+        u, v, spin = self.motion[self.cluster].T
+        x, y = self.arm.T
+        apart = velocity[self.freedom] - np.column_stack([u - y * spin, v + x * spin, spin])
+        return float(0.5 * self.more * (mass[self.freedom] * apart**2).sum())
+
+
+_NONE = np.zeros(0, dtype=np.uint64)
+NO_CLUSTERS = Clusters(_NONE.reshape(0, 3), _NONE, np.zeros((0, 2)), np.zeros((0, 3)), np.zeros((0, 3)))
+
+
+@kernel
+def sum_up(
+    freedom: NDArray[np.uint64], cluster: NDArray[np.uint64], arm: Array, part: Array, source: Array, motion: Array
+) -> None:
+    """Write the motions of clusters ``(nc, 3)`` with the momentum that their bodies have in ``source`` ``(nd,)``."""
+    motion[:] = 0.0
+    for k in range(cluster.size):
+        u, v, spin = source[freedom[k, 0]], source[freedom[k, 1]], source[freedom[k, 2]]
+        c = cluster[k]
+        motion[c, 0] += part[k, 0] * u
+        motion[c, 1] += part[k, 0] * v
+        motion[c, 2] += part[k, 1] * (arm[k, 0] * v - arm[k, 1] * u) + part[k, 2] * spin
