@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from meshing import WallMesh
+from runningbond.joints import joint_stiffness
 from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Load, Mask, Pins, Scene, SceneError
 
 from .operators import edges_between, find_edges
@@ -99,6 +100,25 @@ class PassedOn(Action):
         """The pieces that bear a force on a block: those that touch its point, or a block that is whole, anywhere."""
         own = np.flatnonzero(self.owner == block)
         return own if len(own) == 1 else np.intersect1d(own, scene.blocks.containing(at))
+
+
+def added_compliance(parts: Pieces) -> float:
+    """How much inner joints give way, at most, over what the triangles beside them do.
+
+    E / (k d) of a joint of stiffness k, with the heights of both triangles over it d: a block in parts is softer than
+    its material by about so much. Joints that are stiff beside whole blocks are not beside small triangles.
+    """
+    scene, mesh = parts.scene, parts.mesh
+    corner = mesh.points[mesh.triangles]
+    area = np.abs(np.linalg.det(corner[:, 1:] - corner[:, :1])) / 2
+    edge, ends = edges_of(mesh.triangles), mesh.interfaces[scene.joints.inner[mesh.joint]]
+    height = np.zeros(len(ends))
+    for one, other in (ends.T[:2], ends.T[2:]):
+        length = np.hypot(*(mesh.points[one] - mesh.points[other]).T)
+        height += 2 * area[edges_between(edge, one, other) // 3] / length
+    young = max((each.young or 0.0 for each in scene.block_materials), default=0.0)
+    inner = scene.inner_joint
+    return 0.0 if inner is None else float(young / (joint_stiffness(inner).normal * height).min(initial=np.inf))
 
 
 def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
+from runningbond.dynamics import U_CRIT, BlockSystem, Observer, Run, collapse_by_steps, no_observer, pushover_curve
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import CALMING, LOCAL, MOVING
@@ -24,17 +24,20 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
 from .coupled_masses import with_coupled_masses
-from .cracks import Cracks
+from .cracks import Cracks, added_compliance
 from .finite_system import finite_system
 from .fracture import Energies
 from .loads import Loads
 from .mass_scaling import largest_scaling
-from .modal_wall import modal_wall
+from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .node_outline import node_outline
 from .operators import PointsOn
 from .piece_masses import with_heavier_pieces
 from .system import system_of
+
+SOFTER = 0.15
+"""Part by which inner joints may make blocks softer before it is said."""
 
 
 def fem(
@@ -107,10 +110,7 @@ def fem(
             if mass_scaling:
                 system = with_heavier_pieces(wall, with_coupled_masses(wall, system))
             run = Run(system, local=CALMING if len(system.coupling.freedom) else LOCAL)
-    factor = largest_scaling(wall, run.system.mass)
-    note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
-    note += ", those of soft blocks coupled across joints" if len(run.system.coupling.freedom) else ""
-    note += ", pieces of blocks heavier against one another" if len(run.system.clusters.cluster) else ""
+    note = _note(wall, run.system, cracks)
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(
@@ -129,6 +129,17 @@ def fem(
         observe=observe,
     )
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
+    """What a message says of how the blocks were taken."""
+    factor = largest_scaling(wall, system.mass)
+    note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
+    note += ", those of soft blocks coupled across joints" if len(system.coupling.freedom) else ""
+    note += ", pieces of blocks heavier against one another" if len(system.clusters.cluster) else ""
+    if cracks == "blocks" and (more := added_compliance(wall.pieces)) > SOFTER:
+        note += f"; inner joints make blocks up to {more:.0%} softer: a larger inner_joint.normal_stiffness would not"
+    return note
 
 
 def fem_response(

@@ -68,8 +68,21 @@ CASES = (
     Case("… a cap that hardens up to κ_p", fem, SPLITS, straight, {"cells": 2, "modes": 20}),
     Case("… exponential softening: `fem-small`", fem, SPLITS, same, {"cells": 2, "modes": 20}),
     *(
-        Case(f"… cracks between all triangles of {n} × {n} cells", fem, SPLITS, same, {"cells": n, "cracks": "blocks"})
+        Case(
+            f"… cracks between all triangles of {n} × {n} cells",
+            fem,
+            replace(SPLITS, parts=n),
+            settings={"cells": n, "cracks": "blocks"},
+        )
         for n in (1, 2, 3, 4, 6)
+    ),
+    *(
+        Case(
+            f"… as stiff between {n} × {n} cells as on axes",
+            fem,
+            settings={"cells": n, "cracks": "blocks"},
+        )
+        for n in (2, 4, 6)
     ),
     Case("rigid blocks that split, as shipped"),
     Case("f_m 5 MPa", change=lambda s: s.with_joint(compressive_strength=5e6)),

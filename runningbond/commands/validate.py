@@ -33,8 +33,7 @@ def validate(
     out
         Folder for results, charts and the page.
     models
-        Names of models of the laboratory, separated by commas; where none is given, all of them but those
-        that take minutes a wall (fem-cracking).
+        Names of models of the laboratory, separated by commas; all of them where none is given.
     jobs
         Number of processes; -1 is one a core.
     fresh

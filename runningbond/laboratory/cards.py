@@ -13,6 +13,7 @@ from runningbond.pictures.charts import bare
 from runningbond.pictures.flat import draw_mechanism
 from runningbond.scene import Array
 
+from .ladder import LADDER
 from .predictions import Prediction
 from .scores import cycle_peaks
 from .summary import errors_by_hand, kind_of
@@ -95,6 +96,19 @@ def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:
     panels[0].yaxis.set_major_formatter(lambda value, _: f"{100 * value:g} %")
     panels[0].set_yticks([0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0], minor=False)
     panels[0].yaxis.set_minor_locator(NullLocator())
+    drawn = {name: mark for axes in panels for mark, name in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if drawn:
+        names = [name for name in LADDER if name in drawn]
+        figure.legend(
+            [drawn[name] for name in names],
+            names,
+            loc="outside lower center",
+            ncols=len(names),
+            frameon=False,
+            fontsize=8,
+            title="large: median over walls",
+            title_fontsize=8,
+        )
 
 
 def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
@@ -115,8 +129,6 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
         )
     if better := errors_by_hand(scored):
         _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both,\nwall by wall", width=1.6)
-    if any(not own[0].rung.is_by_hand for own in by_rung.values()):
-        axes.legend(fontsize=8, title="large: median over walls", title_fontsize=8, framealpha=1)
 
 
 def _level(axes: Axes, error: float, text: str, width: float = 0.9) -> None:

@@ -136,11 +136,11 @@ LADDER: dict[str, Rung] = {
             "fem-cracking",
             "deformable blocks that crack between all of their triangles, small displacements",
             "fem",
-            replace(SPLITS, deformable=True),
+            replace(SPLITS, deformable=True, parts=3),
             "#12240a",
             "X",
             "-.",
-            cells=4,
+            cells=3,
             cracks="blocks",
         ),
     )

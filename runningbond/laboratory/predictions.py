@@ -1,7 +1,7 @@
 """Predictions of walls: every rung on every wall, in parallel and kept, and the scores of each."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from runningbond.campaigns import Campaign, Cell, Task, run_tasks
+from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.models import TOLERANCE
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
@@ -158,19 +159,28 @@ def predict(
 ) -> tuple[list[Prediction], Campaign]:
     """Predict walls with rungs, on their scenes; what a folder holds of the same computation is taken from there.
 
-    Parameters and errors as of `runningbond.campaigns.run_tasks`.
+    Walls whose scenes differ in their titles alone are computed once, and answer alike. Parameters and errors as of
+    `runningbond.campaigns.run_tasks`.
     """
     cells = [(wall, rung) for rung in rungs for wall in sorted(walls, key=lambda wall: not wall.is_cyclic)]
     reasons = {
         (wall.name, rung.name): rung.leaves_out(scenes[wall.name, rung.name], is_cyclic=wall.is_cyclic)
         for wall, rung in cells
     }
+    computed = _computed({(wall.name, rung.name): rung for wall, rung in cells}, scenes)
     tasks = [
-        Task(wall.name, scenes[wall.name, rung.name], rung.model, TOLERANCE)
+        Task(wall.name, scenes[cell], rung.model, TOLERANCE)
         for wall, rung in cells
-        if not reasons[wall.name, rung.name]
+        if not reasons[cell := (wall.name, rung.name)] and computed[cell] == cell
     ]
     campaign = run_tasks(tasks, folder=folder, jobs=jobs, fresh=fresh, progress=progress)
+    for cell, first in computed.items():
+        if cell != first and not reasons[cell]:
+            if first in campaign.outcomes:
+                campaign.outcomes[cell] = replace(campaign.outcomes[first], scene=scenes[cell].title)
+            else:
+                campaign.inapplicable[cell] = campaign.inapplicable[first]
+            progress(cell)
     for cell, reason in reasons.items():
         if reason:
             campaign.inapplicable[cell] = reason
@@ -182,3 +192,12 @@ def predict(
             outcome, reason = campaign.outcomes.get(cell), campaign.inapplicable.get(cell, "")
             predictions.append(Prediction(wall, rung, scenes[cell], outcome, reason))
     return predictions, campaign
+
+
+def _computed(rungs: Mapping[Cell, Rung], scenes: Mapping[Cell, Scene]) -> dict[Cell, Cell]:
+    """The cell whose answer each cell has: the first one of its rung whose scene is the same but for its title."""
+    first: dict[str, Cell] = {}
+    return {
+        cell: first.setdefault(fingerprint(replace(scenes[cell], title=""), rung.model, TOLERANCE), cell)
+        for cell, rung in rungs.items()
+    }

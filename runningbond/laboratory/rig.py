@@ -1,10 +1,11 @@
 """The scene of a tested wall: its own file, or what its row of the table and its stone say of it."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
-from runningbond.scene import Scene, SceneError, scene_from_dict
+from runningbond.joints import joint_stiffness
+from runningbond.scene import Scene, SceneError, Stiffness, scene_from_dict
 from runningbond.scene.file import read_description
 
 from .measured import MeasuredWall
@@ -14,6 +15,9 @@ GRAVITY = 9.81
 LOAD_IN_NAME = re.compile(r"^[^\W\d_]+\d*[._ -](\d+)(?!\d)")
 FAR = 0.03
 """Displacement over the actuator's height to which a wall without a curve is pushed."""
+
+STIFFER = 10
+"""How many times as stiff as what they join inner joints are, where that deforms itself."""
 
 LEAST_BEAM = 0.2
 """Least height of the beam [m] where the actuator's height does not give it; of no influence, for it is stiff."""
@@ -31,6 +35,8 @@ class Features:
         Whether joints get stiffer with pressure, whether they crush, and whether blocks may split on their axis.
     deformable
         Whether blocks deform themselves, so that joints have what is left of the wall's stiffness.
+    parts
+        Into how many parts blocks may crack over their height. Inner joints between as many leave them no softer.
     """
 
     driven: bool = True
@@ -38,10 +44,16 @@ class Features:
     crushes: bool = False
     splits: bool = False
     deformable: bool = False
+    parts: int = 1
 
 
 def scene_of(wall: MeasuredWall, features: Features) -> Scene:
     """The scene of a wall, with some of its features."""
+    scene = _scene_of(wall, features)
+    return scene if features.parts == 1 else _stiffened(scene, features.parts)
+
+
+def _scene_of(wall: MeasuredWall, features: Features) -> Scene:
     if wall.scene_file is None:
         return scene_from_dict(_tables(wall, features))
     tables = read_description(wall.scene_file)
@@ -115,7 +127,7 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
 
 def _crack(stone: Stone, width: float, *, deformable: bool) -> dict[str, Any]:
     """A potential crack on the axis of a block: as stiff as its halves, or stiff beside them where they deform."""
-    normal = (10 if deformable else 1) * stone.young / (width / 2)
+    normal = (STIFFER if deformable else 1) * stone.young / (width / 2)
     return {
         "friction": stone.friction,
         "cohesion": stone.cohesion,
@@ -125,6 +137,20 @@ def _crack(stone: Stone, width: float, *, deformable: bool) -> dict[str, Any]:
         "normal_stiffness": normal,
         "shear_stiffness": normal / (2 * (1 + SHARE)),
     }
+
+
+def _stiffened(scene: Scene, parts: int) -> Scene:
+    """Inner joints at least as stiff beside parts of a block as `_crack` has them beside halves of one."""
+    inner = scene.inner_joint
+    if inner is None:
+        return scene
+    low, high = (corner[scene.wall] for corner in scene.blocks.boxes)
+    size = float((high - low)[:, 1].min()) / parts
+    stiffness = joint_stiffness(inner)
+    times = max(1.0, STIFFER * (scene.block.young or 0.0) / size / stiffness.normal)
+    stiff = replace(inner, elasticity=Stiffness(times * stiffness.normal, times * stiffness.shear))
+    materials = tuple(stiff if each is inner else each for each in scene.joint_materials)
+    return replace(scene, joint_materials=materials)
 
 
 def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from fem_interface.cracks import Cracks
+from fem_interface.cracks import Cracks, added_compliance, pieces
 from fem_interface.fracture import fractured
 from fem_interface.frequency_shift import elastic_stiffness
 from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
 from fem_interface.operators import nodal_jump
 from fem_interface.system import system_of
+from meshing import wall_mesh
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.lead import Lead
 from runningbond.joints.law import FRICTION_WORK
@@ -221,6 +222,15 @@ def test_stiff_inner_joints_leave_the_elastic_response_of_whole_blocks(load: dic
     assert added[-1] < 1e-3
 
 
+@pytest.mark.parametrize("cells", [2, 3])
+def test_inner_joints_give_way_as_series_of_springs_do(cells: int) -> None:
+    """E / (k h) in cells of height h, lower than they are wide; the message says so where it counts."""
+    stiffness, height = 1e12, 0.06 / cells
+    scene = wall(STRONG, stiffness, wall__height=0.06, wall__block_height=0.06)
+    found = pieces(scene, wall_mesh(scene, cells), "blocks")
+    assert added_compliance(found) == pytest.approx(1e10 / (stiffness * height), rel=1e-9)
+
+
 def test_strong_blocks_do_not_crack() -> None:
     """λ of a small wall whose triangles are held together by stiff and strong joints is that of whole blocks."""
     size = {"wall__length": 0.24, "wall__height": 0.24, "wall__block_width": 0.12, "wall__block_height": 0.12}
@@ -234,6 +244,7 @@ def test_strong_blocks_do_not_crack() -> None:
     assert whole.dofs is not None
     assert cracked.dofs > 2 * whole.dofs
     assert cracked.motion.shape == (len(wall(STRONG, **size).blocks), 3)
+    assert "inner joints make blocks up to 83% softer" in cracked.message
 
 
 def strut(inner: dict[str, Any], cracks: Cracks) -> tuple[float, dict[str, Array]]:

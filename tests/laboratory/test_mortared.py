@@ -1,12 +1,14 @@
 """Mortared walls between beams that are kept at their height, as interface elements have them."""
 
 import copy
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from runningbond.campaigns import Task
+from runningbond.joints import joint_stiffness
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
@@ -55,6 +57,21 @@ def test_rungs_that_follow_a_wall_do_so_in_campaigns_which_watch_it(name: str) -
     assert answer.outcome.status in ("collapse", "unbounded", "undecided"), answer.outcome.message
     assert len(answer.outcome.curve) > 10
     assert (len(answer.outcome.moments) > 1) == (name != "fem-cracking")
+
+
+@pytest.mark.parametrize("parts", [1, 3, 6])
+def test_inner_joints_between_smaller_parts_are_stiffer(parts: int) -> None:
+    """Ten times E over the parts' height, 62 mm for the whole, where that is more than the scene's own."""
+    features = replace(LADDER["fem-small"].features, parts=parts)
+    plain, crack = (scene_of(WALLS["J7D"], each).inner_joint for each in (LADDER["fem-small"].features, features))
+    assert plain is not None
+    assert crack is not None
+    stiffness = joint_stiffness(crack)
+    assert stiffness.normal == pytest.approx(1.5e12 if parts == 1 else 10 * 16.7e9 * parts / 0.062)
+    assert stiffness.shear == pytest.approx(stiffness.normal)
+    assert replace(crack, elasticity=plain.elasticity) == plain
+    rung: Any = LADDER["fem-cracking"]
+    assert rung.features.parts == rung.model.solve.keywords["settings"]["cells"]
 
 
 @pytest.mark.parametrize("name", ["J4D", "J5D", "J6D", "J7D"])

@@ -68,6 +68,18 @@ def test_walls_that_are_not_shipped_are_predicted_and_scored(
     assert all((out / f"{name}.png").is_file() for name in ("error-over-cost", "wall-WS.175", "wall-SW.100.1"))
 
 
+def test_walls_that_differ_in_name_alone_are_computed_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    twin = GRANITE.replace("WS.175", "WS2.175").replace(",61,", ",70,")
+    folder, out = write_folder(tmp_path / "walls", GRANITE, twin), tmp_path / "out"
+    assert command(["validate", "--data", str(folder), "--out", str(out), "--models", "limit", "--json"]) == 0
+    one, other = printed(capsys)["walls"]
+    assert (one["wall"], other["wall"]) == ("WS.175", "WS2.175")
+    assert one["V_max"] == other["V_max"]
+    assert one["dV"] != other["dV"]
+    assert (out / "WS.175" / "limit").is_dir()
+    assert not (out / "WS2.175").exists()
+
+
 def test_what_is_kept_is_not_computed_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder, out = write_folder(tmp_path / "walls", GRANITE), str(tmp_path / "out")
     for models, cases, kept, more in (
