@@ -73,12 +73,12 @@ def _longer(wall: ModalWall, block: Indices) -> float:
     if drive.rate is None:
         return LONGER
     time = np.abs(np.diff(drive.path, prepend=0.0)).max() / drive.rate
-    speed = min(np.sqrt(each.young / each.density) for each in scene.block_materials if each.young)
+    speeds = (np.sqrt(each.young / each.density) for each in scene.block_materials if each.young)
     low, high = np.full((2, block.max() + 1, 2), [[[np.inf]], [[-np.inf]]])
     np.minimum.at(low, block[wall.mesh.block], wall.mesh.points)
     np.maximum.at(high, block[wall.mesh.block], wall.mesh.points)
     longest = (high - low)[np.bincount(block) > 1].max()
-    return float(min(LONGER, time * speed / (2 * longest * UNNOTICED)))
+    return float(min(LONGER, time * min(speeds, default=np.inf) / (2 * longest * UNNOTICED)))
 
 
 def _block_of_piece(wall: ModalWall) -> Indices:
@@ -94,9 +94,10 @@ def _clusters(wall: ModalWall, block: Indices, part: Mask, more: float) -> Clust
     piece = wall.scene.column_by_column
     piece = piece[part[piece]]
     _, cluster = np.unique(block[piece], return_inverse=True)
-    own, (centre, whole) = wall.mass[wall.rigid[piece]], _inertia(wall, block)
-    share, turn, spin = own[:, 0] / whole[block[piece], 0], own[:, 0], own[:, 2]
-    shares = np.column_stack([share, np.column_stack([turn, spin]) / whole[block[piece], 2:]])
+    centre, whole = _inertia(wall, block)
+    mass, _, own = wall.mass[wall.rigid[piece]].T
+    total, _, spin = whole[block[piece]].T
+    shares = np.column_stack([mass / total, mass / spin, own / spin])
     arm = wall.scene.blocks.centroid[piece] - centre[block[piece]]
     motion = np.zeros((cluster.max() + 1, 3))
     return Clusters(wall.rigid[piece].astype(np.uint64), cluster.astype(np.uint64), arm, shares, motion, more)

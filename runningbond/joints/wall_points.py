@@ -16,8 +16,7 @@ BETWEEN = 9
 """Points of a joint along which pressures are spread: with five a toe that crushes bears 3 % more, with 17 as much."""
 
 LEAST = 3
-"""Points of a part of such a joint at least: with two, whose rule is as stiff against turning as if all of the joint
-were at its ends, a wall that crushes bears 6 % more (J7D, cells of a quarter of a brick)."""
+"""Points of a part of such a joint at least: two are as stiff against turning as if it were all at its ends."""
 
 
 def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:

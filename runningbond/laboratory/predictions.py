@@ -10,7 +10,7 @@ import numpy as np
 
 from runningbond.campaigns import Campaign, Cell, Task, run_tasks
 from runningbond.campaigns.fingerprint import fingerprint
-from runningbond.models import TOLERANCE
+from runningbond.models import TOLERANCE, Model
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene
 
@@ -167,15 +167,12 @@ def predict(
         (wall.name, rung.name): rung.leaves_out(scenes[wall.name, rung.name], is_cyclic=wall.is_cyclic)
         for wall, rung in cells
     }
-    computed = _computed({(wall.name, rung.name): rung for wall, rung in cells}, scenes)
-    tasks = [
-        Task(wall.name, scenes[cell], rung.model, TOLERANCE)
-        for wall, rung in cells
-        if not reasons[cell := (wall.name, rung.name)] and computed[cell] == cell
-    ]
+    models = {cell: rung.model for wall, rung in cells if not reasons[cell := (wall.name, rung.name)]}
+    computed = _computed(models, scenes)
+    tasks = [Task(cell[0], scenes[cell], models[cell], TOLERANCE) for cell in models if computed[cell] == cell]
     campaign = run_tasks(tasks, folder=folder, jobs=jobs, fresh=fresh, progress=progress)
     for cell, first in computed.items():
-        if cell != first and not reasons[cell]:
+        if cell != first:
             if first in campaign.outcomes:
                 campaign.outcomes[cell] = replace(campaign.outcomes[first], scene=scenes[cell].title)
             else:
@@ -194,10 +191,10 @@ def predict(
     return predictions, campaign
 
 
-def _computed(rungs: Mapping[Cell, Rung], scenes: Mapping[Cell, Scene]) -> dict[Cell, Cell]:
-    """The cell whose answer each cell has: the first one of its rung whose scene is the same but for its title."""
+def _computed(models: Mapping[Cell, Model], scenes: Mapping[Cell, Scene]) -> dict[Cell, Cell]:
+    """The cell whose answer each cell has: the first one of its model whose scene is the same but for its title."""
     first: dict[str, Cell] = {}
     return {
-        cell: first.setdefault(fingerprint(replace(scenes[cell], title=""), rung.model, TOLERANCE), cell)
-        for cell, rung in rungs.items()
+        cell: first.setdefault(fingerprint(replace(scenes[cell], title=""), model, TOLERANCE), cell)
+        for cell, model in models.items()
     }

@@ -200,6 +200,12 @@ def test_the_faster_a_beam_is_led_the_less_heavy_pieces_are() -> None:
     assert not len(clusters[0.02].cluster)
 
 
+def test_rigid_pieces_have_no_waves_to_wait_for() -> None:
+    drive = {"displacement": [2e-4, 0], "rate": 0.02, "at": 0.24}
+    found = modal_wall(pressed(beam__drive=drive).with_block(young=None), modes=3, cracks="blocks")
+    assert with_heavier_pieces(found, system_of(found)).clusters.more == pytest.approx(HEAVIER)
+
+
 def test_walls_of_whole_blocks_are_left_alone() -> None:
     found = modal_wall(pressed())
     system = system_of(found)
