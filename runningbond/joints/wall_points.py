@@ -30,7 +30,8 @@ def wall_rule(scene: Scene, parts: int = 1) -> Rule:
     Of joints in several parts each part has a rule, and all of them together as many points as a whole joint.
     """
     spread = any(each.compressive_strength or each.closure for each in scene.joint_materials)
-    return lobatto(max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts)) if spread else 2)
+    between = BETWEEN if parts == 1 else max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts))
+    return lobatto(between if spread else 2)
 
 
 def listed_points(scene: Scene, count: int) -> JointPoints | None:
