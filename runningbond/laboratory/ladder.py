@@ -136,11 +136,11 @@ LADDER: dict[str, Rung] = {
             "fem-cracking",
             "deformable blocks that crack between all of their triangles, small displacements",
             "fem",
-            replace(SPLITS, deformable=True, parts=3),
+            replace(SPLITS, deformable=True, parts=4),
             "#12240a",
             "X",
             "-.",
-            cells=3,
+            cells=4,
             cracks="blocks",
         ),
     )
