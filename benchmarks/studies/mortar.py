@@ -47,6 +47,14 @@ def softer(scene: Scene) -> Scene:
     return scene.with_joint(elasticity=Stiffness(stiffness.normal / 4, stiffness.shear / 4))
 
 
+def twice_as_stiff(scene: Scene) -> Scene:
+    """With inner joints of twice the stiffness."""
+    *others, inner = scene.joint_materials
+    stiffness = joint_stiffness(inner)
+    stiff = replace(inner, elasticity=Stiffness(2 * stiffness.normal, 2 * stiffness.shear))
+    return replace(scene, joint_materials=(*others, stiff))
+
+
 @dataclass(frozen=True)
 class Case:
     """A model, what it takes of the wall, and what is changed of that."""
@@ -83,6 +91,13 @@ CASES = (
             settings={"cells": n, "cracks": "blocks"},
         )
         for n in (2, 4)
+    ),
+    Case(
+        "… twice as stiff between 4 × 4 cells",
+        fem,
+        replace(SPLITS, parts=4),
+        twice_as_stiff,
+        {"cells": 4, "cracks": "blocks"},
     ),
     Case("rigid blocks that split, as shipped"),
     Case("f_m 5 MPa", change=lambda s: s.with_joint(compressive_strength=5e6)),
