@@ -9,9 +9,8 @@ from runningbond.dynamics import (
     ContactSearch,
     Interface,
     Restraint,
-    block_frequency_squared,
     force_unit,
-    joint_shares,
+    rigid_frequency_squared,
     tie_rows,
 )
 from runningbond.dynamics.rig import Rig
@@ -22,7 +21,6 @@ from runningbond.joints.wall_law import kernel_law
 from runningbond.limit.kinematics import (
     control_row,
     dead_load,
-    jump_operator,
     live_load,
     mass_matrix_diagonal,
     pin_operator,
@@ -104,11 +102,13 @@ def held_masses(scene: Scene) -> Array:
 
 
 def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw) -> float:
-    """Bound of the system's largest ω² [1/s²], the best of a few ways to share the joints' energy.
+    """Bound of the system's largest ω² [1/s²].
 
     A single block held at both corners has no joint and no frequency: it does not move, and any will do.
     """
-    return min(float(_own_frequencies(scene, points, law, share).max()) for share in (0.0, 0.5, 1.0)) or 1.0
+    mass = held_masses(scene).reshape(-1, 3)
+    normal, shear = law.stiffest, law.shear_stiffness
+    return rigid_frequency_squared(points, points.block, scene.blocks.centroid, mass, normal, shear) or 1.0
 
 
 def restrain(row: Array, restraint: Restraint) -> Array:
@@ -128,22 +128,3 @@ def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:
         of_block = slice(3 * block, 3 * block + 3)
         bases[k], mass[of_block] = free_motions(held, mass[of_block])
     return Restraint(3 * blocks[:, None] + np.arange(3), bases), mass
-
-
-def _own_frequencies(scene: Scene, points: JointPoints, law: KernelLaw, share: float) -> Array:
-    """Bound of each movable block's largest ω² against its own side of its joints, ``(nb,)`` [1/s²]."""
-    n = len(scene.blocks)
-    jump = jump_operator(points, scene.blocks.centroid)
-    part = joint_shares(held_masses(scene)[::3][points.block], share)
-    own = np.zeros((n, 3, 3))
-    sides = ((jump.opening, law.stiffest), (jump.slip, law.shear_stiffness))
-    for operator, stiffness in ((operator, k * points.area) for operator, k in sides):
-        rows = operator.tocoo()
-        values = np.zeros((len(points), 2, 3))
-        side = (points.block[rows.row, 1] == rows.col // 3).astype(int)
-        values[rows.row, side, rows.col % 3] = rows.data
-        for s in (0, 1):
-            products = values[:, s, :, None] * values[:, s, None, :]
-            np.add.at(own, points.block[:, s], (stiffness * part[:, s])[:, None, None] * products)
-    movable = ~scene.fixed
-    return block_frequency_squared(own[movable], mass_matrix_diagonal(scene).reshape(-1, 3)[movable])

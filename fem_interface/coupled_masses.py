@@ -25,7 +25,7 @@ from runningbond.dynamics.system import Coupling
 from runningbond.scene import Array
 
 from .frequency_shift import GROUND, elastic_stiffness, lowest_frequencies
-from .mass_scaling import modal_viscosity, rigid_frequency_squared
+from .mass_scaling import modal_viscosity, undeformed_frequency_squared
 from .modal_wall import ModalWall
 from .system import DAMPING
 
@@ -64,7 +64,7 @@ def with_coupled_masses(wall: ModalWall, system: BlockSystem) -> BlockSystem:
     if more or (~scene.fixed).sum() > LARGEST or rigid.all() or not rigid.any():
         return system
     stiffness, mass = elastic_stiffness(wall), wall.mass[moving]
-    of_rigid, square = rigid_frequency_squared(wall), system.interface.frequency_squared
+    of_rigid, square = undeformed_frequency_squared(wall), system.interface.frequency_squared
     slow, slow_rigid = _lowest(stiffness, mass, square), _lowest(stiffness[rigid][:, rigid], mass[rigid], square)
     # Steps of a period, squared, but for a factor that is the same for both.
     steps, steps_rigid = square / slow, of_rigid / slow_rigid

@@ -16,6 +16,7 @@ import numpy as np
 
 from runningbond.dynamics import block_frequency_squared, joint_shares, mass_factor, stable_step
 from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.dynamics.time_step import EXPONENTS
 from runningbond.joints.wall_points import wall_stiffness
 from runningbond.scene import Array
 
@@ -96,14 +97,14 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
     return ScaledModes(square, mass, modal_viscosity(wall.stiffness, mass, damping))
 
 
-def rigid_frequency_squared(wall: ModalWall) -> float:
+def undeformed_frequency_squared(wall: ModalWall) -> float:
     """ω² that bounds the wall if its blocks do not deform [1/s²]."""
     return _rigid_bound(_tightest(wall))
 
 
 def _tightest(wall: ModalWall) -> list[_Kind]:
     """Blocks with the shares of their joints that bound rigid ones most closely."""
-    return min((_kinds(wall, exponent) for exponent in (0.0, 0.5, 1.0)), key=_rigid_bound)
+    return min((_kinds(wall, exponent) for exponent in EXPONENTS), key=_rigid_bound)
 
 
 def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> float:

@@ -16,7 +16,7 @@ from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond.joints import joint_stiffness
 from runningbond.laboratory.folder import SHIPPED, read_folder
-from runningbond.laboratory.rig import Features, scene_of
+from runningbond.laboratory.rig import Features, scene_of, with_inner_stiffness
 from runningbond.laboratory.scores import marks_of
 from runningbond.models import TOLERANCE
 from runningbond.results import Outcome
@@ -45,14 +45,6 @@ def softer(scene: Scene) -> Scene:
     """With a quarter of the joints' stiffness."""
     stiffness = joint_stiffness(scene.joint)
     return scene.with_joint(elasticity=Stiffness(stiffness.normal / 4, stiffness.shear / 4))
-
-
-def twice_as_stiff(scene: Scene) -> Scene:
-    """With inner joints of twice the stiffness."""
-    *others, inner = scene.joint_materials
-    stiffness = joint_stiffness(inner)
-    stiff = replace(inner, elasticity=Stiffness(2 * stiffness.normal, 2 * stiffness.shear))
-    return replace(scene, joint_materials=(*others, stiff))
 
 
 @dataclass(frozen=True)
@@ -96,7 +88,7 @@ CASES = (
         "… twice as stiff between 4 × 4 cells",
         fem,
         replace(SPLITS, parts=4),
-        twice_as_stiff,
+        lambda s: with_inner_stiffness(s, 2),
         {"cells": 4, "cracks": "blocks"},
     ),
     Case("rigid blocks that split, as shipped"),

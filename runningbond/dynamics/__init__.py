@@ -8,7 +8,13 @@ from .run import Observer, Run, Unstable, no_observer
 from .state import State
 from .system import NOTHING_CARRIED, BlockSystem, Carried, ContactSearch, Interface, Restraint, force_unit
 from .ties import tie_rows
-from .time_step import block_frequency_squared, joint_shares, mass_factor, stable_step
+from .time_step import (
+    block_frequency_squared,
+    joint_shares,
+    mass_factor,
+    rigid_frequency_squared,
+    stable_step,
+)
 
 __all__ = [
     "NOTHING_CARRIED",
@@ -35,6 +41,7 @@ __all__ = [
     "no_observer",
     "pushover_curve",
     "ramp",
+    "rigid_frequency_squared",
     "settle",
     "settled_drive",
     "stable_step",

@@ -26,22 +26,27 @@ class Clusters(NamedTuple):
     arm: Array  # (n, 2) its centroid, from that of the cluster [m]
     # (n, 3) its part of the cluster's mass, its mass over the cluster's moment of inertia [1/m²], and its part of that
     part: Array
-    motion: Array  # (nc, 3) buffer of motions of the clusters
     more: float = 0.0  # β
+
+    @property
+    def number(self) -> int:
+        """Number of clusters."""
+        return len(np.unique(self.cluster))
 
     def energy(self, velocity: Array, mass: Array) -> float:
         """Kinetic energy at a velocity ``(nd,)`` beyond that of masses ``(nd,)`` [J]."""
         if not len(self.cluster):
             return 0.0
-        sum_up(self.freedom, self.cluster, self.arm, self.part, velocity, self.motion)
-        u, v, spin = self.motion[self.cluster].T
+        motion = np.zeros((self.number, 3))
+        sum_up(self.freedom, self.cluster, self.arm, self.part, velocity, motion)
+        u, v, spin = motion[self.cluster].T
         x, y = self.arm.T
         apart = velocity[self.freedom] - np.column_stack([u - y * spin, v + x * spin, spin])
         return float(0.5 * self.more * (mass[self.freedom] * apart**2).sum())
 
 
 _NONE = np.zeros(0, dtype=np.uint64)
-NO_CLUSTERS = Clusters(_NONE.reshape(0, 3), _NONE, np.zeros((0, 2)), np.zeros((0, 3)), np.zeros((0, 3)))
+NO_CLUSTERS = Clusters(_NONE.reshape(0, 3), _NONE, np.zeros((0, 2)), np.zeros((0, 3)))
 
 
 @kernel

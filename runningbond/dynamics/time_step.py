@@ -4,9 +4,12 @@ import math
 
 import numpy as np
 
-from runningbond.scene import Array
+from runningbond.joints import JointPoints
+from runningbond.scene import Array, Indices
 
 SAFETY = 0.9
+EXPONENTS = (0.0, 0.5, 1.0)
+"""Ways to share a joint between blocks (`joint_shares`), of which the one with the lowest bound is taken."""
 
 
 def stable_step(frequency_squared: float, damping_ratio: float = 0.0, local: float = 0.0) -> float:
@@ -68,6 +71,38 @@ def block_frequency_squared(stiffness: Array, mass: Array) -> Array:
     root = 1 / np.sqrt(mass)
     scaled = stiffness * root[:, :, None] * root[:, None, :]
     return np.asarray(np.linalg.eigvalsh(scaled)[:, -1])
+
+
+def rigid_frequency_squared(
+    points: JointPoints, side: Indices, centroid: Array, mass: Array, normal: Array, shear: Array
+) -> float:
+    """Bound of the largest ω² of rigid blocks on the joints between them [1/s²], the best of `EXPONENTS`.
+
+    Parameters
+    ----------
+    points
+        Points of the joints.
+    side : (np, 2) int
+        Blocks on either side of each point.
+    centroid : (nb, 2) float
+        Centroids of the blocks [m].
+    mass : (nb, 3) float
+        Mass, mass and polar moment of inertia of each block [kg, kg, kg m²], inf where it is held.
+    normal, shear : (np,) float
+        Stiffness of the joints at their points [Pa/m].
+    """
+    moving, bounds = np.isfinite(mass).all(axis=1), []
+    for exponent in EXPONENTS:
+        part, own = joint_shares(mass[side, 0], exponent), np.zeros((len(mass), 3, 3))
+        for direction, stiffness in ((points.normal, normal), (points.tangent, shear)):
+            for s in (0, 1):
+                arm = points.position - centroid[side[:, s]]
+                turning = direction[:, 1] * arm[:, 0] - direction[:, 0] * arm[:, 1]
+                jump = np.column_stack([direction, turning])
+                spring = stiffness * points.area * part[:, s]
+                np.add.at(own, side[:, s], spring[:, None, None] * (jump[:, :, None] * jump[:, None, :]))
+        bounds.append(float(block_frequency_squared(own[moving], mass[moving]).max()))
+    return min(bounds)
 
 
 def mass_factor(stiffness: Array, mass: Array, dt: float, local: float = 0.0) -> Array:

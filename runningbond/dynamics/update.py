@@ -33,7 +33,7 @@ their accelerations of the step before, which steps write to, and six buffers.""
 
 
 Clustered: TypeAlias = tuple[Any, ...]
-"""The first four of `Clusters`, three motions of clusters ``(nc, 3)`` and 1 / (1 + β); masses of the modes [kg], zero
+"""All but the last of `Clusters`, three motions of clusters ``(nc, 3)`` and 1 / (1 + β); masses of the modes [kg], zero
 where held, and three accelerations, ``(nd,)`` each: without damping, of their own masses, and in their clusters."""
 
 Damping: TypeAlias = Literal["local", "combined"]
@@ -60,9 +60,14 @@ def update_of(system: BlockSystem, damping: Damping) -> tuple[Kernel, tuple[Any,
 
 def _memory_of(clusters: Clusters, mass: Array) -> Clustered:
     """Memory of the update of bodies in clusters, of modes of some masses ``(nd,)`` [kg]."""
-    *arrays, motion, more = clusters
-    motions = (np.zeros_like(motion) for _ in range(3))
-    return *arrays, *motions, 1 / (1 + more), np.where(np.isfinite(mass), mass, 0.0), *np.zeros((3, len(mass)))
+    *arrays, more = clusters
+    return (
+        *arrays,
+        *np.zeros((3, clusters.number, 3)),
+        1 / (1 + more),
+        np.where(np.isfinite(mass), mass, 0.0),
+        *np.zeros((3, len(mass))),
+    )
 
 
 def _alone(combined: bool) -> Any:

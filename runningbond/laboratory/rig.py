@@ -146,11 +146,18 @@ def _stiffened(scene: Scene, parts: int) -> Scene:
         return scene
     low, high = (corner[scene.wall] for corner in scene.blocks.boxes)
     size = float((high - low)[:, 1].min()) / parts
+    wanted = STIFFER * (scene.block.young or 0.0) / size
+    return with_inner_stiffness(scene, max(1.0, wanted / joint_stiffness(inner).normal))
+
+
+def with_inner_stiffness(scene: Scene, times: float) -> Scene:
+    """The scene with inner joints `times` as stiff."""
+    inner = scene.inner_joint
+    if inner is None:
+        return scene
     stiffness = joint_stiffness(inner)
-    times = max(1.0, STIFFER * (scene.block.young or 0.0) / size / stiffness.normal)
     stiff = replace(inner, elasticity=Stiffness(times * stiffness.normal, times * stiffness.shear))
-    materials = tuple(stiff if each is inner else each for each in scene.joint_materials)
-    return replace(scene, joint_materials=materials)
+    return replace(scene, joint_materials=tuple(stiff if each is inner else each for each in scene.joint_materials))
 
 
 def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
