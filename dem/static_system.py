@@ -23,6 +23,7 @@ from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Indices, Scene
 
 from .dissection import Dissection, dissection
+from .rows import Rows
 from .tied_law import TiedLaw, elongation, tie_ends
 
 
@@ -67,7 +68,7 @@ class StaticSystem:
     def respond(self, x: Array, plastic_slip: Array) -> PointResponse:
         """Answer of the joint points ``(np,)`` to unknowns ``(n,)`` after a plastic slip ``(np,)``."""
         q = x[: self.freedoms]
-        opening, slip = self.opening @ q, self.slip @ q
+        opening, slip = (operator.times(q) for operator in self._jumps)
         if self.support_jump is not None:
             opening, slip = np.array([opening, slip]) + x[-1] * self.support_jump
         return self.law(opening, slip, plastic_slip)
@@ -88,16 +89,16 @@ class StaticSystem:
         """Residual of all equations, ``(n,)``."""
         system, nd = self.equilibrium, self.freedoms
         q, reaction, multiplier = x[:nd], x[nd:-1], x[-1]
-        force = self._opened @ response.normal + self._slid @ response.tangential
-        force += self._reactions @ reaction - system.dead - multiplier * system.live
+        force = self._opened.times(response.normal) + self._slid.times(response.tangential)
+        force += self._reactions.times(reaction) - system.dead - multiplier * system.live
         last = multiplier if control.multiplier else dot(system.live, q)
-        return np.concatenate([force, self._held @ q - self.held, [last - control.value]])
+        return np.concatenate([force, self._held.times(q) - self.held, [last - control.value]])
 
     def viscous(self, motion: Array) -> Array:
         """Forces ``(nd,)`` of dashpots in proportion to the elastic stiffness of every joint point."""
-        law, q = self.law, motion[: self.freedoms]
-        normal, tangential = law.normal_stiffness * (self.opening @ q), law.shear_stiffness * (self.slip @ q)
-        return np.asarray(self._opened @ normal + self._slid @ tangential)
+        opening, slip = (operator.times(motion[: self.freedoms]) for operator in self._jumps)
+        normal, tangential = self.law.normal_stiffness * opening, self.law.shear_stiffness * slip
+        return np.asarray(self._opened.times(normal) + self._slid.times(tangential))
 
     def solve(self, tangent: Array, control: Control, right: Array) -> Array:
         """Solve the tangent equations.
@@ -150,22 +151,27 @@ class StaticSystem:
         return tangent
 
     @cached_property
-    def _opened(self) -> csr_array:
+    def _jumps(self) -> tuple[Rows, Rows]:
+        """`opening` and `slip`."""
+        return Rows.of(self.opening), Rows.of(self.slip)
+
+    @cached_property
+    def _opened(self) -> Rows:
         """Forces on the freedoms of unit normal forces, ``(nd, np)``; of tangential ones, and of reactions."""
-        return csr_array(self.equilibrium.opening)
+        return Rows.of(self.equilibrium.opening)
 
     @cached_property
-    def _slid(self) -> csr_array:
-        return csr_array(self.equilibrium.slip)
+    def _slid(self) -> Rows:
+        return Rows.of(self.equilibrium.slip)
 
     @cached_property
-    def _reactions(self) -> csr_array:
-        return csr_array(self.equilibrium.reaction)
+    def _reactions(self) -> Rows:
+        return Rows.of(self.equilibrium.reaction)
 
     @cached_property
-    def _held(self) -> csr_array:
+    def _held(self) -> Rows:
         """Displacements of pinned points per freedom, ``(n_pins, nd)``."""
-        return csr_array(self.equilibrium.reaction.T)
+        return Rows.of(self.equilibrium.reaction.T)
 
     @cached_property
     def _tie_ends(self) -> Array:

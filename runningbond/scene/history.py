@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline, make_interp_spline
 
 from .actions import Action
 from .arrays import Array, frozen
@@ -99,6 +98,8 @@ class History(Action):
 
     @cached_property
     def _velocity(self) -> Any:
+        from scipy.interpolate import CubicSpline, make_interp_spline  # half of what commands without a history load
+
         values = self.scale * QUANTITIES[self.quantity] * self.values
         if self.quantity == "displacement":
             return CubicSpline(self.time, values).derivative()

@@ -90,7 +90,7 @@ def bracket(outcome: Outcome) -> tuple[float, float]:
 jumps = st.floats(-2, 2)
 laws = st.builds(
     lambda friction, tension, shear, k_n, k_t: PointLaw(
-        PointStrength(friction, np.array([tension]), np.array([shear])), np.array([k_n]), np.array([k_t])
+        PointStrength(*(np.array([x]) for x in (friction, tension, shear))), np.array([k_n]), np.array([k_t])
     ),
     friction=st.floats(0, 2),
     tension=st.just(0.0) | st.floats(0, 2),
