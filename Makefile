@@ -25,8 +25,8 @@ test: $(ready) ## style, types, and the tests that take seconds
 	$(bin)/ruff check
 	$(bin)/ruff format --check
 	$(bin)/mypy
-	@# One thread of linear algebra a worker, for there is a worker a core.
-	OPENBLAS_NUM_THREADS=1 $(bin)/pytest -q -n logical --maxprocesses 8 --dist worksteal -m "not long" $(ARGS)
+	@# One thread of linear algebra a worker, for there is a worker a core; and bytecode kept for the many processes they start.
+	OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(bin)/pytest -q -n logical --maxprocesses 8 --dist worksteal -m "not long" $(ARGS)
 
 test-long: $(ready) ## the studies that take minutes
 	$(bin)/pytest -q -m long $(ARGS)
