@@ -12,14 +12,12 @@ T and s are the point's tensile strength and the shear that it carries at that t
 dry joint T = s = 0, and a point that opens carries nothing at all.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from runningbond.scene import Array
 
-from .compiled import kernel
 from .mohr_coulomb import PointStrength
 
 
@@ -53,31 +51,11 @@ class PointLaw:
 
     def __call__(self, opening: Array, slip: Array, plastic_slip: Array) -> PointResponse:
         """Answer to the jumps ``(np,)`` [m] of points with a given plastic slip ``(np,)`` [m]."""
+        from .point_kernel import respond  # limit analysis does without a compiler
+
         forces, tangent = np.empty((3, len(opening))), np.empty((len(opening), 2, 2))
         strength = self.strength
         of_points = strength.friction, strength.tension, strength.shear, self.normal_stiffness, self.shear_stiffness
-        _respond(opening, slip, plastic_slip, of_points, forces, tangent)
+        respond(opening, slip, plastic_slip, of_points, forces, tangent)
         normal, tangential, plastic_slip = forces
         return PointResponse(normal, tangential, plastic_slip, tangent)
-
-
-@kernel
-def _respond(
-    opening: Array, slip: Array, plastic: Array, of_points: tuple[Array, ...], forces: Array, tangent: Array
-) -> None:
-    """Write forces and plastic slips ``(3, np)`` and tangents ``(np, 2, 2)``."""
-    friction, tension, shear, k_n, k_t = of_points
-    for i in range(opening.size):
-        elastic = k_n[i] * opening[i]
-        closed = elastic <= tension[i]
-        normal = elastic if closed else tension[i]
-        trial = k_t[i] * (slip[i] - plastic[i])
-        resistance = shear[i] + friction[i] * (tension[i] - normal)
-        sticks = abs(trial) <= resistance
-        tangential = trial if sticks else math.copysign(resistance, trial)
-        forces[0, i], forces[1, i] = normal, tangential
-        # A point that sticks keeps its plastic slip to the last bit, where eq. 4 would round it.
-        forces[2, i] = plastic[i] if sticks else slip[i] - tangential / k_t[i]
-        tangent[i, 0, 0], tangent[i, 0, 1] = k_n[i] if closed else 0.0, 0.0
-        tangent[i, 1, 0] = 0.0 if sticks or not closed else -math.copysign(friction[i] * k_n[i], trial)
-        tangent[i, 1, 1] = k_t[i] if sticks and (resistance > 0 or closed) else 0.0
