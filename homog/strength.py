@@ -10,6 +10,7 @@ of stresses Σ whose power Σ : D no admissible D exceeds.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linprog
 
 from runningbond.joints import point_strength
 from runningbond.scene import Bond, JointMaterial
@@ -27,8 +28,6 @@ class StrengthDomain:
 
         Solved as min π(D) over D with Σ : D = 1, with each joint's slip split into its two senses.
         """
-        from scipy.optimize import linprog  # which every command would load, and few need
-
         b, a = self.bond.width, self.bond.height
         half, n = b / 2, 3
         resistance = point_strength(self.joint, np.array([a, half, half]))

@@ -105,8 +105,8 @@ def run_tasks(
     scenes = {task.cell: task.scene for task in tasks}
     try:
         with warnings.catch_warnings(), closing(_answers(tasks, None if fresh else folder, jobs, cluster)) as answers:
-            # `Interrupted` says what is left undone.
-            warnings.filterwarnings("ignore", ".*tasks (have been|which were)", UserWarning, "joblib")
+            # `Interrupted` says what is left undone, and a worker that has grown large is replaced without a word.
+            warnings.filterwarnings("ignore", ".*(tasks (have been|which were)|worker stopped)", UserWarning, "joblib")
             for answer in answers:
                 cell, outcome = answer.cell, answer.outcome
                 if outcome is None:

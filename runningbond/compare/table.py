@@ -12,7 +12,7 @@ from runningbond.campaigns import Campaign
 from runningbond.models import Model
 from runningbond.pictures.captions import is_force
 from runningbond.results import Outcome
-from runningbond.results.outcome import SCALARS, number
+from runningbond.results.outcome import SCALARS, number, two_digits
 from runningbond.scene import Scene
 
 from .published import BARALDI, PublishedCase
@@ -173,4 +173,4 @@ def _cost(outcome: Outcome) -> str:
 
 def seconds(outcome: Outcome) -> str:
     """Seconds, with two digits that count."""
-    return f"{float(f'{outcome.seconds:.2g}'):g}"
+    return two_digits(outcome.seconds)

@@ -74,7 +74,7 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="displacement at the actuator [mm]", ylabel="horizontal force [kN]")
     axes.set_title(f"{wall.name}" + ("" if wall.is_scored else ", shown, not scored"), fontsize=10)
-    axes.legend(framealpha=0.9, edgecolor="none", fontsize=8, loc="best")  # lines run behind it
+    axes.legend(frameon=False, fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=4)
     bare(axes)
 
 

@@ -12,6 +12,7 @@ from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
 from runningbond.pictures.charts import bare
 from runningbond.results import write_atomically
+from runningbond.results.outcome import two_digits
 from runningbond.scene import BlockMaterial, JointMaterial, table_of
 from runningbond.studies.page import Block, Picture, write_page
 
@@ -114,7 +115,7 @@ def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
         forces = ["–" if row[key] is None else f"{row[key] / 1e3:.1f}" for key in ("V_max", "V_measured")]
         ratios = ["–" if row[key] is None else f"{row[key]:.2f}" for key in keys]
         mode = f"{row['mode'] or '–'} ({row['mode_measured'] or '–'})"
-        seconds = "–" if row["seconds"] is None else f"{row['seconds']:.2g}"
+        seconds = "–" if row["seconds"] is None else two_digits(row["seconds"])
         error = percent(row["dV"], "+") + ("" if row["scored"] else " (not scored)")
         rows.append([row["wall"], row["model"], row["status"], *forces, error, *ratios, mode, seconds])
     return Sheet("Scores", (*heads, "residual", "mode (measured)", "CPU s"), rows)

@@ -7,6 +7,7 @@ from typing import Any
 
 from runningbond.compare.advice.experiment import ModelError
 from runningbond.compare.table import Sheet
+from runningbond.results.outcome import two_digits
 
 from .ladder import by_hand
 from .predictions import Prediction
@@ -163,7 +164,7 @@ def summary_sheet(sums: Sequence[Total]) -> Sheet:
         hand = "–" if each.is_by_hand else f"{each.beaten} of {each.answers}"
         shares = [percent(each.median), percent(each.worst), percent(each.modes)]
         factors = ["–" if x is None else f"× {x:.2f}" for x in (each.stiffness, each.drift)]
-        time = "–" if each.seconds is None or each.is_by_hand else f"{each.seconds:.2g}"
+        time = "–" if each.seconds is None or each.is_by_hand else two_digits(each.seconds)
         rows.append([each.kind, each.model, f"{each.answers} of {each.walls}", *shares, *factors, hand, time])
     return Sheet("Summary", (*heads, "nearer than by hand", "CPU seconds"), rows)
 

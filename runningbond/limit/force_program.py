@@ -9,18 +9,16 @@ from collections.abc import Sequence
 from concurrent.futures import Future, wait
 from dataclasses import dataclass, field
 from threading import Thread
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
+from scipy.optimize import OptimizeResult, linprog
 from scipy.sparse import csc_array, hstack
 
 from runningbond.joints import PointStrength
 from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
-
-if TYPE_CHECKING:
-    from scipy.optimize import OptimizeResult
 
 Aim: TypeAlias = Literal["largest", "smallest", "zero"]
 """Which multiplier a program looks for: an extreme one, or whether zero can be balanced."""
@@ -136,10 +134,8 @@ def bounds_of(system: Equilibrium, forces: ForceSet, *, has_shear: bool) -> Arra
     return np.column_stack([low, high])
 
 
-def solve_program(program: dict[str, Any], method: str) -> "OptimizeResult":
+def solve_program(program: dict[str, Any], method: str) -> OptimizeResult:
     """What `scipy.optimize.linprog` finds, which would not look up for Ctrl-C, in a thread that is left alone then."""
-    from scipy.optimize import linprog  # which every command would load, and few need
-
     result: Future[OptimizeResult] = Future()
 
     def solve() -> None:

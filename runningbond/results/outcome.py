@@ -125,6 +125,11 @@ ARRAYS |= {"moments": 3, "moment_loads": 1}
 """Array fields and their number of columns."""
 
 
+def two_digits(value: float) -> str:
+    """A number with the two digits that count, without an exponent below a million."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def number(value: float) -> str:
     """Four decimals for a multiplier of order one, whole newtons for a force."""
     if value != 0 and abs(value) < 0.01:

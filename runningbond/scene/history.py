@@ -98,7 +98,7 @@ class History(Action):
 
     @cached_property
     def _velocity(self) -> Any:
-        from scipy.interpolate import CubicSpline, make_interp_spline  # half of what commands without a history load
+        from scipy.interpolate import CubicSpline, make_interp_spline  # which no command without a history needs
 
         values = self.scale * QUANTITIES[self.quantity] * self.values
         if self.quantity == "displacement":

@@ -262,7 +262,7 @@ def test_ctrl_c_does_not_wait_for_highs(monkeypatch: pytest.MonkeyPatch) -> None
         left.set()
 
     system = equilibrium(wall("dry")).under_live_load()
-    monkeypatch.setattr("scipy.optimize.linprog", endless)
+    monkeypatch.setattr("runningbond.limit.force_program.linprog", endless)
     with pytest.raises(KeyboardInterrupt):
         solve_forces(system, coulomb(system.strength))
     assert not left.is_set()

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from runningbond.models import MODELS, Cost, Model
 from runningbond.results import Outcome
+from runningbond.results.outcome import two_digits
 from runningbond.scene import Scene
 
 COARSE = 0.01  # tolerance of the comparison that the laws were fitted to
@@ -32,7 +33,7 @@ class Estimate:
     spread: float
 
     def __str__(self) -> str:
-        return f"about {self.seconds:.2g} s (×÷ {self.spread:.1f})"
+        return f"about {two_digits(self.seconds)} s (×÷ {self.spread:.1f})"
 
 
 def short_search(scene: Scene) -> int:

@@ -10,6 +10,7 @@ import numpy as np
 from runningbond.compare.table import Sheet
 from runningbond.joints import joint_stiffness
 from runningbond.models import MODELS
+from runningbond.results.outcome import two_digits
 from runningbond.studies import Edge, Row, Rows
 from runningbond.studies.apart import TOO_LONG
 
@@ -194,8 +195,8 @@ def growth_table(rows: Rows) -> Sheet:
 def _seconds(row: Row) -> str:
     if row.get("cpu_s") is None:
         return "left out: too long" if row.get("status") == TOO_LONG else row.get("status", "")
-    spread = f" ({row['cpu_s_min']:.2g} – {row['cpu_s_max']:.2g})" if row["runs"] > 1 else ""
-    return f"{row['cpu_s']:.2g}{spread}" + ("" if row["status"] == "collapse" else f", {row['status']}")
+    spread = f" ({two_digits(row['cpu_s_min'])} – {two_digits(row['cpu_s_max'])})" if row["runs"] > 1 else ""
+    return f"{two_digits(row['cpu_s'])}{spread}" + ("" if row["status"] == "collapse" else f", {row['status']}")
 
 
 def stiffness(rows: Rows) -> tuple[dict[float, float], dict[float, float], float | None]:
