@@ -304,7 +304,7 @@ def _raise_in_parts(
     reached = start
     for part in range(1, parts + 1):
         before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
-        ramp(run, state, before, reached, round(steps / parts))
+        ramp(run, state, before, reached, max(1, round(steps / parts)))
         if not _pauses(run, state, reached, motion, criteria):
             return reached
     return stop

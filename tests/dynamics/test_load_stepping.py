@@ -57,6 +57,15 @@ def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
     assert found.upper - found.lower <= 0.005 * found.upper
 
 
+def test_a_wall_without_weight_takes_loads_that_are_put_on_at_once() -> None:
+    """As the study of loading rates does: a block pressed on its base bears each in one step."""
+    first = 1e-3 / WEIGHTLESS.system.measure(WEIGHTLESS.system.live)
+    found = load_steps(WEIGHTLESS, first, 0.005, Criteria(collapse=1.0), most=10 * first, loading=0)
+    assert found.verdict == "stable"
+    assert found.lower is not None
+    assert 5 * first < found.lower <= 10 * first
+
+
 def test_the_bracket_closes_in_on_loads_without_an_answer() -> None:
     """Loads about the collapse neither hold nor fall: the bracket is theirs, and no answer."""
 
