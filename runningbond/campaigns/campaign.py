@@ -13,7 +13,7 @@ from runningbond.models import MODELS, TOLERANCE, Model, check_tolerance, find_m
 from runningbond.results import Outcome, StoreError, load_outcome, save_outcome
 from runningbond.scene import Scene
 
-from .tasks import Answer, Cell, ClusterError, Task, in_processes
+from .tasks import Answer, Cell, ClusterError, Task
 
 
 @dataclass
@@ -144,4 +144,6 @@ def _answers(tasks: Sequence[Task], folder: Path | None, jobs: int, cluster: str
 
         yield from on_cluster(missing, cluster)
     elif missing:
+        from .processes import in_processes  # joblib takes a tenth of the time in which a command is there
+
         yield from in_processes(missing, jobs)

@@ -13,7 +13,8 @@ from joblib._dask import DaskDistributedBackend
 
 from runningbond.scene import SceneError
 
-from .tasks import Answer, ClusterError, Task, side_by_side
+from .processes import side_by_side
+from .tasks import Answer, ClusterError, Task
 
 PATIENCE = 30  # seconds in which a scheduler must answer and have a worker
 

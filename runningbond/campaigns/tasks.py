@@ -1,19 +1,12 @@
-"""The tasks of a campaign: one model on one scene each, and the answers, from processes of this machine."""
+"""The tasks of a campaign: one model on one scene each, and what it says."""
 
-import multiprocessing
-import multiprocessing.resource_tracker
 import signal
 import threading
-import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from types import FrameType
 from typing import TypeAlias
-
-from joblib import Parallel, cpu_count, delayed, parallel_config
-from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from runningbond.models import Model, run_model
 from runningbond.pictures.moments import with_moments
@@ -107,90 +100,3 @@ def _interruptions_kept() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
     if seen:
         raise KeyboardInterrupt
-
-
-def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:
-    """Answers as they come, from wherever joblib has been set to send its tasks."""
-    # All of them at once, for the sake of workers that join a cluster later.
-    run = Parallel(return_as="generator_unordered", batch_size=1, pre_dispatch="all")
-    with _interruptions_held():
-        answers = run(delayed(Task.run)(task) for task in tasks)
-    yield from answers
-
-
-@contextmanager
-def _interruptions_held() -> Iterator[None]:
-    """Hold Ctrl-C back from processes that start, which inherit the mask, where the system knows masks.
-
-    It reaches all of a terminal's processes, and the parent ends the others.
-    """
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-
-
-def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
-    """Answers as they come, from `jobs` processes; −1 is one a core, and 1 this process itself."""
-    left = {task.cell: task for task in tasks}
-    try:
-        with _processes(jobs):
-            for answer in side_by_side(tasks):
-                del left[answer.cell]
-                yield answer
-    except TerminatedWorkerError:
-        # A process was killed, over which task is not said: what is left goes one by one, the cheapest first.
-        for task in reversed(left.values()):
-            try:
-                with _processes(2):
-                    yield from side_by_side([task])
-            except TerminatedWorkerError:
-                yield task.lost()
-
-
-@contextmanager
-def _processes(jobs: int) -> Iterator[None]:
-    """Have joblib run tasks in processes of their own, or in this one where there is to be only one."""
-    if jobs != 1:
-        try:
-            multiprocessing.Lock()
-        except OSError as error:  # some containers have no usable /dev/shm
-            warnings.warn(f"cases run one after another, for processes cannot share a lock: {error}", stacklevel=2)
-            jobs = 1
-    if jobs == 1:
-        with parallel_config(backend="sequential"):
-            yield
-        return
-    if hasattr(signal, "pthread_sigmask"):
-        multiprocessing.resource_tracker.ensure_running()  # its start unblocks what `side_by_side` blocks
-    # More processes than cores gain nothing but memory.
-    n_jobs = cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count()))
-    # Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say.
-    ignore = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
-    with parallel_config(backend="loky", n_jobs=n_jobs, initializer=ignore), _quiet_kill():
-        yield
-
-
-@contextmanager
-def _quiet_kill() -> Iterator[None]:
-    """Do not print the error with which loky's manager thread ends when it is to kill its workers.
-
-    It drops the tasks that wait, kills the workers, and then fills their queue once more, with the numbers of the
-    tasks that it has just dropped (`add_call_item_to_queue`): a KeyError that says nothing.
-    """
-    report = threading.excepthook
-
-    def hook(error: threading.ExceptHookArgs) -> None:
-        flags = getattr(error.thread, "executor_flags", None)
-        if error.exc_type is not KeyError or not getattr(flags, "kill_workers", False):
-            report(error)
-
-    threading.excepthook = hook
-    try:
-        yield
-    finally:
-        threading.excepthook = report

@@ -4,7 +4,7 @@ import json as to_json
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -13,13 +13,14 @@ from runningbond.compare.table import csv_lines
 from runningbond.models import MODELS, check_response
 from runningbond.models import respond as respond_with
 from runningbond.pictures.time_series import KINDS, MACRO
-from runningbond.response import Response
-from runningbond.response.follow import AFTER
 from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene
 
 from .left_behind import RESPONSE_FILES, holds_results, remove_older
 from .terminal import DONE, NO_ANSWER, Json, SceneName, remarks
+
+if TYPE_CHECKING:
+    from runningbond.response import Response
 
 
 def respond(
@@ -46,6 +47,7 @@ def respond(
     is_used = holds_results(out)
     if out is not None:
         from runningbond.pictures.recording import ResponseRecorder
+        from runningbond.response.follow import AFTER
 
         make_folder(out)
         recorder = ResponseRecorder(wall, out)
@@ -71,7 +73,7 @@ def respond(
     return NO_ANSWER if response.verdict == "undecided" else DONE
 
 
-def _keep(response: Response, out: Path) -> None:
+def _keep(response: "Response", out: Path) -> None:
     """Write a response as a table, and draw it."""
     from runningbond.pictures.captions import to_png
     from runningbond.pictures.response import response_figure

@@ -7,8 +7,9 @@ file, has changed. So the cache lies in a folder named after the digest of every
 import hashlib
 import os
 import shutil
-from collections.abc import Callable
-from contextlib import suppress
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ import numba
 import numpy as np
 from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
+from numba.core.event import Event, Listener, install_listener
 from numba.core.serialize import dumps
 
 from runningbond.scene.folder_lock import locked
@@ -137,3 +139,29 @@ def kernel(function: Callable[..., Any]) -> Any:
 def inlined(function: Callable[..., Any]) -> Any:
     """Decorator of a long kernel that one other calls: part of that, and not compiled by itself as well."""
     return numba.njit(error_model="numpy", nogil=True, inline="always")(function)
+
+
+class Compilation(Listener):  # type: ignore[misc]
+    """Processor seconds spent on compiling kernels, also those that a kernel calls."""
+
+    def __init__(self) -> None:
+        self.seconds, self._depth, self._start = 0.0, 0, 0.0
+
+    def on_start(self, event: Event) -> None:
+        """A kernel is compiled, perhaps for the sake of another."""
+        if not self._depth:
+            self._start = time.process_time()
+        self._depth += 1
+
+    def on_end(self, event: Event) -> None:
+        """It is done."""
+        self._depth -= 1
+        if not self._depth:
+            self.seconds += time.process_time() - self._start
+
+
+@contextmanager
+def compilation() -> Iterator[Compilation]:
+    """Take the time of what is compiled meanwhile: once on a machine, and none of what a model costs."""
+    with install_listener("numba:compile", listener := Compilation()):
+        yield listener

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from runningbond.joints.compiled import compilation
 from runningbond.models import MODELS, Model
 from runningbond.models.registry import EXTRAS, STIFFNESS
 from runningbond.results import Outcome
@@ -73,14 +74,18 @@ def _run(
     settings: Mapping[str, Any],
     observe: Callable[..., None] | None = None,
 ) -> Outcome:
-    """Run a model of the package with some settings, and an observer if there is one, by the processor's clock."""
+    """Run a model of the package with some settings, and an observer if there is one, by the processor's clock.
+
+    That stands still while kernels are compiled, which they are once on a machine.
+    """
     watched = {} if observe is None else {"observe": observe}
     for key in settings:
         if key not in MODELS[base].parameters:
             raise SceneError(f"model {base}: {key}", "is no parameter of it")
-    start = time.process_time()
-    outcome = MODELS[base].solve(scene, tolerance, **settings, **watched)
-    return replace(outcome, seconds=time.process_time() - start)
+    with compilation() as compiled:
+        start = time.process_time()
+        outcome = MODELS[base].solve(scene, tolerance, **settings, **watched)
+        return replace(outcome, seconds=time.process_time() - start - compiled.seconds)
 
 
 def _hand(name: str, title: str) -> Rung:

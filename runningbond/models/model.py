@@ -3,12 +3,14 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, Literal, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 from runningbond.pictures.frame import Discretisation, Frame
-from runningbond.response import Response
 from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Mortar, Scene, SceneError, table_of
+
+if TYPE_CHECKING:
+    from runningbond.response import Response  # which needs a compiler
 
 Kind: TypeAlias = Literal["estimate", "bound", "certificate", "history"]
 """What the multiplier of a model is worth: `bound` is proved from above, `certificate` an interval of loads at which
@@ -78,7 +80,7 @@ class Model:
     cost: Cost | None = None  # `advise` runs no model without
     takes: frozenset[str] = frozenset()  # what it can do of `Scene.extras`; scenes with others it refuses by name
     pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed
-    respond: Callable[..., Response] | None = None  # response to a motion of the ground, of scene, scale
+    respond: Callable[..., "Response"] | None = None  # response to a motion of the ground, of scene, scale
     colour: str = "0.35"  # how charts draw it,
     marker: str = "*"
     line: str | tuple[int, tuple[int, ...]] = "-"  # and its pushover curve

@@ -8,17 +8,19 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from homog import homog
 from runningbond.limit import limit, limit_nonassociated
-from runningbond.response import Response
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
 from .second_opinion import FINER, asks_others, beside_others
+
+if TYPE_CHECKING:
+    from runningbond.response import Response  # which needs a compiler
 
 DRY = frozenset({"block.density", "joint.friction"})
 STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
@@ -199,7 +201,7 @@ def run_model(
 
 def check_response(
     model: str | Model, scene: Scene, scale: float, model_key: str = "model", scale_key: str = "scale"
-) -> Callable[..., Response]:
+) -> "Callable[..., Response]":
     """How a model follows a scene through the motion of its ground.
 
     Raises
@@ -219,7 +221,7 @@ def check_response(
     return model.respond
 
 
-def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
+def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: Any) -> "Response":
     """Follow a scene through the motion of its ground, `scale` times as large; settings as of `follow`.
 
     Raises

@@ -5,16 +5,18 @@ import os
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numba
+import numpy as np
 import pytest
 from numba.core.caching import IndexDataCacheFile
 
-from runningbond.joints.compiled import SharedCache, kernel
+from runningbond.joints.compiled import SharedCache, compilation, kernel
 
 ROOT = Path(__file__).parents[2]
 
@@ -213,3 +215,19 @@ except SceneError as error:
     )
     assert done.stdout.startswith("4.0 wall.drawing = 'wall.dxf': "), done.stderr
     assert [path.name for path in tmp_path.iterdir()] == ["wall.dxf"]
+
+
+@pytest.mark.usefixtures("cache")
+def test_the_time_that_compiling_takes_is_known_and_none_where_nothing_is_compiled() -> None:
+    """A kernel that calls others is compiled with them: what it takes is counted once."""
+    loop = ramp(3.0)
+    with compilation() as compiled:
+        start = time.process_time()
+        loop(np.ones(8))
+        spent = time.process_time() - start
+        assert spent / 2 < compiled.seconds <= spent
+        before = compiled.seconds
+        loop(np.ones(8))
+    assert compiled.seconds == before
+    ramp(4.0)(np.ones(8))
+    assert compiled.seconds == before
