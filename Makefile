@@ -7,7 +7,7 @@ ready := .venv/.ready
 bin := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: compare study stability validate test test-long bench docs clean help
+.PHONY: compare study stability validate test mypy pytest test-long bench docs clean help
 
 compare: $(ready) ## run every model on every published wall and tabulate, in comparison/
 	$(bin)/runningbond compare --out comparison $(ARGS)
@@ -24,7 +24,12 @@ validate: $(ready) ## predict walls that were broken in laboratories, and score 
 test: $(ready) ## style, types, and the tests that take seconds
 	$(bin)/ruff check
 	$(bin)/ruff format --check
+	@$(MAKE) --no-print-directory -j 2 mypy pytest
+
+mypy: $(ready)
 	$(bin)/mypy
+
+pytest: $(ready)
 	@# One thread of linear algebra a worker, for there is a worker a core; and bytecode kept for the many processes they start.
 	OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(bin)/pytest -q -n logical --maxprocesses 8 --dist worksteal -m "not long" $(ARGS)
 
