@@ -261,8 +261,8 @@ def test_deformability_is_of_no_account_where_the_certificates_suffice() -> None
 
 
 def test_rigid_enough_blocks_lose_their_modes_and_keep_the_answer() -> None:
-    """W3 of 1000 GPa, where `advise` leaves fem out: no deformable mode moves the bracket by more than a trial."""
-    scene = published_scene("wall-w3")
+    """W1 of 1000 GPa, where `advise` leaves fem out: no deformable mode moves the bracket by more than a trial."""
+    scene = published_scene("wall-w1")
     assert block_compliance(scene) < TOLERANCE
     rigid, all_modes = dem_dynamic(scene, TOLERANCE), fem(scene, TOLERANCE, modes="all")
     none = fem(scene, TOLERANCE, modes=3)

@@ -22,8 +22,8 @@ from tests.scenes import spoilt, walls
 from tests.walls import write_toml
 
 LIMITS = ("limit", "limit-nonassociated")
-FEW: dict[str, Any] = {"deadline": None, "derandomize": True, "suppress_health_check": list(HealthCheck)}
-MANY: dict[str, Any] = {"deadline": None, "max_examples": 2000, "suppress_health_check": list(HealthCheck)}
+FEW: dict[str, Any] = {"derandomize": True, "suppress_health_check": list(HealthCheck)}
+MANY: dict[str, Any] = {"max_examples": 2000, "suppress_health_check": list(HealthCheck)}
 
 
 def _run(scene: dict[str, Any], model: str) -> tuple[int, str, str]:

@@ -30,7 +30,7 @@ def moved(seed: int, far: float, turned: float) -> Array:
 
 
 @given(spins=st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=40))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_cosines_and_sines_are_those_of_the_library_to_rounding(spins: list[float]) -> None:
     motion = np.zeros((len(spins), 3))
     motion[:, 2] = spins
@@ -41,7 +41,7 @@ def test_cosines_and_sines_are_those_of_the_library_to_rounding(spins: list[floa
 
 
 @given(seed=st.integers(0, 10**6), far=st.sampled_from([0.0, 2e-3, 0.1]), turned=st.sampled_from([0.0, 0.1, 3.0]))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_near_sides_are_those_of_all_pairs_of_sides(seed: int, far: float, turned: float) -> None:
     outline, motion, margin = Outline.of(WALL), moved(seed, far, turned), 0.01
     corners, normal, owner = outline.corners(motion), outline.placed(motion).arcs[:, 2:], outline.blocks.owner
@@ -54,7 +54,7 @@ def test_near_sides_are_those_of_all_pairs_of_sides(seed: int, far: float, turne
 
 
 @given(seed=st.integers(0, 10**6), turned=st.sampled_from([0.0, 0.02, 0.3]))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_sharp_corners_are_those_of_no_radius(seed: int, turned: float) -> None:
     outline, motion = Outline.of(WALL), moved(seed, 2e-3, turned)
     contacts = find_contacts(outline, motion, 4 * outline.margin)

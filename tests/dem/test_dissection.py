@@ -72,7 +72,7 @@ def test_dissected_systems_have_the_solutions_of_full_ones(name: str, by_multipl
         assert system.solve(tangent, control, right) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.integers(0, 2**32 - 1))
 def test_solutions_do_not_depend_on_the_order_of_unknowns_terms_and_blocks(seed: int) -> None:
     """A grid of blocks with a coupling of its own for each pair of neighbours."""

@@ -148,7 +148,7 @@ def test_a_load_that_has_been_grown_through_is_not_grown_to_again() -> None:
 
 
 @given(pauses=st.lists(st.booleans(), min_size=1, max_size=30), stop=st.floats(0.06, 3.0))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: list[bool], stop: float) -> None:
     """Paused or not: it comes to the load itself, or to less where it falls on the way."""
     answers = iter(pauses)
@@ -168,7 +168,7 @@ def test_a_wall_that_never_answers_costs_two_budgets() -> None:
 
 
 @given(st.data(), st.sampled_from([0.0005, 0.005, 0.05, 0.5]))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_a_search_ends_whatever_the_answers(data: st.DataObject, tolerance: float) -> None:
     """Each load that is tried lies inside the bracket so far, which never widens."""
     lower, upper = 0.0, float("inf")

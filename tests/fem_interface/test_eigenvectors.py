@@ -9,7 +9,7 @@ from scipy.linalg import eigh, null_space
 from fem_interface.eigenvectors import eigenvectors, symmetric_eigenvectors
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(n=st.integers(1, 24), several=st.integers(0, 6), decades=st.integers(0, 10), seed=st.integers(0, 2**32 - 1))
 def test_symmetric_matrices_are_turned_to_their_diagonal(n: int, several: int, decades: int, seed: int) -> None:
     """Also where values are alike, and where they span ten decades."""
@@ -25,7 +25,7 @@ def test_symmetric_matrices_are_turned_to_their_diagonal(n: int, several: int, d
     assert matrix @ vectors == pytest.approx(vectors * found, abs=1e-13 * n * own[-1])
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(columns=st.integers(1, 16), rows=st.integers(0, 5), seed=st.integers(0, 2**32 - 1))
 def test_solutions_are_all_there_are_in_a_span_on_which_rows_are_zero(columns: int, rows: int, seed: int) -> None:
     generator = np.random.default_rng(seed)

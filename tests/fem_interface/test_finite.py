@@ -152,7 +152,7 @@ def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, 
 
 @pytest.mark.parametrize("inset", [0.0, 0.01])
 @given(seed=st.integers(0, 1000))
-@settings(max_examples=15, deadline=None, derandomize=True)
+@settings(max_examples=15, derandomize=True)
 def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float, seed: int) -> None:
     """Scatter is minus the transpose of the derivative of gather, on turned and deformed blocks.
 

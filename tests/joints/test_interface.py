@@ -234,7 +234,7 @@ corners = st.lists(st.tuples(jumps(-4e-4, 2e-4), jumps(-1e-3, 1e-3)), min_size=1
 
 
 @given(corners=corners, name=st.sampled_from(sorted(MATERIALS)), viscosity=st.sampled_from([0.0, 1.0]))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_tractions_are_within_the_cap_and_the_cone(
     corners: list[tuple[float, float]], name: str, viscosity: float
 ) -> None:
@@ -252,7 +252,7 @@ def test_tractions_are_within_the_cap_and_the_cone(
 
 
 @given(corners=corners, name=st.sampled_from(sorted(MATERIALS)))
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_no_path_gains_energy(corners: list[tuple[float, float]], name: str) -> None:
     """∫ σ dδ + τ ds − Ψ never falls, and is what the point says it spent as steps shrink; closed loops among them."""
     found = law(MATERIALS[name])
@@ -276,7 +276,7 @@ def test_no_path_gains_energy(corners: list[tuple[float, float]], name: str) -> 
     energies=st.sampled_from([(None, None), (5.0, None), (5.0, 80.0), (0.0, 0.0)]),
     viscosity=st.sampled_from([0.0, 0.5]),
 )
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 def test_without_cap_and_closure_it_is_the_law_of_joints_that_soften(
     corners: list[tuple[float, float]], energies: tuple[float | None, float | None], viscosity: float
 ) -> None:

@@ -109,7 +109,7 @@ def test_all_jumps_zero_give_no_force() -> None:
     energy_1=st.sampled_from([None, 0.0, 5.0, 100.0]),
     energy_2=st.sampled_from([None, 0.0, 5.0, 100.0]),
 )
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_dissipation_is_never_negative_and_damage_never_heals(
     steps: list[tuple[float, float]], energy_1: float | None, energy_2: float | None
 ) -> None:
@@ -132,7 +132,7 @@ def test_dissipation_is_never_negative_and_damage_never_heals(
     energy_1=st.sampled_from([0.0, 5.0, 100.0]),
     energy_2=st.sampled_from([0.0, 5.0, 100.0]),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_work_done_on_a_point_and_not_stored_in_it_never_falls(
     corners: list[tuple[float, float]], energy_1: float, energy_2: float
 ) -> None:

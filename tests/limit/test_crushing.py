@@ -142,7 +142,7 @@ def test_what_a_joint_dissipates_has_no_seams(name: str, slip: float) -> None:
 
 
 @given(share=st.floats(1e-4, 1.0))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_a_dry_joint_whose_cap_knows_no_shear_is_a_stress_block(share: float) -> None:
     """M ≤ N/2 (l − N / (t f_c)) and V ≤ N tan φ, both at once."""
     one = joint("dry")

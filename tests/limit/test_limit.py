@@ -157,7 +157,7 @@ FRICTION = st.one_of(st.just(0.0), st.floats(1e-3, 3))
 
 
 @given(width=st.floats(0.02, 5), height=st.floats(0.02, 5), friction=FRICTION, n=st.integers(1, 6))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_stack_slides_at_mu_or_topples_at_b_over_nh(width: float, height: float, friction: float, n: int) -> None:
     """n equal blocks b × h: λ = min(μ, b / (n h)), with or without dilatancy."""
     scene = pile([rectangle(0, i * height, width, height) for i in range(n)], friction)
@@ -176,7 +176,7 @@ def test_a_stack_slides_at_mu_or_topples_at_b_over_nh(width: float, height: floa
     h2=st.floats(0.2, 3),
     friction=st.floats(0.05, 2),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_couplet_topples_about_whichever_corner_gives_way_first(
     top: float, offset: float, h1: float, h2: float, friction: float
 ) -> None:
@@ -190,7 +190,7 @@ def test_a_couplet_topples_about_whichever_corner_gives_way_first(
 
 
 @given(height=st.floats(0.1, 3), friction=st.floats(0.02, 2), weight=st.floats(100, 1e6))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_a_horizontal_point_load_slides_or_topples_a_block(height: float, friction: float, weight: float) -> None:
     """Pushed at its top a block 1 × h resists P = W min(μ, 1 / (2 h))."""
     live = PointLoad((0.0, height), (1.0, 0.0))
@@ -200,7 +200,7 @@ def test_a_horizontal_point_load_slides_or_topples_a_block(height: float, fricti
 
 
 @given(cohesion=st.floats(1e3, 1e6), friction=FRICTION)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_cohesion_carries_a_weightless_block(cohesion: float, friction: float) -> None:
     """Sheared along its base a flat block without weight resists P = c A while it does not rock."""
     live = {"kind": "point", "at": [0.0, 0.0], "force": [1, 0]}
@@ -214,7 +214,7 @@ def test_cohesion_carries_a_weightless_block(cohesion: float, friction: float) -
 
 
 @given(cohesion=st.floats(1e3, 1e6), friction=st.floats(0.01, 2), cut=st.floats(0.01, 1))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_tension_cut_off_limits_what_hangs(cohesion: float, friction: float, cut: float) -> None:
     """Pulled straight up a weightless block comes off at f_t A."""
     tension = cut * cohesion / friction

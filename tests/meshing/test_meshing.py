@@ -191,7 +191,7 @@ def test_ground_has_nodes_at_its_corners_and_joints_only() -> None:
     ),
     st.integers(1, 3),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_any_pattern_of_courses_is_meshed(pattern: list[list[float]], cells: int) -> None:
     try:
         scene = courses(pattern)

@@ -139,7 +139,7 @@ def loaded(draw: st.DrawFn) -> dict[str, Any]:
     return tables
 
 
-@settings(max_examples=10, deadline=None, derandomize=True)
+@settings(max_examples=10, derandomize=True)
 @given(loaded())
 def test_any_wall_can_be_read_whatever_loads_it(tables: dict[str, Any]) -> None:
     assert_legible(figure_of(scene_from_dict(tables)))

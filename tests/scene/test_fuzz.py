@@ -24,7 +24,7 @@ from runningbond.scene import Scene, SceneError, read_scene
 from tests.scenes import drawn, outlines, small_walls, write_drawing
 from tests.walls import write_toml
 
-ANY: dict[str, Any] = {"deadline": None, "suppress_health_check": list(HealthCheck)}
+ANY: dict[str, Any] = {"suppress_health_check": list(HealthCheck)}
 
 RUNS: dict[str, Callable[[Scene, float], Outcome]] = {
     "homog": lambda scene, tolerance: homog(scene),

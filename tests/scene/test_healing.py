@@ -30,7 +30,7 @@ def touching(outlines: list[Array]) -> int:
     return len(find_joints(Blocks.from_polygons(outlines)))
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(seed=st.integers(0, 10**6), reach=st.sampled_from([1e-4, 1e-3, 4e-3]))
 def test_healed_blocks_touch_wherever_they_were_meant_to(seed: int, reach: float) -> None:
     drawn = sloppy(metres([*BRICKS, GROUND]), reach, seed)

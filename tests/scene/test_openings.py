@@ -181,7 +181,7 @@ corners = st.tuples(st.integers(0, 40), st.integers(0, 30), st.integers(1, 16), 
 
 
 @given(st.lists(corners, min_size=1, max_size=3))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 def test_what_is_left_is_the_wall_but_for_its_openings(drawn: list[Any]) -> None:
     """Areas add up, no stone is a sliver, and whatever is refused is refused in a line."""
     spans = [(x / 16, y / 20, (x + w) / 16, (y + h) / 20) for x, y, w, h, _ in drawn]

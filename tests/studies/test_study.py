@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import psutil
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
@@ -67,7 +67,6 @@ entries = st.none() | st.booleans() | st.integers(-(10**9), 10**9) | st.floats(a
 words = st.text(st.characters(codec="utf-8", exclude_characters="\r\0"))
 
 
-@settings(deadline=None)  # the first digest reads all code
 @given(entries | words, entries | words, st.lists(entries))
 def test_a_table_gives_its_rows_back_to_the_last_bit(one: object, other: object, many: list[object]) -> None:
     row = {"load [N]": 1, "one": one, "other": other, "many": many}
