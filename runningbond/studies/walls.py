@@ -12,7 +12,7 @@ block, whose pressure does not change.
 
 from dataclasses import dataclass
 from functools import cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -32,6 +32,12 @@ SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the block that slides, and b/h of the on
 BRICK = BlockMaterial(1800.0)
 HOLDS = 1e15  # cohesion and tensile strength [Pa] that no motion of a study comes near
 Box: TypeAlias = tuple[float, float, float, float]  # left, bottom, width, height [m]
+TABLES: dict[str, dict[str, Any]] = {  # of a scene file, where nothing else is said
+    "block": {"density": 1800.0, "young": 2e10, "poisson": 0.2},
+    "joint": {"friction": 0.6, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}},
+    "support": {"kind": "base"},
+    "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+}
 
 
 def boxes(*places: Box, joint: JointMaterial, block: BlockMaterial = BRICK) -> Scene:

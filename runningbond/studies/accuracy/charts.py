@@ -24,6 +24,9 @@ FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and
 RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1  # with three freedoms; apart by
 
 Named: TypeAlias = tuple[float, float, str, str]  # a point of a chart, the name to write beside it, and its colour
+NAMES: dict[str, Any] = {"xycoords": "figure points", "textcoords": "figure points", "annotation_clip": False}
+NAMES |= {"ha": "center", "va": "center", "fontsize": 8}
+NAMES["bbox"] = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.85}  # over lines
 LEGEND_ROWS = 3
 DRIVEN = "driven, steps"
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
@@ -73,17 +76,9 @@ def _name(axes: Axes, points: Sequence[Named]) -> None:
         near = np.clip(at, *placed.box)
         leads = {"arrowprops": {"arrowstyle": "-", "lw": 0.6, "color": placed.label.colour, "shrinkA": 0, "shrinkB": 4}}
         far: dict[str, Any] = leads if np.hypot(*(near - at)) > 9 else {}
-        where: dict[str, Any] = {
-            "xycoords": "figure points",
-            "textcoords": "figure points",
-            "ha": "center",
-            "va": "center",
-        }
-        size: dict[str, Any] = {"fontsize": 8, "color": placed.label.colour, "annotation_clip": False}
-        size["bbox"] = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.85}  # over lines
-        axes.annotate(
-            placed.label.text, at, (float(placed.middle[0]), float(placed.middle[1])), **where, **size, **far
-        ).set_in_layout(False)
+        x, y = map(float, placed.middle)
+        name = axes.annotate(placed.label.text, at, (x, y), color=placed.label.colour, **NAMES, **far)
+        name.set_in_layout(False)
 
 
 def _against_seconds(axes: Axes, rows: Sequence[Row]) -> list[Named]:

@@ -19,7 +19,7 @@ from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.blocks import CONTACT_TOLERANCE
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.walls import Box, boxes
+from runningbond.studies.walls import TABLES, Box, boxes
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 UNSEEN = 1e-4  # multiplier below which models in motion see no difference from zero
@@ -37,20 +37,14 @@ WORTH = {  # what an answer may be worth: its colour, and words for it
 
 def dry(**changes: Any) -> dict[str, Any]:
     """The table of a joint with tan φ = 0.6 and 10 mm of mortar, some of its keys changed."""
-    return {"friction": 0.6, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}} | changes
+    return TABLES["joint"] | changes
 
 
 def panel(size: float = 1.0, **tables: Any) -> Scene:
     """A panel of four courses of blocks 240 × 60 mm, 480 mm long or of another size, with other tables of its scene."""
     lengths = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.48, "height": 0.24}
-    usual = {
-        "wall": {name: length * size for name, length in lengths.items()},
-        "block": {"density": 1800.0, "young": 2e10, "poisson": 0.2},
-        "joint": dry(),
-        "support": {"kind": "base"},
-        "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
-    }
-    return scene_from_dict(usual | tables)
+    wall = {name: length * size for name, length in lengths.items()}
+    return scene_from_dict(TABLES | {"wall": wall} | tables)
 
 
 def courses(pattern: list[list[float]], width: float, height: float, **joint: float) -> Scene:
