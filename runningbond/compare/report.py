@@ -52,20 +52,17 @@ def report_html(comparison: Comparison, charts: Mapping[str, Figure], tolerance:
     drawn = {name: inline_svg(figure, name) for name, figure in charts.items()}
     walls = [(f"wall-{name}", name) for name in comparison.scenes]
     contents = [entry for entry in CONTENTS if entry[0] != "charts" or drawn]
-    return (
-        templates()
-        .get_template("report.html")
-        .render(
-            subject="comparison",
-            contents=[*contents, *walls, *CLOSING],
-            verdict=verdict(comparison),
-            full=f"{FULL:.0%}",
-            multipliers=[_coloured(comparison, sheet) for sheet in multiplier_sheets(comparison)],
-            charts=drawn,
-            cards=[_card(comparison, name) for name in comparison.scenes],
-            costs=cost_sheets(comparison),
-            provenance=Sheet("Versions", ("what", "which"), _versions(comparison, tolerance)),
-        )
+    page = templates().get_template("report.html")
+    return page.render(
+        subject="comparison",
+        contents=[*contents, *walls, *CLOSING],
+        verdict=verdict(comparison),
+        full=f"{FULL:.0%}",
+        multipliers=[_coloured(comparison, sheet) for sheet in multiplier_sheets(comparison)],
+        charts=drawn,
+        cards=[_card(comparison, name) for name in comparison.scenes],
+        costs=cost_sheets(comparison),
+        provenance=Sheet("Versions", ("what", "which"), _versions(comparison, tolerance)),
     )
 
 

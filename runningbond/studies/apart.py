@@ -52,6 +52,7 @@ def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = 
                     raise KeyboardInterrupt
         finally:
             process.kill()  # if it has not ended
+            process.wait()
     if process.returncode == ENDED:
         return {"status": TOO_LONG, "message": f"more than {LONGEST} s of the processor"}
     if process.returncode:

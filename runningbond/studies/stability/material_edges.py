@@ -219,6 +219,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     figure.legend(handles=keys, loc="outside lower center", ncols=5)
 
 
+SIZE = 10.5, 0.31 * len(EXTREMES) + 1.6  # of the chart [in]
 STUDY = Study(
     "material-edges",
     "Materials, shapes and sizes at the edge",
@@ -228,12 +229,6 @@ STUDY = Study(
         PART: Part(("wall", "model"), [*product(EXTREMES, MODELS)], answer),
         "widest gap that is contact [block sizes]": Part(("between",), [("two blocks",)], widest_gap),
     },
-    charts=[
-        Chart(
-            "What every model answers at the edge, beside the exact answer",
-            _draw,
-            size=(10.5, 0.31 * len(EXTREMES) + 1.6),
-        )
-    ],
+    charts=[Chart("What every model answers at the edge, beside the exact answer", _draw, size=SIZE)],
     fits=fits,
 )
