@@ -19,7 +19,7 @@ import numpy as np
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
-from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.dynamics.run import LOCAL
 from runningbond.limit import limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
@@ -85,9 +85,9 @@ class KnownWall:
         return len(self.scene.blocks) == 2
 
     @cache  # noqa: B019 - there are as many walls as names
-    def rest(self, local: float = LOCAL, viscous: float = VISCOUS) -> tuple[Run, State]:
+    def rest(self, local: float = LOCAL) -> tuple[Run, State]:
         """Its blocks at rest under their weight; the state is to be copied."""
-        run = Run(self.system, local=local, viscous=viscous)
+        run = Run(self.system, local=local)
         state = State.at_rest(self.system)
         assert settle(run, state, 0.0, Criteria(collapse=self.far)) == "stable"
         return run, state

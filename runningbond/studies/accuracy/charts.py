@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from runningbond.models import MODEL_LOOKS
-from runningbond.pictures.charts import in_units
+from runningbond.pictures.charts import in_units, ticks
 from runningbond.pictures.labels import Label, Spot, place_labels
 from runningbond.studies import Chart, Row, Rows
 from runningbond.studies.apart import LONGEST
@@ -98,12 +98,11 @@ def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> list[Named]:
     aside = {model: ASIDE ** (i - (len(RIGID) - 1) / 2) for i, model in enumerate(RIGID)}
     beside = [x * aside.get(row["model"], 1.0) for x, row in zip(freedoms, rows, strict=True)]
     named = _draw_errors(axes, rows, freedoms, beside)
-    ticks: list[float] = []
+    marked: list[float] = []
     for number in sorted(set(freedoms)):
-        if not ticks or number > 1.35 * ticks[-1]:
-            ticks.append(number)
-    axes.set_xticks(ticks, [f"{number:,.0f}" for number in ticks])
-    axes.minorticks_off()
+        if not marked or number > 1.35 * marked[-1]:
+            marked.append(number)
+    ticks(axes, marked, "{:,.0f}")
     return named
 
 
@@ -166,8 +165,7 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
         name += f"; more than {LONGEST} s beyond {max(blocks)}" if max(blocks) < largest else ""
         axes.plot(blocks, middle, marker=marker, color=colour, ms=8, lw=2, label=name)
         axes.vlines(blocks, least, most, color=colour)
-    axes.set_xticks(sizes, [str(size) for size in sizes])
-    axes.minorticks_off()
+    ticks(axes, sizes)
     axes.set(xlabel="blocks of a square panel, b/a = 2", ylabel="processor seconds to the collapse load")
     axes.grid(color="0.9", lw=0.7)
     figure.legend(fontsize=10, loc="outside lower center", ncols=2, title="processor seconds ∝ blocks to the power")
@@ -188,8 +186,7 @@ def draw_stiffness(figure: Figure, rows: Rows) -> None:
         axes.secondary_yaxis("right", functions=in_units(rigid)).set_ylabel("times rigid blocks", color="0.35")
     axes.set_xlabel("Young's modulus of the blocks [GPa]")
     axes.set_ylabel(f"processor seconds a physical second, {rows['stiffness'][0].get('blocks')} blocks")
-    axes.set_xticks([E / 1e9 for E in scaled], [f"{E / 1e9:g}" for E in scaled])
-    axes.minorticks_off()
+    ticks(axes, [E / 1e9 for E in scaled])
     axes.grid(color="0.9", lw=0.7)
     figure.legend(fontsize=10, loc="outside lower center", ncols=3)
 

@@ -81,6 +81,7 @@ def similar(size: float) -> Scene:
 
 
 BRICK = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.24, "height": 0.06}
+PINNED = {"wall": BRICK, "support": {"kind": "pinned-corners"}}
 BRITTLE = {"fracture_energy_1": 0.0, "fracture_energy_2": 0.0}
 GLUED = {"friction": 0.0, "cohesion": 300.0, "tensile_strength": 0.0}
 # λ at which a block of 1 m on one of 10 mm turns with it about the ground: weights and their arms
@@ -97,10 +98,7 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may b
     "fₜ = 0, c = 10 kPa": (lambda: pier(0.24, 0.36, 3, cohesion=1e4, tensile_strength=0.0), 2 / 3),
     "tan φ = fₜ = 0, c = 300 Pa": (lambda: pier(0.24, 0.12, 1, **GLUED), 300.0 / (1800.0 * 9.81 * 0.12)),
     "self-locking: pressed": (lambda: pressed(0.24, [0.0, -1.0]), "unbounded"),
-    "self-locking: one block pinned": (
-        lambda: pressed(0.12, [1.0, -1.0], wall=BRICK, support={"kind": "pinned-corners"}),
-        "unbounded",
-    ),
+    "self-locking: one block pinned": (lambda: pressed(0.12, [1.0, -1.0], **PINNED), "unbounded"),
     "no equilibrium: overhang": (lambda: courses([[1], [1, 2]], 0.24, 0.06), "infeasible"),
     "no equilibrium: dry on corners": (lambda: panel(support={"kind": "corners"}), "infeasible"),
     "gap, 0.99 tolerances": (lambda: gaping(0.99), 0.5),
