@@ -139,14 +139,8 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
     moved = [x for x in outcomes.values() if len(x.moments)]
     extent = common_extent([undeformed_shape(scene), *shapes.values(), *(farthest_shape(scene, x) for x in moved)])
     rest = f"rest-{list(comparison.scenes).index(name)}"  # a wall may have any name
-    mechanisms = [
-        (
-            model,
-            Markup(inline_mechanism(shape, extent, rest)),
-            " ".join(multiplier_text(scene, outcomes[model])).strip(),
-        )
-        for model, shape in shapes.items()
-    ]
+    told = {model: " ".join(multiplier_text(scene, outcomes[model])).strip() for model in shapes}
+    mechanisms = [(x, Markup(inline_mechanism(shape, extent, rest)), told[x]) for x, shape in shapes.items()]
     figure = wall_curves(comparison, name)
     load = f"{load_symbol(scene)} [N]" if is_force(scene) else load_symbol(scene)
     heads = ("model", load, "freedoms", "steps", "seconds", "message")
