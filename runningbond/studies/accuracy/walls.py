@@ -12,7 +12,6 @@ from runningbond.limit import limit_nonassociated
 from runningbond.scene import Scene, scene_from_dict
 from runningbond.studies.walls import TABLES, inset_wall
 
-Known: TypeAlias = Literal["exact", "published", "certified", ""]  # what an answer is worth, where one is known
 # λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second
 Question: TypeAlias = Literal["collapse", "turned block", "compression", "shear", "physical second"]
 Interval: TypeAlias = tuple[float, float]
@@ -29,7 +28,7 @@ class Wall:
 
     scene: Scene
     question: Question = "collapse"
-    known: Known = ""
+    known: Literal["exact", "published", "certified", ""] = ""  # what the answer is worth; nothing where none is known
     answer: Interval | None = None  # in which it lies; None where it is to be certified (`interval`), or not known
 
     @property

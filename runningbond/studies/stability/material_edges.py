@@ -133,10 +133,6 @@ def answer(what: str, model: str) -> Row:
     return row | {"message": outcome.message}
 
 
-def _length(size: float) -> str:
-    return f"{1e6 * size:g} µm" if size < 1e-3 else f"{size:g} m"
-
-
 def in_words(exact: Exact) -> str:
     """An answer as a chart says it: an interval from nothing by its upper end, one of equal ends as a number."""
     if isinstance(exact, str):
@@ -188,11 +184,11 @@ def fits(rows: Rows) -> list[Edge]:
     edges = []
     for model in MODELS:
         loads = {row["wall"]: row.get("λ") for row in rows[PART] if row["model"] == model}
-        usual = loads[f"{_length(SIZES[1])} wall, similar"]
-        for size in (SIZES[0], SIZES[2]):
-            load = loads[f"{_length(size)} wall, similar"]
+        usual = loads["1 m wall, similar"]
+        for size in ("1 µm", "1000 m"):
+            load = loads[f"{size} wall, similar"]
             if load is not None and usual is not None:
-                edges.append(Edge(f"λ of a wall of {_length(size)}, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
+                edges.append(Edge(f"λ of a wall of {size}, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
     count = Counter(row["worth"] for row in rows[PART])
     return edges + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
 
