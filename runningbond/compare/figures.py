@@ -32,9 +32,9 @@ BORNE, BETWEEN = 0.25, 40  # share of its peak from which a curve is drawn, and 
 MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
 
 
-def figure_6_data(points: int = 120) -> tuple[Array, Array]:
+def figure_6_data() -> tuple[Array, Array]:
     """Slenderness H / L from 0, without it, to 3, ``(n,)``, and λ of the homogenised panel by texture, ``(n, 4)``."""
-    slenderness = np.linspace(0, 3, points + 1)[1:]
+    slenderness = np.linspace(0, 3, 121)[1:]
     slopes = [crack_slope(ratio, 1.0, FRICTION) for _, ratio in TEXTURES]
     return slenderness, np.array([[lateral_multiplier(float(r), x, FRICTION) for x in slopes] for r in slenderness])
 

@@ -30,12 +30,8 @@ def page_html(subject: str, parts: Sequence[str], contents: Sequence[tuple[str, 
 
 def table_html(sheet: Sheet, wrapped: bool = False, folded: bool = False) -> str:
     """A table under its title; its cells hold sentences where `wrapped`; a click opens one that is `folded`."""
-    return str(_parts().table(sheet, wrapped, folded))
-
-
-@cache
-def _parts() -> Any:
-    return templates().get_template("parts.html").module
+    parts: Any = templates().get_template("parts.html").module
+    return str(parts.table(sheet, wrapped, folded))
 
 
 def figure_html(path: Path, caption: str) -> str:

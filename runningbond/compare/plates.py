@@ -32,13 +32,12 @@ def plates(comparison: Comparison) -> list[Plate]:
     """Plates that a comparison has anything for: the paper's, and one of walls that are in no figure of it."""
     textures = [f"b/a = {label}" for label, _ in TEXTURES]
     panels, loaded, ferris = ([case.name for case in cases_of(x)] for x in (BARALDI, CONCENTRATED, FERRIS))
-    lateral, concentrated = "Mechanisms under self-weight and lateral load", "Mechanisms under a concentrated load"
     own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
     paper = []
     for k, (label, _) in enumerate(SLENDERNESS):
-        title = f"{lateral}, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})"
+        title = f"Mechanisms under self-weight and lateral load, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})"
         paper.append(Plate(f"figure-{8 + k}", title, dict(zip(panels[4 * k : 4 * k + 4], textures, strict=True))))
-    title = f"{concentrated} (cf. Baraldi et al., Fig. 12)"
+    title = "Mechanisms under a concentrated load (cf. Baraldi et al., Fig. 12)"
     paper.append(Plate("figure-12", title, dict(zip(loaded, textures, strict=True))))
     names = {name: name.removeprefix("wall-").upper() for name in ferris}
     paper.append(Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", names))

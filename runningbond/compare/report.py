@@ -20,11 +20,11 @@ from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.pictures.moments import farthest_shape, moving_wall
 from runningbond.pictures.quantities import counted
 from runningbond.results import Outcome
-from runningbond.results.outcome import number
+from runningbond.results.outcome import number, two_digits
 
 from .figures import wall_curves
 from .page import inline_svg, templates
-from .table import CORRECTED, Comparison, Sheet, answer, cost_sheets, multiplier_sheets, seconds
+from .table import CORRECTED, Comparison, Sheet, answer, cost_sheets, multiplier_sheets
 
 DRAWN_WITH = ("pyvista", "vtk", "matplotlib", "jinja2")
 FULL, STRONGEST, AGREE, WORST = 0.3, 0.55, 0.05, 4
@@ -42,15 +42,9 @@ CLOSING = ("cost", "Cost"), ("provenance", "What was run")
 class Cell(str):
     """An entry of a table: its words, the number to sort by, how far that is above a median, and where it leads."""
 
-    value: float | None
-    heat: float
-    link: str
-
-    def __new__(cls, text: str, value: float | None = None, heat: float = 0.0, link: str = "") -> "Cell":
-        """Words with what belongs to them."""
-        cell = super().__new__(cls, text)
-        cell.value, cell.heat, cell.link = value, heat, link
-        return cell
+    value: float | None = None
+    heat = 0.0
+    link = ""
 
 
 def report_html(comparison: Comparison, charts: Mapping[str, Figure], tolerance: float) -> str:
@@ -58,20 +52,17 @@ def report_html(comparison: Comparison, charts: Mapping[str, Figure], tolerance:
     drawn = {name: inline_svg(figure, name) for name, figure in charts.items()}
     walls = [(f"wall-{name}", name) for name in comparison.scenes]
     contents = [entry for entry in CONTENTS if entry[0] != "charts" or drawn]
-    return (
-        templates()
-        .get_template("report.html")
-        .render(
-            subject="comparison",
-            contents=[*contents, *walls, *CLOSING],
-            verdict=verdict(comparison),
-            full=f"{FULL:.0%}",
-            multipliers=[_coloured(comparison, sheet) for sheet in multiplier_sheets(comparison)],
-            charts=drawn,
-            cards=[_card(comparison, name) for name in comparison.scenes],
-            costs=cost_sheets(comparison),
-            provenance=Sheet("Versions", ("what", "which"), _versions(comparison, tolerance)),
-        )
+    page = templates().get_template("report.html")
+    return page.render(
+        subject="comparison",
+        contents=[*contents, *walls, *CLOSING],
+        verdict=verdict(comparison),
+        full=f"{FULL:.0%}",
+        multipliers=[_coloured(comparison, sheet) for sheet in multiplier_sheets(comparison)],
+        charts=drawn,
+        cards=[_card(comparison, name) for name in comparison.scenes],
+        costs=cost_sheets(comparison),
+        provenance=Sheet("Versions", ("what", "which"), _versions(comparison, tolerance)),
     )
 
 
@@ -126,11 +117,12 @@ def _coloured(comparison: Comparison, sheet: Sheet) -> Sheet:
         values = {x.name: o.multiplier for x in comparison.models if (o := comparison.outcome(name, x)) is not None}
         values |= {x if x == CORRECTED else f"printed {x}": y for x, y in comparison.printed(name).items()}
         median = statistics.median(found.values()) if found else 0.0
-        cells = [Cell(name, link=f"wall-{name}")]
-        for head, text in zip(sheet.heads[1:], row[1:], strict=True):
-            value = values.get(head)
-            off = (value / median - 1) / FULL if value is not None and median else 0.0
-            cells.append(Cell(text, value, max(-1.0, min(off, 1.0)) * STRONGEST))
+        cells = [Cell(text) for text in row]
+        cells[0].link = f"wall-{name}"
+        for head, cell in zip(sheet.heads[1:], cells[1:], strict=True):
+            cell.value = values.get(head)
+            off = (cell.value / median - 1) / FULL if cell.value is not None and median else 0.0
+            cell.heat = max(-1.0, min(off, 1.0)) * STRONGEST
         rows.append(cells)
     return replace(sheet, rows=rows)
 
@@ -147,19 +139,13 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
     moved = [x for x in outcomes.values() if len(x.moments)]
     extent = common_extent([undeformed_shape(scene), *shapes.values(), *(farthest_shape(scene, x) for x in moved)])
     rest = f"rest-{list(comparison.scenes).index(name)}"  # a wall may have any name
-    mechanisms = [
-        (
-            model,
-            Markup(inline_mechanism(shape, extent, rest)),
-            " ".join(multiplier_text(scene, outcomes[model])).strip(),
-        )
-        for model, shape in shapes.items()
-    ]
+    told = {model: " ".join(multiplier_text(scene, outcomes[model])).strip() for model in shapes}
+    mechanisms = [(x, Markup(inline_mechanism(shape, extent, rest)), told[x]) for x, shape in shapes.items()]
     figure = wall_curves(comparison, name)
     load = f"{load_symbol(scene)} [N]" if is_force(scene) else load_symbol(scene)
     heads = ("model", load, "freedoms", "steps", "seconds", "message")
     rows = [
-        (model, answer(x), *("–" if k is None else k for k in (x.dofs, x.steps)), seconds(x), said(x))
+        (model, answer(x), *("–" if k is None else k for k in (x.dofs, x.steps)), two_digits(x.seconds), said(x))
         for model, x in outcomes.items()
     ]
     refused = [(model, why) for (wall, model), why in comparison.campaign.inapplicable.items() if wall == name]

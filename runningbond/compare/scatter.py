@@ -1,5 +1,6 @@
 """Scatter: walls that differ from one in their last bits, their blocks' sizes or their joints' friction."""
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -52,7 +53,10 @@ class Scatter:
             if name not in RANGES or name in values:
                 remedy = "must be bits, or size and friction, each once, as in size=0.01,friction=0.05"
                 raise SceneError(KEY, f"{remedy}{suggestion(name, list(RANGES))}", text)
-            values[name] = RANGES[name].take(f"{KEY} {name}", _number(value))
+            given: float | str = value
+            with suppress(ValueError):  # what is no number is refused as out of range
+                given = float(value)
+            values[name] = RANGES[name].take(f"{KEY} {name}", given)
         return cls(**values)
 
     def __str__(self) -> str:
@@ -75,13 +79,6 @@ class Scatter:
         drawn = _resized(drawn, self.size, random) if self.size else drawn
         drawn = _with_friction(drawn, shifts) if self.friction else drawn
         return drawn if number else scene
-
-
-def _number(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _bit(random: np.random.Generator) -> float:

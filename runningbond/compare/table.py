@@ -168,9 +168,4 @@ def bracket(outcome: Outcome) -> str:
 
 def _cost(outcome: Outcome) -> str:
     dofs, steps = ("–" if count is None else str(count) for count in (outcome.dofs, outcome.steps))
-    return f"{dofs} / {steps} / {seconds(outcome)}"
-
-
-def seconds(outcome: Outcome) -> str:
-    """Seconds, with two digits that count."""
-    return two_digits(outcome.seconds)
+    return f"{dofs} / {steps} / {two_digits(outcome.seconds)}"

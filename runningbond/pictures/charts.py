@@ -53,6 +53,12 @@ def level(axes: "Axes", y: float, text: str, x: float = 0.98, **style: Any) -> N
     axes.annotate(text, (x, y), xycoords=("axes fraction", "data"), **where)
 
 
+def ticks(axes: "Axes", values: Sequence[float], form: str = "{:g}") -> None:
+    """Ticks of a logarithmic x axis at these values alone, written out."""
+    axes.set_xticks(values, [form.format(value) for value in values])
+    axes.minorticks_off()
+
+
 def bracket(axes: "Axes", x: float, row: Row, colour: str, **style: Any) -> None:
     """A bracket of λ as an upright bar, hollow where it is no collapse."""
     bar: dict[str, Any] = {"color": colour, "lw": 4, "solid_capstyle": "butt"} | style

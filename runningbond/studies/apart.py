@@ -42,18 +42,17 @@ def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = 
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     path = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]))
     environment, pipe = {**os.environ, **threads, "PYTHONPATH": path}, subprocess.PIPE
-    process = subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True)
-    try:
-        while True:
-            with suppress(subprocess.TimeoutExpired):
-                printed, complaint = process.communicate(timeout=POLL)
-                break
-            if stop is not None and stop.is_set():
-                raise KeyboardInterrupt
-    finally:
-        if process.poll() is None:
-            process.kill()
-            process.communicate()
+    with subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, text=True) as process:
+        try:
+            while True:
+                with suppress(subprocess.TimeoutExpired):
+                    printed, complaint = process.communicate(timeout=POLL)
+                    break
+                if stop is not None and stop.is_set():
+                    raise KeyboardInterrupt
+        finally:
+            process.kill()  # if it has not ended
+            process.wait()
     if process.returncode == ENDED:
         return {"status": TOO_LONG, "message": f"more than {LONGEST} s of the processor"}
     if process.returncode:

@@ -12,14 +12,14 @@ block, whose pressure does not change.
 
 from dataclasses import dataclass
 from functools import cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
-from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.dynamics.run import LOCAL
 from runningbond.limit import limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import BlockMaterial, JointMaterial, Load, Scene, Stiffness, build_scene
@@ -32,6 +32,12 @@ SLIDES, TOPPLES = 0.4, 0.5  # tan φ of the block that slides, and b/h of the on
 BRICK = BlockMaterial(1800.0)
 HOLDS = 1e15  # cohesion and tensile strength [Pa] that no motion of a study comes near
 Box: TypeAlias = tuple[float, float, float, float]  # left, bottom, width, height [m]
+TABLES: dict[str, dict[str, Any]] = {  # of a scene file, where nothing else is said
+    "block": {"density": 1800.0, "young": 2e10, "poisson": 0.2},
+    "joint": {"friction": 0.6, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}},
+    "support": {"kind": "base"},
+    "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+}
 
 
 def boxes(*places: Box, joint: JointMaterial, block: BlockMaterial = BRICK) -> Scene:
@@ -79,9 +85,9 @@ class KnownWall:
         return len(self.scene.blocks) == 2
 
     @cache  # noqa: B019 - there are as many walls as names
-    def rest(self, local: float = LOCAL, viscous: float = VISCOUS) -> tuple[Run, State]:
+    def rest(self, local: float = LOCAL) -> tuple[Run, State]:
         """Its blocks at rest under their weight; the state is to be copied."""
-        run = Run(self.system, local=local, viscous=viscous)
+        run = Run(self.system, local=local)
         state = State.at_rest(self.system)
         assert settle(run, state, 0.0, Criteria(collapse=self.far)) == "stable"
         return run, state

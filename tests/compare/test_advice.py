@@ -438,7 +438,7 @@ def test_error_is_that_of_the_rung_with_the_scene_s_features(
     """Of rungs that are one model the one with as many features of the scene; walls of other joints tell nothing."""
     plain = ModelError("plain", "limit", "dry", False, False, False, "A B C", 0.1, -0.1, 0.2)
     crushing = replace(plain, rung="crushing", crushes=True)
-    monkeypatch.setattr(experiment, "_shipped", lambda: [plain, crushing])
+    monkeypatch.setattr(experiment, "read_errors", lambda: [plain, crushing])
     changes: dict[str, Any] = {"cohesion": 1e5} if joints == "mortar" else {}
     changes |= {"compressive_strength": 1e7} if features else {}
     found = error_of("limit", published_scene("wall-w3").with_joint(**changes), finite=False)

@@ -7,9 +7,9 @@ comparison, the power of the tolerance as `runningbond study` measures it. Pace 
 was in the models already run, so that the laws hold from one machine to the next.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import geometric_mean
 
 from runningbond.models import MODELS, Cost, Model
 from runningbond.results import Outcome
@@ -57,9 +57,7 @@ def estimate(model: Model, scene: Scene, tolerance: float, pace: float = 1.0, *,
 
 def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> float:
     """How much slower than the laws the outcomes so far were; 1 where none of them took time enough to tell."""
-    ratios = []
-    for outcome in outcomes:
-        model = MODELS.get(outcome.model)
-        if model is not None and model.cost is not None and model.kind != "estimate" and outcome.seconds > 0:
-            ratios.append(math.log(outcome.seconds / estimate(model, scene, tolerance, advised=True).seconds))
-    return math.exp(sum(ratios) / len(ratios)) if ratios else 1.0
+    runs = [(MODELS[each.model], each.seconds) for each in outcomes if each.model in MODELS and each.seconds > 0]
+    timed = [(model, seconds) for model, seconds in runs if model.cost is not None and model.kind != "estimate"]
+    ratios = [seconds / estimate(model, scene, tolerance, advised=True).seconds for model, seconds in timed]
+    return geometric_mean(ratios) if ratios else 1.0

@@ -4,7 +4,7 @@
 """
 
 import csv
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, fields
 from functools import cache
 from pathlib import Path
@@ -70,22 +70,13 @@ def write_errors(errors: Iterable[ModelError]) -> str:
     return csv_lines([names, *rows])
 
 
+@cache
 def read_errors(path: Path = SHIPPED) -> list[ModelError]:
     """Read such a table."""
+    read: dict[Any, Callable[[str], Any]] = {str: str, float: float, bool: "True".__eq__}
     with path.open(encoding="utf-8", newline="") as file:
-        return [_row(row) for row in csv.DictReader(file)]
-
-
-def _row(row: dict[str, str]) -> ModelError:
-    finite, crushes, splits = (row[key] == "True" for key in ("finite", "crushes", "splits"))
-    median, least, most = (float(row[key]) for key in ("median", "least", "most"))
-    features = finite, crushes, splits
-    return ModelError(row["rung"], row["base"], row["joints"], *features, row["walls"], median, least, most)
-
-
-@cache
-def _shipped() -> list[ModelError]:
-    return read_errors()
+        rows = [*csv.DictReader(file)]
+    return [ModelError(**{one.name: read[one.type](row[one.name]) for one in fields(ModelError)}) for row in rows]
 
 
 def error_of(model: str, scene: Scene, *, finite: bool) -> ModelError | None:
@@ -93,5 +84,5 @@ def error_of(model: str, scene: Scene, *, finite: bool) -> ModelError | None:
     kind = MORTAR if any(each.cohesion > 0 for each in scene.joint_materials if each.name != "inner_joint") else DRY
     crushes = any(each.compressive_strength is not None for each in scene.joint_materials)
     splits = scene.inner_joint is not None
-    own = [each for each in _shipped() if (each.base, each.joints, each.finite) == (model, kind, finite)]
+    own = [each for each in read_errors() if (each.base, each.joints, each.finite) == (model, kind, finite)]
     return max(own, key=lambda each: (each.splits == splits, each.crushes == crushes), default=None)

@@ -79,9 +79,10 @@ def _after_certificate(known: Knowledge, outcome: Outcome) -> Step:
         why = "the certified loads lie within the tolerance, but a better search may find lower ones"
         return Step(_cheapest_rigid(known), f"{why}: one history is followed to see")
     model, why = _history(known)
+    draws = 1 if deforms(model) else DRAWS  # deformable blocks are the dearest
     if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
-        return Step(model, f"no collapse was certified: {why}", draws=_draws(model))
-    return Step(model, f"λ depends on how the load came about, by more than the tolerance: {why}", draws=_draws(model))
+        return Step(model, f"no collapse was certified: {why}", draws=draws)
+    return Step(model, f"λ depends on how the load came about, by more than the tolerance: {why}", draws=draws)
 
 
 def _after_history(known: Knowledge, step: Step, model: Model, outcome: Outcome) -> Step:
@@ -110,11 +111,6 @@ def _history(known: Knowledge) -> tuple[Model, str]:
     if known.soft:
         return next(model for model in ladder("history") if deforms(model)), _compliance(known)
     return _cheapest_rigid(known), "it is followed by the cheapest model of rigid blocks"
-
-
-def _draws(model: Model) -> int:
-    """Histories to follow by a model: one of deformable blocks, which are the dearest."""
-    return 1 if deforms(model) else DRAWS
 
 
 def _cheapest_rigid(known: Knowledge) -> Model:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from runningbond.models import MODEL_LOOKS
-from runningbond.pictures.charts import in_units
+from runningbond.pictures.charts import in_units, ticks
 from runningbond.pictures.labels import Label, Spot, place_labels
 from runningbond.studies import Chart, Row, Rows
 from runningbond.studies.apart import LONGEST
@@ -24,6 +24,9 @@ FLOOR, TOP = 1e-4, 3.0  # error below which all are drawn alike, as zero is, and
 RIGID, ASIDE = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic"), 1.1  # with three freedoms; apart by
 
 Named: TypeAlias = tuple[float, float, str, str]  # a point of a chart, the name to write beside it, and its colour
+NAMES: dict[str, Any] = {"xycoords": "figure points", "textcoords": "figure points", "annotation_clip": False}
+NAMES |= {"ha": "center", "va": "center", "fontsize": 8}
+NAMES["bbox"] = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.85}  # over lines
 LEGEND_ROWS = 3
 DRIVEN = "driven, steps"
 VARIATIONS = ("", "joint rule", "cells", "modes", "mass scaling", "tolerance", "first step", DRIVEN)
@@ -73,17 +76,9 @@ def _name(axes: Axes, points: Sequence[Named]) -> None:
         near = np.clip(at, *placed.box)
         leads = {"arrowprops": {"arrowstyle": "-", "lw": 0.6, "color": placed.label.colour, "shrinkA": 0, "shrinkB": 4}}
         far: dict[str, Any] = leads if np.hypot(*(near - at)) > 9 else {}
-        where: dict[str, Any] = {
-            "xycoords": "figure points",
-            "textcoords": "figure points",
-            "ha": "center",
-            "va": "center",
-        }
-        size: dict[str, Any] = {"fontsize": 8, "color": placed.label.colour, "annotation_clip": False}
-        size["bbox"] = {"boxstyle": "square,pad=0.1", "fc": "white", "ec": "none", "alpha": 0.85}  # over lines
-        axes.annotate(
-            placed.label.text, at, (float(placed.middle[0]), float(placed.middle[1])), **where, **size, **far
-        ).set_in_layout(False)
+        x, y = map(float, placed.middle)
+        name = axes.annotate(placed.label.text, at, (x, y), color=placed.label.colour, **NAMES, **far)
+        name.set_in_layout(False)
 
 
 def _against_seconds(axes: Axes, rows: Sequence[Row]) -> list[Named]:
@@ -103,12 +98,11 @@ def _against_freedoms(axes: Axes, rows: Sequence[Row]) -> list[Named]:
     aside = {model: ASIDE ** (i - (len(RIGID) - 1) / 2) for i, model in enumerate(RIGID)}
     beside = [x * aside.get(row["model"], 1.0) for x, row in zip(freedoms, rows, strict=True)]
     named = _draw_errors(axes, rows, freedoms, beside)
-    ticks: list[float] = []
+    marked: list[float] = []
     for number in sorted(set(freedoms)):
-        if not ticks or number > 1.35 * ticks[-1]:
-            ticks.append(number)
-    axes.set_xticks(ticks, [f"{number:,.0f}" for number in ticks])
-    axes.minorticks_off()
+        if not marked or number > 1.35 * marked[-1]:
+            marked.append(number)
+    ticks(axes, marked, "{:,.0f}")
     return named
 
 
@@ -171,8 +165,7 @@ def draw_growth(figure: Figure, rows: Rows) -> None:
         name += f"; more than {LONGEST} s beyond {max(blocks)}" if max(blocks) < largest else ""
         axes.plot(blocks, middle, marker=marker, color=colour, ms=8, lw=2, label=name)
         axes.vlines(blocks, least, most, color=colour)
-    axes.set_xticks(sizes, [str(size) for size in sizes])
-    axes.minorticks_off()
+    ticks(axes, sizes)
     axes.set(xlabel="blocks of a square panel, b/a = 2", ylabel="processor seconds to the collapse load")
     axes.grid(color="0.9", lw=0.7)
     figure.legend(fontsize=10, loc="outside lower center", ncols=2, title="processor seconds ∝ blocks to the power")
@@ -193,8 +186,7 @@ def draw_stiffness(figure: Figure, rows: Rows) -> None:
         axes.secondary_yaxis("right", functions=in_units(rigid)).set_ylabel("times rigid blocks", color="0.35")
     axes.set_xlabel("Young's modulus of the blocks [GPa]")
     axes.set_ylabel(f"processor seconds a physical second, {rows['stiffness'][0].get('blocks')} blocks")
-    axes.set_xticks([E / 1e9 for E in scaled], [f"{E / 1e9:g}" for E in scaled])
-    axes.minorticks_off()
+    ticks(axes, [E / 1e9 for E in scaled])
     axes.grid(color="0.9", lw=0.7)
     figure.legend(fontsize=10, loc="outside lower center", ncols=3)
 

@@ -10,9 +10,8 @@ from runningbond.compare.published import published_scene
 from runningbond.joints import joint_stiffness
 from runningbond.limit import limit_nonassociated
 from runningbond.scene import Scene, scene_from_dict
-from runningbond.studies.walls import inset_wall
+from runningbond.studies.walls import TABLES, inset_wall
 
-Known: TypeAlias = Literal["exact", "published", "certified", ""]  # what an answer is worth, where one is known
 # λ at collapse, λ of a block turned by `TURNED`, a modulus [Pa], or processor seconds a physical second
 Question: TypeAlias = Literal["collapse", "turned block", "compression", "shear", "physical second"]
 Interval: TypeAlias = tuple[float, float]
@@ -20,7 +19,6 @@ Interval: TypeAlias = tuple[float, float]
 PUBLISHED_INSET = {"wall-w1": 0.5856, "wall-w2": 0.5244, "wall-w3": 0.3374}
 DIGITS = 5e-5  # half of the last digit that is published
 TURNED = 0.1  # rotation of the turned block [rad]
-MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
 STIFF = 1e12  # Young's modulus of blocks where nothing else is said, the paper's [Pa]
 
 
@@ -30,7 +28,7 @@ class Wall:
 
     scene: Scene
     question: Question = "collapse"
-    known: Known = ""
+    known: Literal["exact", "published", "certified", ""] = ""  # what the answer is worth; nothing where none is known
     answer: Interval | None = None  # in which it lies; None where it is to be certified (`interval`), or not known
 
     @property
@@ -56,15 +54,9 @@ def error(value: float, interval: Interval) -> float:
 
 
 def _scene(width: float, height: float, friction: float, young: float = STIFF, /, **wall: Any) -> Scene:
-    return scene_from_dict(
-        {
-            "wall": {"block_width": width, "block_height": height, "thickness": 0.12, **wall},
-            "block": {"density": 1800.0, "young": young, "poisson": 0.0},
-            "joint": {"friction": friction, "mortar": dict(MORTAR)},
-            "support": {"kind": "base"},
-            "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
-        }
-    )
+    tables = {"wall": {"block_width": width, "block_height": height, "thickness": 0.12, **wall}}
+    scene = scene_from_dict(TABLES | tables).with_block(young=young, poisson=0.0)
+    return scene.with_joint(friction=friction)
 
 
 def pile(width: float, height: float, count: int, friction: float) -> Wall:
@@ -79,21 +71,21 @@ def turned_block(width: float, height: float) -> Wall:
     return Wall(scene, "turned block", "exact", (math.tan(math.atan2(width, height) - TURNED),) * 2)
 
 
-def elastic_cell(young: float, question: Question, width: float = 0.24, height: float = 0.06) -> Wall:
+def elastic_cell(young: float, question: Question) -> Wall:
     """A periodic cell of running bond.
 
     Compressed across its bed joints, blocks without lateral strain are springs in series with them,
     1 / A2222 = 1 / (a k_n) + 1 / E; sheared, rigid blocks have the closed form of `homog`.
     """
-    scene = _scene(width, height, 0.6, young, length=6 * width, height=6 * height)
-    in_series = 1 / (1 / (height * joint_stiffness(scene.joint).normal) + 1 / young)
+    scene = _scene(0.24, 0.06, 0.6, young, length=1.44, height=0.36)
+    in_series = 1 / (1 / (0.06 * joint_stiffness(scene.joint).normal) + 1 / young)
     answer = in_series if question == "compression" else rigid_moduli(scene).a1212
     return Wall(scene, question, "exact", (answer, answer))
 
 
-def square_panel(courses: int, young: float = STIFF) -> Scene:
+def square_panel(courses: int) -> Scene:
     """A square panel of blocks twice as wide as high, the texture of panel-06; its number of courses is even."""
-    return _scene(0.12, 0.06, 0.6, young, length=0.06 * courses, height=0.06 * courses)
+    return _scene(0.12, 0.06, 0.6, length=0.06 * courses, height=0.06 * courses)
 
 
 @cache
@@ -121,7 +113,7 @@ def growth_walls() -> dict[str, Wall]:
 @cache
 def stiffness_walls() -> dict[str, Wall]:
     """One wall whose blocks are ever stiffer."""
-    stiff = {n: square_panel(12).with_block(density=1800.0, young=10.0**n, poisson=0.0) for n in range(9, 14)}
+    stiff = {n: square_panel(12).with_block(young=10.0**n) for n in range(9, 14)}
     return {f"stiff-1e{n}": Wall(scene, "physical second") for n, scene in stiff.items()}
 
 

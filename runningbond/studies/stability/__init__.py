@@ -16,6 +16,5 @@ __all__ = ["EXPERIMENTS", "experiment"]
 
 def experiment(name: str) -> Study:
     """An experiment by its name."""
-    study = import_module(f"{__name__}.{name.replace('-', '_')}").STUDY
-    assert isinstance(study, Study)
+    study: Study = import_module(f"{__name__}.{name.replace('-', '_')}").STUDY
     return study

@@ -13,7 +13,7 @@ from runningbond.limit import equilibrium
 from runningbond.limit.associated import LimitState
 from runningbond.limit.force_program import coulomb, solve_forces
 from runningbond.models import MODEL_LOOKS, MODELS, TOLERANCE
-from runningbond.pictures.charts import LOOKS, floor, level
+from runningbond.pictures.charts import LOOKS, floor, level, ticks
 from runningbond.scene import JointMaterial, Load, PointLoad, Scene, Stiffness, build_scene
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.walls import boxes
@@ -113,8 +113,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     apart = [max(abs(row["measured"] - 1), 1e-16) for row in rows[SOLVERS]]
     right.loglog(blocks, apart, "x", color="black", label="difference of the two optima")
     right.set(xlabel="movable blocks", ylabel="relative error", ylim=(5e-17, 1e-4))
-    right.set_xticks([30, 50, 100, 200, 300], ["30", "50", "100", "200", "300"])
-    right.minorticks_off()
+    ticks(right, [30, 50, 100, 200, 300])
     right.set_title("published walls, two solvers", fontsize=10)
     left.legend(ncols=2, loc="upper center")
     right.legend(loc="upper left")

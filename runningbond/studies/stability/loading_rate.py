@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from dem.rigid_system import rigid_system
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, drive, load_steps, settle, settled_drive
+from runningbond.dynamics import U_CRIT, Criteria, Run, drive, load_steps, settle, settled_drive
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING, LOADING_WEIGHTLESS
 from runningbond.dynamics.run import LOCAL
@@ -83,21 +83,18 @@ def push_row(name: str, steps: int) -> Row:
 
 
 @cache
-def system_of(name: str) -> tuple[BlockSystem, float | Array, float]:
-    """A wall, the displacements [m] of its blocks in which collapses are measured, and its first load step."""
-    far: float | Array
-    if name in DRY:
-        scene = published_scene(name)
-        system, far = rigid_system(scene), U_CRIT * scene.block_sizes
-    else:
-        system, far = known_wall(name).system, known_wall(name).far
-    return system, far, FIRST_STEP / system.measure(system.live)
+def search_of(name: str) -> tuple[Run, float, Criteria]:
+    """What a search for λ of a wall takes: its blocks, its first load step, and when it has fallen."""
+    scene = published_scene(name) if name in DRY else known_wall(name).scene
+    run = Run(rigid_system(scene))
+    far: float | Array = U_CRIT * scene.block_sizes if name in DRY else U_CRIT * scene.block_size
+    return run, FIRST_STEP / run.system.measure(run.system.live), Criteria(collapse=far)
 
 
 def step_row(name: str, loading: float) -> Row:
     """Bracket of λ by load steps, the load growing by its first one in so many times to rest."""
-    system, far, first = system_of(name)
-    result = load_steps(Run(system), first, BRACKET, Criteria(collapse=far), loading=loading)
+    run, first, criteria = search_of(name)
+    result = load_steps(run, first, BRACKET, criteria, loading=loading)
     assert result.lower is not None
     assert result.upper is not None
     return {"λ lower": result.lower, "λ upper": result.upper, "λ": (result.lower + result.upper) / 2}
@@ -105,9 +102,9 @@ def step_row(name: str, loading: float) -> Row:
 
 def own_row(name: str) -> Row:
     """The suite's ramps between its first load steps, and its displacement control, halved until it settles to 1 %."""
-    (run, rest), (_, far, first) = known_wall(name).rest(), system_of(name)
+    (run, rest), (_, first, criteria) = known_wall(name).rest(), search_of(name)
     state = rest.copy()
-    settle(run, state, first, Criteria(collapse=far))
+    settle(run, state, first, criteria)
     settled = settled_drive(run, rest, known_wall(name).far, 0.01)
     return {
         "rate between load steps [1/s]": first / (LOADING * (state.steps - rest.steps) * run.dt),
@@ -119,7 +116,7 @@ def own_row(name: str) -> Row:
 
 def default_loading(name: str) -> float:
     """The suite's loading of a wall."""
-    return LOADING_WEIGHTLESS if system_of(name)[0].weightless else LOADING
+    return LOADING_WEIGHTLESS if search_of(name)[0].system.weightless else LOADING
 
 
 def fits(rows: Rows) -> list[Edge]:

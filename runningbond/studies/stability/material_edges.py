@@ -19,7 +19,7 @@ from runningbond.results.outcome import number
 from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.blocks import CONTACT_TOLERANCE
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.walls import Box, boxes
+from runningbond.studies.walls import TABLES, Box, boxes
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 UNSEEN = 1e-4  # multiplier below which models in motion see no difference from zero
@@ -37,20 +37,14 @@ WORTH = {  # what an answer may be worth: its colour, and words for it
 
 def dry(**changes: Any) -> dict[str, Any]:
     """The table of a joint with tan φ = 0.6 and 10 mm of mortar, some of its keys changed."""
-    return {"friction": 0.6, "mortar": {"young": 1e9, "poisson": 0.2, "thickness": 0.01}} | changes
+    return TABLES["joint"] | changes
 
 
 def panel(size: float = 1.0, **tables: Any) -> Scene:
     """A panel of four courses of blocks 240 × 60 mm, 480 mm long or of another size, with other tables of its scene."""
     lengths = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.48, "height": 0.24}
-    usual = {
-        "wall": {name: length * size for name, length in lengths.items()},
-        "block": {"density": 1800.0, "young": 2e10, "poisson": 0.2},
-        "joint": dry(),
-        "support": {"kind": "base"},
-        "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
-    }
-    return scene_from_dict(usual | tables)
+    wall = {name: length * size for name, length in lengths.items()}
+    return scene_from_dict(TABLES | {"wall": wall} | tables)
 
 
 def courses(pattern: list[list[float]], width: float, height: float, **joint: float) -> Scene:
@@ -87,6 +81,7 @@ def similar(size: float) -> Scene:
 
 
 BRICK = {"block_width": 0.24, "block_height": 0.06, "thickness": 0.12, "length": 0.24, "height": 0.06}
+PINNED = {"wall": BRICK, "support": {"kind": "pinned-corners"}}
 BRITTLE = {"fracture_energy_1": 0.0, "fracture_energy_2": 0.0}
 GLUED = {"friction": 0.0, "cohesion": 300.0, "tensile_strength": 0.0}
 # λ at which a block of 1 m on one of 10 mm turns with it about the ground: weights and their arms
@@ -103,10 +98,7 @@ EXTREMES: dict[str, tuple[Callable[[], Scene], Exact]] = {  # walls, which may b
     "fₜ = 0, c = 10 kPa": (lambda: pier(0.24, 0.36, 3, cohesion=1e4, tensile_strength=0.0), 2 / 3),
     "tan φ = fₜ = 0, c = 300 Pa": (lambda: pier(0.24, 0.12, 1, **GLUED), 300.0 / (1800.0 * 9.81 * 0.12)),
     "self-locking: pressed": (lambda: pressed(0.24, [0.0, -1.0]), "unbounded"),
-    "self-locking: one block pinned": (
-        lambda: pressed(0.12, [1.0, -1.0], wall=BRICK, support={"kind": "pinned-corners"}),
-        "unbounded",
-    ),
+    "self-locking: one block pinned": (lambda: pressed(0.12, [1.0, -1.0], **PINNED), "unbounded"),
     "no equilibrium: overhang": (lambda: courses([[1], [1, 2]], 0.24, 0.06), "infeasible"),
     "no equilibrium: dry on corners": (lambda: panel(support={"kind": "corners"}), "infeasible"),
     "gap, 0.99 tolerances": (lambda: gaping(0.99), 0.5),
@@ -139,10 +131,6 @@ def answer(what: str, model: str) -> Row:
         said = lower, upper
     row |= {"answer": in_words(said), "worth": worth(outcome, exact), "λ": outcome.multiplier}
     return row | {"message": outcome.message}
-
-
-def _length(size: float) -> str:
-    return f"{1e6 * size:g} µm" if size < 1e-3 else f"{size:g} m"
 
 
 def in_words(exact: Exact) -> str:
@@ -196,11 +184,11 @@ def fits(rows: Rows) -> list[Edge]:
     edges = []
     for model in MODELS:
         loads = {row["wall"]: row.get("λ") for row in rows[PART] if row["model"] == model}
-        usual = loads[f"{_length(SIZES[1])} wall, similar"]
-        for size in (SIZES[0], SIZES[2]):
-            load = loads[f"{_length(size)} wall, similar"]
+        usual = loads["1 m wall, similar"]
+        for size in ("1 µm", "1000 m"):
+            load = loads[f"{size} wall, similar"]
             if load is not None and usual is not None:
-                edges.append(Edge(f"λ of a wall of {_length(size)}, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
+                edges.append(Edge(f"λ of a wall of {size}, of that of 1 m, {model}", load / usual, 1.0, 1e-9))
     count = Counter(row["worth"] for row in rows[PART])
     return edges + [Edge(f"answers of {len(rows[PART])}: {WORTH[value][1]}", count[value]) for value in WORTH]
 
@@ -225,6 +213,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     figure.legend(handles=keys, loc="outside lower center", ncols=5)
 
 
+SIZE = 10.5, 0.31 * len(EXTREMES) + 1.6  # of the chart [in]
 STUDY = Study(
     "material-edges",
     "Materials, shapes and sizes at the edge",
@@ -234,12 +223,6 @@ STUDY = Study(
         PART: Part(("wall", "model"), [*product(EXTREMES, MODELS)], answer),
         "widest gap that is contact [block sizes]": Part(("between",), [("two blocks",)], widest_gap),
     },
-    charts=[
-        Chart(
-            "What every model answers at the edge, beside the exact answer",
-            _draw,
-            size=(10.5, 0.31 * len(EXTREMES) + 1.6),
-        )
-    ],
+    charts=[Chart("What every model answers at the edge, beside the exact answer", _draw, size=SIZE)],
     fits=fits,
 )

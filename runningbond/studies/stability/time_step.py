@@ -20,7 +20,7 @@ from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Run, State, collapse_by_steps
 from runningbond.dynamics.vibrations import vibrations
-from runningbond.pictures.charts import looks_of
+from runningbond.pictures.charts import looks_of, ticks
 from runningbond.results import Outcome
 from runningbond.scene import Array, JointMaterial, Stiffness
 from runningbond.studies import Chart, Part, Row, Rows, Study
@@ -156,8 +156,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     left.set(xlabel="time step / critical step", ylabel="growth a step")
     right.set_yticks(range(len(KINDS)), list(KINDS), fontsize=8)
     right.set(xscale="log", xlabel="time step of wall W1 [µs]", ylim=(-0.6, len(KINDS) + 0.9), xlim=(1.6, 60))
-    right.set_xticks([2, 5, 10, 20, 50], ["2", "5", "10", "20", "50"])
-    right.minorticks_off()
+    ticks(right, [2, 5, 10, 20, 50])
     for axes in (left, right):
         axes.legend(loc="upper left")
 

@@ -21,7 +21,7 @@ from runningbond.dynamics import U_CRIT, Criteria, Run, load_steps, ramp, settle
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.limit import limit_nonassociated
 from runningbond.pictures.charts import LOOKS, looks_of
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
 from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wall
 
@@ -43,14 +43,9 @@ WIDTH, BUDGET = 0.005, 1_000_000  # relative width of the brackets, and steps af
 PART, SCALED = "Searches for λ, one criterion changed", "λ / λ known"
 
 
-def scene_of(name: str) -> Scene:
-    """A wall by its name."""
-    return published_scene(name) if name == WEIGHTLESS else known_wall(name).scene
-
-
 def search(name: str, criterion: str, value: float) -> Row:
     """Search for λ with one criterion changed, as slowly at first as the suite does."""
-    scene = scene_of(name)
+    scene = published_scene(name) if name == WEIGHTLESS else known_wall(name).scene
     chosen = DEFAULT | {criterion: value}
     run = Run(rigid_system(scene))
     first = FIRST_STEP / run.system.measure(run.system.live)
@@ -123,7 +118,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
     for name, (colour, marker) in looks.items():
         label = f"{name}, no weight" if name == WEIGHTLESS else name
         _draw_sweep(right, sweep(rows, name, FAR), label, colour, marker, 0.75, joined=True)
-    certified, unit = limit_nonassociated(scene_of(WEIGHTLESS)), _unit(sweep(rows, WEIGHTLESS, FAR))
+    certified, unit = limit_nonassociated(published_scene(WEIGHTLESS)), _unit(sweep(rows, WEIGHTLESS, FAR))
     if certified.lower is not None and certified.upper is not None:
         low, high, colour = certified.lower / unit, certified.upper / unit, looks[WEIGHTLESS][0]
         right.errorbar(5, low, [[0], [high - low]], color=colour, lw=1.5, capsize=3)
