@@ -307,47 +307,29 @@ def build_scene(
         raise SceneError("support.kind", 'a drawing brings its ground; use "base" or "fixed-first-course"', support)
     if inner_joint and joint.elasticity and not inner_joint.elasticity:
         raise SceneError("inner_joint.mortar", "is missing; joint has a stiffness, and models that need it need both")
-    wall_blocks = Blocks.from_polygons(polygons)
-    wall_blocks.check()
+    whole = Blocks.from_polygons(polygons)
+    whole.check()
     block_materials = (block, *materials)
     names = [each.name for each in block_materials]
-    material, assigned = assign_blocks(wall_blocks, names, layers, material_of or {}, assignments)
+    material, assigned = assign_blocks(whole, names, layers, material_of or {}, assignments)
     owner = np.arange(len(polygons))
     if inner_joint is not None:
         polygons, owner = cut_in_half(polygons, 0.75 * bond.width if bond else 0.0)
-        wall_blocks = Blocks.from_polygons(polygons)
-    if not grounds and support == "base":
-        grounds = [_strip_below(wall_blocks)]
-    grounds = cut_ground(grounds, [live for live in load.live if isinstance(live, Settlement)])
-    bodies = [*polygons]
-    if beam is not None:
-        beam = replace(beam, block=len(bodies))
-        bodies.append(beam.outline(wall_blocks))
-    blocks = Blocks.from_polygons([*bodies, *grounds])
-    blocks.check()
-    wall = np.arange(len(blocks)) < len(bodies)
+    blocks, beam, number_of_grounds = _bodies(polygons, grounds, beam, support, load)
     others = len(blocks) - len(polygons)
-    material = np.append(material[owner], np.zeros(others, dtype=np.int64))
-    called = [names[k] for k in material[: len(polygons)]] + [BEAM] * (beam is not None) + [GROUND] * len(grounds)
-
-    fixed = ~wall
-    pins = NO_PINS
-    if support == "fixed-first-course":
-        fixed = fixed | first_course(blocks, wall)
-    elif support in ("corners", "pinned-corners"):
-        pins = corner_pins(blocks, wall, roller=support == "corners")
+    wall = np.arange(len(blocks)) < len(blocks) - number_of_grounds
+    fixed, pins = _support(support, blocks, wall)
     if beam is not None:
         pins = pins + beam.pins(blocks.centroid[len(polygons)])
         live, dead = beam.loads()
         load = Load(load.gravity, (*live, *load.live), (*load.dead, *dead))
-
-    part_of = np.append(owner, np.full(others, -1))
+    part_of, material = np.append(owner, np.full(others, -1)), np.append(material[owner], np.zeros(others, np.int64))
     found = _joints(blocks, fixed, part_of)
     joint_materials = (joint, *joints, *(() if inner_joint is None else (replace(inner_joint, name="inner_joint"),)))
     material_of_joint, of_joints = assign_joints(
         found,
         [each.name for each in joint_materials],
-        called,
+        [*(names[k] for k in material[: len(polygons)]), *[BEAM] * (beam is not None), *[GROUND] * number_of_grounds],
         [layers[int(k)] for k in owner] if layers else (),
         assignments,
         None if beam is None else (len(polygons), beam.joint or joint.name),
@@ -374,6 +356,32 @@ def build_scene(
     )
     _check(scene)
     return scene
+
+
+def _bodies(
+    polygons: Sequence[Array], grounds: Sequence[Array], beam: Beam | None, support: SupportKind, load: Load
+) -> tuple[Blocks, Beam | None, int]:
+    """All bodies: the wall's blocks, the beam, which knows its number then, and the grounds; how many of the last."""
+    blocks = Blocks.from_polygons(polygons)
+    if not grounds and support == "base":
+        grounds = [_strip_below(blocks)]
+    grounds = cut_ground(grounds, [live for live in load.live if isinstance(live, Settlement)])
+    bodies = [*polygons]
+    if beam is not None:
+        beam = replace(beam, block=len(bodies))
+        bodies.append(beam.outline(blocks))
+    blocks = Blocks.from_polygons([*bodies, *grounds])
+    blocks.check()
+    return blocks, beam, len(grounds)
+
+
+def _support(kind: SupportKind, blocks: Blocks, wall: Mask) -> tuple[Mask, Pins]:
+    """Which bodies are held, ``(nb,)``, and the pins of the others."""
+    if kind == "fixed-first-course":
+        return ~wall | first_course(blocks, wall), NO_PINS
+    if kind in ("corners", "pinned-corners"):
+        return ~wall, corner_pins(blocks, wall, roller=kind == "corners")
+    return ~wall, NO_PINS
 
 
 def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
