@@ -6,7 +6,7 @@ Everything here is imported when it is first used, so that the import itself cos
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .compare.draws import Draws
+    from .draws import Draws
     from .fragilities import Fragility, fragility
     from .path_states import PathState
     from .response import Response
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .wall import Wall, read
 else:
     _MODULES = {
-        "Draws": "compare.draws",
+        "Draws": "draws",
         "Fragility": "fragilities",
         "PathState": "path_states",
         "Response": "response",

@@ -14,8 +14,8 @@ from .scene import Scene, SceneError, read_description, scene_from_dict
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .compare.draws import Draws
     from .drawn_response import DrawnResponse
+    from .draws import Draws
     from .models import Model
     from .run_result import Result
 
@@ -231,7 +231,7 @@ class Wall:
             For a model that follows no path, or no number of draws; and as of `run`.
         """
         from .campaigns import ctrl_c_passed_on
-        from .compare.draws import Drawing
+        from .draws import Drawing
         from .models import find_model
 
         drawing = Drawing(self.scene, find_model(model), number, scatter)

@@ -28,7 +28,8 @@ BELOW_PICTURES = METHODS | {"dem", "fem_interface", "homog"}
 MAY_IMPORT["runningbond.pictures"] = BELOW_PICTURES
 MAY_IMPORT["runningbond.models"] = BELOW_PICTURES | {"runningbond.pictures"}
 MAY_IMPORT["runningbond.campaigns"] = MAY_IMPORT["runningbond.models"] | {"runningbond.models"}
-MAY_IMPORT["runningbond.compare"] = MAY_IMPORT["runningbond.campaigns"] | {"runningbond.campaigns"}
+MAY_IMPORT["runningbond.draws"] = MAY_IMPORT["runningbond.campaigns"] | {"runningbond.campaigns"}
+MAY_IMPORT["runningbond.compare"] = MAY_IMPORT["runningbond.draws"] | {"runningbond.draws"}
 MAY_IMPORT["runningbond.studies"] = MAY_IMPORT["runningbond.compare"] | {"runningbond.compare"}
 MAY_IMPORT["runningbond.laboratory"] = MAY_IMPORT["runningbond.studies"] | {"runningbond.studies"}
 MAY_IMPORT["runningbond.commands"] = MAY_IMPORT["runningbond.laboratory"] | {"runningbond.laboratory"}
@@ -149,5 +150,5 @@ def test_the_distribution_is_made_of_exactly_these_packages() -> None:
 
 
 def test_what_can_change_a_number_is_in_the_fingerprint() -> None:
-    after = ("pictures", "campaigns", "compare", "studies", "laboratory", "commands")
+    after = ("pictures", "campaigns", "draws", "compare", "studies", "laboratory", "commands")
     assert set(COMPUTING_ROOMS) == set(MAY_IMPORT) - {f"runningbond.{room}" for room in after}

@@ -11,8 +11,8 @@ import time
 from pathlib import Path
 
 from runningbond.compare import published_scene
-from runningbond.compare.draws import Drawing, Draws
 from runningbond.compare.table import bracket
+from runningbond.draws import Drawing, Draws
 from runningbond.models import MODELS, run_model
 from runningbond.results.outcome import number
 

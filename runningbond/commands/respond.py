@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import Parameter
 
 from runningbond.compare.published import find_scene
-from runningbond.compare.table import csv_lines
 from runningbond.models import MODELS, check_response
 from runningbond.models import respond as respond_with
+from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene

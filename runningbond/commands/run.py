@@ -11,10 +11,10 @@ from cyclopts import Parameter
 
 from runningbond.campaigns import Interrupted
 from runningbond.campaigns.fingerprint import fingerprint
-from runningbond.compare.draws import Drawing
 from runningbond.compare.published import find_scene
-from runningbond.compare.table import csv_lines
+from runningbond.draws import Drawing
 from runningbond.models import MODELS, TOLERANCE, Model, Recorder, check_tolerance, find_model, run_model
+from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
 from runningbond.results.store import ARRAY_FILES, RECORD

@@ -6,9 +6,9 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from runningbond.compare.published import find_scene
-from runningbond.compare.table import Sheet
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.render import VECTOR
+from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 from runningbond.scene import SceneError, read_scene
 

@@ -16,9 +16,9 @@ from rich.table import Table
 from rich.text import Text
 
 from runningbond.compare.advice.costs import estimate
-from runningbond.compare.table import Sheet
 from runningbond.models import Model
 from runningbond.pictures.offscreen import why_not_drawn
+from runningbond.pictures.sheet import Sheet
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.plausibility import warnings
 

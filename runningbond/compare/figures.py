@@ -12,12 +12,13 @@ from homog import crack_slope, lateral_multiplier
 from runningbond.models import Model
 from runningbond.pictures.captions import is_force, to_png
 from runningbond.pictures.charts import bare, mark
+from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.style import CHART_COLOURS, DARK
 from runningbond.results import write_atomically
 from runningbond.scene import Array
 
 from .published import BARALDI, CONCENTRATED, FERRIS, PublishedCase, cases_of
-from .table import Comparison, csv_lines
+from .table import Comparison
 
 FRICTION = 0.6
 TEXTURES = (("4", 4.0), ("2", 2.0), ("1", 1.0), ("1/4", 0.25))  # what to call b/a, block width to height, and b/a

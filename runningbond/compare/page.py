@@ -13,7 +13,7 @@ from jinja2 import Environment, PackageLoader
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from .table import Sheet
+from runningbond.pictures.sheet import Sheet
 
 
 @cache

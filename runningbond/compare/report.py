@@ -19,12 +19,13 @@ from runningbond.pictures.inline import inline_mechanism, inline_wall
 from runningbond.pictures.mechanism import mechanism_shape, mechanism_warning
 from runningbond.pictures.moments import farthest_shape, moving_wall
 from runningbond.pictures.quantities import counted
+from runningbond.pictures.sheet import Sheet
 from runningbond.results import Outcome
 from runningbond.results.outcome import number, two_digits
 
 from .figures import wall_curves
 from .page import inline_svg, templates
-from .table import CORRECTED, Comparison, Sheet, answer, cost_sheets, multiplier_sheets
+from .table import CORRECTED, Comparison, answer, cost_sheets, multiplier_sheets
 
 DRAWN_WITH = ("pyvista", "vtk", "matplotlib", "jinja2")
 FULL, STRONGEST, AGREE, WORST = 0.3, 0.55, 0.05, 4

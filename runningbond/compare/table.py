@@ -1,7 +1,5 @@
 """Tables of a campaign: printed values beside every model's bracket, for the terminal, Markdown and CSV."""
 
-import csv
-import io
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,6 +9,7 @@ from homog import homog
 from runningbond.campaigns import Campaign
 from runningbond.models import Model
 from runningbond.pictures.captions import is_force
+from runningbond.pictures.sheet import Sheet, csv_lines
 from runningbond.results import Outcome
 from runningbond.results.outcome import SCALARS, number, two_digits
 from runningbond.scene import Scene
@@ -20,21 +19,6 @@ from .published import BARALDI, PublishedCase
 OWN = "Your scenes"
 CORRECTED = "HOMO corrected, tan 30°"
 ALIKE = 1e-3  # relative width below which a bracket is printed as one number
-
-
-@dataclass(frozen=True)
-class Sheet:
-    """One table: a title, column heads and rows of cells."""
-
-    title: str
-    heads: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-    def markdown(self) -> str:
-        """The table in Markdown, under its title."""
-        rows = (self.heads, ["---"] * len(self.heads), *self.rows)
-        lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
-        return "\n".join([f"### {self.title}", "", *lines, ""])
 
 
 @dataclass(frozen=True)
@@ -127,13 +111,6 @@ def csv_text(comparison: Comparison) -> str:
             own = [name, scene.title, source, int(scene.wall.sum()), model.name, "N" if is_force(scene) else "1"]
             rows.append([*own, *map(values.get, scalars), *map(printed.get, labels)])
     return csv_lines(rows)
-
-
-def csv_lines(rows: Iterable[Sequence[object]]) -> str:
-    """Rows as the text of a CSV file."""
-    buffer = io.StringIO()
-    csv.writer(buffer, lineterminator="\n").writerows(rows)
-    return buffer.getvalue()
 
 
 def corrected_homo(scene: Scene) -> float:

@@ -8,9 +8,9 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from runningbond.compare.advice.experiment import FILE, write_errors
-from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
 from runningbond.pictures.charts import bare
+from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 from runningbond.results.outcome import two_digits
 from runningbond.scene import BlockMaterial, JointMaterial, table_of

@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from runningbond.compare.table import Sheet
+from runningbond.pictures.sheet import Sheet
 from runningbond.scene import SceneError
 from runningbond.scene.ranges import suggestion
 

@@ -6,7 +6,7 @@ from statistics import median
 from typing import Any
 
 from runningbond.compare.advice.experiment import ModelError
-from runningbond.compare.table import Sheet
+from runningbond.pictures.sheet import Sheet
 from runningbond.results.outcome import two_digits
 
 from .ladder import by_hand

@@ -9,7 +9,7 @@ import pytest
 
 import runningbond as rb
 from fem_interface.modal_wall import modal_wall
-from runningbond.compare.scatter import Scatter
+from runningbond.draws import Scatter
 from runningbond.results import Outcome
 from runningbond.run_result import Result
 

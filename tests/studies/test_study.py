@@ -19,7 +19,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 
-from runningbond.compare.table import Sheet
+from runningbond.pictures.sheet import Sheet
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study, apart, store
 from runningbond.studies.apart import TOO_LONG, Ended, measure_apart
 from runningbond.studies.page import LONG, agreement, edges_sheet, section, write_page

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from runningbond.compare.scatter import Scatter
+from runningbond.draws import Scatter
 from runningbond.models import check_tolerance, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from runningbond.compare.table import csv_lines
+from runningbond.pictures.sheet import csv_lines
 from runningbond.scene import Scene
 
 FILE = "model-errors.csv"

@@ -15,8 +15,7 @@ import runningbond as rb
 from runningbond.campaigns import Interrupted, tasks
 from runningbond.commands.command_line import command
 from runningbond.compare import published_scene
-from runningbond.compare.draws import Drawing, Draws
-from runningbond.compare.scatter import Scatter
+from runningbond.draws import Drawing, Draws, Scatter
 from runningbond.models import MODELS, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError

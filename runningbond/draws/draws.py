@@ -12,13 +12,13 @@ import numpy as np
 
 from runningbond.campaigns import run_campaign
 from runningbond.models import TOLERANCE, Model
+from runningbond.pictures.sheet import Sheet
 from runningbond.results import Outcome, make_folder
 from runningbond.results.outcome import number
 from runningbond.scene import Array, Scene, SceneError
 from runningbond.scene.ranges import Range
 
 from .scatter import Scatter
-from .table import Sheet
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
