@@ -12,9 +12,9 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 
 from runningbond.compare.page import figure_html, page_html, table_html
-from runningbond.compare.table import Sheet
 from runningbond.pictures.captions import to_png
 from runningbond.pictures.charts import bare
+from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 
 from .store import failures

@@ -18,7 +18,7 @@ from typing import TypeAlias
 import numpy as np
 
 from runningbond.campaigns.fingerprint import code_digest
-from runningbond.compare.table import csv_lines
+from runningbond.pictures.sheet import csv_lines
 from runningbond.results import write_atomically
 
 from .apart import measure_apart

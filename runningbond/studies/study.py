@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 from matplotlib.figure import Figure
 
-from runningbond.compare.table import Sheet
+from runningbond.pictures.sheet import Sheet
 
 Case: TypeAlias = tuple[Any, ...]  # words and numbers that tell what is measured
 Row: TypeAlias = dict[str, Any]  # a case and what was measured of it, by columns; lists are for charts alone

@@ -98,12 +98,16 @@ class KnownWall:
 SLIDING, TOPPLING, W1, W2 = KNOWN = ("block that slides", "block that topples", "rounded W1", "rounded W2")
 
 
+def known_scene(name: str) -> Scene:
+    """The scene of a wall of `KNOWN`."""
+    blocks = {SLIDING: (0.24, 0.12, SLIDES), TOPPLING: (0.12, 0.12 / TOPPLES, 0.9)}
+    return one_block(*blocks[name], 1e10) if name in blocks else inset_wall(f"wall-{name[-2:].lower()}")
+
+
 @cache
 def known_wall(name: str) -> KnownWall:
     """A wall of `KNOWN`."""
-    exact = {SLIDING: SLIDES, TOPPLING: TOPPLES}.get(name)
-    blocks = {SLIDING: (0.24, 0.12, SLIDES), TOPPLING: (0.12, 0.12 / TOPPLES, 0.9)}
-    scene = inset_wall(f"wall-{name[-2:].lower()}") if exact is None else one_block(*blocks[name], 1e10)
+    exact, scene = {SLIDING: SLIDES, TOPPLING: TOPPLES}.get(name), known_scene(name)
     certified, system = limit_nonassociated(scene), rigid_system(scene)
     assert certified.multiplier is not None
     phi = np.zeros(len(system.mass))

@@ -13,7 +13,7 @@ from runningbond.compare.published import PUBLISHED, published_scene
 from runningbond.scene import BlockMaterial, History, JointMaterial, Load, Scene, build_scene
 from runningbond.scene.plausibility import warnings
 from runningbond.studies.accuracy.walls import all_walls
-from runningbond.studies.walls import KNOWN, known_wall
+from runningbond.studies.walls import KNOWN, known_scene
 
 from ..walls import content, courses, panel, write_toml
 
@@ -28,7 +28,7 @@ def test_no_published_wall_looks_like_a_slip() -> None:
 
 
 def test_no_wall_of_the_studies_looks_like_a_slip() -> None:
-    scenes = {name: wall.scene for name, wall in all_walls().items()} | {name: known_wall(name).scene for name in KNOWN}
+    scenes = {name: wall.scene for name, wall in all_walls().items()} | {name: known_scene(name) for name in KNOWN}
     assert {name: warnings(scene) for name, scene in scenes.items()} == dict.fromkeys(scenes, ())
 
 

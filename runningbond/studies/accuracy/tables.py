@@ -7,9 +7,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from runningbond.compare.table import Sheet
 from runningbond.joints import joint_stiffness
 from runningbond.models import MODELS
+from runningbond.pictures.sheet import Sheet
 from runningbond.results.outcome import two_digits
 from runningbond.studies import Edge, Row, Rows
 from runningbond.studies.apart import TOO_LONG

@@ -26,7 +26,7 @@ from runningbond.dynamics.run import LOCAL
 from runningbond.pictures.charts import LOOKS, floor, level, looks_of, series
 from runningbond.scene import Array
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_wall
+from runningbond.studies.walls import SLIDING, TOPPLING, W1, known_scene, known_wall
 
 WALLS = (SLIDING, TOPPLING, W1)
 RATES = tuple(10.0 ** -(k / 3) for k in range(7))  # rates of λ [1/s], the fastest first
@@ -85,7 +85,7 @@ def push_row(name: str, steps: int) -> Row:
 @cache
 def search_of(name: str) -> tuple[Run, float, Criteria]:
     """What a search for λ of a wall takes: its blocks, its first load step, and when it has fallen."""
-    scene = published_scene(name) if name in DRY else known_wall(name).scene
+    scene = published_scene(name) if name in DRY else known_scene(name)
     run = Run(rigid_system(scene))
     far: float | Array = U_CRIT * scene.block_sizes if name in DRY else U_CRIT * scene.block_size
     return run, FIRST_STEP / run.system.measure(run.system.live), Criteria(collapse=far)

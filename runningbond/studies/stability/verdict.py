@@ -23,7 +23,7 @@ from runningbond.limit import limit_nonassociated
 from runningbond.pictures.charts import LOOKS, looks_of
 from runningbond.scene import Array
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
-from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_wall
+from runningbond.studies.walls import RAMP, SLIDING, TOPPLING, W1, W2, known_scene, known_wall
 
 SUITE = Criteria(collapse=U_CRIT)
 WALLS = (SLIDING, TOPPLING, W1)
@@ -45,7 +45,7 @@ PART, SCALED = "Searches for λ, one criterion changed", "λ / λ known"
 
 def search(name: str, criterion: str, value: float) -> Row:
     """Search for λ with one criterion changed, as slowly at first as the suite does."""
-    scene = published_scene(name) if name == WEIGHTLESS else known_wall(name).scene
+    scene = published_scene(name) if name == WEIGHTLESS else known_scene(name)
     chosen = DEFAULT | {criterion: value}
     run = Run(rigid_system(scene))
     first = FIRST_STEP / run.system.measure(run.system.live)
