@@ -10,7 +10,7 @@ from runningbond.joints import JointPoints
 from runningbond.scene import Array, Mask, Scene
 
 from .collapse import Criteria, Verdict, hold_load
-from .load_stepping import NEARLY_AT_REST
+from .growth import NEARLY_AT_REST
 from .run import Observer, Run
 from .state import State
 

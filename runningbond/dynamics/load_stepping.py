@@ -7,7 +7,7 @@ import numpy as np
 from runningbond.scene import Array
 
 from .collapse import Criteria, Verdict, hold_load, settle
-from .controls import ramp
+from .growth import FAR, Growth
 from .run import Observer, Run, no_observer
 from .state import State
 
@@ -17,29 +17,6 @@ LOADING, LOADING_WEIGHTLESS = 32, 4
 A wall that is loaded faster slips in several places at once where it would slip in one after the other, and so comes
 to bear more, or less.
 """
-
-FAR, FASTER = 1 / 3, 8
-"""Part of a bound of the load up to which a wall with a weight is loaded faster, and how much faster."""
-
-SOFTER = 2.0
-"""How much farther than where it was stiffest a wall goes with the load where it has begun to give way.
-
-Until then it is loaded faster as well: what slips there slips one after the other all the same.
-"""
-
-GIVES_WAY, LOOKS = 1.0, 8
-"""Motion, in units of collapse, at which a load grows no more, and looks at it in a step of the load: at those loads
-that bisection would try, so that models that see the same wall find the same bracket."""
-
-PAUSES, NEARLY_AT_REST = 10, 1e-3
-"""How often the load of a wall without weight pauses in a step, and the unbalanced force at which it grows again.
-
-Such a wall has no pressure on its joints but what the load gives it, and slips for good wherever a wave takes that
-away. A wall with a weight chatters at such loads without end, and slow growth does it better.
-"""
-
-PAUSE_INTERVAL = 200
-"""Time steps of a pause between two looks."""
 
 RESOLVED = 10
 """Least width of a bracket, in live loads that a wall would be held to bear though nothing balances them."""
@@ -77,6 +54,11 @@ class LoadSteps:
     steps: int = 0  # steps taken, on every path
     interrupted: bool = False  # whether Ctrl-C ended it
 
+    @property
+    def width(self) -> float:
+        """Width of the bracket, infinite until a load brings the wall down."""
+        return np.inf if self.upper is None else self.upper - (self.lower or 0.0)
+
     def add(self, trial: float, state: State, verdict: Verdict, halfway: Array | None) -> None:
         """Take note of a load and of the wall under it."""
         self.verdict = verdict
@@ -108,57 +90,6 @@ class UndecidedLoads:
         """These loads and one more if it is undecided; none where the wall held above them or fell below them."""
         undecided = UndecidedLoads((*self.loads, trial) if result.verdict == "undecided" else self.loads)
         return undecided if undecided.loads and min(undecided.sides(result)) > 0 else UndecidedLoads()
-
-
-@dataclass(eq=False)
-class Growth:
-    """How the load of a wall grows: slowly once the wall gives way, which is when the order of slips counts."""
-
-    run: Run
-    criteria: Criteria
-    far: float  # multiplier up to which it grows faster whatever the wall does
-    softest: float = np.inf  # least motion per multiplier that was seen, in units of collapse
-    slow: float = np.inf  # multiplier from which the wall gives way
-    # multipliers that growth has passed since the last one that grew, each with the wall then
-    passed: list[tuple[float, State]] = field(default_factory=list)
-    steps: int = 0  # steps taken
-
-    def passed_by(self, trial: float) -> tuple[float, State] | None:
-        """The multiplier, but for rounding, and a copy of the wall as it grew through it; None where it did not."""
-        for multiplier, state in self.passed:
-            if np.isclose(multiplier, trial, rtol=1e-12, atol=0.0):
-                return multiplier, state.copy()
-        return None
-
-    def up_to(self, stop: float, state: State, start: float, steps: float) -> tuple[float, State]:
-        """Raise the multiplier in some steps, until the wall gives way; what it reached, and the wall then."""
-        begin, reached, self.passed = state.motion, start, []
-        for look in range(1, LOOKS + 1):
-            before, reached = reached, stop if look == LOOKS else start + (stop - start) * look / LOOKS
-            state = self._onward(state, before, reached, max(1, round(steps / LOOKS)))
-            if self.run.system.farthest(state.motion - begin, self.criteria.collapse) > GIVES_WAY:
-                break
-            self.passed.append((reached, state))
-        return reached, state.copy()
-
-    def _onward(self, state: State, start: float, stop: float, steps: int) -> State:
-        """The wall after the multiplier has grown: faster first, and slowly after all where it gave way to that."""
-        if stop <= self.far or (stop <= self.slow and self.softest < np.inf):
-            grown, softness = self._grown(state, start, stop, max(1, round(steps / FASTER)))
-            if stop <= self.far or softness <= SOFTER * self.softest:
-                self.softest = min(self.softest, softness)
-                return grown
-            self.slow = start
-        grown, softness = self._grown(state, start, stop, steps)
-        self.softest = min(self.softest, softness)
-        return grown
-
-    def _grown(self, state: State, start: float, stop: float, steps: int) -> tuple[State, float]:
-        grown = state.copy()
-        ramp(self.run, grown, start, stop, steps)
-        self.steps += grown.steps - state.steps
-        moved = self.run.system.farthest(grown.motion - state.motion, self.criteria.collapse)
-        return grown, moved / (stop - start)
 
 
 def load_steps(
@@ -229,39 +160,22 @@ def _search(
     if result.verdict != "stable":
         result.fallen = state
         return
+    result.add(0.0, state, "stable", None)
     most, farthest, bound = limits
-    result.lower, result.borne = 0.0, state
-    result.rests.append((0.0, state))
     run = run.held_late(state)
-    probe = state.copy()
-    answered = settle(run, probe, first, criteria, sudden=True) != "undecided"
-    # A wall that comes to rest slowly is loaded as slowly as the budget allows.
-    unhurried = min(loading * (probe.steps - state.steps), criteria.budget) if answered else criteria.budget
-    result.steps = probe.steps
-    step, undecided, in_vain, grows = first, UndecidedLoads(), 0, Growth(run, criteria, FAR * bound)
+    unhurried, result.steps = _unhurried(run, state, first, criteria, loading)
+    step, undecided, in_vain, grows = first, UndecidedLoads(), 0, Growth(run, criteria, FAR * bound, unhurried)
     narrowest = RESOLVED * criteria.rest / (system.measure(system.live) or 1.0)
-    while result.upper is None or result.upper - result.lower > max(tolerance * result.upper, narrowest):
-        if undecided.closed(result, max(tolerance * (result.upper or 0.0), narrowest)):
+    while result.width > (enough := max(tolerance * (result.upper or 0.0), narrowest)):
+        if undecided.closed(result, enough):
             result.verdict = "undecided"
             return
-        trial = _next_trial(result, step, undecided, tolerance)
-        # Just above the bound a wall falls ever so slowly: not where the first step alone is beyond it.
-        searches = result.upper is None and not undecided.loads
-        if searches and 0 < result.lower < (edge := bound * (1 + tolerance / 2)) < trial:
-            trial = edge
+        trial = _next_trial(result, step, undecided, tolerance, bound)
         if trial > most:
             return
         growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
-        share = (trial - result.lower) / max(first, growth * trial)
-        before = grows.steps
-        if system.weightless:
-            state = result.borne.copy()
-            trial = _raise_in_parts(run, state, result.lower, trial, unhurried * share, PAUSES * share, criteria)
-            grows.steps += state.steps - result.borne.steps
-        elif passed := grows.passed_by(trial):
-            trial, state = passed
-        else:
-            trial, state = grows.up_to(trial, result.borne, result.lower, unhurried * share)
+        (lower, borne), before = result.rests[-1], grows.steps
+        trial, state = grows.to(trial, lower, borne, (trial - lower) / max(first, growth * trial))
         held = state.steps
         verdict, halfway = hold_load(run, state, trial, criteria, observe)
         taken = grows.steps - before + state.steps - held
@@ -271,7 +185,7 @@ def _search(
         if in_vain > UNDECIDED_BUDGETS * criteria.budget:
             return
         undecided = undecided.after(result, trial)
-        if result.verdict == "stable":
+        if verdict == "stable":
             if result.upper is None and system.farthest(state.motion - result.rests[0][1].motion, farthest) > 1:
                 return
             if growth > GROWTH:
@@ -280,43 +194,27 @@ def _search(
                 step = max(step, min(2 * step, GROWTH * trial))
 
 
-def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float) -> float:
+def _unhurried(run: Run, state: State, first: float, criteria: Criteria, loading: float) -> tuple[float, int]:
+    """Steps in which the load comes on by its first one, and those taken until that was known, the wall's included."""
+    probe = state.copy()
+    if settle(run, probe, first, criteria, sudden=True) == "undecided":
+        # A wall that comes to rest slowly is loaded as slowly as the budget allows.
+        return criteria.budget, probe.steps
+    return min(loading * (probe.steps - state.steps), criteria.budget), probe.steps
+
+
+def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float, bound: float) -> float:
     """Next load to try: a step up, or the middle of the bracket; beside an undecided load, or well off two."""
     lower, upper = result.lower or 0.0, result.upper
     if not undecided.loads:
-        return lower + step if upper is None else (lower + upper) / 2
+        if upper is not None:
+            return (lower + upper) / 2
+        # Just above the bound a wall falls ever so slowly: not where the first step alone is beyond it.
+        edge = bound * (1 + tolerance / 2)
+        return edge if 0 < lower < edge < lower + step else lower + step
     low, high = min(undecided.loads), max(undecided.loads)
     if upper is None or len(undecided.loads) == 1:
         above = high * (1 + tolerance / 4)
         return above if upper is None or upper > above else low * (1 - tolerance / 4)
     below, above = undecided.sides(result)
     return (lower + low) / 2 if below > above else (high + upper) / 2
-
-
-def _raise_in_parts(
-    run: Run, state: State, start: float, stop: float, steps: float, pauses: float, criteria: Criteria
-) -> float:
-    """Raise the multiplier of a wall without weight in some steps, in place, and return what it reached.
-
-    It pauses, and falls where it cannot.
-    """
-    motion, parts = state.motion.copy(), max(1, round(pauses))
-    reached = start
-    for part in range(1, parts + 1):
-        before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
-        ramp(run, state, before, reached, max(1, round(steps / parts)))
-        if not _pauses(run, state, reached, motion, criteria):
-            return reached
-    return stop
-
-
-def _pauses(run: Run, state: State, multiplier: float, motion: Array, criteria: Criteria) -> bool:
-    """Hold a load, in place, until the wall is nearly at rest; not where it has come far from a motion before."""
-    given = run.given(state)
-    for _ in range(criteria.budget // PAUSE_INTERVAL):
-        if run.unbalanced(state) < NEARLY_AT_REST:
-            return True
-        run.hold(state, multiplier, PAUSE_INTERVAL, given=given)
-        if run.system.farthest(state.motion - motion, criteria.collapse) > 1:
-            return False
-    return False

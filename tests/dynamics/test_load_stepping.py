@@ -12,7 +12,8 @@ from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.controls import ramp
-from runningbond.dynamics.load_stepping import FASTER, LOOKS, RESOLVED, Growth, _raise_in_parts
+from runningbond.dynamics.growth import FASTER, LOOKS, Growth, _raise_in_parts
+from runningbond.dynamics.load_stepping import RESOLVED
 from runningbond.scene import Array
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
@@ -37,7 +38,7 @@ def searched(
 
     module = "runningbond.dynamics.load_stepping"
     settle = patch(f"{module}.settle", return_value="stable")
-    with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
+    with settle, patch(f"{module}.hold_load", hold_load), patch("runningbond.dynamics.growth.ramp"):
         return load_steps(BLOCK, FIRST, tolerance, Criteria(collapse=1.0), most=10.0, bound=bound), tried
 
 
@@ -117,7 +118,7 @@ def test_a_bound_that_the_wall_bears_all_the_same_does_not_end_the_search() -> N
 def test_a_load_grows_faster_far_below_its_bound_and_where_the_wall_is_as_stiff_as_at_first() -> None:
     """A block that does not slide yet: slowly in the first look alone, and not even there below a bound."""
     for far, slowly in ((0.0, 1 / LOOKS), (0.3, 0.0)):
-        grows, start = Growth(BLOCK, Criteria(collapse=1.0), far), State.at_rest(BLOCK.system)
+        grows, start = Growth(BLOCK, Criteria(collapse=1.0), far, 80_000.0), State.at_rest(BLOCK.system)
         reached, state = grows.up_to(0.3, start, 0.0, 80_000.0)
         assert reached == 0.3
         assert start.steps == 0
@@ -126,7 +127,7 @@ def test_a_load_grows_faster_far_below_its_bound_and_where_the_wall_is_as_stiff_
 
 def test_a_load_that_makes_a_wall_give_way_grows_slowly_and_no_more_once_it_has() -> None:
     """Sliding at 0.6: the look of that load is gone through anew, slowly, to the last bit, and nothing is after it."""
-    grows = Growth(BLOCK, Criteria(collapse=1e-3), 0.0)
+    grows = Growth(BLOCK, Criteria(collapse=1e-3), 0.0, 80_000.0)
     reached, fallen = grows.up_to(3.0, State.at_rest(BLOCK.system), 0.0, 80_000.0)
     assert (reached, grows.slow) == (0.75, 0.375)
     (passed, state), slowly = grows.passed[-1], grows.steps
@@ -154,8 +155,8 @@ def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: lis
     answers = iter(pauses)
     state = State.at_rest(WEIGHTLESS.system)
     with (
-        patch("runningbond.dynamics.load_stepping.ramp"),
-        patch("runningbond.dynamics.load_stepping._pauses", lambda *_: next(answers, True)),
+        patch("runningbond.dynamics.growth.ramp"),
+        patch("runningbond.dynamics.growth._pauses", lambda *_: next(answers, True)),
     ):
         reached = _raise_in_parts(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
     assert reached <= stop
@@ -205,7 +206,7 @@ def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farthe
 
     scene, module = panel(**SIZE), "runningbond.dynamics.load_stepping"
     settle = patch(f"{module}.settle", return_value="stable")
-    with settle, patch(f"{module}.hold_load", hold_load), patch(f"{module}.ramp"):
+    with settle, patch(f"{module}.hold_load", hold_load), patch("runningbond.dynamics.growth.ramp"):
         points, order = contact_points(scene), np.arange(2)
         outcome = collapse_by_steps(
             scene, "", BLOCK, 0.005, points=points, point_order=order, is_self_locking=lambda: False
