@@ -44,7 +44,7 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
     """Answers as they come, from `jobs` processes; −1 is one a core, and 1 this process itself."""
     left = {task.cell: task for task in tasks}
     try:
-        with _processes(jobs):
+        with _processes(jobs, len(tasks)):
             for answer in side_by_side(tasks):
                 del left[answer.cell]
                 yield answer
@@ -52,15 +52,15 @@ def in_processes(tasks: Sequence[Task], jobs: int) -> Iterator[Answer]:
         # A process was killed, over which task is not said: what is left goes one by one, the cheapest first.
         for task in reversed(left.values()):
             try:
-                with _processes(2):
+                with _processes(2, 1):
                     yield from side_by_side([task])
             except TerminatedWorkerError:
                 yield task.lost()
 
 
 @contextmanager
-def _processes(jobs: int) -> Iterator[None]:
-    """Have joblib run tasks in processes of their own, or in this one where there is to be only one."""
+def _processes(jobs: int, tasks: int) -> Iterator[None]:
+    """Have joblib run some tasks in processes of their own, or in this one where there is to be only one."""
     if jobs != 1:
         try:
             multiprocessing.Lock()
@@ -73,8 +73,8 @@ def _processes(jobs: int) -> Iterator[None]:
         return
     if hasattr(signal, "pthread_sigmask"):
         multiprocessing.resource_tracker.ensure_running()  # its start unblocks what `side_by_side` blocks
-    # More processes than cores gain nothing but memory.
-    n_jobs = cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count()))
+    # More processes than cores or tasks take memory and gain nothing; joblib takes one for none.
+    n_jobs = min(cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count())), max(2, tasks))
     # Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say.
     ignore = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
     with parallel_config(backend="loky", n_jobs=n_jobs, initializer=ignore), _quiet_kill():
