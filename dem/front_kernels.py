@@ -12,7 +12,7 @@ import numpy as np
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices, Mask
 
-kernel = compiled.kernel
+kernel, copy_into = compiled.kernel, compiled.copy_into
 
 
 class Fronts(NamedTuple):
@@ -73,20 +73,13 @@ def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> bool
         if u > 0:
             right = np.zeros((s, u))
             _add_product(store[at[f] : middle].reshape((s, s)), -store[middle:low].reshape((s, u)), right)
-            _copy(right.ravel(), store[middle:low])
+            copy_into(store[middle:low], right.ravel())
             store[last : at[f + 1]] = 0.0
             _add_product(store[low:last].reshape((u, s)), right, store[last : at[f + 1]].reshape((u, u)))
             for b in below[first[f] : first[f + 1]]:
                 theirs = place[begin[b] : begin[b + 1]]
                 _add_left(store[at[b + 1] - theirs.size**2 : at[b + 1]], theirs, s, u, store[last : at[f + 1]])
     return True
-
-
-@kernel
-def _copy(source: Array, target: Array) -> None:
-    """Copy numbers; an assignment to a slice is two seconds of compilation, for what it would say of other shapes."""
-    for i in range(source.size):
-        target[i] = source[i]
 
 
 @kernel
@@ -123,7 +116,7 @@ def _invert(matrix: Array) -> bool:
     for i in range(s):
         for k in range(s):
             row[order[k]] = matrix[i, k]
-        _copy(row, matrix[i])
+        copy_into(matrix[i], row)
     return True
 
 
@@ -206,7 +199,7 @@ def substitute(fronts: Fronts, store: Array, x: Array) -> None:
             low = at[f] + s * s + s * u
             solved = np.zeros(s)
             _add_times(store[at[f] : at[f] + s * s].reshape((s, s)), v[own[f] : own[f + 1]], solved)
-            _copy(solved, v[own[f] : own[f + 1]])
+            copy_into(v[own[f] : own[f + 1]], solved)
             if u > 0:
                 less = np.zeros(u)
                 _add_times(store[low : low + u * s].reshape((u, s)), solved, less)

@@ -22,7 +22,7 @@ from .system import Kernel
 from .ties import pull
 from .update import Modes, StateArrays
 
-kernel, inlined = compiled.kernel, compiled.inlined
+kernel, inlined, copy_into = compiled.kernel, compiled.inlined, compiled.copy_into
 
 
 Work: TypeAlias = tuple[Array, Array, Array, Array, Array, Array]
@@ -66,15 +66,8 @@ TOO_MUCH_SPENT = 2.0
 
 
 @kernel
-def _copy(source: Array, into: Array) -> None:
-    """As ``into[:] = source``, which takes seconds to compile: it asks for memory where the two may overlap."""
-    for i in range(into.size):
-        into[i] = source[i]
-
-
-@kernel
 def _restrained(motion: Array, freedom: Indices, basis: Array, moved: Array) -> None:
-    _copy(motion, moved)
+    copy_into(moved, motion)
     for r in range(freedom.shape[0]):
         for row in range(3):
             total = 0.0
@@ -192,7 +185,7 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
             if restrained:
                 force[:] = 0.0
             else:
-                _copy(load, force)
+                copy_into(force, load)
             scatter(normal, tangential, geometry, force)
             if restrained:
                 _project(force, freedom, basis)
@@ -266,7 +259,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain
         state, work = arrays[7:]
         motion, loaded = state[0], work[1]
         already, given, most = watch
-        _copy(load, loaded)
+        copy_into(loaded, load)
         taken, stable, total, worked, multiplier, before = 0, True, 0.0, 0.0, 0.0, 0.0
         while stable and taken < steps:
             piece = steps

@@ -19,6 +19,7 @@ from numba.core.caching import FunctionCache
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
 from numba.core.serialize import dumps
+from numpy.typing import NDArray
 
 from runningbond.scene.folder_lock import locked
 
@@ -139,6 +140,13 @@ def kernel(function: Callable[..., Any]) -> Any:
 def inlined(function: Callable[..., Any]) -> Any:
     """Decorator of a long kernel that one other calls: part of that, and not compiled by itself as well."""
     return numba.njit(error_model="numpy", nogil=True, inline="always")(function)
+
+
+@kernel
+def copy_into(target: NDArray[Any], source: NDArray[Any]) -> None:
+    """As ``target[:] = source``, which takes seconds to compile: it asks for memory where the two may overlap."""
+    for i in range(target.size):
+        target[i] = source[i]
 
 
 class Compilation(Listener):  # type: ignore[misc]
