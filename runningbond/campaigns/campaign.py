@@ -144,6 +144,6 @@ def _answers(tasks: Sequence[Task], folder: Path | None, jobs: int, cluster: str
 
         yield from on_cluster(missing, cluster)
     elif missing:
-        from .processes import in_processes  # joblib takes a tenth of the time in which a command is there
+        from .processes import in_processes  # joblib is slow to load, and nothing else needs it
 
         yield from in_processes(missing, jobs)

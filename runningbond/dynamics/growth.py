@@ -49,16 +49,12 @@ class Growth:
     passed: list[tuple[float, State]] = field(default_factory=list)
     steps: int = 0  # steps taken
 
-    def to(self, trial: float, start: float, state: State, share: float) -> tuple[float, State]:
+    def reach(self, trial: float, state: State, start: float, share: float) -> tuple[float, State]:
         """Raise the multiplier in a share of the unhurried steps; what it reached, and the wall then."""
+        steps = self.unhurried * share
         if self.run.system.weightless:
-            grown = state.copy()
-            reached = _raise_in_parts(
-                self.run, grown, start, trial, self.unhurried * share, PAUSES * share, self.criteria
-            )
-            self.steps += grown.steps - state.steps
-            return reached, grown
-        return self.passed_by(trial) or self.up_to(trial, state, start, self.unhurried * share)
+            return self._in_parts(trial, state, start, steps, PAUSES * share)
+        return self.passed_by(trial) or self.up_to(trial, state, start, steps)
 
     def passed_by(self, trial: float) -> tuple[float, State] | None:
         """The multiplier, but for rounding, and a copy of the wall as it grew through it; None where it did not."""
@@ -97,31 +93,24 @@ class Growth:
         moved = self.run.system.farthest(grown.motion - state.motion, self.criteria.collapse)
         return grown, moved / (stop - start)
 
+    def _in_parts(self, stop: float, state: State, start: float, steps: float, pauses: float) -> tuple[float, State]:
+        """Raise the multiplier of a wall without weight: it pauses, and falls where it cannot."""
+        grown, parts, reached = state.copy(), max(1, round(pauses)), start
+        for part in range(1, parts + 1):
+            before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
+            ramp(self.run, grown, before, reached, max(1, round(steps / parts)))
+            if not self._pauses(grown, reached, state.motion):
+                break
+        self.steps += grown.steps - state.steps
+        return reached, grown
 
-def _raise_in_parts(
-    run: Run, state: State, start: float, stop: float, steps: float, pauses: float, criteria: Criteria
-) -> float:
-    """Raise the multiplier of a wall without weight in some steps, in place, and return what it reached.
-
-    It pauses, and falls where it cannot.
-    """
-    motion, parts = state.motion.copy(), max(1, round(pauses))
-    reached = start
-    for part in range(1, parts + 1):
-        before, reached = reached, stop if part == parts else start + (stop - start) * part / parts
-        ramp(run, state, before, reached, max(1, round(steps / parts)))
-        if not _pauses(run, state, reached, motion, criteria):
-            return reached
-    return stop
-
-
-def _pauses(run: Run, state: State, multiplier: float, motion: Array, criteria: Criteria) -> bool:
-    """Hold a load, in place, until the wall is nearly at rest; not where it has come far from a motion before."""
-    given = run.given(state)
-    for _ in range(criteria.budget // PAUSE_INTERVAL):
-        if run.unbalanced(state) < NEARLY_AT_REST:
-            return True
-        run.hold(state, multiplier, PAUSE_INTERVAL, given=given)
-        if run.system.farthest(state.motion - motion, criteria.collapse) > 1:
-            return False
-    return False
+    def _pauses(self, state: State, multiplier: float, motion: Array) -> bool:
+        """Hold a load, in place, until the wall is nearly at rest; not where it has come far from a motion before."""
+        given = self.run.given(state)
+        for _ in range(self.criteria.budget // PAUSE_INTERVAL):
+            if self.run.unbalanced(state) < NEARLY_AT_REST:
+                return True
+            self.run.hold(state, multiplier, PAUSE_INTERVAL, given=given)
+            if self.run.system.farthest(state.motion - motion, self.criteria.collapse) > 1:
+                return False
+        return False

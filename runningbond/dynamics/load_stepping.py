@@ -175,7 +175,7 @@ def _search(
             return
         growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
         (lower, borne), before = result.rests[-1], grows.steps
-        trial, state = grows.to(trial, lower, borne, (trial - lower) / max(first, growth * trial))
+        trial, state = grows.reach(trial, borne, lower, (trial - lower) / max(first, growth * trial))
         held = state.steps
         verdict, halfway = hold_load(run, state, trial, criteria, observe)
         taken = grows.steps - before + state.steps - held

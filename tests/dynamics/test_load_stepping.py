@@ -12,7 +12,7 @@ from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.controls import ramp
-from runningbond.dynamics.growth import FASTER, LOOKS, Growth, _raise_in_parts
+from runningbond.dynamics.growth import FASTER, LOOKS, Growth
 from runningbond.dynamics.load_stepping import RESOLVED
 from runningbond.scene import Array
 from tests.fem_interface.walls import MORTAR
@@ -156,9 +156,10 @@ def test_a_wall_without_weight_is_never_loaded_beyond_what_was_asked(pauses: lis
     state = State.at_rest(WEIGHTLESS.system)
     with (
         patch("runningbond.dynamics.growth.ramp"),
-        patch("runningbond.dynamics.growth._pauses", lambda *_: next(answers, True)),
+        patch.object(Growth, "_pauses", lambda *_: next(answers, True)),
     ):
-        reached = _raise_in_parts(WEIGHTLESS, state, 0.05, stop, 1000.0, len(pauses), Criteria(collapse=1.0))
+        grows = Growth(WEIGHTLESS, Criteria(collapse=1.0), 0.0, 1000.0)
+        reached, _ = grows._in_parts(stop, state, 0.05, 1000.0, len(pauses))
     assert reached <= stop
     assert (reached == stop) == all(pauses[:-1])
 

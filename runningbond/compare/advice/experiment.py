@@ -6,7 +6,6 @@
 import csv
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, fields
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +69,6 @@ def write_errors(errors: Iterable[ModelError]) -> str:
     return csv_lines([names, *rows])
 
 
-@cache
 def read_errors(path: Path = SHIPPED) -> list[ModelError]:
     """Read such a table."""
     read: dict[Any, Callable[[str], Any]] = {str: str, float: float, bool: "True".__eq__}
