@@ -8,10 +8,9 @@ Indices are unsigned, which need no check for counting from the end.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runningbond.joints import compiled
-from runningbond.scene import Array
+from runningbond.scene import Array, Unsigned
 
 kernel = compiled.kernel
 
@@ -19,11 +18,11 @@ kernel = compiled.kernel
 class RigidJoints(NamedTuple):
     """Joints in runs."""
 
-    start: NDArray[np.uint64]  # (nr + 1,) first joint of each run, then the number of joints
+    start: Unsigned  # (nr + 1,) first joint of each run, then the number of joints
     # (nr,) place of the blocks a and b of each run's first joint, less the number of that joint; what is negative
     # wraps round, and comes out right in a sum all the same
-    first: NDArray[np.uint64]
-    second: NDArray[np.uint64]
+    first: Unsigned
+    second: Unsigned
     # (nr, 8) what is the same for all joints of a run: normal n_x, n_y, half length [m] between the two points, lever
     # arms [m] of normal and tangential force at the joint's middle about the centroids: normal_a, normal_b, tangent_a,
     # tangent_b, and the area [m²] of a point

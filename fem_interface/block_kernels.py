@@ -12,11 +12,10 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runningbond.dynamics.system import Kernel
 from runningbond.joints import compiled
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array, Indices, Unsigned
 
 from .mirror_symmetry import FoldedTables, TableRows
 
@@ -66,8 +65,8 @@ class ModalJoints(NamedTuple):
 
     tables: NodalTables
     folded: FoldedTables
-    start: NDArray[np.uint64]
-    places: NDArray[np.uint64]
+    start: Unsigned
+    places: Unsigned
     shares: Array
     weighted: Array
 

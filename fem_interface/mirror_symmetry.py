@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array, Indices, Unsigned
 
 FEWEST = 64
 """Blocks of one template below which a plain matrix product is as fast."""
@@ -106,8 +105,8 @@ class TableRows(NamedTuple):
         Columns and values of each term.
     """
 
-    start: NDArray[np.uint64]
-    column: NDArray[np.uint64]
+    start: Unsigned
+    column: Unsigned
     value: Array
 
 
@@ -125,8 +124,8 @@ class FoldedTables(NamedTuple):
         Entries of the tables and of their negative transposes.
     """
 
-    shapes: NDArray[np.uint64]
-    pairs: NDArray[np.uint64]
+    shapes: Unsigned
+    pairs: Unsigned
     forward: TableRows
     backward: TableRows
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array, Indices, Mask
+from runningbond.scene import Array, Indices, Mask, Unsigned
 
 
 @kernel
@@ -68,7 +68,7 @@ def reaches(pairs: Indices, first: Indices, corners: Array, normals: Array, reac
 
 
 @kernel
-def resting_ends(arcs: Array, ends: NDArray[np.uint64], inwards: Array, corner: Indices, side: Indices) -> None:
+def resting_ends(arcs: Array, ends: Unsigned, inwards: Array, corner: Indices, side: Indices) -> None:
     """Write the corner of each end ``(n, 6)`` that is farther in, and the side that it rests on, two ``(n,)``."""
     for row in range(inwards.size):
         k = np.uint64(row)

@@ -18,10 +18,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array
+from runningbond.scene import Array, Unsigned
 
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 
@@ -39,7 +38,7 @@ class Corners(NamedTuple):
     """The corners of undeformed blocks, in the frame of the undeformed wall."""
 
     centroid: Array  # (nb, 2) centroid of each block [m]
-    freedom: NDArray[np.uint64]  # (nv,) first freedom of each corner's block
+    freedom: Unsigned  # (nv,) first freedom of each corner's block
     centre: Array  # (nv, 2) centre of each corner's arc, from the centroid [m]
     normal: Array  # (nv, 2) outward normal of the side that starts at the corner
 
@@ -59,7 +58,7 @@ class RigidSides(NamedTuple):
     radius: Array
     straight: Array
     # (np, 6) of each end of facing sides e and f the corners v and w, the far corners of e and f, and e and f
-    ends: NDArray[np.uint64]
+    ends: Unsigned
     inwards: Array  # (np,) 1 where inwards is along the tangent of f, −1 where it is against it
     tilt: Array  # (np,) tilt of e against f, less the turns of the blocks [rad]
     area: Array  # (np,) area the end stands for [m²]

@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from runningbond.scene import Array, Indices, Mask
+from runningbond.scene import Array, Indices, Mask, Unsigned
 
 from .near import near_sides, reaches, resting_ends
 from .outline import FLAT, Outline, side_pair
@@ -30,7 +29,7 @@ class Contacts:
     motion: Array  # (3 nb,) motion of the blocks when these contacts were found
     margin: float  # distance up to which they were sought [m]
     # (n, 6) corner of block b and of block a, far corners of their sides, and the sides (their first corners); b > a
-    ends: NDArray[np.uint64]
+    ends: Unsigned
     inwards: Array  # (n,) 1 where inwards is along the tangent of a's side, −1 where it is against it
     tilt: Array  # (n,) tilt of side against side, less the turns of the blocks [rad]
     area: Array  # (n,) area [m²] the end stands for

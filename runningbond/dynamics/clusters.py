@@ -12,17 +12,16 @@ What is at rest knows no masses, and a cluster that moves as one feels its own.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array
+from runningbond.scene import Array, Unsigned
 
 
 class Clusters(NamedTuple):
     """Which bodies are in clusters, and what they have of the motion of these."""
 
-    freedom: NDArray[np.uint64]  # (n, 3) translations and rotation of each body that is in a cluster
-    cluster: NDArray[np.uint64]  # (n,) its cluster
+    freedom: Unsigned  # (n, 3) translations and rotation of each body that is in a cluster
+    cluster: Unsigned  # (n,) its cluster
     arm: Array  # (n, 2) its centroid, from that of the cluster [m]
     # (n, 3) its part of the cluster's mass, its mass over the cluster's moment of inertia [1/m²], and its part of that
     part: Array
@@ -50,9 +49,7 @@ NO_CLUSTERS = Clusters(_NONE.reshape(0, 3), _NONE, np.zeros((0, 2)), np.zeros((0
 
 
 @kernel
-def sum_up(
-    freedom: NDArray[np.uint64], cluster: NDArray[np.uint64], arm: Array, part: Array, source: Array, motion: Array
-) -> None:
+def sum_up(freedom: Unsigned, cluster: Unsigned, arm: Array, part: Array, source: Array, motion: Array) -> None:
     """Write the motions of clusters ``(nc, 3)`` with the momentum that their bodies have in ``source`` ``(nd,)``."""
     motion[:] = 0.0
     for k in range(cluster.size):

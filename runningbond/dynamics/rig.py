@@ -9,10 +9,9 @@ import math
 from typing import Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene, SceneError, Unsigned
 from runningbond.scene.ranges import one_of
 
 Displacements: TypeAlias = Literal["small", "finite"]
@@ -22,7 +21,7 @@ Displacements: TypeAlias = Literal["small", "finite"]
 class Rig(NamedTuple):
     """A beam that is driven."""
 
-    freedom: NDArray[np.uint64]  # (3,) where in the motion its translations and its rotation stand
+    freedom: Unsigned  # (3,) where in the motion its translations and its rotation stand
     arm: Array  # (2,) from its centroid to the point driven [m]
     force: Array  # (2,) dead force whose line is fixed [N]
     work: Array  # (1,) written by the steps: work of that force's moment [J]
@@ -48,7 +47,7 @@ NO_RIG = Rig(np.zeros(0, dtype=np.uint64), np.zeros(2), np.zeros(2), np.zeros(1)
 
 
 @kernel
-def turn_rig(rig: tuple[NDArray[np.uint64], Array, Array, Array], motion: Array, live: Array) -> float:
+def turn_rig(rig: tuple[Unsigned, Array, Array, Array], motion: Array, live: Array) -> float:
     """Write the live load where the beam is now, and return the moment of a dead force whose line is fixed."""
     freedom, arm, force, _ = rig
     x, y, spin = motion[freedom[0]], motion[freedom[1]], motion[freedom[2]]

@@ -11,10 +11,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runningbond.joints import compiled
-from runningbond.scene import ANCHOR, Array, Mask, Ties
+from runningbond.scene import ANCHOR, Array, Mask, Ties, Unsigned
 
 STIFFNESS, YIELD, PRELOAD = range(3)
 """Columns of `TieRows.constants`."""
@@ -23,8 +22,8 @@ STIFFNESS, YIELD, PRELOAD = range(3)
 class TieRows(NamedTuple):
     """Ties: how far modes stretch each, and what it answers."""
 
-    start: NDArray[np.uint64]  # (nt + 1,) first entry of each, then their number
-    freedom: NDArray[np.uint64]  # (n,) coordinates that stretch a tie
+    start: Unsigned  # (nt + 1,) first entry of each, then their number
+    freedom: Unsigned  # (n,) coordinates that stretch a tie
     share: Array  # (n,) elongation per such coordinate
     constants: Array  # (nt, 3) stiffness [N/m], yield force and preload [N]
 
@@ -86,7 +85,7 @@ NO_TIE_ROWS = TieRows(np.zeros(1, np.uint64), np.zeros(0, np.uint64), np.zeros(0
 
 
 @compiled.kernel
-def pull(ties: tuple[NDArray[np.uint64], NDArray[np.uint64], Array, Array, Array], motion: Array, force: Array) -> None:
+def pull(ties: tuple[Unsigned, Unsigned, Array, Array, Array], motion: Array, force: Array) -> None:
     """Add what ties do to modal forces ``(nd,)``; their plastic elongation, the last of the arrays, is kept."""
     start, freedom, share, constants, stretch = ties
     for k in range(stretch.size):

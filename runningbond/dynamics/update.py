@@ -8,10 +8,9 @@ that force changes against the velocity, as in a vibration it does all the time 
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runningbond.joints import compiled
-from runningbond.scene import Array
+from runningbond.scene import Array, Unsigned
 
 from .clusters import Clusters, sum_up
 from .system import BlockSystem, Kernel
@@ -27,7 +26,7 @@ StateArrays: TypeAlias = tuple[Array, Array, Array, Array, Array]
 ROW = 8
 """Numbers that rows of M⁻¹ below are filled up to a multiple of with nothing, for registers take so many at once."""
 
-Coupled: TypeAlias = tuple[NDArray[np.uint64], Array, Array, Array, Array, Array, Array, Array, Array, Array]
+Coupled: TypeAlias = tuple[Unsigned, Array, Array, Array, Array, Array, Array, Array, Array, Array]
 """Modes with inertia in common ``(n,)``; M⁻¹ of them row by row [1/kg] and their own masses [kg], as long as a row;
 their accelerations of the step before, which steps write to, and six buffers."""
 

@@ -13,9 +13,8 @@ from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array, Indices, Unsigned
 
 from .compiled import kernel
 from .points import Rule
@@ -28,7 +27,7 @@ class Along(NamedTuple):
     """
 
     ends: Any  # geometry of the kinematics of the ends
-    pairs: NDArray[np.uint64]  # (n, 2) numbers of each joint's two ends; twice the same for an end that is alone
+    pairs: Unsigned  # (n, 2) numbers of each joint's two ends; twice the same for an end that is alone
     share: Array  # (m,) way of each point from the first end to the second
     weight: Array  # (m,) part of the joint's area that each point stands for
     scale: Array  # (n, 2) area of the joint in those of its ends
@@ -60,7 +59,7 @@ def along(ends: Any, pairs: Indices, area: Array, rule: Rule) -> tuple[Along, Ar
 
 
 @kernel
-def to_points(ends: Array, pairs: NDArray[np.uint64], share: Array, points: Array) -> None:
+def to_points(ends: Array, pairs: Unsigned, share: Array, points: Array) -> None:
     """Write jumps of points ``(m n,)`` between those of ends ``(ne,)``."""
     n = pairs.shape[0]
     for j in range(n):
@@ -71,7 +70,7 @@ def to_points(ends: Array, pairs: NDArray[np.uint64], share: Array, points: Arra
 
 
 @kernel
-def to_ends(points: Array, pairs: NDArray[np.uint64], share: Array, weight: Array, scale: Array, ends: Array) -> None:
+def to_ends(points: Array, pairs: Unsigned, share: Array, weight: Array, scale: Array, ends: Array) -> None:
     """Write tractions of ends ``(ne,)`` that do the work of those of points ``(m n,)``."""
     n = pairs.shape[0]
     ends[:] = 0.0

@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
-from runningbond.scene import Array, JointMaterial, SceneError
+from runningbond.scene import Array, JointMaterial, SceneError, Unsigned
 
 from .mohr_coulomb import PointStrength, truncated_cone
 from .point_law import PointLaw
@@ -25,7 +24,7 @@ FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
 PLASTIC_CLOSURE = "plastic closure"
 """Row, in laws of joints that crush, of how far a point has been crushed [m]: there it closes again."""
 
-Parameters: TypeAlias = tuple[NDArray[np.uint64], Array]
+Parameters: TypeAlias = tuple[Unsigned, Array]
 
 
 @dataclass(frozen=True)
@@ -108,7 +107,7 @@ class KernelLaw:
     """
 
     law: Law
-    segments: NDArray[np.uint64]
+    segments: Unsigned
     constants: Array
 
     @property

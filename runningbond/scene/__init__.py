@@ -1,7 +1,7 @@
 """What is modelled: blocks, joints, materials, supports and loads, and the file they are read from."""
 
 from .actions import Action
-from .arrays import Array, Indices, Mask, frozen
+from .arrays import Array, Indices, Mask, Unsigned, frozen
 from .beam import Beam, BeamLoad, Drive
 from .blocks import Blocks
 from .bond import Bond, course_pattern, running_bond
@@ -56,6 +56,7 @@ __all__ = [
     "Tie",
     "Ties",
     "Tilt",
+    "Unsigned",
     "build_scene",
     "complement",
     "course_pattern",

@@ -7,6 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.int64]
+Unsigned: TypeAlias = NDArray[np.uint64]
+"""Indices of kernels, which ask of every index that may be negative whether it is."""
 Mask: TypeAlias = NDArray[np.bool_]
 
 
