@@ -13,7 +13,7 @@ from itertools import chain
 import numpy as np
 from scipy.sparse import csr_array
 
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array, Indices, Unsigned
 
 from .front_kernels import Fronts, factorise, renew, substitute
 
@@ -28,8 +28,10 @@ class Dissection:
     fronts: Fronts
     place: Indices  # (n,) place of each unknown in the order of elimination
     front: Indices  # (np, 2) fronts that the two blocks at each point are eliminated in, their number for a held block
-    jump: Array  # (np, 2, 6) jumps of the points per freedom, whose tangents are the first 36 np terms
-    terms: Array  # (n_terms,) of which the store has the factors
+    jump: Array  # (np, 2, 6) jumps of the points per freedom
+    # (np, 36) where the tangents of the points stand among the terms; the last term is of nothing, for held blocks
+    at: Unsigned
+    terms: Array  # (n_terms + 1,) of which the store has the factors
     tangent: Array  # (np, 2, 2) likewise
     store: Array
     is_new: bool = True  # whether the store has no factors yet
@@ -43,7 +45,7 @@ class Dissection:
             For a matrix of which a front is singular to the last bit.
         """
         changed = np.full(len(self.fronts.above) + 1, self.is_new)
-        renew(tangent, self.tangent, self.jump, self.front, changed, self.terms)
+        renew(tangent, self.tangent, self.jump, self.front, self.at, changed, self.terms)
         self.tangent, self.is_new = tangent, True  # should a front be singular
         if not factorise(self.fronts, changed, self.terms, self.store):
             raise np.linalg.LinAlgError("singular tangent")
@@ -104,10 +106,14 @@ def dissection(
     below = np.argsort(above, kind="stable")
     first_below = np.searchsorted(above[below], np.arange(len(parts) + 1))
     place_above = local(above[number], joined)
-    fronts = Fronts(own, begin, joined, place_above, above, first_below, below, at, term, there[order], address[order])
-    terms, tangent = np.append(np.zeros(36 * len(jump)), constant), np.full((len(jump), 2, 2), np.nan)
-    sides = front[: 36 * len(jump)].reshape(-1, 36)[:, [0, 21]]
-    return Dissection(fronts, place, sides, jump, terms, tangent, np.empty(at[-1]))
+    left_at, placed_at, added_at = (each.astype(np.uint64) for each in (joined, place_above, address[order]))
+    fronts = Fronts(own, begin, left_at, placed_at, above, first_below, below, at, term, added_at)
+    turn, of_points = np.full(len(row), len(order), dtype=np.uint64), 36 * len(jump)
+    turn[there[order]] = np.arange(len(order))
+    terms, tangent = np.zeros(len(order) + 1), np.full((len(jump), 2, 2), np.nan)
+    terms[turn[of_points:]] = constant
+    sides = front[:of_points].reshape(-1, 36)[:, [0, 21]]
+    return Dissection(fronts, place, sides, jump, turn[:of_points].reshape(-1, 36), terms, tangent, np.empty(at[-1]))
 
 
 def _parts(graph: csr_array, position: Array) -> tuple[list[Indices], Indices]:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from runningbond.joints import compiled
-from runningbond.scene import Array, Indices, Mask
+from runningbond.scene import Array, Indices, Mask, Unsigned
 
 kernel, copy_into = compiled.kernel, compiled.copy_into
 
@@ -20,20 +20,22 @@ class Fronts(NamedTuple):
 
     own: Indices  # (nf + 1,) first unknown that each front eliminates, unknowns in the order of their elimination
     begin: Indices  # (nf + 1,) first entry of `left` of each front
-    left: Indices  # unknowns that each front leaves to those above it, in order
-    place: Indices  # and what place they have in the front above, its own unknowns first
+    left: Unsigned  # unknowns that each front leaves to those above it, in order
+    place: Unsigned  # and what place they have in the front above, its own unknowns first
     above: Indices  # (nf,) the front above each, −1 for the last ones
     first: Indices  # (nf + 1,) first entry of `below` of each front
     below: Indices  # fronts right below each
     at: Indices  # (nf + 1,) first entry of each front in the store
     term: Indices  # (nf + 1,) first of the terms of each front
-    order: Indices  # (n_terms,) terms, those of a front together
-    address: Indices  # (n_terms,) where in the store each of these is added
+    address: Unsigned  # (n_terms,) where in the store each of these is added
 
 
 @kernel
-def renew(tangent: Array, last: Array, jump: Array, front: Indices, changed: Mask, terms: Array) -> None:
-    """Terms ``(36 np,)`` of joint points whose tangents ``(np, 2, 2)`` are not the last ones; their fronts changed."""
+def renew(tangent: Array, last: Array, jump: Array, front: Indices, at: Unsigned, changed: Mask, terms: Array) -> None:
+    """Terms of joint points whose tangents ``(np, 2, 2)`` are not the last ones; their fronts have changed.
+
+    ``at`` ``(np, 36)`` is where each of a point's terms stands among `terms`.
+    """
     # Entry by entry: views of so few numbers cost more than what is done with them.
     for p in range(len(tangent)):
         nn, ns, sn, ss = tangent[p, 0, 0], tangent[p, 0, 1], tangent[p, 1, 0], tangent[p, 1, 1]
@@ -44,7 +46,7 @@ def renew(tangent: Array, last: Array, jump: Array, front: Indices, changed: Mas
             normal = jump[p, 0, i] * nn + jump[p, 1, i] * sn
             shear = jump[p, 0, i] * ns + jump[p, 1, i] * ss
             for j in range(6):
-                terms[36 * p + 6 * i + j] = normal * jump[p, 0, j] + shear * jump[p, 1, j]
+                terms[at[p, 6 * i + j]] = normal * jump[p, 0, j] + shear * jump[p, 1, j]
 
 
 @kernel
@@ -53,7 +55,7 @@ def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> bool
 
     False where a front is singular.
     """
-    own, begin, _, place, above, first, below, at, term, order, address = fronts
+    own, begin, _, place, above, first, below, at, term, address = fronts
     for f in range(above.size):
         if not changed[f]:
             continue
@@ -64,10 +66,10 @@ def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> bool
         low, last = middle + s * u, middle + 2 * s * u
         store[at[f] : last] = 0.0
         for k in range(term[f], term[f + 1]):
-            store[address[k]] += terms[order[k]]
+            store[address[k]] += terms[k]
         for b in below[first[f] : first[f + 1]]:
             theirs = place[begin[b] : begin[b + 1]]
-            _add_own(store[at[b + 1] - theirs.size**2 : at[b + 1]], theirs, s, u, store[at[f] : last])
+            _add_own(_left_by(store, at[b + 1], theirs.size), theirs, np.uint64(s), np.uint64(u), store[at[f] : last])
         if not _invert(store[at[f] : middle].reshape((s, s))):
             return False
         if u > 0:
@@ -78,8 +80,15 @@ def factorise(fronts: Fronts, changed: Mask, terms: Array, store: Array) -> bool
             _add_product(store[low:last].reshape((u, s)), right, store[last : at[f + 1]].reshape((u, u)))
             for b in below[first[f] : first[f + 1]]:
                 theirs = place[begin[b] : begin[b + 1]]
-                _add_left(store[at[b + 1] - theirs.size**2 : at[b + 1]], theirs, s, u, store[last : at[f + 1]])
+                out = store[last : at[f + 1]]
+                _add_left(_left_by(store, at[b + 1], theirs.size), theirs, np.uint64(s), np.uint64(u), out)
     return True
+
+
+@kernel
+def _left_by(store: Array, end: int, n: int) -> Array:
+    """What a front leaves, ``(n, n)``, the last of what the store keeps of it."""
+    return store[end - n * n : end].reshape((n, n))
 
 
 @kernel
@@ -125,15 +134,24 @@ def _add_product(left: Array, right: Array, out: Array) -> None:
     """Add a product of matrices ``(r, k)`` and ``(k, n)`` to a matrix ``(r, n)``, in one order of sums."""
     rows, terms = left.shape
     n = right.shape[1]
-    paired, fours = rows - rows % 2, terms - terms % 4
-    for r in range(0, paired, 2):  # two rows and four terms at once: what is read serves eight products
+    quads, paired, fours = rows - rows % 4, rows - rows % 2, terms - terms % 4
+    for r in range(0, quads, 4):  # four rows and four terms at once: what is read serves sixteen products
         for k in range(0, fours, 4):
             a, b, c, d = left[r, k], left[r, k + 1], left[r, k + 2], left[r, k + 3]
             e, f, g, h = left[r + 1, k], left[r + 1, k + 1], left[r + 1, k + 2], left[r + 1, k + 3]
+            p, q, s, t = left[r + 2, k], left[r + 2, k + 1], left[r + 2, k + 2], left[r + 2, k + 3]
+            w, x, y, z = left[r + 3, k], left[r + 3, k + 1], left[r + 3, k + 2], left[r + 3, k + 3]
             for j in range(n):
                 one, two, three, four = right[k, j], right[k + 1, j], right[k + 2, j], right[k + 3, j]
                 out[r, j] += a * one + b * two + c * three + d * four
                 out[r + 1, j] += e * one + f * two + g * three + h * four
+                out[r + 2, j] += p * one + q * two + s * three + t * four
+                out[r + 3, j] += w * one + x * two + y * three + z * four
+    for r in range(quads, paired):
+        for k in range(0, fours, 4):
+            a, b, c, d = left[r, k], left[r, k + 1], left[r, k + 2], left[r, k + 3]
+            for j in range(n):
+                out[r, j] += a * right[k, j] + b * right[k + 1, j] + c * right[k + 2, j] + d * right[k + 3, j]
     for r in range(rows):
         for k in range(fours if r < paired else 0, terms):
             a = left[r, k]
@@ -145,47 +163,49 @@ def _add_product(left: Array, right: Array, out: Array) -> None:
 def _add_times(matrix: Array, vector: Array, out: Array) -> None:
     """Add a matrix ``(r, k)`` times a vector ``(k,)``; eight sums side by side, in one order whatever the registers."""
     rows, terms = matrix.shape
-    part = np.empty(8)
+    eights = terms - terms % 8
     for r in range(rows):
-        part[:] = 0.0
-        k = 0
-        while k + 8 <= terms:
-            for lane in range(8):
-                part[lane] += matrix[r, k + lane] * vector[k + lane]
-            k += 8
-        rest = 0.0
-        while k < terms:
+        a = b = c = d = e = f = g = h = rest = 0.0
+        for k in range(0, eights, 8):
+            a += matrix[r, k] * vector[k]
+            b += matrix[r, k + 1] * vector[k + 1]
+            c += matrix[r, k + 2] * vector[k + 2]
+            d += matrix[r, k + 3] * vector[k + 3]
+            e += matrix[r, k + 4] * vector[k + 4]
+            f += matrix[r, k + 5] * vector[k + 5]
+            g += matrix[r, k + 6] * vector[k + 6]
+            h += matrix[r, k + 7] * vector[k + 7]
+        for k in range(eights, terms):
             rest += matrix[r, k] * vector[k]
-            k += 1
-        out[r] += ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7])) + rest
+        out[r] += ((a + b) + (c + d)) + ((e + f) + (g + h)) + rest
 
 
 @kernel
-def _add_own(update: Array, place: Indices, s: int, u: int, front: Array) -> None:
+def _add_own(update: Array, place: Unsigned, s: np.uint64, u: np.uint64, front: Array) -> None:
     """Add what a front leaves to the own unknowns of the front above it, in rows, then to others in columns."""
     n = place.size
     inner = np.searchsorted(place, s)
     for i in range(inner):
         row, right = place[i] * s, s * s + place[i] * u - s
         for j in range(inner):
-            front[row + place[j]] += update[i * n + j]
+            front[row + place[j]] += update[i, j]
         for j in range(inner, n):
-            front[right + place[j]] += update[i * n + j]
+            front[right + place[j]] += update[i, j]
     for i in range(inner, n):
         row = s * s + s * u + (place[i] - s) * s
         for j in range(inner):
-            front[row + place[j]] += update[i * n + j]
+            front[row + place[j]] += update[i, j]
 
 
 @kernel
-def _add_left(update: Array, place: Indices, s: int, u: int, left: Array) -> None:
+def _add_left(update: Array, place: Unsigned, s: np.uint64, u: np.uint64, left: Array) -> None:
     """Add what a front leaves to what the front above it leaves as well."""
     n = place.size
     inner = np.searchsorted(place, s)
     for i in range(inner, n):
         row = (place[i] - s) * u - s
         for j in range(inner, n):
-            left[row + place[j]] += update[i * n + j]
+            left[row + place[j]] += update[i, j]
 
 
 @kernel

@@ -6,21 +6,21 @@ import numpy as np
 from scipy.sparse import csc_array, csr_array
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array, Unsigned
 
 
 class Rows(NamedTuple):
     """A sparse matrix by rows."""
 
-    start: Indices  # (n + 1,) first entry of each row, then their number
-    column: Indices
+    start: Unsigned  # (n + 1,) first entry of each row, then their number
+    column: Unsigned  # a kernel asks of each index that may be negative whether it is
     value: Array
 
     @classmethod
     def of(cls, matrix: csr_array | csc_array) -> "Rows":
         """The rows of a matrix ``(n, m)``."""
         rows = csr_array(matrix)
-        return cls(rows.indptr.astype(np.int64), rows.indices.astype(np.int64), rows.data)
+        return cls(rows.indptr.astype(np.uint64), rows.indices.astype(np.uint64), rows.data)
 
     def times(self, vector: Array) -> Array:
         """The product with a vector ``(m,)``, each sum in the order of the row's entries."""
@@ -30,7 +30,7 @@ class Rows(NamedTuple):
 
 
 @kernel
-def _multiply(start: Indices, column: Indices, value: Array, vector: Array, product: Array) -> None:
+def _multiply(start: Unsigned, column: Unsigned, value: Array, vector: Array, product: Array) -> None:
     for i in range(product.size):
         total = 0.0
         for k in range(start[i], start[i + 1]):
