@@ -60,7 +60,7 @@ class LimitState:
     @property
     def jumps(self) -> tuple[Array, Array]:
         """Opening and slip rates of the mechanism at each point, two ``(np,)``."""
-        return self.system.opening.T @ self.forces.motion, self.system.slip.T @ self.forces.motion
+        return self.system.jumps(self.forces.motion)
 
     @property
     def kinematic_multiplier(self) -> float:
@@ -168,8 +168,9 @@ def spends_cut_strength(system: Equilibrium, weaker: Equilibrium, motion: Array,
     A point that opens by `dilatancy` times its slip, as its flow rule says, dissipates cohesion only.
     """
     unit = weaker.force_unit / system.force_unit * (1 + SOUND)
-    slip = np.abs(system.slip.T @ motion)
-    jumps = np.array([np.abs(system.opening.T @ motion - dilatancy * slip), slip])
+    opening, slip = system.jumps(motion)
+    slip = np.abs(slip)
+    jumps = np.array([np.abs(opening - dilatancy * slip), slip])
     pairs = [(each.strength.tension, each.strength.cohesion) for each in (weaker, system)]
     cut = np.array([unit * less < strength for less, strength in zip(*pairs, strict=True)])
     return float(jumps[cut].max(initial=0.0)) > SOUND * float(jumps.max(initial=0.0))

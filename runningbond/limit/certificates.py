@@ -42,7 +42,7 @@ def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -
     if at all: a wall that moves does not get lower. None for a mechanism whose blocks run into each other. Jumps up to
     `still` times the largest motion count as none.
     """
-    opening, slip = system.opening.T @ motion, system.slip.T @ motion
+    opening, slip = system.jumps(motion)
     largest = float(np.abs(motion).max(initial=0.0))
     if largest == 0.0 or opening.min(initial=0.0) < -max(PENETRATION, still) * largest:
         return None

@@ -53,7 +53,7 @@ class Descent:
     def pattern(self, motion: Array) -> bytes:
         """Where a mechanism opens and slides, which is all that its loads depend on."""
         system, least = self.system, NO_JUMP * float(np.abs(motion).max(initial=0.0))
-        jumps = np.concatenate([system.opening.T @ motion, system.slip.T @ motion, system.elongation(motion)])
+        jumps = np.concatenate([*system.jumps(motion), system.elongation(motion)])
         return bytes((np.sign(jumps) * (np.abs(jumps) > least)).astype(np.int8))
 
     def around(self, best: Certificate, rng: np.random.Generator) -> list[Certificate]:

@@ -10,6 +10,7 @@ load gives the same numbers.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csc_array, csr_array, hstack, vstack
@@ -99,9 +100,19 @@ class Equilibrium:
         """Normal and tangential force at each point ``(np, 2)`` [N] from scaled ones, tension positive."""
         return self.force_unit * np.column_stack([self.strength.tension - pressure, tangential])
 
+    @cached_property
+    def _rates(self) -> tuple[csr_array, csr_array, csr_array]:
+        """Opening and slip rates of points and elongation rates of ties per multiplier of an equation."""
+        return self.opening.T, self.slip.T, self.tie.T
+
+    def jumps(self, multipliers: Array) -> tuple[Array, Array]:
+        """Opening and slip rates of points, ``(np,)`` each, from multipliers of equations ``(nd,)``."""
+        opening, slip, _ = self._rates
+        return opening @ multipliers, slip @ multipliers
+
     def elongation(self, multipliers: Array) -> Array:
         """Elongation rates of ties, ``(nt,)``, from multipliers of equations ``(nd,)``."""
-        return np.asarray(self.tie.T @ multipliers)
+        return np.asarray(self._rates[2] @ multipliers)
 
     def with_crushing(self) -> "Equilibrium":
         """The same equations, joints that crush taken as such; without weight, forces are in the strongest of them."""
@@ -118,14 +129,15 @@ class Equilibrium:
         if self.crushing is None:
             return np.zeros((3, 0))
         ends = self.crushing.ends
-        return np.array([*(self.opening.T @ motion)[ends], (self.slip.T @ motion)[ends[0]]])
+        opening, slip = self.jumps(motion)
+        return np.array([*opening[ends], slip[ends[0]]])
 
     def dissipation(self, motion: Array) -> Array:
         """Largest power of admissible forces on a mechanism ``(nd,)``, by points, of joints that crush at the first.
 
         Other points have to open as their flow rule says.
         """
-        found = self.strength.dissipation(self.opening.T @ motion, self.slip.T @ motion)
+        found = self.strength.dissipation(*self.jumps(motion))
         if self.crushing is not None:
             found[self.crushing.ends[1]] = 0.0
             found[self.crushing.ends[0]] = self.crushing.dissipation(self.crushed_jumps(motion))

@@ -27,7 +27,7 @@ class Glued:
 
 def still_points(system: Equilibrium, motion: Array, least: float) -> Mask:
     """Points ``(np,)`` that a mechanism ``(nd,)`` moves by less than a share of its largest motion."""
-    jump = np.maximum(np.abs(system.opening.T @ motion), np.abs(system.slip.T @ motion))
+    jump = np.abs(system.jumps(motion)).max(axis=0)
     return np.asarray(jump < least * np.abs(motion).max(initial=0.0))
 
 
