@@ -43,13 +43,16 @@ class ContactUpdate:
         bound = max(interface.frequency_squared, undeformed.frequency_squared)
         return replace(interface, frequency_squared=bound, closer=closer)
 
-    def is_due(self, state: State) -> bool:
-        """Whether the bodies have used up three quarters of the way on which no contact can have been missed."""
-        return self._left(state) < (contacts_of(state).margin / 2 - self._search.deformation(state.motion)) / 4
-
     def steps_until_next_look(self, state: State, dt: float) -> int:
-        """Steps of a length [s] in which the bodies may have moved as far as no contact can be missed."""
-        left = max(0.0, self._left(state))
+        """Steps of a length [s] in which the bodies may have moved as far as no contact can be missed.
+
+        None, 0, where they have used up three quarters of that way.
+        """
+        contacts, rigid = contacts_of(state), state.motion[self._system.rigid]
+        way = contacts.margin / 2 - self._search.deformation(state.motion)
+        left = way - self._apart(rigid - contacts.motion.reshape(-1, 3))
+        if left < way / 4:
+            return 0
         speed, gain = SPEED_FACTOR * self._travel(state.velocity), SPEED_FACTOR * self._acceleration
         root = np.sqrt(speed**2 + 2 * gain * left)
         time = 2 * left / (speed + root) if root > 0 else np.inf
@@ -104,12 +107,6 @@ class ContactUpdate:
         share[kept >= 0] = np.minimum(1.0, interface.area[kept[kept >= 0]] / renewed.area[kept >= 0])
         state.friction += _spread(renewed, state, share)
         return renewed
-
-    def _left(self, state: State) -> float:
-        """How far [m] bodies may yet move before contacts that are not known of may touch."""
-        contacts, rigid = contacts_of(state), state.motion[self._system.rigid]
-        moved = self._apart(rigid - contacts.motion.reshape(-1, 3))
-        return contacts.margin / 2 - self._search.deformation(state.motion) - moved
 
     def _travel(self, velocity: Array) -> float:
         """At most half of how fast any two points of bodies come apart at a velocity ``(nd,)`` [m/s]."""

@@ -137,9 +137,11 @@ class Run:
         """Numbers of steps to take one after the other, on contacts that are good for so many."""
         while steps > 0:
             self._return_to(state)
-            if update.is_due(state):
+            piece = update.steps_until_next_look(state, self.dt)
+            if not piece:
                 self._take_up(update.renew(state, self.interface, self.dt), contacts_of(state))
-            piece = min(steps, update.steps_until_next_look(state, self.dt))
+                piece = max(1, update.steps_until_next_look(state, self.dt))
+            piece = min(steps, piece)
             yield piece
             steps -= piece
 
