@@ -74,7 +74,7 @@ USUAL = NONASSOCIATED | {9: (0.4208, 0.4263), 12: (0.0662, 0.0986)}
 """What that finds, of `make compare`."""
 
 
-@pytest.mark.parametrize("row", NONASSOCIATED)
+@pytest.mark.parametrize("row", [1, 2, 4, *(pytest.param(row, marks=pytest.mark.long) for row in (5, 6))])
 def test_true_friction_on_small_panels(row: int) -> None:
     outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"), programs=SHORT)
     low, high = NONASSOCIATED[row]
@@ -104,7 +104,7 @@ def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() 
             assert abs(forces.tangential - at_limit)[slides].max() < 1e-8 * scale
 
 
-@pytest.mark.parametrize("row", [9, 12])
+@pytest.mark.parametrize("row", [9, pytest.param(12, marks=pytest.mark.long)])
 def test_true_friction_on_tall_panels_lies_inside_the_certified_interval(row: int) -> None:
     """By a short search; the usual one finds loads beyond both ends (`USUAL`)."""
     low, high = {9: (0.423, 0.4265), 12: (0.066, 0.118)}[row]  # of 12 to the associated bound
