@@ -30,7 +30,7 @@ class Dissection:
     front: Indices  # (np, 2) fronts that the two blocks at each point are eliminated in, their number for a held block
     jump: Array  # (np, 2, 6) jumps of the points per freedom
     # (np, 36) where the tangents of the points stand among the terms; the last term is of nothing, for held blocks
-    at: Unsigned
+    slot: Unsigned
     terms: Array  # (n_terms + 1,) of which the store has the factors
     tangent: Array  # (np, 2, 2) likewise
     store: Array
@@ -45,7 +45,7 @@ class Dissection:
             For a matrix of which a front is singular to the last bit.
         """
         changed = np.full(len(self.fronts.above) + 1, self.is_new)
-        renew(tangent, self.tangent, self.jump, self.front, self.at, changed, self.terms)
+        renew(tangent, self.tangent, self.jump, self.front, self.slot, changed, self.terms)
         self.tangent, self.is_new = tangent, True  # should a front be singular
         if not factorise(self.fronts, changed, self.terms, self.store):
             raise np.linalg.LinAlgError("singular tangent")
@@ -108,12 +108,12 @@ def dissection(
     place_above = local(above[number], joined)
     left_at, placed_at, added_at = (each.astype(np.uint64) for each in (joined, place_above, address[order]))
     fronts = Fronts(own, begin, left_at, placed_at, above, first_below, below, at, term, added_at)
-    turn, of_points = np.full(len(row), len(order), dtype=np.uint64), 36 * len(jump)
-    turn[there[order]] = np.arange(len(order))
+    slot, of_points = np.full(len(row), len(order), dtype=np.uint64), 36 * len(jump)
+    slot[there[order]] = np.arange(len(order))
     terms, tangent = np.zeros(len(order) + 1), np.full((len(jump), 2, 2), np.nan)
-    terms[turn[of_points:]] = constant
+    terms[slot[of_points:]] = constant
     sides = front[:of_points].reshape(-1, 36)[:, [0, 21]]
-    return Dissection(fronts, place, sides, jump, turn[:of_points].reshape(-1, 36), terms, tangent, np.empty(at[-1]))
+    return Dissection(fronts, place, sides, jump, slot[:of_points].reshape(-1, 36), terms, tangent, np.empty(at[-1]))
 
 
 def _parts(graph: csr_array, position: Array) -> tuple[list[Indices], Indices]:

@@ -31,10 +31,12 @@ class Fronts(NamedTuple):
 
 
 @kernel
-def renew(tangent: Array, last: Array, jump: Array, front: Indices, at: Unsigned, changed: Mask, terms: Array) -> None:
+def renew(
+    tangent: Array, last: Array, jump: Array, front: Indices, slot: Unsigned, changed: Mask, terms: Array
+) -> None:
     """Terms of joint points whose tangents ``(np, 2, 2)`` are not the last ones; their fronts have changed.
 
-    ``at`` ``(np, 36)`` is where each of a point's terms stands among `terms`.
+    ``slot`` ``(np, 36)`` is where each of a point's terms stands among `terms`.
     """
     # Entry by entry: views of so few numbers cost more than what is done with them.
     for p in range(len(tangent)):
@@ -46,7 +48,7 @@ def renew(tangent: Array, last: Array, jump: Array, front: Indices, at: Unsigned
             normal = jump[p, 0, i] * nn + jump[p, 1, i] * sn
             shear = jump[p, 0, i] * ns + jump[p, 1, i] * ss
             for j in range(6):
-                terms[at[p, 6 * i + j]] = normal * jump[p, 0, j] + shear * jump[p, 1, j]
+                terms[slot[p, 6 * i + j]] = normal * jump[p, 0, j] + shear * jump[p, 1, j]
 
 
 @kernel
