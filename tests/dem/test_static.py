@@ -336,7 +336,7 @@ def test_forces_at_the_peak_are_admissible_and_balance_the_loads(name: str) -> N
 
 
 def check_against_limit_analysis(name: str) -> None:
-    """No load in equilibrium exceeds the associated one, and the bracket exceeds it by no more than its width."""
+    """No load in equilibrium exceeds the associated one; of the lowest path the bracket is as narrow as was asked."""
     scene = published_scene(name)
     outcome = dem_static(scene)
     associated = limit(scene).upper
@@ -344,8 +344,9 @@ def check_against_limit_analysis(name: str) -> None:
     assert outcome.lower is not None
     assert outcome.lower <= associated * (1 + 1e-6)
     lower, upper = bracket(outcome)
-    assert upper - lower <= 0.01 * upper
-    assert upper <= associated * (1 + 1e-6) + (upper - lower)
+    fall = upper if outcome.fall is None else outcome.fall
+    assert fall - lower <= 0.01 * fall
+    assert upper <= 1.01 * associated
 
 
 @pytest.mark.parametrize("name", ["panel-01", "panel-02", "panel-04", "panel-05"])
