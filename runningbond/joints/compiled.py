@@ -1,7 +1,8 @@
 """Compiled kernels: numba, kept on disk for as long as the code they came from.
 
 Numba knows a kernel by the file it stands in and would go on using it after a kernel that it calls, in another
-file, has changed. So the cache lies in a folder named after the digest of every file that kernels stand in.
+file, has changed. So the cache lies in a folder named after the digest of every file that kernels stand in, and one
+suite installed twice, or anew in another place, compiles once.
 """
 
 import hashlib
@@ -10,12 +11,13 @@ import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
-from numba.core.caching import FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
 from numba.core.serialize import dumps
@@ -29,6 +31,7 @@ KEPT = 4
 _ROOMS = ("runningbond/joints", "runningbond/contacts", "runningbond/dynamics", "dem", "fem_interface")
 
 
+@cache
 def _digest() -> str:
     """Digest of all of the package's own kernels."""
     root = Path(__file__).parents[2]
@@ -63,6 +66,46 @@ def _forget_old(folder: Path) -> None:
 numba.config.CACHE_DIR = _cache_folder()
 
 
+def _is_own(module: str) -> bool:
+    """Whether a module is one of the package's own that kernels stand in."""
+    return f"{module}.".startswith(tuple(room.replace("/", ".") + "." for room in _ROOMS))
+
+
+class PackageLocator(_CacheLocator):  # type: ignore[misc]
+    """Where one of the package's own kernels is kept: a place that does not tell where the package is installed."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._folder = Path(numba.config.CACHE_DIR) / function.__module__.rpartition(".")[0]
+        self._line = function.__code__.co_firstlineno
+
+    def get_cache_path(self) -> str:
+        """Folder of the kernels of a room."""
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        """What tells whether the source is the one that was compiled."""
+        return _digest()
+
+    def get_disambiguator(self) -> str:
+        """What tells kernels of one name in one file from each other."""
+        return str(self._line)
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], _: str) -> "PackageLocator | None":
+        """The place of a kernel; None for one of a user's own, which Numba goes by the file of, or where none is."""
+        if not numba.config.CACHE_DIR or not _is_own(py_func.__module__):
+            return None
+        locator = cls(py_func)
+        with suppress(OSError):
+            locator.ensure_cache_path()
+            return locator
+        return None
+
+
+class _Kept(CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = (PackageLocator, *CompileResultCacheImpl._locator_classes)
+
+
 class SharedCache(FunctionCache):  # type: ignore[misc]
     """Numba's cache of one kernel, fit to be shared by the processes of a campaign.
 
@@ -74,8 +117,11 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
     - Numba numbers functions process by process, and two of one source, closed over different values in different
       processes, may come by one number, and so one symbol: a third process that loads both would go by the first it
       met in place of the other. Here what a kernel is known by is part of its symbols.
-    - A cache that is damaged, or on a disk that takes no more, costs a compilation and not the answer.
+    - A cache that is damaged, or on a disk that takes no more, costs a compilation and not the answer. Numba would
+      forget all that is kept of a kernel, for all laws, where one of them can not be read any more.
     """
+
+    _impl_class = _Kept
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
         return sig, codegen.magic_tuple(), identity(self._py_func)
@@ -85,10 +131,16 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
         self._py_func.__qualname__ = symbol(self._py_func)
         try:
             return super().load_overload(sig, target_context)
-        except Exception:  # whatever unpickling half a file raises
-            with suppress(OSError), locked(Path(self.cache_path)):
-                self.flush()
+        except Exception:  # whatever unpickling half a file raises, or a law whose module is there no more
+            self._forget_a_damaged_index()
             return None
+
+    def _forget_a_damaged_index(self) -> None:
+        with suppress(OSError), locked(Path(self.cache_path)):
+            try:
+                self._cache_file._load_index()
+            except Exception:
+                self.flush()
 
     def save_overload(self, sig: Any, data: Any) -> None:
         """Keep a compiled kernel."""
@@ -106,7 +158,7 @@ def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
     code = function.__code__
     used = [cell.cell_contents for cell in function.__closure__ or ()]
     own: tuple[Any, ...] = ()
-    if not f"{function.__module__}.".startswith(tuple(room.replace("/", ".") + "." for room in _ROOMS)):
+    if not _is_own(function.__module__):
         own = code.co_code, [dumps(value) for value in code.co_consts if not hasattr(value, "co_code")]
         named = (function.__globals__.get(name) for name in code.co_names)
         used += [value for value in named if isinstance(value, (Dispatcher, bool, int, float, tuple, np.ndarray))]

@@ -2,6 +2,7 @@
 
 import math
 import os
+import shutil
 import subprocess
 import sys
 import threading
@@ -59,6 +60,28 @@ print([loop(5.0) for loop in loops], sum(len(loop.stats.cache_misses) for loop i
     line = [sys.executable, "-c", program]
     printed = [subprocess.run(line, env=environment, capture_output=True, text=True).stdout for _ in range(2)]
     assert printed == ["[11.0, 16.0] 2\n", "[11.0, 16.0] 0\n"]
+
+
+def test_the_same_suite_in_another_place_compiles_nothing_and_a_changed_one_does(tmp_path: Path) -> None:
+    """What is kept goes by the source, not by where it is installed, and by that of the files it may call."""
+    program = """
+from runningbond.joints.coulomb import shear_within
+shear_within(1.0, 0.0, 0.5)
+print(len(shear_within.stats.cache_misses))
+"""
+    places = [ROOT, tmp_path / "elsewhere", tmp_path / "changed"]
+    for place in places[1:]:
+        for room in ("runningbond", "dem", "fem_interface"):
+            shutil.copytree(ROOT / room, place / room, ignore=shutil.ignore_patterns("__pycache__", "walls"))
+    with (places[2] / "runningbond" / "joints" / "points.py").open("a") as source:
+        source.write("# changed\n")
+    printed = []
+    for place in places:
+        environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(place)}
+        line = [sys.executable, "-c", program]
+        done = subprocess.run(line, env=environment, cwd=tmp_path, capture_output=True, text=True)
+        printed.append(done.stdout)
+    assert printed == ["1\n", "0\n", "1\n"]
 
 
 def ramp(factor: float) -> Any:
@@ -146,6 +169,20 @@ def test_a_damaged_or_full_cache_costs_a_compilation(cache: Path, monkeypatch: p
 
     monkeypatch.setattr(IndexDataCacheFile, "_save_data", full)
     assert plus_one(tripled)(5.0) == 16.0
+
+
+def test_a_kernel_that_cannot_be_read_costs_the_others_of_its_source_nothing(cache: Path) -> None:
+    """A loop over a law of a user's own, whose module is gone, lies beside the loops over all other laws."""
+    assert plus_one(doubled)(5.0) == 11.0
+    assert plus_one(tripled)(5.0) == 16.0
+    loops = sorted(cache.rglob("*loop*.nbc"))
+    assert len(loops) == 2
+    loops[0].write_bytes(b"no kernel")
+    first, second = plus_one(doubled), plus_one(tripled)
+    assert (first(5.0), second(5.0)) == (11.0, 16.0)
+    assert first.stats.cache_misses
+    assert not second.stats.cache_misses
+    assert not plus_one(doubled).stats.cache_misses, "is mended"
 
 
 def test_a_new_folder_of_kernels_takes_the_place_of_the_oldest(tmp_path: Path) -> None:
