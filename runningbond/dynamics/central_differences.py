@@ -154,7 +154,7 @@ def _give_back(
     return returned
 
 
-def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain: bool) -> Any:
+def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
     """Compile the loop of `stepper` over steps in which loads stay as they are; its arguments are those of that."""
 
     @inlined
@@ -168,8 +168,7 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
         freedom, basis = restraint
         moved, _, opening, slip, normal, tangential = work
         already, given, most = watch
-        driven, carried = not plain and control == DRIVEN, not plain and control == CARRIED
-        rigged = not plain and rig[0].size > 0
+        driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[4].size > 0, rig[0].size > 0
         response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         if driven:
             for i in range(live.size):
@@ -191,7 +190,7 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
                 _project(force, freedom, basis)
                 for i in range(force.size):
                     force[i] += load[i]
-            if not plain:
+            if tied:
                 pull(ties, motion, force)
             if rigged:
                 moment = turn_rig(rig, motion, live)
@@ -224,7 +223,7 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain: bool) -> Any:
+def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
     """Compile the loop of a model.
 
     Parameters
@@ -233,8 +232,6 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain
         Of an `Interface`.
     advance
         The update (`update_of`), whose memory is the last but two of the arrays.
-    plain
-        Whether there is a load alone, no tie and no rig: steps of small walls are a tenth faster without the question.
 
     Returns
     -------
@@ -249,13 +246,13 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel, plain
         With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
         acts on nothing else.
     """
-    constant = _steps_at_constant_loads(gather, law, scatter, advance, plain)
+    constant = _steps_at_constant_loads(gather, law, scatter, advance)
 
     @kernel
     def step(
         control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
-        rises = speed != 0.0 and (plain or control == HELD)
+        rises = speed != 0.0 and control == HELD
         state, work = arrays[7:]
         motion, loaded = state[0], work[1]
         already, given, most = watch

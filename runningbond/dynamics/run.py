@@ -119,10 +119,7 @@ class Run:
         self.safe_step = stable_step(closer, self.viscous * math.sqrt(closer / bound), self.local)
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(bound) / self.dt
-        kernels = (interface.gather, interface.law.kernel, interface.scatter, self._advance_modes)
-        loaded = (True,) if len(self.system.coupling.freedom) else (True, False)  # what is coupled bears a load alone
-        self._step = {plain: stepper(*kernels, plain) for plain in loaded}
-        self._plain = not len(self.system.ties) and self.system.rig is None
+        self._step = stepper(interface.gather, interface.law.kernel, interface.scatter, self._advance_modes)
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
@@ -199,7 +196,8 @@ class Run:
     def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
         """Take steps under a constant load and a control; what `stepper` sums up."""
         total, system, number = 0.0, self.system, CONTROLS.index(control)
-        plain = self._plain and control == "held"
+        if control != "held" and len(system.coupling.freedom):
+            raise ValueError("modes that have inertia in common bear a load alone")
         live = system.carried.motion if control == "carried" else system.live
         if system.rig is not None:
             live = live.copy()  # it turns with the beam
@@ -210,7 +208,7 @@ class Run:
             scales = (self.dt, self.local, self._viscosity)
             ties = (*system.ties, state.stretch)
             every = (*self._arrays, ties, self._rig, self._memory, arrays, self._work)
-            taken, stable, multipliers, work = self._step[plain](number, piece, scales, load, live, speed, every, watch)
+            taken, stable, multipliers, work = self._step(number, piece, scales, load, live, speed, every, watch)
             total += multipliers
             if system.rig is not None:
                 state.turned += float(self._rig[3][0])

@@ -97,6 +97,13 @@ def test_coupled_steps_account_for_their_energy(make: Any, local: float, viscous
     damped_without_giving_back(Run(system, local=local, viscous=viscous), State.at_rest(system), 0.2)
 
 
+def test_what_is_coupled_bears_loads_alone() -> None:
+    """A control works on the masses of modes one by one."""
+    _, system = coupled(wall().with_block(young=2e9))
+    with pytest.raises(ValueError, match="in common"):
+        Run(system).drive(State.at_rest(system), 1.0, 1)
+
+
 @pytest.mark.parametrize("name", ["wall-w1", "wall-w2", "wall-w3", "panel-04", "point-load-1"])
 def test_published_walls_are_left_alone(name: str) -> None:
     """Their blocks are stiffer than their joints: a period takes about as many steps as that of rigid ones."""
