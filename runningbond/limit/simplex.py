@@ -20,7 +20,6 @@ INTERIOR = 0
 """Interior point and crossover instead, which start from no corner but end at one."""
 
 OPTIONS: dict[str, bool | int | float | str] = {
-    "output_flag": False,
     "threads": 1,
     "parallel": "off",
     "presolve": "off",
@@ -40,6 +39,14 @@ _STATUS: dict[highspy.HighsModelStatus, ProgramStatus] = {
 }
 
 
+class _Quiet(highspy.Highs):
+    """HiGHS that prints nothing: 1.16 announces itself to standard output before an option can be set."""
+
+    def enableCallbacks(self) -> None:  # noqa: N802 - HiGHS's own name, of the last call that its making takes
+        self.setOptionValue("output_flag", False)
+        super().enableCallbacks()  # type: ignore[no-untyped-call]
+
+
 class Simplex:
     """min c·x, A x = b, low ≤ x ≤ high, with the matrix ``(m, n)`` and right-hand side ``(m,)`` of all programs."""
 
@@ -54,7 +61,7 @@ class Simplex:
         program.a_matrix_.format_ = highspy.MatrixFormat.kColwise
         program.a_matrix_.start_, program.a_matrix_.index_ = matrix.indptr, matrix.indices
         program.a_matrix_.value_ = matrix.data
-        self._highs = highspy.Highs()  # type: ignore[no-untyped-call]
+        self._highs = _Quiet()  # type: ignore[no-untyped-call]
         for name, value in OPTIONS.items():
             self._highs.setOptionValue(name, value)
         if np.abs(matrix.data).max(initial=0.0) > WIDE:

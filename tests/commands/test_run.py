@@ -60,6 +60,15 @@ def test_run_writes_its_curve_and_says_what_it_wrote(
     assert [float(row["ground vertical [N]"]) for row in rows] == pytest.approx(np.full(len(rows), weight))
 
 
+def test_no_library_writes_into_what_is_printed(tmp_path: Path) -> None:
+    """HiGHS 1.16 announces itself once a process, past Python, on the standard output that is all of ``--json``."""
+    wall = str(write_toml(content(**SMALL, block__young=1e10), tmp_path / "wall.toml"))
+    lines = f"for model in {list(MODELS)}: command(['run', {wall!r}, '--model', model, '--json'])"
+    script = f"from runningbond.commands.command_line import command\n{lines}"
+    printed = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
+    assert [json.loads(line)["model"] for line in printed.splitlines()] == list(MODELS)
+
+
 @pytest.mark.parametrize(("model", "rows"), [("limit", 1), ("limit-nonassociated", 1), ("homog", None)])
 def test_models_without_a_path_write_the_collapse_if_anything(
     model: str, rows: int | None, small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -42,9 +42,9 @@ CONTRACT = ["scene", "model", "status", "multiplier", "lower", "upper", "dofs", 
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_json_is_one_object_with_the_keys_of_the_contract(model: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_is_one_object_with_the_keys_of_the_contract(model: str, capfd: pytest.CaptureFixture[str]) -> None:
     assert command(["run", "panel-04", "--model", model, "--json"]) == 0
-    printed = capsys.readouterr()
+    printed = capfd.readouterr()
     found = json.loads(printed.out)
     assert list(found) == CONTRACT
     assert found["status"] == "collapse"
