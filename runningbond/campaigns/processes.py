@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from functools import partial
 
 from joblib import Parallel, cpu_count, delayed, parallel_config
+from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from .tasks import Answer, Task
@@ -72,7 +73,8 @@ def _processes(jobs: int, tasks: int) -> Iterator[None]:
             yield
         return
     if hasattr(signal, "pthread_sigmask"):
-        multiprocessing.resource_tracker.ensure_running()  # its start unblocks what `side_by_side` blocks
+        for tracker in (multiprocessing.resource_tracker, loky_tracker):
+            tracker.ensure_running()  # its start unblocks what `side_by_side` blocks (loky's until joblib 1.6)
     # More processes than cores or tasks take memory and gain nothing; joblib takes one for none.
     n_jobs = min(cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count())), max(2, tasks))
     # Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say.
