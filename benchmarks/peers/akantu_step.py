@@ -165,7 +165,7 @@ class AkantuWall:
 def acceleration(scene: Scene) -> Array:
     """Weight and horizontal load, per mass, ``(2,)`` [m/s²]."""
     gravity = np.array(scene.load.gravity)
-    return gravity + [LOAD * np.linalg.norm(gravity), 0.0]
+    return np.array([gravity[0] + LOAD * np.linalg.norm(gravity), gravity[1]])
 
 
 def read_materials(akantu: Any, scene: Scene) -> None:

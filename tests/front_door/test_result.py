@@ -44,6 +44,7 @@ def test_forces_on_the_ground_bear_weight_and_push() -> None:
     joints = result.joints
     at_ground = np.asarray(joints["b"]) == ground
     assert -joints["normal_force"][at_ground].sum() == pytest.approx(weight, rel=1e-6)
+    assert result.multiplier is not None
     assert abs(joints["shear_force"][at_ground].sum()) == pytest.approx(result.multiplier * weight, rel=1e-6)
 
 

@@ -122,7 +122,7 @@ def _own_outlines(faces: Array, edges: Array, curves: Sequence[Array], tolerance
     drawn = shapely.linestrings(np.vstack([np.stack([curve[:-1], curve[1:]], axis=1) for curve in curves]))
     middle = shapely.points(edges.mean(axis=1))
     edge, _ = shapely.STRtree(drawn).query(middle, predicate="dwithin", distance=tolerance)
-    times = np.bincount(edge, minlength=len(edges))
+    times = np.bincount(edge, minlength=len(edges)).tolist()
     beside: dict[tuple[tuple[float, ...], ...], list[int]] = {}
     for k, face in enumerate(faces):
         ring = list(face.exterior.coords)
@@ -131,8 +131,8 @@ def _own_outlines(faces: Array, edges: Array, curves: Sequence[Array], tolerance
     links: list[list[tuple[int, int]]] = [[] for _ in range(len(faces) + 1)]
     for (p, q), m in zip(edges.tolist(), times, strict=True):
         a, b = [*beside.get((min(tuple(p), tuple(q)), max(tuple(p), tuple(q))), []), -1, -1][:2]
-        links[a].append((b, int(m)))
-        links[b].append((a, int(m)))
+        links[a].append((b, m))
+        links[b].append((a, m))
     share = {-1: 0}
     ahead = [-1]
     while ahead:
