@@ -31,6 +31,9 @@ LONG = 30.0
 PATIENCE, REFRESH = 2.0, 0.25
 """Seconds after which a computation says how far it has come, and between two lines."""
 
+INTERVAL = 30.0
+"""Seconds between two lines of progress in a file."""
+
 UNDECIDED = ("undecided", "failed")
 """Statuses of outcomes that are no answer."""
 
@@ -92,11 +95,37 @@ def tell_cost(model: Model, scene: Scene, tolerance: float) -> None:
 
 @contextmanager
 def progress_bar(description: str, total: int) -> Iterator[Callable[[str], None]]:
-    """A bar with what was done last, how much is done, and for how long; to be called with what is done."""
+    """A bar with what was done last, how much is done, and for how long; to be called with what is done.
+
+    Lines now and then where standard error is no terminal.
+    """
+    if not sys.stderr.isatty():
+        yield _progress_lines(description, total)
+        return
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=Console(stderr=True)) as bar:
         task = bar.add_task(description, total=total)
         yield lambda done: bar.update(task, advance=1, description=done)
+
+
+def _progress_lines(description: str, total: int) -> Callable[[str], None]:
+    """What a bar shows, as lines for a file: one at once, then at most one in an interval, and one at the end."""
+    start = told = time.perf_counter()
+    count = 0
+
+    def write(done: str, now: float) -> None:
+        print(f"{done}, {count} of {total}, {now - start:.0f} s", file=sys.stderr, flush=True)
+
+    def advance(done: str) -> None:
+        nonlocal count, told
+        count += 1
+        now = time.perf_counter()
+        if count == total or now - told >= INTERVAL:
+            told = now
+            write(done, now)
+
+    write(description, start)
+    return advance
 
 
 @contextmanager

@@ -15,6 +15,9 @@ from runningbond.scene import Array
 SECANT = 0.3
 """Share of the strength at which the stiffness is read."""
 
+ROUNDING = 1e-9
+"""Share of the work done to and fro below which the sum of it is rounding."""
+
 
 @dataclass(frozen=True)
 class Marks:
@@ -97,9 +100,13 @@ def swing(curve: Array, force: float) -> float | None:
 
 
 def dissipated(curve: Array) -> float:
-    """Work of the force [J] along a curve, by trapezia; nothing where the record is parted."""
+    """Work of the force [J] along a curve, by trapezia; nothing where the record is parted.
+
+    What comes back but for rounding was not dissipated.
+    """
     steps = np.diff(curve[:, 0]) * (curve[1:, 1] + curve[:-1, 1]) / 2
-    return float(np.nansum(steps))
+    work, turnover = float(np.nansum(steps)), float(np.nansum(np.abs(steps)))
+    return work if abs(work) > ROUNDING * turnover else 0.0
 
 
 def residual(curve: Array) -> float | None:

@@ -158,6 +158,21 @@ def test_progress_is_for_terminals_and_leaves_nothing_behind(
         assert max(map(len, err.split("\r\x1b[K"))) == 19
 
 
+def test_progress_of_many_cases_is_told_in_a_file_now_and_then(capsys: pytest.CaptureFixture[str]) -> None:
+    """A line at once, one where the interval is over, and the last one; no control characters."""
+    clock = iter((0.0, 1.0, 31.0, 32.0, 40.0))
+    with (
+        patch.object(sys.stderr, "isatty", lambda: False),
+        patch("time.perf_counter", lambda: next(clock)),
+        terminal.progress_bar("comparing", 4) as advance,
+    ):
+        for case in "abcd":
+            advance(case)
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.splitlines() == ["comparing, 0 of 4, 0 s", "b, 2 of 4, 31 s", "d, 4 of 4, 40 s"]
+
+
 def test_json_is_pure_on_a_terminal_too(small: str) -> None:
     """With standard error on a terminal and standard output in a pipe, the latter is one object."""
     master, slave = pty.openpty()

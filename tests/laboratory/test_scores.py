@@ -13,7 +13,16 @@ from runningbond.laboratory.ladder import LADDER, by_hand, find_rungs
 from runningbond.laboratory.modes import DIAGONAL, ROCKING, SLIDING, bed_slips, measured_modes, predicted_mode
 from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import Features, scene_of
-from runningbond.laboratory.scores import backbone, cycle_peaks, dissipated, first_crossing, marks_of, residual, swing
+from runningbond.laboratory.scores import (
+    backbone,
+    cycle_peaks,
+    dissipated,
+    first_crossing,
+    marks_of,
+    ratio,
+    residual,
+    swing,
+)
 from runningbond.laboratory.summary import cheapest, totals
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
@@ -70,6 +79,13 @@ def test_cycle_of_a_slider_dissipates_its_loop_and_leaves_what_it_slid() -> None
     assert marks.strength == pytest.approx(10.0)
     assert marks.stiffness == pytest.approx(10.0)  # of a branch, though the loop is 4 m wide
     assert cycle_peaks(loop, (3.0, -3.0, 3.0)) == pytest.approx([10, -10, 10])
+
+
+def test_elastic_cycles_dissipate_nothing_whatever_the_rounding() -> None:
+    """A ratio to a measured rounding error would be a number of sixteen digits."""
+    displacement = 0.03 * np.sin(np.linspace(0, 4 * np.pi, 41))
+    assert dissipated(np.column_stack((displacement, 1e5 * np.tanh(200 * displacement)))) == 0.0
+    assert ratio(1.0, 0.0) is None
 
 
 def test_swing_needs_both_sides() -> None:

@@ -20,7 +20,7 @@ WHOLE, REDONE, REFUSED, LOST, NOT_TRIED = "whole", "redone", "refused", "lost", 
 does the rest; it says in one line why not, and nothing is half written; none of these; or it needs a disk of its own
 here, and may mount none."""
 
-PROGRESS = re.compile(r"\d+/\d+ \d+:\d\d:\d\d\s*$")
+PROGRESS = re.compile(r", \d+ of \d+, \d+ s$")
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def call(arguments: Sequence[str]) -> tuple[int, str]:
 def message_of(said: str, printed: str = "") -> str:
     """What a command says on standard error; where that is nothing, the last line but one that it prints.
 
-    Bars of progress are left out, and that there are no pictures from this machine.
+    Lines of progress are left out, and that there are no pictures from this machine.
     """
     lines = [line for line in said.splitlines() if line.strip() and not PROGRESS.search(line)]
     lines = [line for line in lines if "no pictures" not in line]
