@@ -2,6 +2,7 @@
 
 import json as to_json
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -17,7 +18,7 @@ from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene
 
 from .left_behind import RESPONSE_FILES, holds_results, remove_older
-from .terminal import DONE, NO_ANSWER, Json, SceneName, remarks
+from .terminal import DONE, NO_ANSWER, Json, SceneName, progress_line, remarks, together
 
 if TYPE_CHECKING:
     from runningbond.response import Response
@@ -41,18 +42,23 @@ def respond(
     out
         Folder in which to keep the response as a table and as a chart, and its time series for ParaView.
     """
+    from runningbond.pictures.progress import ResponseProgress
+
     wall = read_scene(find_scene(scene))
     check_response(model, wall, scale, "--model", "--scale")
-    recorder, observed, is_new = None, dict[str, Any](), out is not None and not out.exists()
-    is_used = holds_results(out)
+    progress = ResponseProgress()
+    observers, settings = list[Callable[..., None]]([progress]), dict[str, Any]()
+    recorder, is_new, is_used = None, out is not None and not out.exists(), holds_results(out)
     if out is not None:
         from runningbond.pictures.recording import ResponseRecorder
         from runningbond.response.follow import AFTER
 
         make_folder(out)
         recorder = ResponseRecorder(wall, out)
-        observed = {"observe": recorder, "after": AFTER}
-    response = respond_with(model, wall, scale, **observed)
+        observers.append(recorder)
+        settings["after"] = AFTER
+    with progress_line(model, progress.line):
+        response = respond_with(model, wall, scale, observe=together(observers), **settings)
     for line in remarks(wall):
         print(line, file=sys.stderr)
     summary = response.summary()

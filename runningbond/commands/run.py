@@ -4,7 +4,7 @@ import json as to_json
 import signal
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from cyclopts import Parameter
@@ -13,7 +13,7 @@ from runningbond.campaigns import Interrupted
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.compare.published import find_scene
 from runningbond.draws import Drawing
-from runningbond.models import MODELS, TOLERANCE, Model, Recorder, check_tolerance, find_model, run_model
+from runningbond.models import MODELS, TOLERANCE, Model, Progress, Recorder, check_tolerance, find_model, run_model
 from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
@@ -38,6 +38,7 @@ from .terminal import (
     progress_line,
     remarks,
     tell_cost,
+    together,
 )
 
 
@@ -83,16 +84,11 @@ def run(
         make_folder(out)
     stopped = interruptions(chosen)
     recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
-    progress = chosen.progress() if chosen.progress else None
+    progress = _progress(chosen, wall)
     observers = [each for each in (recorder, progress) if each is not None]
-
-    def observe(*seen: Any) -> None:
-        for observer in observers:
-            observer(*seen)
-
     tell_cost(chosen, wall, tolerance)
     with progress_line(chosen.name, progress.line if progress else None):
-        outcome = run_model(chosen, wall, tolerance, observe if observers else None)
+        outcome = run_model(chosen, wall, tolerance, together(observers) if observers else None)
     for line in remarks(wall):  # not before: a scene that the model refuses is one line
         print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
@@ -104,6 +100,15 @@ def run(
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+def _progress(model: Model, wall: Scene) -> Progress | None:
+    """What looks at a run and says how far it has come, if anything does."""
+    if wall.history is None:
+        return model.progress() if model.progress else None
+    from runningbond.pictures.progress import ResponseProgress
+
+    return ResponseProgress()
 
 
 def _draws(

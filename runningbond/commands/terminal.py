@@ -128,6 +128,16 @@ def _progress_lines(description: str, total: int) -> Callable[[str], None]:
     return advance
 
 
+def together(observers: Sequence[Callable[..., None]]) -> Callable[..., None]:
+    """One observer of a run in place of several."""
+
+    def observe(*seen: object) -> None:
+        for observer in observers:
+            observer(*seen)
+
+    return observe
+
+
 @contextmanager
 def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
     """How long a computation has taken, and what is told of it, in a line on the terminal until it is done.

@@ -68,6 +68,25 @@ class MotionProgress:
         return held if self._lower is None else f"{held}; {_bracket(self._lower, self._upper)}"
 
 
+class ResponseProgress:
+    """Looks at a wall whose ground moves, once or at one scale after the other."""
+
+    def __init__(self) -> None:
+        self._motions, self._scale, self._begin, self._now = 0, math.nan, 0.0, math.inf
+
+    def __call__(self, run: Run, state: State, scale: float) -> None:
+        """Look at a run; the first look at a motion is at rest."""
+        if scale != self._scale or state.time < self._now:
+            self._motions, self._scale, self._begin = self._motions + 1, scale, state.time
+        self._now = state.time
+
+    def line(self) -> str:
+        """How far it has come."""
+        if not self._motions:
+            return "comes to rest under its dead load"
+        return f"motion {self._motions}, λ {number(self._scale)}, {self._now - self._begin:.2f} s of it"
+
+
 class SearchProgress:
     """Looks at a search for certificates on its way."""
 

@@ -22,9 +22,13 @@ from runningbond.commands.command_line import command
 from runningbond.compare.published import published_scene
 from runningbond.models import MODELS, run_model
 from runningbond.pictures.curve import curve_figure
+from runningbond.pictures.progress import ResponseProgress
+from runningbond.response import follow
 from runningbond.results import load_outcome
+from runningbond.results.outcome import number
 
 from ..limit.test_large_walls import SIZE, interrupt_at
+from ..response.walls import resting
 from ..walls import content, panel, write_toml
 
 STIFFNESS = {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
@@ -119,6 +123,17 @@ def test_progress_tells_the_bracket_so_far(model: str) -> None:
     assert outcome.upper is not None
     assert outcome.upper - 1e-4 <= falls <= 1.1 * rests
     assert "% of " in progress.line()
+
+
+def test_progress_tells_how_far_each_motion_of_the_ground_has_come() -> None:
+    """Motion by motion, of another scale or of the same."""
+    pulse = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 0.1}, "quantity": "acceleration"}
+    rest = resting(panel(**SMALL, load__live=None, load__history=pulse))
+    progress = ResponseProgress()
+    assert "λ" not in progress.line()
+    for motion, scale in enumerate((0.5, 1.0, 1.0), 1):
+        time = follow(rest, scale, rows=20, observe=progress).time[-1]
+        assert progress.line() == f"motion {motion}, λ {number(scale)}, {time:.2f} s of it"
 
 
 def test_progress_changes_no_number() -> None:
