@@ -12,7 +12,7 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array
 
-from .central_differences import CONTROLS, Control, stepper
+from .central_differences import CONTROLS, Control, Watch, stepper
 from .contact_update import ContactUpdate, contacts_of
 from .rig import NO_RIG, turn_rig
 from .state import State
@@ -204,15 +204,8 @@ class Run:
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
-            arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
-            scales = (self.dt, self.local, self._viscosity)
-            ties = (*system.ties, state.stretch)
-            every = (*self._arrays, ties, self._rig, self._memory, arrays, self._work)
-            taken, stable, multipliers, work = self._step(number, piece, scales, load, live, speed, every, watch)
+            taken, stable, multipliers, work = self._take(number, state, load, live, speed, piece, watch)
             total += multipliers
-            if system.rig is not None:
-                state.turned += float(self._rig[3][0])
-                self._rig[3][0] = 0.0
             state.external += float(load.dot(state.motion)) - before + work
             if control == "held" and speed:
                 load = load + taken * speed * live
@@ -221,6 +214,29 @@ class Run:
             if not stable:
                 raise Unstable(state.steps, self.dt, self.safe_step)
         return total
+
+    def _take(
+        self, number: int, state: State, load: Array, live: Array, speed: float, steps: int, watch: Watch
+    ) -> tuple[int, bool, float, float]:
+        """Take steps on the contacts that are there; what `stepper` returns."""
+        arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
+        scales = (self.dt, self.local, self._viscosity)
+        ties = (*self.system.ties, state.stretch)
+        every = (*self._arrays, ties, self._rig, self._memory, arrays, self._work)
+        found: tuple[int, bool, float, float] = self._step(number, steps, scales, load, live, speed, every, watch)
+        if self.system.rig is not None:
+            state.turned += float(self._rig[3][0])
+            self._rig[3][0] = 0.0
+        return found
+
+    def _ahead(self, state: State, load: Array) -> State:
+        """A copy of a state that is a step ahead under a load ``(nd,)`` [N], but for its count of steps and works."""
+        if self.local:
+            raise ValueError("local damping would remember a step that is not taken")
+        self._return_to(state)
+        ahead = state.copy()
+        self._take(CONTROLS.index("held"), ahead, load, self.system.live, 0.0, 1, (0, math.inf, ahead.supplied))
+        return ahead
 
     def held_late(self, state: State) -> "Run":
         """The run of the system whose dead load is on (`BlockSystem.held_late`); a state is brought to rest there."""
@@ -315,19 +331,24 @@ class Run:
         total[:, 2] += at[:, 0] * total[:, 1] - at[:, 1] * total[:, 0]
         return np.asarray(total + search.resultants(contacts_of(state), state.motion, np.array(self.forces(state))))
 
-    def ledger(self, state: State) -> Ledger:
-        """Account for the work of the loads so far."""
+    def ledger(self, state: State, load: Array | None = None) -> Ledger:
+        """Account for the work of the loads so far.
+
+        Velocities are half a step behind motions, and works of joints a step. With the load ``(nd,)`` [N] that is on,
+        both are those of the motion's time, the kinetic energy ½ m v⁻ v⁺, and central differences of an elastic
+        system under a constant load have no residual.
+        """
         opening, _, normal, tangential = self.tractions(state)
+        ahead = state if load is None else self._ahead(state, load)
+        mean, change = (ahead.velocity + state.velocity) / 2, (ahead.velocity - state.velocity) / 2
+        damped = ((state.damped + ahead.damped) / 2)[np.isfinite(self.system.mass)]
         system, law, area, ties = self.system, self.interface.law, self.interface.area, self.system.ties
-        moving = np.isfinite(system.mass)
         return Ledger(
             external=state.external,
-            kinetic=float(0.5 * (system.mass[moving] * state.velocity[moving] ** 2).sum())
-            + system.coupling.energy(state.velocity)
-            + system.clusters.energy(state.velocity, system.mass),
+            kinetic=system.kinetic_energy(mean) - system.kinetic_energy(change),
             elastic=float(0.5 * (system.stiffness * state.motion**2).sum()),
-            joint=float(area @ law.energy(opening, normal, tangential, state.history)),
-            friction=float(area @ state.history[FRICTION_WORK]) + state.friction,
-            damped=float(state.damped[moving].sum() + area @ state.history[DAMPED_WORK]) + state.absorbed,
-            ties=ties.stored(ties.force(state.motion, state.stretch)) + float(ties.constants[:, YIELD] @ state.stretch),
+            joint=float(area @ law.energy(opening, normal, tangential, ahead.history)),
+            friction=float(area @ ahead.history[FRICTION_WORK]) + state.friction,
+            damped=float(damped.sum() + area @ ahead.history[DAMPED_WORK]) + state.absorbed,
+            ties=ties.stored(ties.force(state.motion, ahead.stretch)) + float(ties.constants[:, YIELD] @ ahead.stretch),
         )

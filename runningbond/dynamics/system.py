@@ -170,6 +170,12 @@ class BlockSystem:
         live[self.late] = 0.0
         return replace(self, mass=mass, live=live, force_unit=unit, late=self.late[:0])
 
+    def kinetic_energy(self, velocity: Array) -> float:
+        """Kinetic energy of what moves, at a velocity ``(nd,)`` [J]."""
+        moving = np.isfinite(self.mass)
+        own = float(0.5 * (self.mass[moving] * velocity[moving] ** 2).sum())
+        return own + self.coupling.energy(velocity) + self.clusters.energy(velocity, self.mass)
+
     def measure(self, force: Array) -> float:
         """Largest of modal forces ``(nd,)`` on what moves, each in its unit."""
         moving, unit = self._moving

@@ -28,7 +28,8 @@ RISE = 1e-4
 """Height, in sizes of a block, to which the kinetic energy of a wall that stands would lift it."""
 
 ROWS = 200
-"""Rows of a response in a second, and in a record that is shorter; `follow` may be asked for fewer."""
+"""Rows of a response in a second, and in a record that is shorter, one a time step at most; `follow` may be asked for
+fewer."""
 
 PART = 0.9
 """Time step, in stable ones: an impact makes up or loses energy by its square."""
@@ -97,7 +98,7 @@ class _Log:
         return self._outline.points(self._block, self.points, state.motion[self._run.system.rigid].ravel())
 
     def _energy(self, state: State) -> Array:
-        ledger, dead = self._run.ledger(state), self._run.dead_work(state)
+        ledger, dead = self._run.ledger(state, self.ground.load), self._run.dead_work(state)
         stored = ledger.elastic + ledger.joint + ledger.ties
         return np.array([ledger.external - dead, dead, ledger.kinetic, stored, ledger.friction, ledger.damped])
 
@@ -113,7 +114,8 @@ def follow(
 ) -> Response:
     """Follow a wall through the motion of its ground.
 
-    A motion whose ledger misses more than `MISSED` is gone through again at half the step, which misses about a third.
+    A motion whose ledger misses more than `MISSED` is gone through again at half the step, which misses a quarter to a
+    half.
 
     Parameters
     ----------
@@ -159,7 +161,8 @@ def _followed(
     observe(run, state, scale)
     with threadpool_limits(limits=1, user_api="blas"):
         while verdict == "undecided" and now < end:
-            ground.bring(state, now + min(1.0, history.duration if now < history.duration else 1.0) / rows)
+            row = min(1.0, history.duration if now < history.duration else 1.0) / rows
+            ground.bring(state, now + max(row, run.dt))
             log.look(state)
             observe(run, state, scale)
             now = ground.time(state)

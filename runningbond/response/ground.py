@@ -26,6 +26,7 @@ class Ground:
     def __init__(self, run: Run, history: History, scale: float, start: float) -> None:
         self.run, self.history, self.scale, self.start = run, history, scale, start
         self.velocity = np.zeros(2)  # that the wall has been given so far [m/s]
+        self.load = run.system.dead  # (nd,) that is on [N]
         # (2, nd) mass that each mode moves along x and along y [kg]; none where it is held
         self.inertia = np.zeros((2, len(run.system.mass)))
         for axis in (0, 1):
@@ -49,8 +50,11 @@ class Ground:
             steps = max(1, round(span / run.dt))
             aim = self.scale * history.velocity(now + steps * run.dt)
             acceleration = (aim - self.velocity) / (steps * run.dt)
-            before = state.time
-            run.bear(state, run.system.dead - acceleration @ self.inertia, steps)
+            load, before = run.system.dead - acceleration @ self.inertia, state.time
+            # Half of the step that ends where the load changes is under either.
+            state.external += 0.5 * run.dt * float((load - self.load) @ state.velocity)
+            self.load = load
+            run.bear(state, load, steps)
             # New contacts may have changed the step; what is missing is made up for in the next ones.
             self.velocity += acceleration * (state.time - before)
 

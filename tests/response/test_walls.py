@@ -45,6 +45,21 @@ def test_momentum_and_energy_are_balanced_at_every_sample() -> None:
     assert (response.reaction[:, 1] * step).sum() == pytest.approx(mass * GRAVITY * response.time[-1], rel=1e-3)
 
 
+@pytest.mark.parametrize(("kind", "amplitude", "period"), [("ricker", 1.0, 0.06), ("sine", 1.0, 0.02)])
+def test_a_wall_that_comes_to_rest_has_spent_what_its_ground_gave_it(
+    kind: str, amplitude: float, period: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A load that changes does half of a step's work with either value; velocities are half a step behind motions.
+
+    To leave out either misses 2 % of the work, in the end or on the way; what impacts of closed joints lose is less.
+    """
+    monkeypatch.setattr(import_module("runningbond.response.follow"), "MISSED", math.inf)
+    response = follow(resting(wall(shaken(kind, amplitude, period))), 1.0)
+    assert response.verdict == "stands"
+    assert abs(response.residual[-1]) < 1e-4 * np.ptp(response.energy[:, 0])
+    assert response.unaccounted < 5e-4
+
+
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_ground_that_moves_as_slowly_as_can_be_leaves_the_static_bracket(sense: float) -> None:
     """An acceleration that grows for 4 s and stays on brings a wall down 3 % above the static load, not 3 % below."""
@@ -126,6 +141,22 @@ def test_a_wall_that_falls_by_itself_is_not_shaken() -> None:
     assert critical_scale(pushed, "dem-dynamic", finite_system(with_impacts(pushed)), 0.1).status == "infeasible"
 
 
+def test_a_record_shorter_than_a_hundred_steps_is_followed_to_its_end() -> None:
+    """Rows were a two-hundredth of it apart, less than half a step, and none was ever taken."""
+    rows = 0
+
+    def count(*_: object) -> None:
+        nonlocal rows
+        rows += 1
+        assert rows < 10_000
+
+    scene = wall(shaken("half-sine", 4.0, 0.02), joint__normal_stiffness=1e6, joint__shear_stiffness=1e6)
+    response = follow(resting(scene), 1.0, observe=count)
+    assert response.verdict == "stands"
+    assert len(response.time) == rows
+    assert np.diff(response.time).min() > 0
+
+
 def test_a_wall_whose_energy_is_made_by_too_long_a_step_is_not_followed_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """At thrice the stable step, half of what it begins with, it flies apart, which is no collapse."""
     monkeypatch.setattr(import_module("runningbond.response.follow"), "PART", 6.0)
@@ -147,14 +178,12 @@ def test_a_verdict_whose_ledger_does_not_close_says_so() -> None:
 
 
 def test_half_the_step_is_taken_where_the_ledger_does_not_close(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A block on a soft joint misses more than 1 % just below its edge."""
-    housner = HousnerBlock()
+    """The steps of both count; half the step misses less."""
+    housner, follow_room = HousnerBlock(), import_module("runningbond.response.follow")
     unit = GRAVITY * housner.b / housner.h
-    scene = block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (4 * housner.p)), stiffness=1e8)
-    outcome = critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), 0.02)
-    assert (outcome.status, outcome.lower is not None) == ("collapse", True)
-    closed = follow(resting(scene), outcome.lower or 0.0, rows=50)
-    monkeypatch.setattr(import_module("runningbond.response.follow"), "MISSED", math.inf)
-    once = follow(resting(scene), outcome.lower or 0.0, rows=50)
-    assert closed.unaccounted < 0.01 < once.unaccounted
+    rest = resting(block(housner.b, housner.h, shaken("half-sine", unit, 2 * math.pi / (4 * housner.p)), stiffness=1e8))
+    once = follow(rest, 2.6, rows=50)
+    monkeypatch.setattr(follow_room, "MISSED", 0.9 * once.unaccounted)
+    closed = follow(rest, 2.6, rows=50)
+    assert closed.unaccounted < 0.9 * once.unaccounted
     assert closed.steps > 2.5 * once.steps
