@@ -7,7 +7,7 @@ import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.rigid_sides import RigidSides, gather_sharp, gather_sides, scatter_sides
+from runningbond.contacts.rigid_sides import RigidSides, gather_sharp, gather_sides, scatter_sides, turn_out
 from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface
 from runningbond.dynamics.rig import check_finite
@@ -92,7 +92,7 @@ class RigidContacts:
             along, force = force.reshape(2, self._points, -1), np.zeros((2, len(contacts)))
             for end, part in enumerate((1 - share, share)):
                 np.add.at(force.T, pairs[:, end], (part * along).sum(axis=1).T)
-        return contacts.resultants(self.outline, ends.contact, force)
+        return contacts.resultants(self.outline, ends.contact, np.array(turn_out.py_func(*force, ends.out)))
 
     @cached_property
     def _key_of_point(self) -> Indices:

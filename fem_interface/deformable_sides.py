@@ -14,7 +14,7 @@ the jumps have in them, turned back into the block's frame and projected on its 
 import math
 from typing import NamedTuple
 
-from runningbond.contacts.rigid_sides import angle, arc_on_arc, far_arcs, sharp_opening
+from runningbond.contacts.rigid_sides import angle, arc_on_arc, far_arcs, sharp_opening, turn_out
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
@@ -116,9 +116,9 @@ class DeformableSides(NamedTuple):
         Area that each contact stands for [m²].
     placed
         Written by `gather_deformable`: the outlines in space.
-    contact : (np, 7) float
-        Written by it: point [m] and normal of each contact, the shares of the facets of b and a at which it is, and
-        the stretch along which its slip is measured.
+    contact : (np, 8) float
+        Written by it: point [m] and normal of each contact, the shares of the facets of b and a at which it is, the
+        stretch along which its slip is measured, and its `turn_out`.
     touched : (np, 3) int
         Written by it: the facets of b and a, and 1 where a's corner rests on b.
     """
@@ -214,7 +214,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
     for k in range(inwards.size):
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
         sense = inwards[k]
-        stretch = 1.0
+        stretch, out = 1.0, 0.0
         on_arc = False
         if sense == 0.0:
             # A node inside a side; the row has it in place of a corner v, beyond the number of corners.
@@ -263,6 +263,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
                 stretch = length[j] * facets[j, 4]
                 beyond = on - straight[side]
                 if r + radius[far] == 0.0:
+                    out = 0.0 if away > beyond else 2.0 * sense
                     away = sharp_opening(away, beyond)
                 elif beyond > 0.0:
                     j, share, stretch = outer[side, end], shares[side, end], 1.0
@@ -285,6 +286,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
         contact[k, 4] = share_b
         contact[k, 5] = share_a
         contact[k, 6] = stretch
+        contact[k, 7] = out
         touched[k, 0] = b
         touched[k, 1] = a
         touched[k, 2] = 1 if of_a or on_arc else 0
@@ -302,7 +304,8 @@ def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSid
         if normal[k] == 0.0 and tangential[k] == 0.0:
             continue
         x, y, nx, ny = contact[k, 0], contact[k, 1], contact[k, 2], contact[k, 3]
-        pull, shear = area[k] * normal[k], area[k] * tangential[k] * contact[k, 6]
+        pull, shear = turn_out(area[k] * normal[k], area[k] * tangential[k], contact[k, 7])
+        shear *= contact[k, 6]
         fx = -pull * nx + shear * ny
         fy = -pull * ny - shear * nx
         # On b, and the opposite on a.

@@ -14,6 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
+from runningbond.contacts.rigid_sides import turn_out
 from runningbond.contacts.search import Contacts, facing_sides, find_contacts, position_of, resting
 from runningbond.dynamics import (
     BlockSystem,
@@ -126,7 +127,7 @@ class DeformableContacts:
             contacts.inwards.copy(),
             contacts.area.copy(),
             placed,
-            np.zeros((n, 7)),
+            np.zeros((n, 8)),
             np.zeros((n, 3), dtype=np.int64),
         )
 
@@ -158,7 +159,8 @@ class DeformableContacts:
         geometry = self.geometry(contacts)
         gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
         contact = geometry.contact
-        return contacts.resultants(self.outline, contact[:, :4], force * [np.ones(len(contacts)), contact[:, 6]])
+        pull, shear = turn_out.py_func(*force, contact[:, 7])
+        return contacts.resultants(self.outline, contact[:, :4], np.array([pull, shear * contact[:, 6]]))
 
     @cached_property
     def _joint_points(self) -> tuple[Indices, Array]:

@@ -64,6 +64,7 @@ class RigidSides(NamedTuple):
     area: Array  # (np,) area the end stands for [m²]
     placed: Placed  # written by `gather_sides`: the outlines in space
     contact: Array  # (np, 4) written by `gather_sides`: point of contact [m] and normal of each end
+    out: Array  # (np,) written by `gather_sides`: how the pull of each end is turned (`turn_out`)
 
 
 @kernel
@@ -119,15 +120,25 @@ def sharp_opening(away: float, beyond: float) -> float:
 
     A corner deeper in than it is far from that end is let go of, until twice as deep: it is coming out there, and
     belongs to the side round the end. Else a block that slides onto the next one of its course would be stuck in the
-    flank of that one, by no more than the joint under it gives way. It changes by √5 times the way of the corner.
+    flank of that one, by no more than the joint under it gives way. It changes by √5 times the way of the corner; its
+    pull is turned by as much (`turn_out`), or blocks that hit each other's edges would be thrown away by no energy.
     """
     return away if away > beyond else 2.0 * beyond - away
 
 
 @kernel
+def turn_out(pull: float, shear: float, out: float) -> tuple[float, float]:
+    """Normal and tangential force of a contact whose opening is (1 − |c|) `away` + c `moved`, c being `out`.
+
+    `away` is along the normal, and `moved` the slip: c is 0, or ±2 for a corner that is let go of.
+    """
+    return pull * (1.0 - abs(out)), shear + pull * out
+
+
+@kernel
 def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
     """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``."""
-    corners, radius, straight, ends, inwards, tilt, _, placed, contact = geometry
+    corners, radius, straight, ends, inwards, tilt, _, placed, contact, let_go = geometry
     place_outline(motion, corners, placed)
     freedom = corners.freedom
     arcs = placed.arcs
@@ -144,11 +155,12 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
         away = dx * nx + dy * ny - r_v - r_w
         moved = along - r_v * turned
         x, y = arcs[v, 0], arcs[v, 1]
-        behind = r_v
+        behind, out = r_v, 0.0
         if on_f >= 0.0:
             beyond = on_f - straight[f]
             far = ends[k, 3]
             if r_v + radius[far] == 0.0:
+                out = 0.0 if away > beyond else 2.0 * sense
                 away = sharp_opening(away, beyond)
             elif beyond > 0.0:
                 dx, dy = arcs[v, 0] - arcs[far, 0], arcs[v, 1] - arcs[far, 1]
@@ -166,6 +178,7 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
                 beyond = on_e - straight[e]
                 far = ends[k, 2]
                 if r_w + radius[far] == 0.0:
+                    out = 0.0 if away > beyond else -2.0 * sense
                     away = sharp_opening(away, beyond)
                 elif beyond > 0.0:
                     dx, dy = arcs[far, 0] - arcs[w, 0], arcs[far, 1] - arcs[w, 1]
@@ -180,12 +193,13 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
         contact[k, 1] = y - behind * ny
         contact[k, 2] = nx
         contact[k, 3] = ny
+        let_go[k] = out
 
 
 @kernel
 def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
     """As `gather_sides` where all corners are sharp: with choices in place of branches, which is faster."""
-    corners, _, straight, ends, inwards, _, _, placed, contact = geometry
+    corners, _, straight, ends, inwards, _, _, placed, contact, out = geometry
     place_outline(motion, corners, placed)
     arcs = placed.arcs
     for row in range(inwards.size):
@@ -196,14 +210,15 @@ def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
         dx, dy = x - x_w, y - y_w
         nx, ny, ex, ey = arcs[f, 2], arcs[f, 3], -arcs[e, 2], -arcs[e, 3]
         along, along_e = dy * nx - dx * ny, dy * ex - dx * ey
-        on_f, on_e = sense * along, -sense * along_e
-        bears = (on_f < 0.0) & (on_e >= 0.0)
+        bears = (sense * along < 0.0) & (sense * along_e <= 0.0)
         nx, ny = (ex if bears else nx), (ey if bears else ny)
-        away = dx * nx + dy * ny
-        beyond = on_e - straight[e] if bears else on_f - straight[f]
-        comes_out = ((on_f >= 0.0) | bears) & (away <= beyond)
+        along, way = (along_e if bears else along), (-sense if bears else sense)
+        away, on = dx * nx + dy * ny, way * along
+        beyond = on - (straight[e] if bears else straight[f])
+        comes_out = (on >= 0.0) & (away <= beyond)
         opening[k] = 2.0 * beyond - away if comes_out else away  # `sharp_opening`
-        slip[k] = along_e if bears else along
+        slip[k] = along
+        out[k] = 2.0 * way if comes_out else 0.0
         contact[k, 0] = x_w if bears else x
         contact[k, 1] = y_w if bears else y
         contact[k, 2] = nx
@@ -237,7 +252,7 @@ def far_arcs(
 @kernel
 def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force: Array) -> None:
     """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
-    corners, _, _, ends, _, _, area, placed, contact = geometry
+    corners, _, _, ends, _, _, area, placed, contact, out = geometry
     freedom, cx, cy = corners.freedom, placed.blocks[2], placed.blocks[3]
     for row in range(normal.size):
         k = np.uint64(row)
@@ -247,6 +262,8 @@ def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force:
         b, a = freedom[ends[k, 0]], freedom[ends[k, 1]]
         x, y, nx, ny = contact[k, 0], contact[k, 1], contact[k, 2], contact[k, 3]
         pull, shear = area[k] * n, area[k] * t
+        if out[k] != 0.0:
+            pull, shear = turn_out(pull, shear, out[k])
         fx = pull * nx - shear * ny
         fy = pull * ny + shear * nx
         p, q = b // THREE, a // THREE

@@ -83,6 +83,7 @@ class Contacts:
             self.area.copy(),
             Placed(np.zeros((4, len(outline.blocks))), np.zeros((len(outline.radius), 4))),
             np.zeros((len(self), 4)),
+            np.zeros(len(self)),
         )
 
     def resultants(self, outline: Outline, contact: Array, force: Array) -> Array:

@@ -15,7 +15,7 @@ from dem.finite_system import finite_system
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.compare import published_scene
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.rigid_sides import gather_sides, scatter_sides, sharp_opening
+from runningbond.contacts.rigid_sides import gather_sharp, gather_sides, scatter_sides, sharp_opening
 from runningbond.contacts.search import find_contacts, jumps
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.contact_update import contacts_of
@@ -187,6 +187,39 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
     smooth = np.abs(rate).max(axis=0) < 1e2 * np.abs(direction).max()
     work = (tractions * rate * contacts.area)[:, smooth].sum()
     assert smooth.all()
+    assert -force @ direction == pytest.approx(work, abs=1e-5 * np.abs(tractions * rate * contacts.area).sum())
+
+
+@pytest.mark.parametrize("gather", [gather_sides, gather_sharp])
+@given(depth=st.floats(1e-4, 5e-3), share=st.floats(0.55, 0.95), turned=st.floats(-0.3, 0.3))
+@settings(max_examples=30, derandomize=True)
+def test_a_corner_that_is_let_go_of_is_pushed_as_its_opening_says(
+    gather: Any, depth: float, share: float, turned: float
+) -> None:
+    """A block with its corner in another one, by less from the end of its side than deep: no energy comes of it."""
+    scene = dry([rectangle(0, 0, 1, 0.2), rectangle(0.5, 0.2, 0.5, 0.2)])
+    outline, motion = Outline.of(scene), np.zeros(9)
+    c, s = math.cos(turned), math.sin(turned)
+    corner = np.array([1 - share * depth, 0.2 - depth])
+    motion[3:5] = corner - (0.75, 0.3) - np.array([[c, -s], [s, c]]) @ (-0.25, -0.1)
+    motion[5] = turned
+    contacts = find_contacts(outline, motion, 0.02)
+    geometry = contacts.geometry(outline)
+
+    def opening_after(step: Array) -> Array:
+        jumps = np.zeros((2, len(contacts)))
+        gather(motion + step, tuple(geometry), *jumps)
+        return jumps
+
+    opening_after(np.zeros(9))
+    let_go = geometry.out != 0
+    assert let_go.any()
+    rng = np.random.default_rng(1)
+    tractions, force = rng.normal(size=(2, len(contacts))) * let_go, np.zeros(9)
+    scatter_sides(*tractions, tuple(geometry), force)
+    direction = rng.normal(size=9)
+    rate = (opening_after(1e-7 * direction) - opening_after(-1e-7 * direction)) / 2e-7
+    work = (tractions * rate * contacts.area).sum()
     assert -force @ direction == pytest.approx(work, abs=1e-5 * np.abs(tractions * rate * contacts.area).sum())
 
 

@@ -62,7 +62,7 @@ def test_sharp_corners_are_those_of_no_radius(seed: int, turned: float) -> None:
     for gather in (gather_sides, gather_sharp):
         geometry, jumps = contacts.geometry(outline), np.zeros((2, len(contacts)))
         gather(motion, tuple(geometry), *jumps)
-        found.append((*jumps, *geometry.contact.T))
+        found.append((*jumps, *geometry.contact.T, geometry.out))
     assert np.array_equal(found[0], found[1])
 
 

@@ -156,8 +156,8 @@ def test_small_displacements_agree_to_first_order(modes: ModeCount, cells: int, 
 def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float, seed: int) -> None:
     """Scatter is minus the transpose of the derivative of gather, on turned and deformed blocks.
 
-    Rounded corners do so to the strain of the side that they roll on. Where arc meets arc, or a sharp corner comes out
-    of the far end, it is so to the penetration; both are left out.
+    Rounded corners do so to the strain of the side that they roll on. Where arc meets arc it is so to the penetration;
+    these are left out, and nodes that come near the end of a side.
     """
     scene = wall(wall__length=0.72, wall__height=0.18, joint__inset=inset)
     blocks = node_outline(scene, 2)
@@ -173,7 +173,7 @@ def test_forces_do_the_work_of_the_jumps_however_blocks_have_turned(inset: float
     of_a = touched[:, 2]
     side = np.where(of_a, touched[:, 0], touched[:, 1])
     gap = (1 - 2 * of_a) * np.einsum("kx,kx->k", contact[:, :2] - facets[side, :2], contact[:, 2:4])
-    plain = np.abs(gap - opening) < 1e-12
+    plain = (np.abs(gap - opening) < 1e-12) | (contact[:, 7] != 0)
     assert plain.sum() > 30
     direction = rng.normal(size=len(motion))
     direction[-1] = 0.0
