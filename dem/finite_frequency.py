@@ -49,7 +49,7 @@ def _rows(sides: RigidSides, normal: Array, shear: Array, root: Array, share: Ar
 
     And the stiffness ``(nb, 3, 3)`` of each block against its share ``(n, 2)`` of its ends, in its masses.
     """
-    corners, _, _, ends, _, _, area, placed, contact, _ = sides
+    corners, _, _, ends, _, _, area, placed, contact, _, _ = sides
     for k in range(normal.size):
         for half in range(2):
             first = corners.freedom[ends[k, half]]

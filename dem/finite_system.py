@@ -7,12 +7,20 @@ import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.rigid_sides import RigidSides, gather_sharp, gather_sides, scatter_sides, turn_out
+from runningbond.contacts.rigid_sides import (
+    RigidSides,
+    gather_sharp,
+    gather_sides,
+    reframe_sharp,
+    scatter_sides,
+    turn_out,
+)
 from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
+from runningbond.joints.law import BEARS
 from runningbond.scene import Array, Indices, Scene
 
 from .finite_frequency import frequencies_squared
@@ -57,7 +65,9 @@ class RigidContacts:
         if not self._points:
             law = self._materials.law(contacts)
             frequencies = self._frequencies(ends, law.stiffest, law.shear_stiffness)
-            return Interface(law, contacts.area, self._gather, scatter_sides, ends, *frequencies)
+            interface = Interface(law, contacts.area, self._gather, scatter_sides, ends, *frequencies)
+            sharp = BEARS in law.law.history and self._gather is gather_sharp
+            return replace(interface, reframe=reframe_sharp) if sharp else interface
         pairs = contacts.pairs
         law = self._materials.law(contacts, pairs, self._points)
         normal, shear = np.zeros((2, len(contacts)))

@@ -25,10 +25,16 @@ from runningbond.dynamics import (
 )
 from runningbond.dynamics.rig import Rig
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.law import KernelLaw
+from runningbond.joints.law import BEARS, KernelLaw
 from runningbond.scene import Array, Indices
 
-from .deformable_sides import DeformableSides, PlacedNodes, gather_deformable, scatter_deformable
+from .deformable_sides import (
+    DeformableSides,
+    PlacedNodes,
+    gather_deformable,
+    reframe_deformable,
+    scatter_deformable,
+)
 from .mass_scaling import CLOSE, ScaledModes, scaled_modes
 from .node_outline import NodeOutline
 from .system import DAMPING, block_system
@@ -140,7 +146,8 @@ class DeformableContacts:
         """The interface on contacts of blocks with some masses and viscosities, whose ω² [1/s²] is near a guess."""
         law, geometry = self._materials.law(contacts), self.geometry(contacts)
         bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
-        return Interface(law, contacts.area, gather_deformable, scatter_deformable, geometry, bound)
+        interface = Interface(law, contacts.area, gather_deformable, scatter_deformable, geometry, bound)
+        return replace(interface, reframe=reframe_deformable) if BEARS in law.law.history else interface
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
         """A key of each contact and its number, two ``(n,)``: contacts are points."""

@@ -10,8 +10,10 @@ t, and the tilt φ of b against a,
     arc on arc:     opening |c_v − c_w| − r_v − r_w,         slip r_v ∠(n_e, n) + r_w ∠(n_f, n),  n along the centres
 
 Each goes over into the next without a jump, and so does their friction when a corner comes off one block's side and
-its side slides on over another's. The rates of opening and slip are those of the two blocks at the point where
-they touch: forces there do the work that the jumps say, and keep linear and angular momentum.
+its side slides on over another's. Only sharp corners that lie on each other, pressed in by δ, go over with a jump of
+the slip, δ sin φ, of which ground motions take no notice (`reframe_sharp`). The rates of opening and slip are those of
+the two blocks at the point where they touch: forces there do the work that the jumps say, and keep linear and angular
+momentum.
 """
 
 import math
@@ -20,7 +22,9 @@ from typing import NamedTuple
 import numpy as np
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array, Unsigned
+from runningbond.joints.coulomb import PLASTIC_SLIP, SIDE
+from runningbond.joints.law import OPENING_BEFORE, SLIP_BEFORE
+from runningbond.scene import Array, Mask, Unsigned
 
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
 
@@ -65,6 +69,7 @@ class RigidSides(NamedTuple):
     placed: Placed  # written by `gather_sides`: the outlines in space
     contact: Array  # (np, 4) written by `gather_sides`: point of contact [m] and normal of each end
     out: Array  # (np,) written by `gather_sides`: how the pull of each end is turned (`turn_out`)
+    bears: Mask  # (np,) written by `gather_sharp`: whether w bears e, else v rests on f
 
 
 @kernel
@@ -136,9 +141,38 @@ def turn_out(pull: float, shear: float, out: float) -> tuple[float, float]:
 
 
 @kernel
+def reframe_contact(
+    k: int, bears: float, apart: tuple[float, float], f: tuple[float, float], e: tuple[float, float], history: Array
+) -> None:
+    """Measure what contact k has been through along the other block's side from now on.
+
+    Parameters
+    ----------
+    k
+        Its number.
+    bears
+        1 where corner w bears side e now, 0 where corner v rests on side f.
+    apart
+        From w to v [m].
+    f, e
+        Outward normal of f and inward one of e.
+    history : (rows, np) float
+        Written to. The jumps of the last step are told in the other frame, so that the change of the frame is no rate
+        for the viscosity, and so is the slip at which the point is free of shear: it bears what it bore.
+    """
+    to = 2.0 * bears - 1.0
+    dx, dy, nx, ny = apart[0], apart[1], to * (e[0] - f[0]), to * (e[1] - f[1])
+    turned = dy * nx - dx * ny
+    history[SIDE, k] = bears
+    history[OPENING_BEFORE, k] += dx * nx + dy * ny
+    history[SLIP_BEFORE, k] += turned
+    history[PLASTIC_SLIP, k] += turned
+
+
+@kernel
 def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
     """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``."""
-    corners, radius, straight, ends, inwards, tilt, _, placed, contact, let_go = geometry
+    corners, radius, straight, ends, inwards, tilt, _, placed, contact, let_go, _ = geometry
     place_outline(motion, corners, placed)
     freedom = corners.freedom
     arcs = placed.arcs
@@ -199,7 +233,7 @@ def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
 @kernel
 def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
     """As `gather_sides` where all corners are sharp: with choices in place of branches, which is faster."""
-    corners, _, straight, ends, inwards, _, _, placed, contact, out = geometry
+    corners, _, straight, ends, inwards, _, _, placed, contact, out, held = geometry
     place_outline(motion, corners, placed)
     arcs = placed.arcs
     for row in range(inwards.size):
@@ -219,10 +253,31 @@ def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
         opening[k] = 2.0 * beyond - away if comes_out else away  # `sharp_opening`
         slip[k] = along
         out[k] = 2.0 * way if comes_out else 0.0
+        held[k] = bears
         contact[k, 0] = x_w if bears else x
         contact[k, 1] = y_w if bears else y
         contact[k, 2] = nx
         contact[k, 3] = ny
+
+
+@kernel
+def reframe_sharp(geometry: RigidSides, history: Array) -> None:
+    """After `gather_sharp`, reframe contacts where one block's corner has taken over from the other's."""
+    _, _, _, ends, _, _, _, placed, _, _, bears = geometry
+    arcs, bore = placed.arcs, history[SIDE]
+    changed = 0
+    for row in range(bore.size):
+        changed += bears[row] != (bore[row] > 0.5)
+    if changed == 0:
+        return
+    for row in range(bore.size):
+        k = np.uint64(row)
+        if bears[k] != (bore[k] > 0.5):
+            v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
+            apart = arcs[v, 0] - arcs[w, 0], arcs[v, 1] - arcs[w, 1]
+            reframe_contact(
+                k, 1.0 if bears[k] else 0.0, apart, (arcs[f, 2], arcs[f, 3]), (-arcs[e, 2], -arcs[e, 3]), history
+            )
 
 
 @kernel
@@ -252,7 +307,7 @@ def far_arcs(
 @kernel
 def scatter_sides(normal: Array, tangential: Array, geometry: RigidSides, force: Array) -> None:
     """Subtract from forces ``(3 nb,)`` what the contacts' tractions ``(np,)`` do on them, in space."""
-    corners, _, _, ends, _, _, area, placed, contact, out = geometry
+    corners, _, _, ends, _, _, area, placed, contact, out, _ = geometry
     freedom, cx, cy = corners.freedom, placed.blocks[2], placed.blocks[3]
     for row in range(normal.size):
         k = np.uint64(row)

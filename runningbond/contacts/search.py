@@ -84,6 +84,7 @@ class Contacts:
             Placed(np.zeros((4, len(outline.blocks))), np.zeros((len(outline.radius), 4))),
             np.zeros((len(self), 4)),
             np.zeros(len(self)),
+            np.zeros(len(self), dtype=bool),
         )
 
     def resultants(self, outline: Outline, contact: Array, force: Array) -> Array:

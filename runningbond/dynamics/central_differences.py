@@ -154,7 +154,7 @@ def _give_back(
     return returned
 
 
-def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
+def _steps_at_constant_loads(gather: Kernel, reframe: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
     """Compile the loop of `stepper` over steps in which loads stay as they are; its arguments are those of that."""
 
     @inlined
@@ -180,6 +180,7 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
                 _restrained(motion, freedom, basis, moved)
             # Each kernel is called in one place: what is compiled into the loop twice takes twice as long to compile.
             gather(unrestrained, geometry, opening, slip)
+            reframe(geometry, history)
             law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
             if restrained:
                 force[:] = 0.0
@@ -223,12 +224,12 @@ def _steps_at_constant_loads(gather: Kernel, law: Kernel, scatter: Kernel, advan
 
 
 @cache
-def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
+def stepper(gather: Kernel, reframe: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
     """Compile the loop of a model.
 
     Parameters
     ----------
-    gather, law, scatter
+    gather, reframe, law, scatter
         Of an `Interface`.
     advance
         The update (`update_of`), whose memory is the last but two of the arrays.
@@ -246,7 +247,7 @@ def stepper(gather: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> An
         With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
         acts on nothing else.
     """
-    constant = _steps_at_constant_loads(gather, law, scatter, advance)
+    constant = _steps_at_constant_loads(gather, reframe, law, scatter, advance)
 
     @kernel
     def step(

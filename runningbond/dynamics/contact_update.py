@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from runningbond.contacts.search import Contacts, position_of
-from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
+from runningbond.joints.law import BEARS, COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
 from runningbond.scene import Array
 
 from .state import PLASTIC_SLIP, State, history_free_of_shear
@@ -66,7 +66,9 @@ class ContactUpdate:
         search, before, history = self._search, contacts_of(state), state.history
         rested = search.resting(before, state.motion)
         opening, slip = interface.jumps(state.motion)
-        plastic_slip = interface.law.law.row(PLASTIC_SLIP)
+        interface.reframe(tuple(interface.geometry), history)
+        law = interface.law.law
+        plastic_slip = law.row(PLASTIC_SLIP)
         state.friction += float(interface.area @ history[FRICTION_WORK])
         state.absorbed += float(interface.area @ history[DAMPED_WORK])
 
@@ -99,7 +101,8 @@ class ContactUpdate:
         origin = np.where((new_ends >= 0) & (kept < 0), np.append(turned, -1)[new_ends], -1)
         corner = position_of(ends, origin)
         moved = np.flatnonzero((origin >= 0) & (corner >= 0))
-        state.history[4:, moved] = history[4:, corner[moved]]
+        handed = np.array([[k] for k, name in enumerate(law.history) if k >= len(COMMON_ROWS) and name != BEARS])
+        state.history[handed, moved] = history[handed, corner[moved]]
         state.history[plastic_slip, moved] += new[moved] - slip[corner[moved]]
         state.history[:, kept >= 0] = history[:, kept[kept >= 0]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0

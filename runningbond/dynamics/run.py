@@ -119,7 +119,8 @@ class Run:
         self.safe_step = stable_step(closer, self.viscous * math.sqrt(closer / bound), self.local)
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(bound) / self.dt
-        self._step = stepper(interface.gather, interface.law.kernel, interface.scatter, self._advance_modes)
+        kernels = interface.gather, interface.reframe, interface.law.kernel, interface.scatter
+        self._step = stepper(*kernels, self._advance_modes)
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)

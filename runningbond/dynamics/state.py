@@ -61,7 +61,9 @@ class State:
 def history_free_of_shear(interface: Interface, motion: Array) -> Array:
     """History ``(rows, np)`` of points that are free of shear after a motion ``(nd,)``."""
     history = np.zeros((interface.law.rows, interface.law.points))
-    history[OPENING_BEFORE], history[SLIP_BEFORE] = interface.jumps(motion)
+    opening, slip = interface.jumps(motion)
+    interface.reframe(tuple(interface.geometry), history)  # which frames they are in
+    history[OPENING_BEFORE], history[SLIP_BEFORE] = opening, slip
     law = interface.law.law
     if PLASTIC_SLIP in law.history:
         history[law.row(PLASTIC_SLIP)] = history[SLIP_BEFORE]
