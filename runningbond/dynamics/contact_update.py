@@ -106,7 +106,8 @@ class ContactUpdate:
         state.history[plastic_slip, moved] += new[moved] - slip[corner[moved]]
         state.history[:, kept >= 0] = history[:, kept[kept >= 0]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0
-        share = np.ones(len(kept))  # of its area that a point had before
+        share = np.zeros(len(kept))  # of its area that a point had before
+        share[moved] = 1.0
         share[kept >= 0] = np.minimum(1.0, interface.area[kept[kept >= 0]] / renewed.area[kept >= 0])
         state.friction += _spread(renewed, state, share)
         return renewed

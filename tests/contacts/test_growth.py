@@ -1,12 +1,14 @@
 """Contacts that come to overlap by more as blocks slide over each other: what bears the load then."""
 
+import math
+
 import numpy as np
 import pytest
 
 from dem.dynamic import dem_dynamic
 from dem.finite_system import finite_system
 from runningbond.dynamics import Run, State
-from runningbond.dynamics.contact_update import _spread
+from runningbond.dynamics.contact_update import ContactUpdate, _spread
 from runningbond.joints.law import PLASTIC_CLOSURE
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
@@ -34,6 +36,25 @@ def test_a_contact_that_grows_goes_on_with_its_force(share: float, closure: dict
     assert 0 <= lost <= (1 - share) * joint * (1 + 1e-9)
     if not closure:  # a share s of the springs had s E, and s² E is left in all of them
         assert lost == pytest.approx(share * (1 - share) * joint, rel=1e-9, abs=1e-9 * joint)
+
+
+@pytest.mark.parametrize("closure", [{}, {"closure": {"growth": 1e6, "stiffest": 2e10}}])
+def test_sides_that_are_found_in_each_other_bear_nothing_yet(closure: dict[str, object]) -> None:
+    """A block that lies on its other side, 1 mm in the ground, all at once: it is borne as it goes on, by k δ."""
+    material = {**STIFF, "compressive_strength": 1e8, **closure}
+    scene = courses([[1]], width=0.4, height=0.2, joint=material)
+    system = finite_system(scene)
+    run, state = Run(system), State.at_rest(system)
+    _, up, spin = system.rigid[np.flatnonzero(scene.wall)[0]]
+    state.motion[up], state.motion[spin] = -1e-3, math.pi
+    assert system.contacts is not None
+    interface = ContactUpdate(system, system.contacts).renew(state, run.interface, run.dt)
+    assert interface.jumps(state.motion)[0].min() == pytest.approx(-1e-3)
+    assert run.ledger(state).joint == pytest.approx(0.0, abs=1e-12)
+    assert run.forces(state)[0] == pytest.approx(0.0, abs=1e-9)
+    state.motion[up] -= 1e-9
+    area = scene.thickness * 0.4 / 2  # as sides have that meet later
+    assert -run.forces(state)[0].sum() == pytest.approx(STIFF["normal_stiffness"] * area * 1e-9, rel=1e-3)
 
 
 @pytest.mark.long
