@@ -14,13 +14,14 @@ from runningbond.contacts.rigid_sides import (
     reframe_sharp,
     scatter_sides,
     turn_out,
+    turned_sharp,
 )
 from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
 from runningbond.dynamics import BlockSystem, Interface
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
-from runningbond.joints.law import BEARS
+from runningbond.joints.frames import reframe_along
 from runningbond.scene import Array, Indices, Scene
 
 from .finite_frequency import frequencies_squared
@@ -50,6 +51,7 @@ class RigidContacts:
         self._gather = gather_sides if self.outline.radius.any() else gather_sharp
         self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
         self._scene, self._mass = scene, held_masses(scene)
+        self._reframes = scene.history is not None and self._gather is gather_sharp
         undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
         self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 
@@ -66,8 +68,7 @@ class RigidContacts:
             law = self._materials.law(contacts)
             frequencies = self._frequencies(ends, law.stiffest, law.shear_stiffness)
             interface = Interface(law, contacts.area, self._gather, scatter_sides, ends, *frequencies)
-            sharp = BEARS in law.law.history and self._gather is gather_sharp
-            return replace(interface, reframe=reframe_sharp) if sharp else interface
+            return replace(interface, reframe=reframe_sharp) if self._reframes else interface
         pairs = contacts.pairs
         law = self._materials.law(contacts, pairs, self._points)
         normal, shear = np.zeros((2, len(contacts)))
@@ -76,7 +77,8 @@ class RigidContacts:
             of_ends[pairs] = of_points[: len(pairs), None]
         geometry, area = along(ends, pairs, contacts.area, self._rule)
         kernels = gather_along(self._gather), scatter_along(scatter_sides)
-        return Interface(law, area, *kernels, geometry, *self._frequencies(ends, normal, shear))
+        interface = Interface(law, area, *kernels, geometry, *self._frequencies(ends, normal, shear))
+        return replace(interface, reframe=reframe_along(turned_sharp)) if self._reframes else interface
 
     def _frequencies(self, ends: RigidSides, normal: Array, shear: Array) -> tuple[float, float | None]:
         """The bound of the frequency, and a closer value where the ground moves."""

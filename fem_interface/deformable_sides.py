@@ -14,9 +14,9 @@ the jumps have in them, turned back into the block's frame and projected on its 
 import math
 from typing import NamedTuple
 
-from runningbond.contacts.rigid_sides import angle, arc_on_arc, far_arcs, reframe_contact, sharp_opening, turn_out
+from runningbond.contacts.rigid_sides import angle, arc_on_arc, far_arcs, sharp_opening, turn_out, turned_by
 from runningbond.joints import compiled
-from runningbond.joints.coulomb import SIDE
+from runningbond.joints.frames import Frames, retell
 from runningbond.scene import Array, Indices
 
 from .block_kernels import NodalTables, to_modes, to_nodes
@@ -294,21 +294,23 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
 
 
 @kernel
-def reframe_deformable(geometry: DeformableSides, history: Array) -> None:
+def reframe_deformable(geometry: DeformableSides, frames: Frames, history: Array) -> None:
     """After `gather_deformable`, as `reframe_sharp` does."""
     _, _, sides, ends, inwards, _, placed, _, touched = geometry
-    facets, arcs, bore = placed.facets, placed.arcs, history[SIDE]
+    (facets, arcs), (bore, plastic) = (placed.facets, placed.arcs), frames
     for k in range(bore.size):
-        bears = float(touched[k, 2])
+        bears = touched[k, 2] == 1
         if inwards[k] == 0.0 or bears == bore[k]:
             continue
+        bore[k] = bears
         v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
         if sides.radius[v] + sides.radius[w] > 0.0:
             continue
         of_e, of_f = (1, 0) if inwards[k] > 0.0 else (0, 1)
         i, j = sides.outer[e, of_e], sides.outer[f, of_f]
         apart = arcs[e, 2 * of_e] - arcs[f, 2 * of_f], arcs[e, 2 * of_e + 1] - arcs[f, 2 * of_f + 1]
-        reframe_contact(k, bears, apart, (facets[j, 3], -facets[j, 2]), (-facets[i, 3], facets[i, 2]), history)
+        opening, slip = turned_by(apart, (facets[j, 3], -facets[j, 2]), (-facets[i, 3], facets[i, 2]), bears)
+        retell(history, plastic, k, opening, slip)
 
 
 @kernel

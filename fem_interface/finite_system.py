@@ -25,7 +25,7 @@ from runningbond.dynamics import (
 )
 from runningbond.dynamics.rig import Rig
 from runningbond.dynamics.run import LOCAL, VISCOUS
-from runningbond.joints.law import BEARS, KernelLaw
+from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices
 
 from .deformable_sides import (
@@ -147,7 +147,7 @@ class DeformableContacts:
         law, geometry = self._materials.law(contacts), self.geometry(contacts)
         bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
         interface = Interface(law, contacts.area, gather_deformable, scatter_deformable, geometry, bound)
-        return replace(interface, reframe=reframe_deformable) if BEARS in law.law.history else interface
+        return replace(interface, reframe=reframe_deformable) if self.blocks.scene.history else interface
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
         """A key of each contact and its number, two ``(n,)``: contacts are points."""

@@ -22,8 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from runningbond.joints.compiled import kernel
-from runningbond.joints.coulomb import PLASTIC_SLIP, SIDE
-from runningbond.joints.law import OPENING_BEFORE, SLIP_BEFORE
+from runningbond.joints.frames import Frames, retell
 from runningbond.scene import Array, Mask, Unsigned
 
 ONE, TWO, THREE = np.uint64(1), np.uint64(2), np.uint64(3)
@@ -141,35 +140,6 @@ def turn_out(pull: float, shear: float, out: float) -> tuple[float, float]:
 
 
 @kernel
-def reframe_contact(
-    k: int, bears: float, apart: tuple[float, float], f: tuple[float, float], e: tuple[float, float], history: Array
-) -> None:
-    """Measure what contact k has been through along the other block's side from now on.
-
-    Parameters
-    ----------
-    k
-        Its number.
-    bears
-        1 where corner w bears side e now, 0 where corner v rests on side f.
-    apart
-        From w to v [m].
-    f, e
-        Outward normal of f and inward one of e.
-    history : (rows, np) float
-        Written to. The jumps of the last step are told in the other frame, so that the change of the frame is no rate
-        for the viscosity, and so is the slip at which the point is free of shear: it bears what it bore.
-    """
-    to = 2.0 * bears - 1.0
-    dx, dy, nx, ny = apart[0], apart[1], to * (e[0] - f[0]), to * (e[1] - f[1])
-    turned = dy * nx - dx * ny
-    history[SIDE, k] = bears
-    history[OPENING_BEFORE, k] += dx * nx + dy * ny
-    history[SLIP_BEFORE, k] += turned
-    history[PLASTIC_SLIP, k] += turned
-
-
-@kernel
 def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
     """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``."""
     corners, radius, straight, ends, inwards, tilt, _, placed, contact, let_go, _ = geometry
@@ -261,23 +231,43 @@ def gather_sharp(motion: Array, geometry: RigidSides, opening: Array, slip: Arra
 
 
 @kernel
-def reframe_sharp(geometry: RigidSides, history: Array) -> None:
-    """After `gather_sharp`, reframe contacts where one block's corner has taken over from the other's."""
+def turned_by(
+    apart: tuple[float, float], f: tuple[float, float], e: tuple[float, float], bears: bool
+) -> tuple[float, float]:
+    """By how much opening and slip [m] of corners `apart` are larger along e than along f, or the other way round.
+
+    `apart` leads from w to v [m], f and e are the outward normal of f and the inward one of e.
+    """
+    sign = 1.0 if bears else -1.0
+    nx, ny = sign * (e[0] - f[0]), sign * (e[1] - f[1])
+    return apart[0] * nx + apart[1] * ny, apart[1] * nx - apart[0] * ny
+
+
+@kernel
+def turned_sharp(geometry: RigidSides, k: int) -> tuple[float, float]:
+    """By how much opening and slip of end k [m] are larger along the side that bears now than along the other one."""
     _, _, _, ends, _, _, _, placed, _, _, bears = geometry
-    arcs, bore = placed.arcs, history[SIDE]
+    arcs, v, w, e, f = placed.arcs, ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
+    apart = arcs[v, 0] - arcs[w, 0], arcs[v, 1] - arcs[w, 1]
+    by: tuple[float, float] = turned_by(apart, (arcs[f, 2], arcs[f, 3]), (-arcs[e, 2], -arcs[e, 3]), bears[k])
+    return by
+
+
+@kernel
+def reframe_sharp(geometry: RigidSides, frames: Frames, history: Array) -> None:
+    """After `gather_sharp`, retell the history of ends where one block's side has taken over from the other's."""
+    bears, (bore, plastic) = geometry[-1], frames
     changed = 0
     for row in range(bore.size):
-        changed += bears[row] != (bore[row] > 0.5)
+        changed += bears[row] != bore[row]
     if changed == 0:
         return
     for row in range(bore.size):
         k = np.uint64(row)
-        if bears[k] != (bore[k] > 0.5):
-            v, w, e, f = ends[k, 0], ends[k, 1], ends[k, 4], ends[k, 5]
-            apart = arcs[v, 0] - arcs[w, 0], arcs[v, 1] - arcs[w, 1]
-            reframe_contact(
-                k, 1.0 if bears[k] else 0.0, apart, (arcs[f, 2], arcs[f, 3]), (-arcs[e, 2], -arcs[e, 3]), history
-            )
+        if bears[k] != bore[k]:
+            opening, slip = turned_sharp(geometry, k)
+            retell(history, plastic, k, opening, slip)
+            bore[k] = bears[k]
 
 
 @kernel

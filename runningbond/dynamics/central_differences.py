@@ -162,7 +162,7 @@ def _steps_at_constant_loads(gather: Kernel, reframe: Kernel, law: Kernel, scatt
         control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
         dt, local, joint_viscosity = scales
-        geometry, parameters, modes, restraint, ties, rig, memory, state, work = arrays
+        geometry, parameters, modes, restraint, ties, rig, memory, state, work, frames = arrays
         _, _, mobility = modes
         motion, velocity, history, _, force = state
         freedom, basis = restraint
@@ -180,7 +180,7 @@ def _steps_at_constant_loads(gather: Kernel, reframe: Kernel, law: Kernel, scatt
                 _restrained(motion, freedom, basis, moved)
             # Each kernel is called in one place: what is compiled into the loop twice takes twice as long to compile.
             gather(unrestrained, geometry, opening, slip)
-            reframe(geometry, history)
+            reframe(geometry, frames, history)
             law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
             if restrained:
                 force[:] = 0.0
@@ -232,7 +232,7 @@ def stepper(gather: Kernel, reframe: Kernel, law: Kernel, scatter: Kernel, advan
     gather, reframe, law, scatter
         Of an `Interface`.
     advance
-        The update (`update_of`), whose memory is the last but two of the arrays.
+        The update (`update_of`), whose memory is the last but three of the arrays.
 
     Returns
     -------
@@ -254,7 +254,7 @@ def stepper(gather: Kernel, reframe: Kernel, law: Kernel, scatter: Kernel, advan
         control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
     ) -> tuple[int, bool, float, float]:
         rises = speed != 0.0 and control == HELD
-        state, work = arrays[7:]
+        state, work, _ = arrays[7:]
         motion, loaded = state[0], work[1]
         already, given, most = watch
         copy_into(loaded, load)

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from runningbond.contacts.search import Contacts, position_of
-from runningbond.joints.law import BEARS, COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
+from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, PLASTIC_CLOSURE
 from runningbond.scene import Array
 
-from .state import PLASTIC_SLIP, State, history_free_of_shear
+from .state import PLASTIC_SLIP, State, frames_of, history_free_of_shear
 from .system import BlockSystem, ContactSearch, Interface
 
 SPEED_FACTOR = 2
@@ -66,9 +66,8 @@ class ContactUpdate:
         search, before, history = self._search, contacts_of(state), state.history
         rested = search.resting(before, state.motion)
         opening, slip = interface.jumps(state.motion)
-        interface.reframe(tuple(interface.geometry), history)
-        law = interface.law.law
-        plastic_slip = law.row(PLASTIC_SLIP)
+        plastic_slip = interface.law.law.row(PLASTIC_SLIP)
+        interface.reframe(tuple(interface.geometry), (state.bears, plastic_slip), history)
         state.friction += float(interface.area @ history[FRICTION_WORK])
         state.absorbed += float(interface.area @ history[DAMPED_WORK])
 
@@ -94,15 +93,16 @@ class ContactUpdate:
 
         state.contacts = replace(contacts, area=area, glued=glued)
         renewed = self.interface_on(state.contacts)
-        state.history = history_free_of_shear(renewed, state.motion)
+        state.history, bore = history_free_of_shear(renewed, state.motion), state.bears
+        state.bears = frames_of(renewed, state.contacts)
+        state.bears[still] = bore[same[still]]
         # Points go on with all that they have been through; those of a corner that has turned on slip as it does now.
         (keys, ends), (new_keys, new_ends) = search.points(before), search.points(state.contacts)
         kept, new = position_of(keys, new_keys), state.history[plastic_slip].copy()
         origin = np.where((new_ends >= 0) & (kept < 0), np.append(turned, -1)[new_ends], -1)
         corner = position_of(ends, origin)
         moved = np.flatnonzero((origin >= 0) & (corner >= 0))
-        handed = np.array([[k] for k, name in enumerate(law.history) if k >= len(COMMON_ROWS) and name != BEARS])
-        state.history[handed, moved] = history[handed, corner[moved]]
+        state.history[len(COMMON_ROWS) :, moved] = history[len(COMMON_ROWS) :, corner[moved]]
         state.history[plastic_slip, moved] += new[moved] - slip[corner[moved]]
         state.history[:, kept >= 0] = history[:, kept[kept >= 0]]
         state.history[[FRICTION_WORK, DAMPED_WORK]] = 0.0

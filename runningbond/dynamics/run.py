@@ -15,7 +15,7 @@ from runningbond.scene import Array
 from .central_differences import CONTROLS, Control, Watch, stepper
 from .contact_update import ContactUpdate, contacts_of
 from .rig import NO_RIG, turn_rig
-from .state import State
+from .state import PLASTIC_SLIP, State
 from .system import BlockSystem, Interface
 from .ties import YIELD
 from .time_step import stable_step
@@ -124,6 +124,8 @@ class Run:
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
+        rows = interface.law.law.history
+        self._plastic = rows.index(PLASTIC_SLIP) if PLASTIC_SLIP in rows else -1
         self._work = (*np.zeros((2, len(self.system.mass))), *(np.zeros(interface.law.points) for _ in range(4)))
 
     def _return_to(self, state: State) -> None:
@@ -223,7 +225,8 @@ class Run:
         arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
         scales = (self.dt, self.local, self._viscosity)
         ties = (*self.system.ties, state.stretch)
-        every = (*self._arrays, ties, self._rig, self._memory, arrays, self._work)
+        frames = (state.bears, self._plastic)
+        every = (*self._arrays, ties, self._rig, self._memory, arrays, self._work, frames)
         found: tuple[int, bool, float, float] = self._step(number, steps, scales, load, live, speed, every, watch)
         if self.system.rig is not None:
             state.turned += float(self._rig[3][0])

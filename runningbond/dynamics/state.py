@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.contacts.search import Contacts
 from runningbond.joints.law import OPENING_BEFORE, SLIP_BEFORE
-from runningbond.scene import Array
+from runningbond.scene import Array, Mask
 
 from .system import BlockSystem, Interface
 
@@ -26,6 +26,7 @@ class State:
     unbalanced: Array  # (nd,) force of the last step
     # the contacts that the history is of, a column each; None at small displacements, which know but one set
     contacts: Contacts | None = None
+    bears: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))  # (nc,) the contacts' frames (`joints.frames`)
     external: float = 0.0  # work of the loads [J]
     turned: float = 0.0  # work of the moment of a beam's dead force whose line is fixed [J], which is part of it
     steps: int = 0  # steps taken
@@ -50,20 +51,27 @@ class State:
         motion = np.zeros(nd) if motion is None else motion.copy()
         history = history_free_of_shear(interface, motion)
         stretch = np.zeros(len(system.ties))
-        return cls(motion, np.zeros(nd), history, np.zeros(nd), np.zeros(nd), contacts, stretch=stretch)
+        bears = frames_of(interface, contacts)
+        return cls(motion, np.zeros(nd), history, np.zeros(nd), np.zeros(nd), contacts, bears, stretch=stretch)
 
     def copy(self) -> "State":
         """A state that goes its own way from here."""
-        arrays = ("motion", "velocity", "history", "damped", "unbalanced", "supplied", "stretch")
+        arrays = ("motion", "velocity", "history", "damped", "unbalanced", "bears", "supplied", "stretch")
         return replace(self, **{name: getattr(self, name).copy() for name in arrays})
+
+
+def frames_of(interface: Interface, contacts: Contacts | None) -> Mask:
+    """Frames ``(nc,)`` that the jumps of an interface on contacts were last told in."""
+    bears = np.zeros(0 if contacts is None else len(contacts), dtype=bool)
+    history = np.zeros((interface.law.rows, interface.law.points))
+    interface.reframe(tuple(interface.geometry), (bears, -1), history)
+    return bears
 
 
 def history_free_of_shear(interface: Interface, motion: Array) -> Array:
     """History ``(rows, np)`` of points that are free of shear after a motion ``(nd,)``."""
     history = np.zeros((interface.law.rows, interface.law.points))
-    opening, slip = interface.jumps(motion)
-    interface.reframe(tuple(interface.geometry), history)  # which frames they are in
-    history[OPENING_BEFORE], history[SLIP_BEFORE] = opening, slip
+    history[OPENING_BEFORE], history[SLIP_BEFORE] = interface.jumps(motion)
     law = interface.law.law
     if PLASTIC_SLIP in law.history:
         history[law.row(PLASTIC_SLIP)] = history[SLIP_BEFORE]

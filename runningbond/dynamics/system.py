@@ -16,7 +16,7 @@ from scipy.sparse import csr_array
 from runningbond.contacts.outline import Outline
 from runningbond.contacts.search import Contacts
 from runningbond.joints import PointStrength
-from runningbond.joints.compiled import kernel
+from runningbond.joints.frames import keep_frames
 from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
 
@@ -65,11 +65,6 @@ class Coupling(NamedTuple):
 NOT_COUPLED = Coupling(np.zeros(0, dtype=np.int64), np.zeros((0, 0)))
 
 
-@kernel
-def keep_frames(geometry: Any, history: Array) -> None:
-    """Leave the history of joint points as it is: their jumps are always told in one frame."""
-
-
 @dataclass(frozen=True, eq=False)
 class Interface:
     """Joint points between bodies."""
@@ -84,7 +79,7 @@ class Interface:
     # largest ω² [1/s²] of any body against its share of its joints: an upper bound of the system's
     frequency_squared: float
     closer: float | None = None  # the system's own, where known to a hundredth: time steps go by it
-    # compiled kernel ``reframe(geometry, history)``: after `gather`, tells the history in the frames of its jumps
+    # compiled kernel ``reframe(geometry, frames, history)``: after `gather`, retells the history in the jumps' frames
     reframe: Kernel = keep_frames
 
     def jumps(self, motion: Array) -> tuple[Array, Array]:

@@ -7,14 +7,14 @@ import numpy as np
 from runningbond.scene import Array, JointMaterial
 
 from .compiled import kernel
-from .law import BEARS, COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE, KernelLaw, Law, Parameters
+from .law import COMMON_ROWS, DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE, KernelLaw, Law, Parameters
 from .mohr_coulomb import truncated_cone
 from .point_law import PointLaw
 from .stiffness import joint_stiffness
 
 HISTORY = (*COMMON_ROWS, "plastic slip")
 PLASTIC_SLIP = HISTORY.index("plastic slip")
-PULL_BEFORE, SHEAR_BEFORE, SIDE = (len(HISTORY) + k for k in range(3))
+PULL_BEFORE, SHEAR_BEFORE = len(HISTORY), len(HISTORY) + 1
 
 
 def coulomb_constants(material: JointMaterial) -> tuple[float, ...]:
@@ -119,8 +119,8 @@ COULOMB = Law("Coulomb", coulomb_constants, coulomb_kernel, HISTORY, stored_uncu
 
 IMPACTS = Law(
     *("Coulomb, impacts", coulomb_constants, _coulomb(of_mean=True)),
-    (*HISTORY, "viscous pull", "viscous shear", BEARS),
+    (*HISTORY, "viscous pull", "viscous shear"),
     stored_uncut,
     response=PointLaw,
 )
-"""Coulomb's law with the ledger that impacts need, and a row for the block whose side jumps are measured along."""
+"""Coulomb's law with the ledger that impacts need."""

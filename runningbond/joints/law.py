@@ -24,9 +24,6 @@ FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
 PLASTIC_CLOSURE = "plastic closure"
 """Row, in laws of joints that crush, of how far a point has been crushed [m]: there it closes again."""
 
-BEARS = "bears"
-"""Row, in the law of impacts, of whose side jumps are measured along: 1 where block b's bears a corner of block a."""
-
 Parameters: TypeAlias = tuple[Unsigned, Array]
 
 

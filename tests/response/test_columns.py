@@ -19,14 +19,16 @@ from runningbond.scene import History, Load, Scene
 from runningbond.scene.history import pulse
 from tests.walls import courses
 
-from .walls import resting
+from .walls import resting, still
 
 STIFFNESS = 2e9  # Pa/m
+SOFT = {"normal_stiffness": 1.6e8, "shear_stiffness": 1e8}
+SOFTENING = {"cohesion": 1.5e4, "fracture_energy_1": 10.0, "fracture_energy_2": 50.0}
 
 
-def column(bond: list[list[float]]) -> Scene:
-    """Four courses of blocks 0.4 m wide, or half as wide, and 0.8 m high, of which the lowest is fixed."""
-    joint = {"friction": 0.6, "normal_stiffness": STIFFNESS, "shear_stiffness": STIFFNESS}
+def column(bond: list[list[float]], **material: float) -> Scene:
+    """Courses of blocks 0.4 m wide, or half as wide, and 0.8 m high, of which the lowest is fixed."""
+    joint = {"friction": 0.6, "normal_stiffness": STIFFNESS, "shear_stiffness": STIFFNESS, **material}
     block = {"density": 1800.0, "young": 3e9, "poisson": 0.2}
     fixed = {"support__kind": "fixed-first-course", "wall__thickness": 0.1}
     return courses(bond, width=0.4, height=0.8, joint=joint, block=block, **fixed)
@@ -40,16 +42,19 @@ def deforming(scene: Scene) -> BlockSystem:
     return deformable.finite_system(node_outline(with_impacts(scene), 1, None))
 
 
-@pytest.mark.parametrize("system_of", [rigid, deforming])
+@pytest.mark.parametrize(
+    ("system_of", "material"),
+    [(rigid, {}), (rigid, SOFTENING), (rigid, {"compressive_strength": 1e7}), (deforming, {}), (deforming, SOFTENING)],
+)
 @pytest.mark.parametrize("tilt", [0.1, -0.1])
 def test_a_contact_bears_what_it_bore_when_another_side_takes_over(
-    system_of: Callable[[Scene], BlockSystem], tilt: float
+    system_of: Callable[[Scene], BlockSystem], material: dict[str, float], tilt: float
 ) -> None:
     """The corner of a tilted block is carried over that of the next one, pressed in by δ; then it bears its side.
 
     Shear along that side is another sum of the same way than along the first one, by δ sin θ, and no rate.
     """
-    scene = column([[1]] * 4)
+    scene = replace(column([[1]] * 4, **material), load=Load(live=(still(),)))
     system, depth, step = system_of(scene), 1e-4, 1e-8
     right = 0.2 if tilt < 0 else -0.2  # from the centroid to the corner that rests
     block = int(np.argmax(scene.blocks.centroid[:, 1]))
@@ -65,25 +70,38 @@ def test_a_contact_bears_what_it_bore_when_another_side_takes_over(
     assert search is not None
     interface = search.interface_on(contacts_of(state), system)
     normal, tangential = np.zeros((2, interface.law.points))
+    plastic = interface.law.law.row("plastic slip")
     sides = set()
     for _ in range(22):
         opening, slip = interface.jumps(motion)
-        interface.reframe(tuple(interface.geometry), state.history)
+        interface.reframe(tuple(interface.geometry), (state.bears, plastic), state.history)
         interface.law.kernel(opening, slip, interface.law.parameters, state.history, 1.0, normal, tangential)
         (pressed,) = np.flatnonzero(normal < 0.0)
-        sides.add(float(state.history[interface.law.law.row("bears"), pressed]))
+        sides.add(float(state.bears.sum()))
         shears.append(tangential[pressed])
         motion[across] += step
-    assert sides == {0.0, 1.0}
+    assert len(sides) == 2
     # Of a spring, and, from the first step on, a dashpot that bears as much as that in a step.
     assert np.diff(shears[1:]) == pytest.approx(np.diff(shears[1:3])[0], rel=0.02)
     assert abs(shears[1]) == pytest.approx(2 * STIFFNESS * step, rel=0.01)
 
 
-def test_a_rocking_column_spends_no_energy_but_in_its_joints(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The change from side to side, some times in a rocking cycle, is no slip: 1.8 % of the work was missed so."""
+@pytest.mark.parametrize(
+    ("material", "motion", "scale", "missed"),
+    [({}, ("sine", 3.5, 0.656), 0.614, 1e-4), ({**SOFTENING, **SOFT}, ("half-sine", 40.0, 0.08), 1.0, 2e-3)],
+)
+def test_a_rocking_column_spends_no_energy_but_in_its_joints(
+    material: dict[str, float],
+    motion: tuple[str, float, float],
+    scale: float,
+    missed: float,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The change from side to side, some times in a rocking cycle, is no slip: 1.8 % of the work was missed so.
+
+    The law of joints that soften keeps a ledger of first order in the step.
+    """
     monkeypatch.setattr(import_module("runningbond.response.follow"), "MISSED", math.inf)
-    time, values = pulse("sine", 3.5, 0.656)
-    scene = replace(column([[1], [0.5, 0.5]] * 2), load=Load(live=(History(time, values),)))
-    response = follow(resting(scene), 0.614)
-    assert response.unaccounted < 1e-4
+    scene = column([[1], [0.5, 0.5]] * 2, **material)
+    response = follow(resting(replace(scene, load=Load(live=(History(*pulse(*motion)),)))), scale)
+    assert response.unaccounted < missed

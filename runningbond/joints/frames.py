@@ -1,0 +1,58 @@
+"""Histories of joint points whose jumps come to be told in another frame, along another block's side."""
+
+from collections.abc import Callable
+from functools import cache
+from typing import Any, TypeAlias
+
+from runningbond.scene import Array, Mask
+
+from .compiled import kernel
+from .law import OPENING_BEFORE, SLIP_BEFORE
+
+Frames: TypeAlias = tuple[Mask, int]
+"""Whether each contact's jumps are told along the side of block b, ``(nc,)``; and the row of the plastic slip in the
+history, −1 where the law has none."""
+
+
+@kernel
+def retell(history: Array, plastic: int, point: int, opening: float, slip: float) -> None:
+    """Tell what a point has been through by jumps that are larger by `opening` and `slip` [m] from now on.
+
+    The change is no rate for the viscosity; nor does it shear the point, which bears what it bore.
+    """
+    history[OPENING_BEFORE, point] += opening
+    history[SLIP_BEFORE, point] += slip
+    if plastic >= 0:
+        history[plastic, point] += slip
+
+
+@kernel
+def keep_frames(geometry: Any, frames: Frames, history: Array) -> None:
+    """Leave the history ``(rows, np)`` as it is: jumps are always told in one frame."""
+
+
+@cache
+def reframe_along(turned: Callable[..., Any]) -> Any:
+    """The kernel ``reframe(geometry, frames, history)`` of points between ends (`along`).
+
+    `turned(ends, k)` says by how much the jumps of end k are larger in the frame it has now, two lengths [m].
+    """
+
+    @kernel
+    def reframe_points(geometry: Any, frames: Frames, history: Array) -> None:
+        ends, pairs, share, _, _, _, _, _, _ = geometry
+        bore, plastic = frames
+        n = pairs.shape[0]
+        for j in range(n):
+            alone = pairs[j, 0] == pairs[j, 1]
+            for second in range(2):
+                k = pairs[j, second]
+                if ends.bears[k] == bore[k]:
+                    continue
+                opening, slip = turned(ends, k)
+                for p in range(share.size):
+                    part = 1.0 if alone else share[p] if second == 1 else 1.0 - share[p]
+                    retell(history, plastic, p * n + j, part * opening, part * slip)
+                bore[k] = ends.bears[k]
+
+    return reframe_points
