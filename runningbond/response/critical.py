@@ -130,12 +130,13 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
     runs = search.in_order
     first = next((k for k, run in enumerate(runs) if run.verdict == "collapse"), len(runs))
     upper = runs[first] if first < len(runs) else None
-    lower = runs[first - 1] if first else None
+    standing = [k for k in range(first) if runs[k].verdict == "stands"]
+    lower = runs[standing[-1]] if standing else None
     points = rest.top
     height = float(points[:, 1].mean() - rest.scene.blocks.extent(rest.scene.wall)[0][1])
     outcome = replace(
         outcome,
-        lower=lower.scale if lower and lower.verdict == "stands" else None,
+        lower=lower.scale if lower else None,
         upper=upper.scale if upper else None,
         steps=(outcome.steps or 0) + sum(run.steps for run in runs),
         curve=np.array([(height * run.peak_drift, run.scale) for run in runs]).reshape(-1, 2),
@@ -153,11 +154,13 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
             f"{doubtful.unaccounted:.1%} of the energy supplied is unaccounted for at λ = {number(doubtful.scale)}"
         )
         return replace(outcome, status="failed", message=message)
-    if lower is None or lower.verdict != "stands":
+    if lower is None:
         return replace(
             outcome, message="no scale was found at which the wall comes to rest below one at which it falls"
         )
     unsure = ", ".join(number(run.scale) for run in runs[:first] if run.verdict != "stands")
+    if standing[-1] < first - 1:
+        return replace(outcome, message=f"at λ = {unsure} the wall neither rests nor falls")
     others = f"others but {unsure}, where it neither rests nor falls," if unsure else "tried"
     again = [f"{number(low)} … {number(high)}" if high > low else number(low) for low, high in search.windows()]
     parts = (

@@ -41,7 +41,14 @@ AFTER = 0.5
 """Time [s] for which a wall that falls is filmed."""
 
 PATIENCE = 30
-"""Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided."""
+"""Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided.
+
+One that only sways stands: in the last quarter of them it stays within where it was in the quarter before, and what it
+loses meanwhile goes into viscosity and not into joints that slide, crack or are crushed.
+"""
+
+SPENT = 0.01
+"""Share of what a wall that sways loses by viscosity which its joints may take."""
 
 
 class _Log:
@@ -93,6 +100,15 @@ class _Log:
     def is_calm(self, since: float) -> bool:
         """Whether hardly any energy was in motion from a time on [s]."""
         return all(row[5][2] <= self._calm for row in self.rows if row[0] >= since)
+
+    def swaying(self, since: float) -> Array | None:
+        """Least and largest drift ``(2,)`` of late of a wall that from a time on [s] has only swayed, and ever less."""
+        rows = [row for row in self.rows if row[0] >= since]
+        drift, energy = np.array([row[3] for row in rows]), np.array([row[5] for row in rows])
+        before, late = drift[: len(rows) // 2], drift[len(rows) // 2 :]
+        spent, damped = energy[-1, 4:] - energy[0, 4:]
+        within = before.min() < late.min() <= late.max() < before.max()
+        return np.array([late.min(), late.max()]) if within and spent <= SPENT * damped else None
 
     def _where(self, state: State) -> Array:
         return self._outline.points(self._block, self.points, state.motion[self._run.system.rigid].ravel())
@@ -173,7 +189,11 @@ def _followed(
                 verdict = "collapse" if now >= fell + after else "undecided"
             elif now >= history.duration + swing and log.is_calm(now - swing):
                 verdict = "stands"
-    return _response(rest, scale, log, run, state, (verdict, fell), time.perf_counter() - begin)
+    sway = None
+    if verdict == "undecided" and now >= end and not log.first:
+        sway = log.swaying(end - PATIENCE / 2 * swing)
+        verdict = verdict if sway is None else "stands"
+    return _response(rest, scale, log, run, state, (verdict, fell, sway), time.perf_counter() - begin)
 
 
 def _not_shaken(rest: Resting, scale: float, points: Array, verdict: Verdict, message: str) -> Response:
@@ -192,15 +212,18 @@ def _response(
     log: _Log,
     run: Run,
     state: State,
-    end: tuple[Verdict, float],
+    end: tuple[Verdict, float, Array | None],
     seconds: float,
 ) -> Response:
     times, ground, places, drift, reaction, energy, fallen = map(np.array, zip(*log.rows, strict=True))
-    verdict, fell = end
+    verdict, fell, sway = end
+    left = f"with a residual drift of {drift[-1]:.3g}"
+    if sway is not None:
+        left = f"and sways on by drifts from {sway[0]:.3g} to {sway[1]:.3g}"
     names = ", ".join(rest.scene.blocks.name(block) for block in log.first[:3])
     undecided = "neither rests nor falls within" if not log.is_lost else "more energy is missing than was supplied at"
     message = {
-        "stands": f"stands, with a residual drift of {drift[-1]:.3g}",
+        "stands": f"stands, {left}",
         "collapse": f"falls: {names} at {fell:.3g} s" + (" first" if len(log.first) > 3 else ""),
         "undecided": f"{undecided} {times[-1]:.3g} s",
     }[verdict]

@@ -86,6 +86,22 @@ def test_a_contact_bears_what_it_bore_when_another_side_takes_over(
     assert abs(shears[1]) == pytest.approx(2 * STIFFNESS * step, rel=0.01)
 
 
+def test_a_column_that_only_sways_stands() -> None:
+    """Springs without friction calm down as slowly as their viscosity has it."""
+    glued = {"cohesion": 1e6, "fracture_energy_1": 100.0, "fracture_energy_2": 500.0}
+    soft = {"normal_stiffness": 1e7, "shear_stiffness": 6e6}
+    scene = column([[1]] * 5, **glued, **soft)
+    rest = resting(replace(scene, load=Load(live=(History(*pulse("half-sine", 3.0, 0.3)),))))
+    response = follow(rest, 1.0)
+    assert response.verdict == "stands"
+    assert "sways on by drifts from -" in response.message
+    record, end = np.searchsorted(response.time, [0.3, response.time[-1]])
+    drift, spent = response.drift[record:end], response.energy[record:end, 4]
+    assert spent.max() == pytest.approx(0.0, abs=1e-6 * np.ptp(response.energy[:, 0]))
+    quarters = [np.ptp(part) for part in np.array_split(drift, 4)]
+    assert quarters == sorted(quarters, reverse=True)
+
+
 @pytest.mark.parametrize(
     ("material", "motion", "scale", "missed"),
     [({}, ("sine", 3.5, 0.656), 0.614, 1e-4), ({**SOFTENING, **SOFT}, ("half-sine", 40.0, 0.08), 1.0, 2e-3)],

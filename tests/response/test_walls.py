@@ -13,7 +13,8 @@ from runningbond.compare.published import published_scene
 from runningbond.joints.wall_law import with_impacts
 from runningbond.models import respond, run_model
 from runningbond.response import critical_scale, follow
-from runningbond.response.critical import Search
+from runningbond.response.critical import RATIO, Search
+from runningbond.response.response import Verdict
 from runningbond.scene import History, Lateral, Load, Scene, Stiffness
 from runningbond.scene.history import pulse
 from tests.walls import panel
@@ -103,6 +104,25 @@ def test_windows_are_told_of() -> None:
     search = Search(lambda factor: follow(rest, factor, rows=50), {})
     assert [search.falls(factor) for factor in (1.7, 1.9, 5.15, 5.6)] == [False, True, False, True]
     assert search.windows() == [(5.15, 5.15)]
+
+
+def test_scales_at_which_a_wall_neither_rests_nor_falls_lie_between_the_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is told to stand below λ = 1 and to fall from 2 on: the bracket is from the last below 1, and no answer."""
+    scene = block(0.25, 1.0, shaken("half-sine", 3.0, 0.5))
+    known = follow(resting(scene), 0.01)
+
+    def told(rest: Any, scale: float, **settings: Any) -> Any:
+        verdict: Verdict = "stands" if scale < 1 else "undecided" if scale < 2 else "collapse"
+        return replace(known, scale=scale, verdict=verdict)
+
+    monkeypatch.setattr(import_module("runningbond.response.critical"), "follow", told)
+    outcome = critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), 0.02)
+    assert outcome.status == "undecided"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert 1 / RATIO <= outcome.lower < 1
+    assert 2 <= outcome.upper < 2 * RATIO
+    assert "the wall neither rests nor falls" in outcome.message
 
 
 def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
