@@ -21,7 +21,7 @@ from runningbond.dynamics import BlockSystem, Interface
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
-from runningbond.joints.frames import reframe_along
+from runningbond.joints.frames import keep_frames, reframe_along
 from runningbond.scene import Array, Indices, Scene
 
 from .finite_frequency import frequencies_squared
@@ -67,8 +67,8 @@ class RigidContacts:
         if not self._points:
             law = self._materials.law(contacts)
             frequencies = self._frequencies(ends, law.stiffest, law.shear_stiffness)
-            interface = Interface(law, contacts.area, self._gather, scatter_sides, ends, *frequencies)
-            return replace(interface, reframe=reframe_sharp) if self._reframes else interface
+            reframe = reframe_sharp if self._reframes else keep_frames
+            return Interface(law, contacts.area, self._gather, scatter_sides, ends, *frequencies, reframe)
         pairs = contacts.pairs
         law = self._materials.law(contacts, pairs, self._points)
         normal, shear = np.zeros((2, len(contacts)))
@@ -77,8 +77,8 @@ class RigidContacts:
             of_ends[pairs] = of_points[: len(pairs), None]
         geometry, area = along(ends, pairs, contacts.area, self._rule)
         kernels = gather_along(self._gather), scatter_along(scatter_sides)
-        interface = Interface(law, area, *kernels, geometry, *self._frequencies(ends, normal, shear))
-        return replace(interface, reframe=reframe_along(turned_sharp)) if self._reframes else interface
+        reframe = reframe_along(turned_sharp) if self._reframes else keep_frames
+        return Interface(law, area, *kernels, geometry, *self._frequencies(ends, normal, shear), reframe)
 
     def _frequencies(self, ends: RigidSides, normal: Array, shear: Array) -> tuple[float, float | None]:
         """The bound of the frequency, and a closer value where the ground moves."""

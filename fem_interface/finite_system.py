@@ -25,6 +25,7 @@ from runningbond.dynamics import (
 )
 from runningbond.dynamics.rig import Rig
 from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.joints.frames import keep_frames
 from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices
 
@@ -146,8 +147,9 @@ class DeformableContacts:
         """The interface on contacts of blocks with some masses and viscosities, whose ω² [1/s²] is near a guess."""
         law, geometry = self._materials.law(contacts), self.geometry(contacts)
         bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
-        interface = Interface(law, contacts.area, gather_deformable, scatter_deformable, geometry, bound)
-        return replace(interface, reframe=reframe_deformable) if self.blocks.scene.history else interface
+        reframe = reframe_deformable if self.blocks.scene.history else keep_frames
+        kernels = gather_deformable, scatter_deformable
+        return Interface(law, contacts.area, *kernels, geometry, bound, reframe=reframe)
 
     def points(self, contacts: Contacts) -> tuple[Indices, Indices]:
         """A key of each contact and its number, two ``(n,)``: contacts are points."""
