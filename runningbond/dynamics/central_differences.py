@@ -1,4 +1,4 @@
-"""Central differences with lagged viscous and local damping, compiled for one pair of kinematics and one law.
+"""Central differences with lagged viscous and local damping, compiled for any kinematics and any law.
 
 Each step is a gather of jumps, the law over all points, a scatter of forces and one diagonal update:
 
@@ -9,7 +9,6 @@ Each step is a gather of jumps, the law over all points, a scatter of forces and
 with v half a step behind q (Cundall & Strack 1979; Munjiza 2004).
 """
 
-from functools import cache
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -17,8 +16,8 @@ import numpy as np
 from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
+from .kernel_calls import advance, gather, reframe, respond, scatter
 from .rig import turn_rig
-from .system import Kernel
 from .ties import pull
 from .update import Modes, StateArrays
 
@@ -154,127 +153,116 @@ def _give_back(
     return returned
 
 
-def _steps_at_constant_loads(gather: Kernel, reframe: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
-    """Compile the loop of `stepper` over steps in which loads stay as they are; its arguments are those of that."""
-
-    @inlined
-    def constant(
-        control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
-    ) -> tuple[int, bool, float, float]:
-        dt, local, joint_viscosity = scales
-        geometry, parameters, modes, restraint, ties, rig, memory, state, work, frames = arrays
-        _, _, mobility = modes
-        motion, velocity, history, _, force = state
-        freedom, basis = restraint
-        moved, _, opening, slip, normal, tangential = work
-        already, given, most = watch
-        driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[4].size > 0, rig[0].size > 0
-        response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+@inlined
+def _at_constant_loads(
+    control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
+) -> tuple[int, bool, float, float]:
+    """The steps of `step` in which loads stay as they are."""
+    dt, local, joint_viscosity = scales
+    addresses, geometry, parameters, modes, restraint, ties, rig, memory, state, work, frames = arrays
+    _, _, mobility = modes
+    motion, velocity, history, _, force = state
+    freedom, basis = restraint
+    moved, _, opening, slip, normal, tangential = work
+    already, given, most = watch
+    at_gather, at_reframe, at_law, at_scatter, at_update = addresses
+    driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[4].size > 0, rig[0].size > 0
+    response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if driven:
+        for i in range(live.size):
+            response += live[i] * mobility[i] * live[i]
+    restrained = freedom.size > 0
+    unrestrained = moved if restrained else motion
+    for taken in range(steps):
+        if restrained:
+            _restrained(motion, freedom, basis, moved)
+        gather(at_gather, unrestrained, geometry, opening, slip)
+        reframe(at_reframe, geometry, frames, history)
+        respond(at_law, opening, slip, parameters, history, joint_viscosity, normal, tangential)
+        if restrained:
+            force[:] = 0.0
+        else:
+            copy_into(force, load)
+        scatter(at_scatter, normal, tangential, geometry, force)
+        if restrained:
+            _project(force, freedom, basis)
+            for i in range(force.size):
+                force[i] += load[i]
+        if tied:
+            pull(ties, motion, force)
+        if rigged:
+            moment = turn_rig(rig, motion, live)
+            force[rig[0][2]] += moment
+            response = 0.0
+            for k in range(3):
+                response += live[rig[0][k]] ** 2 * mobility[rig[0][k]]
+        if carried:
+            pressed = _carry(live, speed, velocity, force)
+            total += pressed
+            worked -= pressed * speed * dt
         if driven:
-            for i in range(live.size):
-                response += live[i] * mobility[i] * live[i]
-        restrained = freedom.size > 0
-        unrestrained = moved if restrained else motion
-        for taken in range(steps):
-            if restrained:
-                _restrained(motion, freedom, basis, moved)
-            # Each kernel is called in one place: what is compiled into the loop twice takes twice as long to compile.
-            gather(unrestrained, geometry, opening, slip)
-            reframe(geometry, frames, history)
-            law(opening, slip, parameters, history, joint_viscosity, normal, tangential)
-            if restrained:
-                force[:] = 0.0
-            else:
-                copy_into(force, load)
-            scatter(normal, tangential, geometry, force)
-            if restrained:
-                _project(force, freedom, basis)
-                for i in range(force.size):
-                    force[i] += load[i]
-            if tied:
-                pull(ties, motion, force)
-            if rigged:
-                moment = turn_rig(rig, motion, live)
-                force[rig[0][2]] += moment
-                response = 0.0
-                for k in range(3):
-                    response += live[rig[0][k]] ** 2 * mobility[rig[0][k]]
-            if carried:
-                pressed = _carry(live, speed, velocity, force)
-                total += pressed
-                worked -= pressed * speed * dt
-            if driven:
-                before = _dot(live, velocity)
-                multiplier = _drive(live, response, modes, state)
-            advance(modes, memory, state, local, dt)
-            if driven:
-                multiplier += _give_back(live, response, speed, mobility, dt, motion, velocity)
-                total += multiplier
-                worked += 0.5 * multiplier * dt * (before + speed)
-            if rigged:
-                turned = moment * dt * velocity[rig[0][2]]
-                worked += turned
-                rig[3][0] += turned
-            due = (already + taken + 1) % LOOK == 0 and given < np.inf
-            if due and not _is_stable(given + worked, load, modes, state, most):
-                return taken + 1, False, total, worked
-        return steps, True, total, worked
-
-    return constant
+            before = _dot(live, velocity)
+            multiplier = _drive(live, response, modes, state)
+        advance(at_update, modes, memory, state, local, dt)
+        if driven:
+            multiplier += _give_back(live, response, speed, mobility, dt, motion, velocity)
+            total += multiplier
+            worked += 0.5 * multiplier * dt * (before + speed)
+        if rigged:
+            turned = moment * dt * velocity[rig[0][2]]
+            worked += turned
+            rig[3][0] += turned
+        due = (already + taken + 1) % LOOK == 0 and given < np.inf
+        if due and not _is_stable(given + worked, load, modes, state, most):
+            return taken + 1, False, total, worked
+    return steps, True, total, worked
 
 
-@cache
-def stepper(gather: Kernel, reframe: Kernel, law: Kernel, scatter: Kernel, advance: Kernel) -> Any:
-    """Compile the loop of a model.
+@kernel
+def step(
+    control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
+) -> tuple[int, bool, float, float]:
+    """Take steps of a model.
 
     Parameters
     ----------
-    gather, reframe, law, scatter
-        Of an `Interface`.
-    advance
-        The update (`update_of`), whose memory is the last but three of the arrays.
+    control
+        Held, a multiplier of the live load that rises from zero by the speed a step is added to a constant load;
+        driven, live·v is kept at the speed [W], by a multiplier of the live load; carried, held modes move at the
+        speed [1/s] times `live`.
+    arrays
+        `Addresses` of the kernels; what they are called with: the interface's geometry, the law's parameters, modes;
+        restraint, ties, rig; the update's memory, `StateArrays`, `Work` and `Frames`. With a rig, whose freedoms say
+        that there is one, the live load turns with the beam (`rig`), is written to, and acts on nothing else.
+    watch
+        The energy is looked at every `LOOK` steps of the state's life; where it does not add up, the steps end.
 
     Returns
     -------
-    step
-        ``step(control, steps, scales, load, live, speed, arrays, watch)``: held, it adds to a constant load the live
-        one, times a multiplier that rises from zero by the speed a step; driven, it keeps live·v at the speed [W], by
-        a multiplier of the live load; carried, held modes move at the speed [1/s] times `live`. Returns the steps
-        taken, whether no more energy is spent than was supplied, the sum of the multipliers that drive, or of what
-        presses on the carried modes per unit of their motion, and the work of all but the constant load. It looks at
-        the energy every `LOOK` steps of the state's life, and stops where it does not add up.
-
-        With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and
-        acts on nothing else.
+    steps, stable, multipliers, work
+        Steps taken; whether no more energy is spent than was supplied; the sum of the multipliers that drive, or of
+        what presses on the carried modes per unit of their motion; the work of all but the constant load.
     """
-    constant = _steps_at_constant_loads(gather, reframe, law, scatter, advance)
-
-    @kernel
-    def step(
-        control: int, steps: int, scales: Scales, load: Array, live: Array, speed: float, arrays: Any, watch: Watch
-    ) -> tuple[int, bool, float, float]:
-        rises = speed != 0.0 and control == HELD
-        state, work, _ = arrays[7:]
-        motion, loaded = state[0], work[1]
-        already, given, most = watch
-        copy_into(loaded, load)
-        taken, stable, total, worked, multiplier, before = 0, True, 0.0, 0.0, 0.0, 0.0
-        while stable and taken < steps:
-            piece = steps
-            if rises:
-                piece = min(RISE, steps - taken)
-                multiplier = speed * (taken + 0.5 * piece)
-                for i in range(live.size):
-                    loaded[i] = load[i] + multiplier * live[i]
-                before = multiplier * _dot(live, motion)
-            watched = (already + taken, given + worked - before, most)
-            pace = 0.0 if rises else speed
-            more, stable, summed, turned = constant(control, piece, scales, loaded, live, pace, arrays, watched)
-            taken += more
-            total += summed
-            worked += turned
-            if rises:
-                worked += multiplier * _dot(live, motion) - before
-        return taken, stable, total, worked
-
-    return step
+    rises = speed != 0.0 and control == HELD
+    state, work, _ = arrays[8:]
+    motion, loaded = state[0], work[1]
+    already, given, most = watch
+    copy_into(loaded, load)
+    taken, stable, total, worked, multiplier, before = 0, True, 0.0, 0.0, 0.0, 0.0
+    while stable and taken < steps:
+        piece = steps
+        if rises:
+            piece = min(RISE, steps - taken)
+            multiplier = speed * (taken + 0.5 * piece)
+            for i in range(live.size):
+                loaded[i] = load[i] + multiplier * live[i]
+            before = multiplier * _dot(live, motion)
+        watched = (already + taken, given + worked - before, most)
+        pace = 0.0 if rises else speed
+        more, stable, summed, turned = _at_constant_loads(control, piece, scales, loaded, live, pace, arrays, watched)
+        taken += more
+        total += summed
+        worked += turned
+        if rises:
+            worked += multiplier * _dot(live, motion) - before
+    return taken, stable, total, worked

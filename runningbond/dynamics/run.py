@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
 from runningbond.scene import Array
 
-from .central_differences import CONTROLS, Control, Watch, stepper
+from .central_differences import CONTROLS, Control, Watch, step
 from .contact_update import ContactUpdate, contacts_of
+from .kernel_calls import Addresses, addresses
 from .rig import NO_RIG, turn_rig
 from .state import PLASTIC_SLIP, State
 from .system import BlockSystem, Interface
@@ -109,6 +110,10 @@ class Run:
         self._update = None if search is None else ContactUpdate(system, search)
         self._take_up(system.interface, None if search is None else search.undeformed)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the kernels' addresses, which are those of this process."""
+        return self.__dict__ | {"_addresses": None}
+
     def _take_up(self, interface: Interface, contacts: Contacts | None) -> None:
         """Go on with an interface, on contacts."""
         self.interface, self._contacts = interface, contacts
@@ -119,8 +124,7 @@ class Run:
         self.safe_step = stable_step(closer, self.viscous * math.sqrt(closer / bound), self.local)
         self.dt = self._given_step or self._part * self.safe_step
         self._viscosity = 2 * self.viscous / math.sqrt(bound) / self.dt
-        kernels = interface.gather, interface.reframe, interface.law.kernel, interface.scatter
-        self._step = stepper(*kernels, self._advance_modes)
+        self._addresses: Addresses | None = None
         # Plain tuples: to take a named one apart costs a call of the kernels half a step of a small wall.
         restraint = tuple(self.system.restraint)
         self._arrays = (tuple(interface.geometry), interface.law.parameters, self._modes, restraint)
@@ -197,7 +201,7 @@ class Run:
         return self._advance("carried", state, self.system.dead, speed, steps, given) / steps
 
     def _advance(self, control: Control, state: State, load: Array, speed: float, steps: int, given: float) -> float:
-        """Take steps under a constant load and a control; what `stepper` sums up."""
+        """Take steps under a constant load and a control; what `step` sums up."""
         total, system, number = 0.0, self.system, CONTROLS.index(control)
         if control != "held" and len(system.coupling.freedom):
             raise ValueError("modes that have inertia in common bear a load alone")
@@ -221,13 +225,15 @@ class Run:
     def _take(
         self, number: int, state: State, load: Array, live: Array, speed: float, steps: int, watch: Watch
     ) -> tuple[int, bool, float, float]:
-        """Take steps on the contacts that are there; what `stepper` returns."""
+        """Take steps on the contacts that are there; what `step` returns."""
+        if self._addresses is None:
+            self._addresses = addresses(self.interface, self._advance_modes, self._memory)
         arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
         scales = (self.dt, self.local, self._viscosity)
         ties = (*self.system.ties, state.stretch)
         frames = (state.bears, self._plastic)
-        every = (*self._arrays, ties, self._rig, self._memory, arrays, self._work, frames)
-        found: tuple[int, bool, float, float] = self._step(number, steps, scales, load, live, speed, every, watch)
+        every = (self._addresses, *self._arrays, ties, self._rig, self._memory, arrays, self._work, frames)
+        found: tuple[int, bool, float, float] = step(number, steps, scales, load, live, speed, every, watch)
         if self.system.rig is not None:
             state.turned += float(self._rig[3][0])
             self._rig[3][0] = 0.0

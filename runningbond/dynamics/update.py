@@ -46,7 +46,8 @@ def update_of(system: BlockSystem, damping: Damping) -> tuple[Kernel, tuple[Any,
         return update_clusters, _memory_of(system.clusters, system.mass)
     freedom, inertia = system.coupling
     if not len(freedom):
-        return (update, ()) if damping == "local" else (update_combined, (np.zeros(len(system.mass)),))
+        # A memory of one type for both, of which the former makes no use: the loop over steps is compiled once.
+        return update if damping == "local" else update_combined, (np.zeros(len(system.mass)),)
     n = len(freedom)
     rows = -(-n // ROW) * ROW
     mobility, mass = np.zeros((rows, rows)), np.zeros(rows)
@@ -120,7 +121,7 @@ def _multiply(matrix: Array, factor: Array, out: Array) -> None:
 _update_here = inlined(update.py_func)  # a call takes longer than the update of a hundred modes
 
 
-@inlined
+@kernel
 def update_coupled(modes: Modes, coupling: Coupled, state: StateArrays, local: float, dt: float) -> None:
     """`update` where some modes have inertia in common, which combined damping resists.
 

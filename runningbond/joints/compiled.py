@@ -111,9 +111,9 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
 
     - Numba takes the number of a new file from an index that another process may be about to change, so that one
       signature may find the code of another there. Here one process saves at a time.
-    - Numba knows a kernel that is closed over other kernels, as the loop over a law is, by names that these have in
-      one process only, and never finds it again. Here it is known by what they are called in their source; those of
-      a user's own, which the name of the folder does not tell apart, by what they are made of as well.
+    - Numba knows a kernel that is closed over other kernels, as what interpolates along joints is, by names that
+      these have in one process only, and never finds it again. Here it is known by what they are called in their
+      source; those of a user's own, which the name of the folder does not tell apart, by what they are made of too.
     - Numba numbers functions process by process, and two of one source, closed over different values in different
       processes, may come by one number, and so one symbol: a third process that loads both would go by the first it
       met in place of the other. Here what a kernel is known by is part of its symbols.

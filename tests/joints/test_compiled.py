@@ -34,7 +34,7 @@ def tripled(x: float) -> float:
 
 
 def plus_one(law: Callable[[float], float]) -> Any:
-    """A kernel closed over another, as a loop over a law is."""
+    """A kernel closed over another, as what interpolates along joints is."""
 
     @kernel
     def loop(x: float) -> float:

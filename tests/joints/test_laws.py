@@ -1,6 +1,7 @@
 """A law of one's own, written here: it runs in the models without a line of the package being touched."""
 
 import os
+import pickle
 import subprocess
 import sys
 from dataclasses import replace
@@ -8,12 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba.core.errors import TypingError
 
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from dem.static import dem_static
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.dynamics.central_differences import step
 from runningbond.joints import KernelLaw, Law, joint_stiffness
 from runningbond.joints.compiled import kernel
 from runningbond.joints.coulomb import COULOMB
@@ -83,6 +86,61 @@ def test_springs_never_give_way_and_slip_by_force_over_stiffness() -> None:
     ledger = run.ledger(state)
     assert abs(ledger.residual) < 1e-3 * ledger.external
     assert dem_dynamic(tower()).status == "collapse"
+
+
+@kernel
+def torn(
+    opening: Array,
+    slip: Array,
+    parameters: Parameters,
+    history: Array,
+    viscosity: float,
+    normal: Array,
+    tangential: Array,
+) -> None:
+    """A law that is at its end."""
+    if opening.size:
+        raise ArithmeticError("no law beyond this")
+
+
+def test_laws_share_the_loop_over_steps_and_each_is_followed() -> None:
+    """What takes seconds to compile does not ask which law it is: nothing of it is compiled for a second one."""
+    slips, loops = [], []
+    for law in (None, SPRINGS):
+        run = Run(rigid_system(tower(law=law)))
+        state = State.at_rest(run.system)
+        run.hold(state, 5.0, 100)
+        slips.append(np.abs(run.tractions(state)[1]).max())
+        loops.append(len(step.signatures))
+    assert loops[0] == loops[1]
+    assert slips[0] > 2 * slips[1]
+
+
+def test_a_run_goes_on_in_another_process_by_the_kernels_that_are_there() -> None:
+    """An address means nothing, or something else, in a process that did not compile what stands there."""
+    runs = [Run(rigid_system(tower()))]
+    states = [State.at_rest(runs[0].system) for _ in range(2)]
+    runs[0].hold(states[0], 0.3, 100)
+    runs.append(pickle.loads(pickle.dumps(runs[0])))
+    assert (runs[0]._addresses is None, runs[1]._addresses is None) == (False, True)
+    runs[1].hold(states[1], 0.3, 100)
+    assert (states[0].motion == states[1].motion).all()
+
+
+def test_arrays_that_kernels_were_not_compiled_for_are_refused() -> None:
+    """Every second number of a longer array lies elsewhere than the kernel at an address would look for it."""
+    run = Run(rigid_system(tower()))
+    state = State.at_rest(run.system)
+    state.motion = np.zeros((len(state.motion), 2))[:, 0]
+    with pytest.raises(TypingError, match=r"a kernel takes array\(float64, 1d, C\), and no array\(float64, 1d, A\)"):
+        run.hold(state, 0.0, 1)
+
+
+def test_an_error_that_a_law_raises_is_heard() -> None:
+    scene = tower(law=Law("torn", constants_of_springs, torn, COMMON_ROWS, stored_in_springs))
+    run = Run(rigid_system(scene))
+    with pytest.raises(ArithmeticError, match="no law beyond this"):
+        run.hold(State.at_rest(run.system), 0.0, 1)
 
 
 def test_a_model_that_cannot_use_a_law_says_which() -> None:
