@@ -54,6 +54,6 @@ def stored(points: Any, opening: Array, normal: Array, shear: Array) -> Array:
 LAW = Law("polished friction", constants, polish, (*COMMON_ROWS, "plastic slip", "polish"), stored)
 
 if __name__ == "__main__":
-    wall = rb.read("panel-03")
+    wall = rb.read("wall-w2")
     rough, polished = (wall.with_({"joint.law": law}).run("dem-dynamic") for law in (None, LAW))
     print(rough, polished, sep="\n")

@@ -23,7 +23,7 @@ def bracket(result: rb.Result) -> tuple[float, float]:
 
 
 def test_joints_that_are_polished_bear_less_than_rough_ones() -> None:
-    """Blocks that slide and rock before they fall lose friction on the way: panel-03 falls earlier."""
+    """Blocks that slide and rock before they fall lose friction on the way: wall W2 falls earlier."""
     names = example("own_law", run=True)
     rough, polished = names["rough"], names["polished"]
     assert polished.status == rough.status == "collapse"

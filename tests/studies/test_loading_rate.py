@@ -83,6 +83,7 @@ def test_load_steps_do_not_mind_how_fast_the_load_comes_where_it_is_unique(loadi
     assert row["λ lower"] <= known_wall(W1).multiplier <= row["λ upper"]
 
 
+@pytest.mark.long
 def test_a_slender_dry_wall_bears_another_load_in_haste() -> None:
     """Panel-12, loaded four times as fast: more than 5 % more."""
     hasty, slow = step_row("panel-12", LOADING / 4), step_row("panel-12", LOADING)
