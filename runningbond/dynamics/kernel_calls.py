@@ -45,6 +45,7 @@ def addresses(interface: Interface, advance: Kernel, memory: tuple[Any, ...]) ->
 
 
 def _compiled(kernels: tuple[Any, ...], geometry: Any, memory: Any) -> Addresses:
+    """Addresses of kernels, compiled for geometry and memory of some types."""
     own = geometry, geometry, None, geometry, memory
     found = []
     for kernel, arguments, its in zip(kernels, (GATHER, REFRAME, LAW, SCATTER, UPDATE), own, strict=True):

@@ -89,15 +89,7 @@ def test_springs_never_give_way_and_slip_by_force_over_stiffness() -> None:
 
 
 @kernel
-def torn(
-    opening: Array,
-    slip: Array,
-    parameters: Parameters,
-    history: Array,
-    viscosity: float,
-    normal: Array,
-    tangential: Array,
-) -> None:
+def torn(opening: Array, slip: Array, of: Parameters, history: Array, viscosity: float, n: Array, t: Array) -> None:
     """A law that is at its end."""
     if opening.size:
         raise ArithmeticError("no law beyond this")
