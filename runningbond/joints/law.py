@@ -40,8 +40,9 @@ class Law:
     kernel
         ``kernel(opening, slip, parameters, history, viscosity, normal, tangential)``, compiled with
         `runningbond.joints.compiled.kernel`: reads jumps ``(np,)`` [m] and the parameters, brings the history
-        ``(rows, np)`` up to date and writes tractions ``(np,)`` [Pa]. Parameters are `KernelLaw.segments` and
-        `KernelLaw.constants`. `viscosity` times k is a dashpot's traction per change of a jump over the last step.
+        ``(rows, np)`` up to date and writes tractions ``(np,)`` [Pa]; it returns nothing. Parameters are
+        `KernelLaw.segments` and `KernelLaw.constants`. `viscosity` times k is a dashpot's traction per change of a
+        jump over the last step.
     history
         Names of the rows of the history, `COMMON_ROWS` first. At finite displacements, where a contact is carried
         from one side of a block to the next, a law needs a row ``"plastic slip"`` [m].
