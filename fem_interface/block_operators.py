@@ -59,9 +59,6 @@ def _assembled(mesh: WallMesh, blocks: Array, young: Array, poisson: Array, degr
         triangles = np.flatnonzero(of_triangle == k)
         freedom = np.unique(basis.element_dofs[:, triangles])
         rows = (3 * triangles[:, None] + np.arange(3)).ravel()
-        yield BlockOperators(
-            np.ascontiguousarray(basis.doflocs[:, freedom[::2]].T),
-            K[freedom][:, freedom].toarray(),
-            M[freedom][:, freedom].toarray(),
-            csr_array(strain[rows][:, freedom]),
-        )
+        stiffness, mass = (A[freedom][:, freedom].toarray() for A in (K, M))
+        mean_strain = strain[rows][:, freedom]
+        yield BlockOperators(np.ascontiguousarray(basis.doflocs[:, freedom[::2]].T), stiffness, mass, mean_strain)

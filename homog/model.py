@@ -113,11 +113,11 @@ def _is_running_bond(scene: Scene, bond: Bond) -> bool:
     low, high = scene.blocks.extent(movable)
     ends = scene.joints.ends[movable[scene.joints.block].all(axis=1)]
     rise = np.abs(ends[:, 1] - ends[:, 0])
-    middle = (ends[rise[:, 1] > rise[:, 0]].mean(axis=1) - low) / [bond.width / 2, bond.height]
+    middle = (ends[rise[:, 1] > rise[:, 0]].mean(axis=1) - low) / np.array([bond.width / 2, bond.height])
     column, course = np.rint(middle[:, 0]).astype(int), np.floor(middle[:, 1]).astype(int)
     if not np.allclose(column, middle[:, 0], rtol=0, atol=1e-3):
         return False
-    columns, courses = np.rint((high - low) / [bond.width / 2, bond.height]).astype(int)
+    columns, courses = np.rint((high - low) / np.array([bond.width / 2, bond.height])).astype(int)
     heads = set(zip(column.tolist(), course.tolist(), strict=True))
     return any(
         heads == {(x, y) for y in range(courses) for x in range(1, columns) if (x + y) % 2 == parity}

@@ -50,7 +50,7 @@ def along(ends: Any, pairs: Indices, area: Array, rule: Rule) -> tuple[Along, Ar
     (m n,) float
         Area that each point stands for [m²].
     """
-    weight = rule.weights / 2
+    weight, pairs = rule.weights / 2, np.ascontiguousarray(pairs)  # of one layout, for which kernels are compiled
     whole = area[pairs].sum(axis=1) / np.where(pairs[:, 0] == pairs[:, 1], 2, 1)
     buffers = (np.zeros(len(area)) for _ in range(4))
     scale = whole[:, None] / area[pairs]
