@@ -400,7 +400,7 @@ def test_results_lying_about_do_not_hide_a_published_scene(tmp_path: Path, monke
 
 def test_a_killed_process_loses_one_case_and_no_more(tmp_path: Path) -> None:
     """As the kernel does to one that takes all the memory: its case is run again, the others stay."""
-    process = start(tmp_path, "panel-11", *FAST, "--models", "limit,limit-nonassociated")
+    process = start(tmp_path, "panel-11", "panel-04", "wall-w3", "--models", "limit,limit-nonassociated")
     deadline = time.monotonic() + 60
     while not list(tmp_path.glob("*/*/outcome.json")) and time.monotonic() < deadline:
         time.sleep(0.02)

@@ -94,6 +94,7 @@ def test_modes_do_not_depend_on_the_width_of_registers() -> None:
 
 
 @x86
+@pytest.mark.long
 def test_a_wall_that_is_shaken_does_not_depend_on_the_width_of_registers() -> None:
     """Its contacts are found again and again, and its blocks bounce; time steps are of frequencies of the moment."""
     assert answer(SHAKEN, NARROW, "wall-w1") == answer(SHAKEN, WIDE, "wall-w1")

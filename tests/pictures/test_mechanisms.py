@@ -145,7 +145,7 @@ def test_a_joint_with_associated_flow_slides_where_it_opens_by_its_dilatancy() -
     assert states(scene, 0.5, 0.8) == {JointState.OPEN}
 
 
-@pytest.mark.parametrize("name", ["panel-01", "panel-04", "wall-w3"])
+@pytest.mark.parametrize("name", ["wall-w3", *(pytest.param(f"panel-{k:02d}", marks=pytest.mark.long) for k in (1, 4))])
 def test_in_limit_analysis_what_opens_by_its_dilatancy_slides(name: str) -> None:
     """In the others no joint slides that a picture shows open: least opening of an open joint, largest of a sliding."""
     scene = published_scene(name)

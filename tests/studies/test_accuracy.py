@@ -106,7 +106,12 @@ def test_limit_analysis_finds_the_exact_multipliers(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "largest"), [("wall-w1-inset", None), ("wall-w2-inset", None), ("wall-w3-inset", 0.34314)]
+    ("name", "largest"),
+    [
+        ("wall-w1-inset", None),
+        pytest.param("wall-w2-inset", None, marks=pytest.mark.long),
+        pytest.param("wall-w3-inset", 0.34314, marks=pytest.mark.long),
+    ],
 )
 def test_published_multipliers_are_certified_to_their_last_digit(name: str, largest: float | None) -> None:
     """With contacts moved in, the lowest certified load rounds to what was published; on W3 there is another one."""

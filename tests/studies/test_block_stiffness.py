@@ -39,7 +39,7 @@ def test_the_step_of_unscaled_blocks_falls_with_the_root_of_their_stiffness() ->
     assert scaled == pytest.approx(rigid, rel=0.005)
 
 
-@pytest.mark.parametrize("young", [1e10, 1e13])
+@pytest.mark.parametrize("young", [1e10, pytest.param(1e13, marks=pytest.mark.long)])
 def test_the_multiplier_does_not_depend_on_the_blocks(young: float) -> None:
     """W1 with joints inset by 20 mm, where it is one number: 0.58558, certified by linear programs."""
     assert INSET == 0.02

@@ -54,7 +54,9 @@ def test_a_block_follows_the_tangent_all_the_way(rocking: Curves) -> None:
     assert small[turned] == pytest.approx(0.5, rel=1e-6)
 
 
-@pytest.mark.parametrize(("name", "height"), [("W1", 6 * 0.175), ("W2", 10 * 0.175)])
+@pytest.mark.parametrize(
+    ("name", "height"), [("W1", 6 * 0.175), pytest.param("W2", 10 * 0.175, marks=pytest.mark.long)]
+)
 def test_a_wall_loses_about_as_much_as_one_block_of_its_height(name: str, height: float) -> None:
     """To 15 % from a loss of 2 % on; smaller ones are of the size of what the pushing speed adds to λ."""
     row = measure(name, SPEEDS[0])

@@ -45,6 +45,7 @@ def test_a_ramp_overshoots_by_its_rate_to_two_thirds(wall: str, local: float) ->
     assert at_no_speed(rate, multiplier)[0] == pytest.approx(known, rel=1e-3)
 
 
+@pytest.mark.long
 def test_ramps_of_masonry_come_down_to_the_certified_load() -> None:
     """W1 with rounded corners falls at one load: never below it, and at no speed within three standard errors."""
     rate, multiplier = ramped(W1, (0.464, 0.215, 0.1, 0.0464, 0.0215))

@@ -44,6 +44,7 @@ def test_points_keep_from_the_ends_of_a_wall_s_joints_as_the_theory_counts_them(
     assert {inset_of(scene, RULES["Simpson"], cells) for cells in CELLS} == {INSET}
 
 
+@pytest.mark.long
 def test_a_wall_with_gauss_points_falls_as_one_with_its_contacts_as_far_in() -> None:
     """W1, by another solver: .474 with one cell, .540 with two, where points at the ends of the joints have .586."""
     rows = [measure("W1", "Gauss 2", 1), measure("W1", "Gauss 2", 2), measure("W1", "Lobatto 2", 1)]

@@ -35,7 +35,7 @@ def swept(wall: str, criterion: str, values: tuple[float, ...]) -> Rows:
     return {PART: [case | {"value": value} | search(wall, criterion, value) for value in values]}
 
 
-@pytest.mark.parametrize("wall", [SLIDING, TOPPLING, W1])
+@pytest.mark.parametrize("wall", [SLIDING, pytest.param(TOPPLING, marks=pytest.mark.long), W1])
 @pytest.mark.parametrize("criterion", [REST, FAR, INTERVAL])
 def test_the_suites_criteria_stand_on_a_plateau(wall: str, criterion: str) -> None:
     """Half and twice each of them find the same λ, which is the one known."""
@@ -63,6 +63,7 @@ def test_a_displacement_too_small_takes_settlement_for_a_fall() -> None:
     assert search(W1, FAR, 1e-7)["answer"] == "infeasible"
 
 
+@pytest.mark.long
 def test_a_displacement_too_small_takes_a_slip_for_a_fall() -> None:
     """W2 at a millionth of a block: false collapse far below the load, where a thousandth is right."""
     known = known_wall(W2).multiplier
@@ -70,7 +71,8 @@ def test_a_displacement_too_small_takes_a_slip_for_a_fall() -> None:
     assert search(W2, FAR, 1e-3)["λ"] == pytest.approx(known, rel=WIDTH)
 
 
-@pytest.mark.parametrize("times", [1 / 4, pytest.param(4, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("times", [1 / 4, 4])
 def test_a_wall_without_weight_pauses_and_bears_the_same_at_any_speed(times: float) -> None:
     """A quarter of the time to come to each load, and four times it, find one λ to 1 %."""
     assert weightless_at(times) == pytest.approx(weightless_at(1), rel=0.01)
