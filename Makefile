@@ -63,7 +63,9 @@ $(ready): pyproject.toml Makefile tools/system-libraries
 	@echo 'Setting up .venv: a few minutes the first time.'
 	@test -e $@ || $(PYTHON) -m venv --clear --upgrade-deps .venv
 	@rm -f $@
-	@$(bin)/python -m pip install -q --disable-pip-version-check --no-compile -e '.[develop]'
+	@# Setuptools warns of every editable installation, and pip passes that on.
+	@PYTHONWARNINGS='ignore:Editable installation' \
+		$(bin)/python -m pip install -q --disable-pip-version-check --no-compile -e '.[develop]'
 	@# On all cores, where pip compiles one file after the other; what cannot be compiled is never imported either.
 	@$(bin)/python -m compileall -qq -j 0 -x 'site-packages/.*/tests/' .venv/lib || true
 	@touch $@
