@@ -1,5 +1,7 @@
 """Laws of what the models cost, fitted to tables of comparisons and printed as the `Cost` of each model.
 
+Beyond the largest wall of the comparison they go by docs/cost-over-size.csv, which `benchmarks/cost_over_size.py` left.
+
 From the project's directory, after ``runningbond compare --fresh --out fine`` and the same with ``--tolerance 0.05``
 and ``--out coarse``, which gives the powers of the tolerance:
 
@@ -20,6 +22,8 @@ from runningbond.compare.advice import TOLERANCE
 from runningbond.compare.advice.costs import COARSE
 from runningbond.models import MODELS
 
+LARGE = "docs/cost-over-size.csv"
+
 BRACKETING = [model.name for model in MODELS.values() if model.kind == "history"]
 
 
@@ -33,11 +37,24 @@ def seconds_of(table: str) -> dict[tuple[str, str], tuple[int, float]]:
         }
 
 
+def seconds_beyond(blocks: int) -> list[tuple[str, int, float]]:
+    """Model, blocks and seconds of walls of more blocks."""
+    with Path(LARGE).open(encoding="utf-8", newline="") as file:
+        rows = [
+            (row["model"], int(row["blocks"]), float(row["seconds"]))
+            for row in csv.DictReader(file)
+            if row["status"] == "collapse"
+        ]
+    return [row for row in rows if row[1] > blocks]
+
+
 def main() -> None:
     """Fit log seconds to log blocks and to whether the wall has weight, a line a model; then the tolerance."""
     fine = seconds_of(sys.argv[1])
+    beyond = seconds_beyond(max(n for n, _ in fine.values()))
     for model in MODELS:
         rows = [(n, not any(published_scene(s).load.gravity), t) for (s, m), (n, t) in fine.items() if m == model]
+        rows += [(n, False, t) for m, n, t in beyond if m == model]
         n, weightless, seconds = np.array(rows, dtype=float).T
         terms = np.column_stack([np.ones_like(n), np.log(n / 100), weightless])
         found = np.linalg.lstsq(terms, np.log(seconds))[0]

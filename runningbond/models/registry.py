@@ -33,7 +33,7 @@ ELASTIC = INTERFACE | {"block.young", "block.poisson"}
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
 EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # of `Scene.extras` what a static model may know,
 FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follows a way
-KERNELS = 0.4  # seconds until the kernels of blocks in motion are loaded
+KERNELS = 0.3  # seconds until the kernels of blocks in motion are loaded
 TOLERANCE = 0.01  # relative width of the bracket where none is asked for
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
 OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # of deformable blocks
@@ -70,7 +70,7 @@ _IN_MOTION |= {"observer": partial(_RECORDER, "motion_recorder"), "progress": pa
 _EVERY_MODEL = (
     Model(
         *("homog", "homogenised continuum in closed form", _homog, DRY),
-        cost=Cost(0.00029, 0.59, 1.15),
+        cost=Cost(0.00029, 0.97, 1.69),
         colour="black",
         marker="_",
         line=(0, (6, 4)),
@@ -79,7 +79,7 @@ _EVERY_MODEL = (
         *("limit", "limit analysis of the blocks", limit, CRUSHING, "bound"),
         interruptible=True,
         takes=EXTRAS,
-        cost=Cost(0.035, 1.56, 1.29, weightless=0.72),
+        cost=Cost(0.035, 1.34, 1.70, weightless=0.69),
         colour="#606fc6",
         marker="o",
     ),
@@ -90,7 +90,7 @@ _EVERY_MODEL = (
         parameters=("starts", "workers", "programs"),
         progress=partial(_PROGRESS, "SearchProgress"),
         interruptible=True,
-        cost=Cost(5.3, 0.83, 2.28, weightless=1.8),
+        cost=Cost(5.5, 0.75, 2.30, weightless=2.0),
         colour="#9b471c",
         marker="s",
     ),
@@ -100,7 +100,7 @@ _EVERY_MODEL = (
         observer=partial(_RECORDER, "StaticRecorder"),
         progress=partial(_PROGRESS, "StaticProgress"),
         interruptible=True,
-        cost=Cost(0.55, 1.72, 1.46, weightless=0.64, finer=0.24),
+        cost=Cost(0.49, 1.76, 1.48, weightless=0.72, finer=0.24),
         takes=FOLLOWED,
         colour="#420697",
         marker="v",
@@ -108,7 +108,7 @@ _EVERY_MODEL = (
     Model(
         *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, INTERFACE, "history"),
         parameters=(*IN_STEPS, "displacements"),
-        cost=Cost(1.5, 1.23, 1.35, weightless=1.2, finer=0.17, start=KERNELS),
+        cost=Cost(1.6, 1.21, 1.34, weightless=1.2, finer=0.17, start=KERNELS),
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
         respond=partial(_late, "dem.dynamic", "dem_response"),
         **_IN_MOTION,
@@ -119,7 +119,7 @@ _EVERY_MODEL = (
     Model(
         *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS, "displacements"),
-        cost=Cost(6.1, 1.09, 1.47, weightless=1.2, finer=0.16, start=KERNELS, cracked=6.0),
+        cost=Cost(5.4, 1.13, 1.44, weightless=1.2, finer=0.16, start=KERNELS, cracked=6.0),
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),
         respond=partial(_late, "fem_interface.model", "fem_response"),
         **_IN_MOTION,

@@ -364,11 +364,25 @@ def test_estimates_follow_the_pace_of_the_rungs_climbed() -> None:
     scene = panel(**STIFF)
     seconds = estimate(MODELS["limit"], scene, TOLERANCE).seconds
     found = pace(scene, TOLERANCE, [Outcome("", "limit", "undecided", seconds=3 * seconds)])
-    assert found == pytest.approx(3)
+    assert found.factor == pytest.approx(3)
     for model in MODELS.values():
         slow, usual = estimate(model, scene, TOLERANCE, found), estimate(model, scene, TOLERANCE)
         assert slow.seconds == pytest.approx(3 * usual.seconds)
-        assert slow.spread >= 1
+        assert slow.spread > max(usual.spread, found.spread)
+
+
+def test_the_better_a_law_the_more_its_rung_tells_of_the_machine() -> None:
+    """Of one rung in a third of its seconds and one in three times them: the pace leans to that with less scatter."""
+    scene = panel(**STIFF)
+    laws = {model: estimate(MODELS[model], scene, TOLERANCE) for model in ("limit", "dem-dynamic")}
+    assert laws["dem-dynamic"].spread < laws["limit"].spread
+    taken = [
+        Outcome("", model, "undecided", seconds=factor * laws[model].seconds)
+        for model, factor in (("limit", 1 / 3), ("dem-dynamic", 3))
+    ]
+    found = pace(scene, TOLERANCE, taken)
+    assert 1 < found.factor < 3
+    assert found.spread < min(law.spread for law in laws.values())
 
 
 def test_cost_adds_up_rung_by_rung() -> None:

@@ -4,12 +4,13 @@
 
 with n blocks and the `Cost` of the model, which `benchmarks/studies/cost_laws.py` prints from the table of a
 comparison, the power of the tolerance as `runningbond study` measures it. Pace is how much slower the machine at hand
-was in the models already run, so that the laws hold from one machine to the next.
+was in the models already run, so that the laws hold from one machine to the next: the mean of these models' ratios,
+each with the weight of what its law is worth.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from statistics import geometric_mean
+from math import exp, hypot, log
 
 from runningbond.models import MODELS, Cost, Model
 from runningbond.results import Outcome
@@ -17,6 +18,9 @@ from runningbond.results.outcome import two_digits
 from runningbond.scene import Scene
 
 COARSE = 0.01  # tolerance of the comparison that the laws were fitted to
+
+EXACT = 1e-3
+"""Logarithm of the scatter of a law that claims to have none."""
 
 POINT_PROGRAMS = 150_000
 """Linear programs of a short search for certificates, times the ends of joints: as long as a few histories take."""
@@ -36,12 +40,24 @@ class Estimate:
         return f"about {two_digits(self.seconds)} s (×÷ {self.spread:.1f})"
 
 
+@dataclass(frozen=True)
+class Pace:
+    """How many times as long as the laws a machine takes, and the factor by which that may be wrong either way."""
+
+    factor: float = 1.0
+    spread: float = 1.0
+
+
+USUAL = Pace()
+"""That of the machine which the laws were fitted on."""
+
+
 def short_search(scene: Scene) -> int:
     """Linear programs of the search for certificates that `advise` makes."""
     return 20 + POINT_PROGRAMS // (2 * max(1, len(scene.joints)))
 
 
-def estimate(model: Model, scene: Scene, tolerance: float, pace: float = 1.0, *, advised: bool = False) -> Estimate:
+def estimate(model: Model, scene: Scene, tolerance: float, pace: Pace = USUAL, *, advised: bool = False) -> Estimate:
     """What a model that has a `Cost` will take on a scene, of itself or as `advise` runs it."""
     law = SHORT_SEARCH if advised and model.kind == "certificate" else model.cost
     if law is None:
@@ -52,12 +68,17 @@ def estimate(model: Model, scene: Scene, tolerance: float, pace: float = 1.0, *,
         seconds *= law.weightless
     if scene.inner_joint is not None:
         seconds *= law.cracked
-    return Estimate(pace * (seconds + law.start), law.spread)
+    return Estimate(pace.factor * (seconds + law.start), exp(hypot(log(law.spread), log(pace.spread))))
 
 
-def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> float:
-    """How much slower than the laws the outcomes so far were; 1 where none of them took time enough to tell."""
+def pace(scene: Scene, tolerance: float, outcomes: Sequence[Outcome]) -> Pace:
+    """How much slower than the laws the outcomes so far were; as fast where none of them took time enough to tell."""
     runs = [(MODELS[each.model], each.seconds) for each in outcomes if each.model in MODELS and each.seconds > 0]
     timed = [(model, seconds) for model, seconds in runs if model.cost is not None and model.kind != "estimate"]
-    ratios = [seconds / estimate(model, scene, tolerance, advised=True).seconds for model, seconds in timed]
-    return geometric_mean(ratios) if ratios else 1.0
+    if not timed:
+        return USUAL
+    laws = [estimate(model, scene, tolerance, advised=True) for model, _ in timed]
+    weights = [max(log(law.spread), EXACT) ** -2 for law in laws]
+    slower = [log(seconds / law.seconds) for law, (_, seconds) in zip(laws, timed, strict=True)]
+    mean = sum(weight * each for weight, each in zip(weights, slower, strict=True)) / sum(weights)
+    return Pace(exp(mean), exp(sum(weights) ** -0.5))
