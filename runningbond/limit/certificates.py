@@ -14,6 +14,7 @@ from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
 from .force_program import Aim, ForceSet, ForceSolution, coulomb, solve_forces
+from .interior_point import near
 from .proved import nearly_extreme
 
 NO_JUMP = 1e-7
@@ -73,6 +74,16 @@ def certify(system: Equilibrium, motion: Array) -> Certificate | None:
     most = _end(system, forces, "largest")
     if most.status == "unbounded":
         return Certificate(motion, least, least)
+    return Certificate(motion, least, most) if most.status == "optimal" else None
+
+
+def roughly_certified(system: Equilibrium, motion: Array) -> Certificate | None:
+    """Loads that drive a mechanism, near its ends, by interior points; `certify` proves them."""
+    driving = driving_forces(system, motion)
+    least = None if driving is None else near(system, driving, "smallest")
+    if driving is None or least is None or least.status != "optimal":
+        return None
+    most = near(system, driving)
     return Certificate(motion, least, most) if most.status == "optimal" else None
 
 

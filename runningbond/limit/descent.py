@@ -43,18 +43,12 @@ class Descent:
 
     def least(self, motion: Array) -> ForceSolution | None:
         """Forces at the least load that drives a mechanism ``(nd,)``; None where there are none."""
-        pattern = self.pattern(motion)
+        pattern = jump_pattern(self.system, motion)
         if pattern not in self.known:
             forces = driving_forces(self.system, motion)
             found = None if forces is None else self.programs.extreme(forces)
             self.known[pattern] = found if found is not None and found.status == "optimal" else None
         return self.known[pattern]
-
-    def pattern(self, motion: Array) -> bytes:
-        """Where a mechanism opens and slides, which is all that its loads depend on."""
-        system, least = self.system, NO_JUMP * float(np.abs(motion).max(initial=0.0))
-        jumps = np.concatenate([*system.jumps(motion), system.elongation(motion)])
-        return bytes((np.sign(jumps) * (np.abs(jumps) > least)).astype(np.int8))
 
     def around(self, best: Certificate, rng: np.random.Generator) -> list[Certificate]:
         """Certificates at ever smaller loads, by a walk over mechanisms that forces on the last one drive."""
@@ -101,6 +95,13 @@ class Descent:
             else:
                 in_vain += 1
         return lower
+
+
+def jump_pattern(system: Equilibrium, motion: Array) -> bytes:
+    """Where a mechanism ``(nd,)`` opens and slides, which is all that its loads depend on."""
+    least = NO_JUMP * float(np.abs(motion).max(initial=0.0))
+    jumps = np.concatenate([*system.jumps(motion), system.elongation(motion)])
+    return bytes((np.sign(jumps) * (np.abs(jumps) > least)).astype(np.int8))
 
 
 def is_lower(multiplier: float, than: float) -> bool:

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 
 from runningbond.scene import Array
 
-from .certificates import Certificate, driving_forces
+from .certificates import Certificate, driving_forces, roughly_certified
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .interior_point import near
@@ -65,7 +65,7 @@ def search_large(system: Equilibrium, place: Array, observe: Observer) -> Search
 
 def _program(system: Equilibrium, pressure: Array, found: Search) -> ForceSolution:
     """A program of the sequences; HiGHS says whether one without an optimum has forces without end."""
-    found.programs += 1
+    found.add_programs(1)
     forces = frozen_friction(system.strength, pressure)
     program = near(system, forces)
     if program.status != "optimal":
@@ -100,14 +100,10 @@ def _sequence(
 def _certified(system: Equilibrium, motions: Iterator[Array], found: Search) -> list[Certificate]:
     """The first of some mechanisms ``(nd,)`` that forces near those that are found drive."""
     for motion in motions:
-        driving = driving_forces(system, motion)
-        if driving is None:
-            continue
-        found.programs += 2
-        least = near(system, driving, "smallest")
-        most = near(system, driving) if least.status == "optimal" else least
-        if most.status == "optimal":
-            return [Certificate(motion, least, most)]
+        found.add_programs(2)
+        certificate = roughly_certified(system, motion)
+        if certificate is not None:
+            return [certificate]
     return []
 
 
@@ -117,7 +113,7 @@ def _corners(
     """Mechanisms ``(nd,)`` at corners of the program of which a mix is given: of the glued wall, or of the wall."""
     if place is None:
         mixed = driving_forces(system, motion, MIXED)
-        found.programs += 1
+        found.add_programs(1)
         if mixed is not None and near(system, mixed, "smallest").status == "optimal":
             corner = _corner(system, pressure, found)
             if corner.status == "optimal":
@@ -134,5 +130,5 @@ def _corners(
 
 
 def _corner(system: Equilibrium, pressure: Array, found: Search) -> ForceSolution:
-    found.programs += 1
+    found.add_programs(1)
     return solve_forces(system, frozen_friction(system.strength, pressure))

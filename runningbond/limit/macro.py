@@ -9,10 +9,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import spsolve
 
 from runningbond.joints import PointStrength
 from runningbond.scene import Array, Indices, Mask
 
+from .certificates import Certificate
 from .equilibrium import Equilibrium
 
 
@@ -23,6 +25,15 @@ class Glued:
     system: Equilibrium
     motions: csc_array
     points: Indices
+
+    def certificate(self, whole: Certificate) -> Certificate:
+        """A certificate of the wall as one of the glued wall, in which all that it moves is free to move."""
+        least, most = (
+            replace(each, pressure=each.pressure[self.points], tangential=each.tangential[self.points])
+            for each in (whole.least, whole.most)
+        )
+        motion = spsolve(csc_array(self.motions.T @ self.motions), self.motions.T @ whole.motion)
+        return Certificate(motion, least, most)
 
 
 def still_points(system: Equilibrium, motion: Array, least: float) -> Mask:
@@ -43,7 +54,7 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
     still : (np,) bool
         Points that do not move.
     """
-    first, second = _pairs(system)
+    first, second = sides(system)
     n = len(place)
     pair = first * (n + 1) + second
     _, which, size = np.unique(pair, return_inverse=True, return_counts=True)
@@ -72,7 +83,7 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
     )
 
 
-def _pairs(system: Equilibrium) -> tuple[Indices, Indices]:
+def sides(system: Equilibrium) -> tuple[Indices, Indices]:
     """Movable blocks on both sides of each point, in order; their number stands for what is fixed."""
     pattern = csc_array(abs(system.opening) + abs(system.slip))
     pattern.sort_indices()

@@ -11,12 +11,15 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene
 
 from .associated import LimitState, judge, limit_state, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify
+from .coarse import POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
 from .large import search_large, takes_one_start
@@ -48,8 +51,8 @@ def limit_nonassociated(
         Most starts of the search, and how many are made at a time, which changes nothing of what is found. Fewer are
         made where none of the last ones brought a smaller load, and of very large walls one alone.
     programs
-        Linear programs after which no further start is made; where they are not given, as many as take up to a
-        minute on walls of 150 to 600 blocks.
+        Linear programs after which no further start is made, those over parts of the wall counted by what they cost;
+        where they are not given, as many as take up to half a minute on walls of 150 to 600 blocks.
     observe
         Is shown what the search has found, from time to time.
 
@@ -78,8 +81,8 @@ def limit_nonassociated(
     dofs = system.freedoms - system.has_support
     outcome = Outcome(scene.title, "limit-nonassociated", "undecided", dofs=dofs, steps=1, message=message)
     if status in ("collapse", "unbounded"):
-        look = partial(search, starts=starts, workers=workers, observe=observe, most=programs)
-        outcome = _collapse(outcome, system, state, tolerance, look, observe)
+        look = partial(_look, starts=starts, workers=workers, observe=observe, most=programs)
+        outcome = _collapse(outcome, system, state, tolerance, look)
     else:
         outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
@@ -90,18 +93,14 @@ def _collapse(
     system: Equilibrium,
     state: LimitState,
     tolerance: float,
-    look: Callable[[Equilibrium, ForceSolution], Search],
-    observe: Observer,
+    look: Callable[[Equilibrium, Array], Search],
 ) -> Outcome:
     """Outcome of a wall that stands; a mechanism that spends of strengths that were cut is none."""
     cut = state.system
     bounded = state.forces.status == "optimal"
     order = canonical_order(cut)
     ordered = order.applied(cut)
-    associated = None if takes_one_start(ordered) else solve_forces(ordered, coulomb(ordered.strength))
-    result = (
-        search_large(ordered, order.places(cut.scene), observe) if associated is None else look(ordered, associated)
-    )
+    result = look(ordered, order.places(cut.scene))
     proved = _proved_again(system, cut, order, result)
     outcome = replace(outcome, steps=1 + result.programs)
     if not proved:
@@ -126,6 +125,26 @@ def _collapse(
         **{f"far_{name}": array for name, array in _arrays(cut, highest.motion, highest.most).items()},
         **collapse_state(cut.scene, cut.points, force, cut.force_unit * least.tie, multiplier),
     )
+
+
+def _look(
+    system: Equilibrium, place: Array, *, starts: int, workers: int, observe: Observer, most: int | None
+) -> Search:
+    """Search a wall whose movable blocks have their centroids at `place` ``(n, 2)`` [m], as its size asks for."""
+    if takes_one_start(system):
+        return search_large(system, place, observe)
+    if len(system.points) < POINTS or system.has_support:
+        return search(system, _associated(system), starts, workers, observe, most)
+    coarse = CoarseSearch(system, place, observe, workers, np.inf if most is None else most)
+    found = coarse.run()
+    if not (found.certificates or found.interrupted):
+        found = search(system, _associated(system), starts, workers, observe, most, found)
+        return found if found.interrupted else coarse.go_on()
+    return found
+
+
+def _associated(system: Equilibrium) -> ForceSolution:
+    return solve_forces(system, coulomb(system.strength))
 
 
 def _arrays(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Any]:

@@ -68,6 +68,8 @@ class Search:
         Every collapse that was proved.
     starts, programs
         Starts, and linear programs solved.
+    cost
+        Those programs, where glued walls were searched by what they cost beside the wall's own.
     dry
         Starts in a row, the last ones, that brought nothing lower.
     frictionless
@@ -81,6 +83,7 @@ class Search:
     certificates: list[Certificate] = field(default_factory=list)
     starts: int = 0
     programs: int = 0
+    cost: float = 0.0
     dry: int = 0
     frictionless: bool = False
     growing: bool = False
@@ -95,6 +98,16 @@ class Search:
     def lowest(self) -> float:
         """Its multiplier; infinite without one."""
         return np.inf if self.best is None else self.best.least.multiplier
+
+    @property
+    def highest(self) -> float:
+        """The largest certified multiplier; minus infinity without one."""
+        return max((each.most.multiplier for each in self.certificates), default=-np.inf)
+
+    def add_programs(self, number: int, cost: float = 1.0) -> None:
+        """Take note of programs that were solved, and of what each cost."""
+        self.programs += number
+        self.cost += number * cost
 
 
 Observer = Callable[[Search], None]
@@ -139,7 +152,7 @@ class Start:
                 best = self.found.best
                 self.found.certificates += [] if best is None else descent.around(best, rng)
         finally:
-            self.found.programs += programs.solved - solved
+            self.found.add_programs(programs.solved - solved)
 
     def _sequence(self, descent: Descent) -> Iterator[Certificate]:
         pressure = self._pressure(descent)
@@ -180,23 +193,25 @@ def search(
     starts: int = STARTS,
     workers: int = 1,
     observe: Observer = lambda found: None,
-    most: int | None = None,
+    most: float | None = None,
+    found: Search | None = None,
 ) -> Search:
     """Look for certificates from many starts, seeded; a keyboard interrupt keeps those that were found.
 
     `observe` is shown what was found after every round; starts are made by so many `workers` at a time, and none after
-    the `most` linear programs, `programs_allowed` where they are not given.
+    the `most` linear programs, `programs_allowed` where they are not given. What was `found` before is added to.
     """
-    found, stopped = Search(), Event()
+    found = Search() if found is None else found
+    found.dry, made, stopped = 0, 0, Event()
     crew = [Programs(system, stopped) for _ in range(workers)]
     known: dict[bytes, ForceSolution | None] = {}
     corners: Corners = (None, None, None)
     patient = len(system.points) >= MANY_CORNERS
-    most = programs_allowed(system) if most is None else most
-    while found.starts < starts:
+    most = found.cost + programs_allowed(system) if most is None else most
+    while made < starts:
         for programs in crew:
             programs.asks_interior_point = patient
-        numbers = range(found.starts, min(starts, found.starts + ROUND) if found.starts else 1)
+        numbers = range(made, min(starts, made + ROUND) if made else 1)
         batch = [Start(number, associated, found.best, dict(known), corners) for number in numbers]
         try:
             _run(batch, crew)
@@ -206,11 +221,12 @@ def search(
         for start in batch:
             known |= start.known
             _merge(found, start.found)
-        corners = crew[0].corners if found.starts == 1 else corners
+        made += len(batch)
+        corners = crew[0].corners if made == 1 else corners
         observe(found)
         if found.interrupted or found.frictionless:
             break
-        if found.dry >= dry_allowed(system) or found.programs > most:
+        if found.dry >= dry_allowed(system) or found.cost > most:
             if patient or found.certificates:
                 break
             patient = True  # what was given up may be all there is
@@ -244,7 +260,7 @@ def _merge(found: Search, start: Search) -> None:
     found.dry = 0 if is_lower(start.lowest, found.lowest) else found.dry + 1
     found.certificates += start.certificates
     found.starts += 1
-    found.programs += start.programs
+    found.add_programs(start.programs)
     found.frictionless |= start.frictionless
     found.growing |= start.growing
 

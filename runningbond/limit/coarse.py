@@ -1,0 +1,272 @@
+"""Certificates of walls of some hundred blocks, looked for in walls of fewer and proved in the wall itself.
+
+Most mechanisms of little load move a few large parts of a wall. On these parts alone a program takes milliseconds
+where the wall's own takes some tenths of a second, and what moves is a mechanism of the wall all the same (`macro`).
+Where a wall may part is not known before: sequences of programs over the wall, by interior points, whose mechanisms are
+mixes of all that collapse at about that load, move some joints far and others hardly. Blocks that move as one in all
+programs of a sequence are glued, and the glued wall is searched as any other (`search`).
+
+Forces that balance the wall's blocks balance its parts too, so that the loads which drive a mechanism of the glued wall
+there hold all those which do in the wall: glued walls have the smaller ones, and no forces there are none in the wall.
+Their certificates are therefore proved in the wall from the lowest up, until the next cannot be lower than what is
+proved, and as many from the highest down.
+
+What moves in many small parts, as a wall that slides all over does, holds no such mechanism, and is left to `search`.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from runningbond.scene import Array, Mask
+
+from .certificates import NO_JUMP, Certificate, roughly_certified
+from .descent import Descent, jump_pattern
+from .equilibrium import Equilibrium
+from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+from .interior_point import near
+from .macro import Glued, glue, sides
+from .programs import Programs
+from .search import WEIGHTS, Observer, Search, averaged, search, short_sequence
+
+POINTS = 1000
+"""Joint points from which a wall is searched so first; smaller ones are searched themselves as soon."""
+
+MIXES = 8
+"""Programs of a sequence that shows where a wall may part."""
+
+LEVELS = tuple(float(f"{digit}e-{power}") for power in (2, 3, 4, 5) for digit in (5, 2, 1))
+"""Jumps, relative to the largest motion, below which blocks may be glued."""
+
+FEWEST, FEW, MORE = 45, 150, 300
+"""Most freedoms of a glued wall, three a part: of a program, of a sequence, and of the first two sequences together."""
+
+FEW_PROGRAMS, PROGRAMS = 60, 400
+"""Programs after which such a wall is searched no further, of one program and of more."""
+
+DRY, STARTS = 3, 40
+"""Sequences in a row that bring nothing lower, after which the search ends, and most of all."""
+
+AROUND, SEQUENCES, NEARBY = 350, 8, 0.5
+"""Most freedoms of a neighbourhood of a certificate, sequences in it, and the scatter of the logarithm of the pressures
+that they start from, beside the certificate's."""
+
+IN_VAIN = 6
+"""Neighbourhoods of a certificate in a row that hold nothing lower, after which it is left."""
+
+PLACES = 6
+"""Decimals of distances, in sizes of the wall, that are looked at: a wall that is drawn larger has the same."""
+
+POWER = 1.5
+"""Power of the freedoms as which a program costs."""
+
+WORTH = 1e-5
+"""Change of the multiplier, relative to itself and 1, that is worth a proof: interior points tell no smaller ones."""
+
+
+@dataclass(eq=False)
+class CoarseSearch:
+    """A search over parts of a wall.
+
+    Parameters
+    ----------
+    system, place
+        Equations of a wall without moving supports, and centroids of its movable blocks ``(n, 2)`` [m].
+    observe
+        Is shown what was found after each glued wall.
+    workers
+        Of `search`.
+    most
+        Cost after which no further sequence is run, in programs of the wall itself.
+    """
+
+    system: Equilibrium
+    place: Array
+    observe: Observer
+    workers: int = 1
+    most: float = np.inf
+    found: Search = field(default_factory=Search)
+    seen: set[bytes] = field(default_factory=set)
+    tried: set[bytes] = field(default_factory=set)
+
+    def run(self) -> Search:
+        """Search, and keep what was found at Ctrl-C."""
+        return self._kept(self._run)
+
+    def go_on(self) -> Search:
+        """Search the neighbourhoods of what was found otherwise, and keep what was found at Ctrl-C."""
+        return self._kept(self._around)
+
+    def _kept(self, search: Callable[[], None]) -> Search:
+        try:
+            search()
+        except KeyboardInterrupt:
+            self.found.interrupted = True
+        return self.found
+
+    def _run(self) -> None:
+        associated = near(self.system, coulomb(self.system.strength))
+        if associated.status != "optimal":
+            return
+        first = self._start(associated.pressure, 1.0, associated)
+        second = self._start(associated.pressure, 0.3, None)
+        self._look(finest(self.system, self.place, np.maximum(first, second), MORE), PROGRAMS)
+        number, left = 0, np.inf
+        while (best := self.found.best) is not None and number < STARTS and not self._ends():
+            if self.found.dry < DRY:
+                rng = np.random.default_rng([2, number])
+                pressure = (associated if number % 2 == 0 else best.least).pressure
+                pressure = pressure * np.exp(rng.normal(size=len(pressure)))
+                self._start(pressure, WEIGHTS[number % len(WEIGHTS)], associated if number % 4 < 2 else None)
+                number += 1
+            elif is_worth(left, self.found.lowest):
+                self._around()
+                left = self.found.lowest
+            else:
+                return
+
+    def _around(self) -> None:
+        """Search neighbourhoods of the lowest certificate until some in a row have nothing lower.
+
+        The first is of all that moves there, others of one point that does.
+        """
+        rng, in_vain = np.random.default_rng(3), 0
+        while (best := self.found.best) is not None and in_vain < IN_VAIN and not self._ends():
+            before, moving = best.least.multiplier, self._jumps(best.motion) > NO_JUMP
+            one = np.arange(len(moving)) == rng.choice(np.flatnonzero(moving))
+            glued = neighbourhood(self.system, self.place, moving, one if in_vain else moving, AROUND)
+            self._look_from(best, glued, rng)
+            in_vain += 1
+            if is_worth(before, self.found.lowest):
+                self.found.dry = in_vain = 0
+            self.observe(self.found)
+
+    def _ends(self) -> bool:
+        return self.found.cost >= self.most or self.found.interrupted
+
+    def _start(self, pressure: Array, weight: float | None, associated: ForceSolution | None) -> Array:
+        """Search what is left of gluing all that hardly moves in a sequence of programs from a pressure ``(np,)``.
+
+        In each of its mechanisms by itself, and in all of them and an associated one; it returns their largest jumps
+        ``(np,)``, relative. No weight stands for (k + 1)^(−1/2), as in `search`.
+        """
+        before, parting = self.found.lowest, self._jumps(np.zeros(self.system.freedoms))
+        for k in range(MIXES):
+            program = near(self.system, frozen_friction(self.system.strength, pressure))
+            self.found.add_programs(1)
+            if program.status != "optimal":
+                break
+            jumps = self._jumps(program.motion)
+            self._look(finest(self.system, self.place, jumps, FEWEST), FEW_PROGRAMS)
+            parting = np.maximum(parting, jumps)
+            pressure = averaged(pressure, program.pressure, weight or (k + 1.0) ** -0.5)
+        also = 0.0 if associated is None else self._jumps(associated.motion)
+        self._look(finest(self.system, self.place, np.maximum(parting, also), FEW), PROGRAMS)
+        self.found.starts += 1
+        self.found.dry = 0 if is_worth(before, self.found.lowest) else self.found.dry + 1
+        self.observe(self.found)
+        return parting
+
+    def _jumps(self, motion: Array) -> Array:
+        jumps = np.abs(self.system.jumps(motion)).max(axis=0)
+        return np.asarray(jumps / (np.abs(motion).max(initial=0.0) or 1.0))
+
+    def _look(self, glued: Glued | None, programs: int) -> None:
+        """Search a glued wall."""
+        if glued is None or self._knows(glued):
+            return
+        share = self._share(glued)
+        most = min(float(programs), (self.most - self.found.cost) / share)
+        associated = solve_forces(glued.system, coulomb(glued.system.strength))
+        parts = search(glued.system, associated, workers=self.workers, most=most)
+        self.found.add_programs(parts.programs, share)
+        self.found.interrupted |= parts.interrupted
+        self._prove(glued, parts.certificates)
+
+    def _look_from(self, best: Certificate, glued: Glued | None, rng: np.random.Generator) -> None:
+        """Search a glued wall from a certificate that moves nothing glued."""
+        if glued is None or self._knows(glued):
+            return
+        programs, known = Programs(glued.system, asks_interior_point=False), glued.certificate(best)
+        descent, pressure = Descent(programs), known.least.pressure
+        certificates = descent.around(known, rng)
+        for k in range(SEQUENCES):
+            start = pressure * np.exp(NEARBY * rng.normal(size=len(pressure))) if k else pressure
+            for certificate in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
+                certificates += [certificate, *descent.below(certificate.motion, certificate.least, rng)]
+        if certificates:
+            certificates += descent.around(min(certificates, key=lambda each: each.least.multiplier), rng)
+        self.found.add_programs(programs.solved, self._share(glued))
+        self._prove(glued, certificates)
+
+    def _knows(self, glued: Glued) -> bool:
+        """Whether a glued wall was searched before; it is now."""
+        known = self._ends() or glued.points.tobytes() in self.seen
+        self.seen.add(glued.points.tobytes())
+        return known
+
+    def _share(self, glued: Glued) -> float:
+        """What a program over a glued wall costs, in programs over the wall."""
+        return float((glued.system.freedoms / self.system.freedoms) ** POWER)
+
+    def _prove(self, glued: Glued, certificates: Sequence[Certificate]) -> None:
+        """Prove certificates of the glued wall in the wall, as far as they may be lower or higher than what is."""
+        for each in sorted(certificates, key=lambda each: each.least.multiplier):
+            if not is_worth(self.found.lowest, each.least.multiplier):
+                break
+            self._try(glued.motions @ each.motion)
+        for each in sorted(certificates, key=lambda each: -each.most.multiplier):
+            if not is_worth(each.most.multiplier, self.found.highest):
+                break
+            self._try(glued.motions @ each.motion)
+
+    def _try(self, motion: Array) -> None:
+        """Prove a mechanism ``(nd,)``, unless it opens and slides as one did that was tried before."""
+        jumps = jump_pattern(self.system, motion)
+        if jumps in self.tried:
+            return
+        self.tried.add(jumps)
+        self.found.add_programs(2)
+        proved = roughly_certified(self.system, motion)
+        if proved is not None:
+            self.found.certificates.append(proved)
+
+
+def is_worth(large: float, small: float) -> bool:
+    """Whether the larger of two multipliers, which may be infinite, is worth a proof."""
+    return large > small and (np.isinf(large - small) or large - small > WORTH * max(1.0, abs(large)))
+
+
+def finest(system: Equilibrium, place: Array, jumps: Array, freedoms: int) -> Glued | None:
+    """The wall glued where points jump least ``(np,)``, as far as leaves so many freedoms; None for none."""
+    return _freest(system, place, jumps, LEVELS, freedoms)
+
+
+def neighbourhood(system: Equilibrium, place: Array, moving: Mask, centres: Mask, freedoms: int) -> Glued | None:
+    """The wall glued but where points move ``(np,)`` and near some, as near as leaves so many freedoms; None for none.
+
+    Nearness goes by the blocks.
+    """
+    first, second = sides(system)
+    of_centres = np.unique([first[centres], second[centres]])
+    at = place[of_centres[of_centres < len(place)]]
+    far = np.hypot(*(place[:, None] - at).transpose(2, 0, 1)).min(axis=1) / np.ptp(place, axis=0).max()
+    distance = np.append(np.round(far, PLACES), np.inf)
+    nearness = np.where(moving, 2.0, 1 / (1 + np.minimum(distance[first], distance[second])))
+    return _freest(system, place, nearness, np.unique(nearness[~moving])[::-1].tolist(), freedoms)
+
+
+def _freest(
+    system: Equilibrium, place: Array, looseness: Array, levels: Sequence[float], freedoms: int
+) -> Glued | None:
+    """The wall glued below the least of some levels, which fall, that leaves no more than so many freedoms."""
+    low, high, result = 0, len(levels), None
+    while low < high:  # the fewer points are glued, the more freedoms are left
+        middle = (low + high) // 2
+        glued = glue(system, place, looseness < levels[middle])
+        if glued.system.freedoms <= freedoms:
+            low, result = middle + 1, glued
+        else:
+            high = middle
+    return result if result is not None and result.system.freedoms else None
