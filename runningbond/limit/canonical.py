@@ -48,11 +48,7 @@ class Order:
         turn = diags_array(self.sign)
 
         def ordered(matrix: csc_array, columns: Indices, sense: float = 1.0) -> csc_array:
-            entries = csc_array(turn @ matrix[self.rows][:, columns]) * sense
-            entries.data = np.round(entries.data, ENTRY)
-            entries.eliminate_zeros()
-            entries.sort_indices()
-            return entries
+            return rounded(csc_array(turn @ matrix[self.rows][:, columns]) * sense)
 
         strength = system.strength
         tension, shear = (_significant(part[self.points]) for part in (strength.tension, strength.shear))
@@ -79,6 +75,15 @@ class Order:
         own = np.empty_like(motion)
         own[self.rows] = self.sign * motion
         return own
+
+
+def rounded(matrix: csc_array) -> csc_array:
+    """A matrix of equations without the last bits of its entries."""
+    entries = matrix.copy()
+    entries.data = np.round(entries.data, ENTRY)
+    entries.eliminate_zeros()
+    entries.sort_indices()
+    return entries
 
 
 def _significant(values: Array) -> Array:

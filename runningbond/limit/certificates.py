@@ -77,13 +77,19 @@ def certify(system: Equilibrium, motion: Array) -> Certificate | None:
     return Certificate(motion, least, most) if most.status == "optimal" else None
 
 
-def roughly_certified(system: Equilibrium, motion: Array) -> Certificate | None:
-    """Loads that drive a mechanism, near its ends, by interior points; `certify` proves them."""
+def roughly_certified(system: Equilibrium, motion: Array, count: Callable[[int], None]) -> Certificate | None:
+    """Loads that drive a mechanism, near its ends, by interior points, each of which counts; `certify` proves them."""
     driving = driving_forces(system, motion)
-    least = None if driving is None else near(system, driving, "smallest")
-    if driving is None or least is None or least.status != "optimal":
+    if driving is None:
         return None
+    count(1)
+    least = near(system, driving, "smallest")
+    if least.status != "optimal":
+        return None
+    count(1)
     most = near(system, driving)
+    if most.status == "unbounded":
+        return Certificate(motion, least, least)
     return Certificate(motion, least, most) if most.status == "optimal" else None
 
 

@@ -21,14 +21,14 @@ import numpy as np
 
 from runningbond.scene import Array, Mask
 
-from .certificates import NO_JUMP, Certificate, roughly_certified
+from .certificates import NO_JUMP, Certificate, certify, roughly_certified
 from .descent import Descent, jump_pattern
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .interior_point import near
 from .macro import Glued, glue, sides
 from .programs import Programs
-from .search import WEIGHTS, Observer, Search, averaged, search, short_sequence
+from .search import WEIGHTS, Observer, Search, averaged, programs_allowed, search, short_sequence
 
 POINTS = 1000
 """Joint points from which a wall is searched so first; smaller ones are searched themselves as soon."""
@@ -45,8 +45,11 @@ FEWEST, FEW, MORE = 45, 150, 300
 FEW_PROGRAMS, PROGRAMS = 60, 400
 """Programs after which such a wall is searched no further, of one program and of more."""
 
-DRY, STARTS = 3, 40
+DRY, STARTS = 4, 40
 """Sequences in a row that bring nothing lower, after which the search ends, and most of all."""
+
+ALLOWED = 4
+"""What a search may cost beside one over the wall itself: it mostly ends long before."""
 
 AROUND, SEQUENCES, NEARBY = 350, 8, 0.5
 """Most freedoms of a neighbourhood of a certificate, sequences in it, and the scatter of the logarithm of the pressures
@@ -77,15 +80,19 @@ class CoarseSearch:
         Is shown what was found after each glued wall.
     workers
         Of `search`.
+    starts
+        Most sequences over the wall.
     most
-        Cost after which no further sequence is run, in programs of the wall itself.
+        Cost after which nothing more is begun, in programs of the wall itself; `ALLOWED` times those of `search` where
+        it is not given.
     """
 
     system: Equilibrium
     place: Array
     observe: Observer
     workers: int = 1
-    most: float = np.inf
+    starts: int = STARTS
+    most: float | None = None
     found: Search = field(default_factory=Search)
     seen: set[bytes] = field(default_factory=set)
     tried: set[bytes] = field(default_factory=set)
@@ -109,12 +116,13 @@ class CoarseSearch:
         associated = near(self.system, coulomb(self.system.strength))
         if associated.status != "optimal":
             return
-        first = self._start(associated.pressure, 1.0, associated)
-        second = self._start(associated.pressure, 0.3, None)
-        self._look(finest(self.system, self.place, np.maximum(first, second), MORE), PROGRAMS)
+        parting = self._start(associated.pressure, 1.0, associated)
+        if self.starts > 1:
+            parting = np.maximum(parting, self._start(associated.pressure, 0.3, None))
+        self._look(finest(self.system, self.place, parting, MORE), PROGRAMS)
         number, left = 0, np.inf
-        while (best := self.found.best) is not None and number < STARTS and not self._ends():
-            if self.found.dry < DRY:
+        while (best := self.found.best) is not None and not self._ends():
+            if self.found.dry < DRY and self.found.starts < min(self.starts, STARTS):
                 rng = np.random.default_rng([2, number])
                 pressure = (associated if number % 2 == 0 else best.least).pressure
                 pressure = pressure * np.exp(rng.normal(size=len(pressure)))
@@ -140,10 +148,13 @@ class CoarseSearch:
             in_vain += 1
             if is_worth(before, self.found.lowest):
                 self.found.dry = in_vain = 0
-            self.observe(self.found)
 
     def _ends(self) -> bool:
-        return self.found.cost >= self.most or self.found.interrupted
+        return self.found.interrupted or self.found.cost >= self._allowed
+
+    @property
+    def _allowed(self) -> float:
+        return ALLOWED * programs_allowed(self.system) if self.most is None else self.most
 
     def _start(self, pressure: Array, weight: float | None, associated: ForceSolution | None) -> Array:
         """Search what is left of gluing all that hardly moves in a sequence of programs from a pressure ``(np,)``.
@@ -153,6 +164,8 @@ class CoarseSearch:
         """
         before, parting = self.found.lowest, self._jumps(np.zeros(self.system.freedoms))
         for k in range(MIXES):
+            if self._ends():
+                break
             program = near(self.system, frozen_friction(self.system.strength, pressure))
             self.found.add_programs(1)
             if program.status != "optimal":
@@ -165,7 +178,6 @@ class CoarseSearch:
         self._look(finest(self.system, self.place, np.maximum(parting, also), FEW), PROGRAMS)
         self.found.starts += 1
         self.found.dry = 0 if is_worth(before, self.found.lowest) else self.found.dry + 1
-        self.observe(self.found)
         return parting
 
     def _jumps(self, motion: Array) -> Array:
@@ -177,7 +189,7 @@ class CoarseSearch:
         if glued is None or self._knows(glued):
             return
         share = self._share(glued)
-        most = min(float(programs), (self.most - self.found.cost) / share)
+        most = min(float(programs), (self._allowed - self.found.cost) / share)
         associated = solve_forces(glued.system, coulomb(glued.system.strength))
         parts = search(glued.system, associated, workers=self.workers, most=most)
         self.found.add_programs(parts.programs, share)
@@ -189,14 +201,18 @@ class CoarseSearch:
         if glued is None or self._knows(glued):
             return
         programs, known = Programs(glued.system, asks_interior_point=False), glued.certificate(best)
-        descent, pressure = Descent(programs), known.least.pressure
-        certificates = descent.around(known, rng)
-        for k in range(SEQUENCES):
-            start = pressure * np.exp(NEARBY * rng.normal(size=len(pressure))) if k else pressure
-            for certificate in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
-                certificates += [certificate, *descent.below(certificate.motion, certificate.least, rng)]
-        if certificates:
-            certificates += descent.around(min(certificates, key=lambda each: each.least.multiplier), rng)
+        descent, pressure, certificates = Descent(programs), known.least.pressure, list[Certificate]()
+        try:
+            certificates += descent.around(known, rng)
+            for k in range(SEQUENCES):
+                start = pressure * np.exp(NEARBY * rng.normal(size=len(pressure))) if k else pressure
+                for certificate in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
+                    certificates.append(certificate)
+                    certificates += descent.below(certificate.motion, certificate.least, rng)
+            if certificates:
+                certificates += descent.around(min(certificates, key=lambda each: each.least.multiplier), rng)
+        except KeyboardInterrupt:
+            self.found.interrupted = True
         self.found.add_programs(programs.solved, self._share(glued))
         self._prove(glued, certificates)
 
@@ -211,15 +227,19 @@ class CoarseSearch:
         return float((glued.system.freedoms / self.system.freedoms) ** POWER)
 
     def _prove(self, glued: Glued, certificates: Sequence[Certificate]) -> None:
-        """Prove certificates of the glued wall in the wall, as far as they may be lower or higher than what is."""
+        """Prove certificates of the glued wall in the wall, as far as they may be lower or higher than what is.
+
+        After Ctrl-C the lowest alone.
+        """
         for each in sorted(certificates, key=lambda each: each.least.multiplier):
             if not is_worth(self.found.lowest, each.least.multiplier):
                 break
             self._try(glued.motions @ each.motion)
         for each in sorted(certificates, key=lambda each: -each.most.multiplier):
-            if not is_worth(each.most.multiplier, self.found.highest):
+            if self.found.interrupted or not is_worth(each.most.multiplier, self.found.highest):
                 break
             self._try(glued.motions @ each.motion)
+        self.observe(self.found)
 
     def _try(self, motion: Array) -> None:
         """Prove a mechanism ``(nd,)``, unless it opens and slides as one did that was tried before."""
@@ -227,10 +247,17 @@ class CoarseSearch:
         if jumps in self.tried:
             return
         self.tried.add(jumps)
-        self.found.add_programs(2)
-        proved = roughly_certified(self.system, motion)
+        proved = roughly_certified(self.system, motion, self.found.add_programs)
+        if proved is not None and self._is_beyond(proved):
+            self.found.add_programs(2)
+            proved = certify(self.system, motion)  # what is not quite one would hide those that are
         if proved is not None:
             self.found.certificates.append(proved)
+
+    def _is_beyond(self, certificate: Certificate) -> bool:
+        """Whether a certificate is the lowest or the highest."""
+        lower = certificate.least.multiplier < self.found.lowest
+        return lower or certificate.most.multiplier > self.found.highest
 
 
 def is_worth(large: float, small: float) -> bool:

@@ -5,6 +5,7 @@ only where they are at the limit. Of another mechanism of that cone the same for
 smallest load is as small or smaller. Mechanisms at the cone's edges move least points, and leave the forces freest.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -50,9 +51,8 @@ class Descent:
             self.known[pattern] = found if found is not None and found.status == "optimal" else None
         return self.known[pattern]
 
-    def around(self, best: Certificate, rng: np.random.Generator) -> list[Certificate]:
+    def around(self, best: Certificate, rng: np.random.Generator) -> Iterator[Certificate]:
         """Certificates at ever smaller loads, by a walk over mechanisms that forces on the last one drive."""
-        lower: list[Certificate] = []
         motion, in_vain = best.motion, 0
         while in_vain < WALK:
             in_vain += 1
@@ -61,12 +61,13 @@ class Descent:
             if forces is None or stepped is None or found is None:
                 motion = best.motion
             elif is_lower(found.multiplier, best.least.multiplier):
-                lower += [Certificate(stepped, found, forces), *self.below(stepped, found, rng)]
-                best, in_vain = lower[-1], 0
+                best, in_vain = Certificate(stepped, found, forces), 0
+                yield best
+                for best in self.below(stepped, found, rng):
+                    yield best
                 motion = best.motion
             else:
                 motion = stepped
-        return lower
 
     def _stepped(self, motion: Array, rng: np.random.Generator) -> tuple[Array | None, ForceSolution | None]:
         """A mechanism that random forces on another one ``(nd,)`` drive, and the forces."""
@@ -81,20 +82,18 @@ class Descent:
     def _weights(self, rng: np.random.Generator) -> Array:
         return random_weights(2 * len(self.system.points), rng)
 
-    def below(self, motion: Array, forces: ForceSolution, rng: np.random.Generator) -> list[Certificate]:
+    def below(self, motion: Array, forces: ForceSolution, rng: np.random.Generator) -> Iterator[Certificate]:
         """Certificates at ever smaller loads, from a mechanism and the forces at its least load."""
-        lower: list[Certificate] = []
         in_vain = 0
         while in_vain < IN_VAIN:
             moved = self.programs.mechanism(forces, self._weights(rng))
             found = None if moved is None else self.least(moved)
             if moved is not None and found is not None and is_lower(found.multiplier, forces.multiplier):
                 # The forces drive the new mechanism too: every load in between is certified.
-                lower.append(Certificate(moved, found, forces))
+                yield Certificate(moved, found, forces)
                 forces, in_vain = found, 0
             else:
                 in_vain += 1
-        return lower
 
 
 def jump_pattern(system: Equilibrium, motion: Array) -> bytes:

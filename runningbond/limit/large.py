@@ -100,8 +100,7 @@ def _sequence(
 def _certified(system: Equilibrium, motions: Iterator[Array], found: Search) -> list[Certificate]:
     """The first of some mechanisms ``(nd,)`` that forces near those that are found drive."""
     for motion in motions:
-        found.add_programs(2)
-        certificate = roughly_certified(system, motion)
+        certificate = roughly_certified(system, motion, found.add_programs)
         if certificate is not None:
             return [certificate]
     return []

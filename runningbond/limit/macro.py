@@ -14,6 +14,7 @@ from scipy.sparse.linalg import spsolve
 from runningbond.joints import PointStrength
 from runningbond.scene import Array, Indices, Mask
 
+from .canonical import ENTRY, rounded
 from .certificates import Certificate
 from .equilibrium import Equilibrium
 
@@ -43,7 +44,7 @@ def still_points(system: Equilibrium, motion: Array, least: float) -> Mask:
 
 
 def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
-    """Glue blocks that all their points, two at least, hold together.
+    """Glue blocks that all their points, two at least, hold together; the equations are rounded as `canonical` does.
 
     Parameters
     ----------
@@ -71,12 +72,12 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
             system,
             points=system.points.part(kept),
             strength=PointStrength(strength.friction[kept], strength.tension[kept], strength.shear[kept]),
-            opening=csc_array(motions.T @ system.opening[:, kept]),
-            slip=csc_array(motions.T @ system.slip[:, kept]),
-            tie=csc_array(motions.T @ system.tie),
-            reaction=csc_array(motions.T @ system.reaction),
-            dead=motions.T @ system.dead,
-            live=motions.T @ system.live,
+            opening=rounded(csc_array(motions.T @ system.opening[:, kept])),
+            slip=rounded(csc_array(motions.T @ system.slip[:, kept])),
+            tie=rounded(csc_array(motions.T @ system.tie)),
+            reaction=rounded(csc_array(motions.T @ system.reaction)),
+            dead=np.round(motions.T @ system.dead, ENTRY),
+            live=np.round(motions.T @ system.live, ENTRY),
         ),
         motions,
         kept,

@@ -11,8 +11,6 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene
 
@@ -48,11 +46,12 @@ def limit_nonassociated(
         The scene, and the relative width of the interval asked for. A wider one is reported as it is, for the load
         itself is not unique.
     starts, workers
-        Most starts of the search, and how many are made at a time, which changes nothing of what is found. Fewer are
-        made where none of the last ones brought a smaller load, and of very large walls one alone.
+        Most starts of the search, over the wall or, of larger ones, to find its parts, and how many are made at a time
+        where they can be, which changes nothing of what is found. Fewer are made where none of the last ones brought a
+        smaller load, and of very large walls one alone.
     programs
         Linear programs after which no further start is made, those over parts of the wall counted by what they cost;
-        where they are not given, as many as take up to half a minute on walls of 150 to 600 blocks.
+        where they are not given, as many as take half a minute or so on walls of 150 to 600 blocks.
     observe
         Is shown what the search has found, from time to time.
 
@@ -135,7 +134,7 @@ def _look(
         return search_large(system, place, observe)
     if len(system.points) < POINTS or system.has_support:
         return search(system, _associated(system), starts, workers, observe, most)
-    coarse = CoarseSearch(system, place, observe, workers, np.inf if most is None else most)
+    coarse = CoarseSearch(system, place, observe, workers, starts, most)
     found = coarse.run()
     if not (found.certificates or found.interrupted):
         found = search(system, _associated(system), starts, workers, observe, most, found)

@@ -150,7 +150,7 @@ class Start:
             early = self.number <= ROUND  # a walk from the first certificate is no better than from any other
             if early or self.best is None or is_lower(self.found.lowest, self.best.least.multiplier):
                 best = self.found.best
-                self.found.certificates += [] if best is None else descent.around(best, rng)
+                self.found.certificates += () if best is None else descent.around(best, rng)
         finally:
             self.found.add_programs(programs.solved - solved)
 

@@ -7,9 +7,10 @@ from runningbond.compare import published_scene
 from runningbond.limit import equilibrium, limit, limit_nonassociated
 from runningbond.limit.canonical import canonical_order
 from runningbond.limit.certificates import Certificate, certify
-from runningbond.limit.coarse import CoarseSearch, finest, is_worth, neighbourhood
+from runningbond.limit.coarse import POINTS, CoarseSearch, finest, is_worth, neighbourhood
+from runningbond.limit.descent import Descent, jump_pattern
 from runningbond.limit.equilibrium import Equilibrium
-from runningbond.limit.force_program import coulomb, solve_forces
+from runningbond.limit.force_program import ForceSolution, coulomb, solve_forces
 from runningbond.limit.search import Search, search
 from runningbond.scene import Array, Scene
 from tests.limit.test_search import rubble
@@ -111,24 +112,44 @@ def unbalanced(system: Equilibrium, certificate: Certificate) -> Array:
     return np.asarray(balance - forces.multiplier * system.live - system.dead)
 
 
-def test_a_wall_and_its_mirrored_shuffled_and_scaled_images_have_the_same_loads(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("runningbond.limit.nonassociated.POINTS", 0)
-    first = limit_nonassociated(rubble(3))
-    assert "starts" in first.message
-    for other in (rubble(3, mirrored=True, shuffled=1), rubble(3, shuffled=2, size=2.7)):
-        again = limit_nonassociated(other)
-        assert (again.lower, again.upper) == pytest.approx((first.lower, first.upper), rel=1e-6)
-        assert again.steps == first.steps
+@pytest.mark.parametrize("seed", [3, 10, 11])
+def test_a_wall_and_its_mirrored_shuffled_and_scaled_images_are_searched_alike(seed: int) -> None:
+    """By as many programs, and by two workers too, for glued equations have lost their last bits."""
+    images = (rubble(seed), rubble(seed, mirrored=True, shuffled=1), rubble(seed, shuffled=2, size=2.7))
+    looked = [coarse(scene, most=40) for scene in images] + [coarse(images[0], most=40, workers=2)]
+    loads = []
+    for each in looked:
+        each.run()
+        loads.append((each.found.lowest * each.system.live_unit, each.found.highest * each.system.live_unit))
+    assert loads[1:] == [pytest.approx(loads[0], rel=1e-6)] * 3
+    assert [each.found.programs for each in looked[1:]] == [looked[0].found.programs] * 3
+
+
+@pytest.mark.parametrize(("points", "parts"), [(0, True), (POINTS, False)])
+def test_larger_walls_are_searched_in_parts_first(points: int, parts: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the starts and programs that are asked for."""
+    looked: list[CoarseSearch] = []
+    run = CoarseSearch.run
+
+    def seen(self: CoarseSearch) -> Search:
+        looked.append(self)
+        return run(self)
+
+    monkeypatch.setattr(CoarseSearch, "run", seen)
+    monkeypatch.setattr("runningbond.limit.nonassociated.POINTS", points)
+    outcome = limit_nonassociated(published_scene("wall-w2"), starts=1)
+    assert outcome.lower is not None
+    assert "from 1 starts" in outcome.message
+    assert [(each.starts, each.most, len(each.found.certificates) > 0) for each in looked] == [(1, None, True)] * parts
 
 
 def test_a_search_ends_once_it_has_cost_so_much() -> None:
     """What programs over parts cost is counted by their freedoms: thousands of them as a few hundred of the wall's."""
     scene = published_scene("wall-w2")
-    usual, short = coarse(scene), coarse(scene, most=20)
-    usual.run()
-    short.run()
+    usual, short, shortest = coarse(scene), coarse(scene, most=20), coarse(scene, most=1)
+    for each in (usual, short, shortest):
+        each.run()
+    assert shortest.found.programs == 1
     assert 0 < short.found.cost < 20 + 40  # what was begun is ended
     assert short.found.cost < usual.found.cost < 0.5 * usual.found.programs
     assert usual.found.lowest <= short.found.lowest
@@ -150,6 +171,44 @@ def test_an_interrupt_keeps_what_was_found(monkeypatch: pytest.MonkeyPatch) -> N
     assert outcome.status == "collapse"
     assert "interrupted" in outcome.message
     assert outcome.lower is not None
+
+
+def test_an_interrupt_in_a_neighbourhood_keeps_what_was_found_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked = coarse(rubble(3))
+    looked.found.certificates = search(
+        looked.system, solve_forces(looked.system, coulomb(looked.system.strength)), 1
+    ).certificates
+    before = looked.found.lowest
+    least, found = Descent.least, list[float]()
+
+    def interrupted(self: Descent, motion: Array) -> ForceSolution | None:
+        if min(found, default=np.inf) < before - 1e-3 and jump_pattern(self.system, motion) not in self.known:
+            raise KeyboardInterrupt
+        forces = least(self, motion)
+        found.append(np.inf if forces is None else forces.multiplier)
+        return forces
+
+    monkeypatch.setattr(Descent, "least", interrupted)
+    looked.go_on()
+    assert looked.found.interrupted
+    assert looked.found.lowest < before - 1e-3
+    assert looked.found.programs > 0
+
+
+def test_what_cannot_be_proved_exactly_hides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a wall whose lowest mechanism is refused each time, another one is found; the refused one is not kept."""
+    free = coarse(rubble(3))
+    free.run()
+    lowest = free.found.lowest
+
+    def refused(system: Equilibrium, motion: Array) -> Certificate | None:
+        certificate = certify(system, motion)
+        return None if certificate is None or certificate.least.multiplier < lowest + 1e-4 else certificate
+
+    monkeypatch.setattr("runningbond.limit.coarse.certify", refused)
+    looked = coarse(rubble(3))
+    looked.run()
+    assert lowest + 1e-4 < looked.found.lowest < np.inf
 
 
 def test_walls_of_no_parts_are_searched_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
