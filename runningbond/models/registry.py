@@ -90,7 +90,7 @@ _EVERY_MODEL = (
         parameters=("starts", "workers", "programs"),
         progress=partial(_PROGRESS, "SearchProgress"),
         interruptible=True,
-        cost=Cost(5.5, 0.75, 2.30, weightless=2.0),
+        cost=Cost(5.0, 0.74, 2.14, weightless=1.7),
         colour="#9b471c",
         marker="s",
     ),

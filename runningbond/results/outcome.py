@@ -75,18 +75,18 @@ class Outcome:
     steps: int | None = None
     seconds: float = 0.0
     message: str = ""
-    motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    force: Array = field(default_factory=lambda: np.zeros((0, 2)))
-    pull: Array = field(default_factory=lambda: np.zeros((0, 1)))
-    held: Array = field(default_factory=lambda: np.zeros((0, 1)))
-    far_motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    far_force: Array = field(default_factory=lambda: np.zeros((0, 2)))
-    far_pull: Array = field(default_factory=lambda: np.zeros((0, 1)))
-    far_held: Array = field(default_factory=lambda: np.zeros((0, 1)))
-    curve: Array = field(default_factory=lambda: np.zeros((0, 2)))
-    moments: Array = field(default_factory=lambda: np.zeros((0, 3)))
-    moment_loads: Array = field(default_factory=lambda: np.zeros((0, 1)))
-    path: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    motion: Array = field(repr=False, default_factory=lambda: np.zeros((0, 3)))
+    force: Array = field(repr=False, default_factory=lambda: np.zeros((0, 2)))
+    pull: Array = field(repr=False, default_factory=lambda: np.zeros((0, 1)))
+    held: Array = field(repr=False, default_factory=lambda: np.zeros((0, 1)))
+    far_motion: Array = field(repr=False, default_factory=lambda: np.zeros((0, 3)))
+    far_force: Array = field(repr=False, default_factory=lambda: np.zeros((0, 2)))
+    far_pull: Array = field(repr=False, default_factory=lambda: np.zeros((0, 1)))
+    far_held: Array = field(repr=False, default_factory=lambda: np.zeros((0, 1)))
+    curve: Array = field(repr=False, default_factory=lambda: np.zeros((0, 2)))
+    moments: Array = field(repr=False, default_factory=lambda: np.zeros((0, 3)))
+    moment_loads: Array = field(repr=False, default_factory=lambda: np.zeros((0, 1)))
+    path: Array = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
     path_columns: tuple[str, ...] = ()
     fall: float | None = None
 

@@ -55,6 +55,14 @@ def test_an_inconsistent_outcome_cannot_be_made(contents: dict[str, Any]) -> Non
         Outcome("wall", "limit", **contents)
 
 
+def test_an_outcome_is_shown_in_a_line() -> None:
+    """Without its arrays, of which a wall of a thousand blocks has pages."""
+    shown = repr(Outcome("wall", "limit", "collapse", 0.5, 0.5, 0.5, motion=np.ones((1000, 3))))
+    assert "multiplier=0.5" in shown
+    assert "\n" not in shown
+    assert "1." not in shown
+
+
 def test_arrays_of_an_outcome_cannot_be_changed() -> None:
     outcome = Outcome("wall", "limit", "undecided", motion=np.ones((2, 3)))
     with pytest.raises(ValueError, match="read-only"):
