@@ -11,13 +11,14 @@ import numpy as np
 
 from runningbond.scene import Array, SceneError
 
-from .measured import MeasuredWall
+from .measured import SWING, MeasuredWall
 from .table_row import TableRow
 
 DATA = Path(__file__).parent / "data"
 SHIPPED = (DATA / "dry", DATA / "mortared")
 NAME = "test unit name"
 HEADS = ["displacement_mm", "force_kN"]
+PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def read_folder(folder: Path) -> list[MeasuredWall]:
@@ -37,8 +38,8 @@ def read_folder(folder: Path) -> list[MeasuredWall]:
     for number, cells in lines[1:]:
         row = TableRow.read(path, number, heads, cells)
         name = row.text(NAME)
-        if not name or name.startswith(".") or set(name) & set('/\\:*?"<>|'):
-            raise SceneError(row.key("Test unit name"), "must be a name, as it may be that of a file", name)
+        if not name or name.startswith(".") or set(name) & set('/\\:*?"<>|$'):
+            raise SceneError(row.key("Test unit name"), "must be a name, as it may be that of a file, without $", name)
         if name in walls:
             raise SceneError(row.key("Test unit name"), "is the second row of that name", name)
         walls[name] = _wall(folder, name, row)
@@ -81,8 +82,12 @@ def _wall(folder: Path, name: str, row: TableRow) -> MeasuredWall:
     files = {ending: folder / f"{name}{ending}" for ending in (".csv", ".toml", "-cracks.png")}
     there = {ending: path if path.is_file() else None for ending, path in files.items()}
     curve = read_curve(there[".csv"]) if there[".csv"] else np.zeros((0, 2))
-    if len(curve) and np.nanmax(curve[:, 0]) <= 0:  # pushed to the negative side alone
+    if len(curve) and np.nanmax(curve[:, 0]) < -SWING * np.nanmin(curve[:, 0]):  # pushed to the negative side alone
         curve = -curve
+    if len(curve) and np.nansum(curve[:, 0] * curve[:, 1]) <= 0:
+        raise SceneError(f"{name}.csv", "has its forces against its displacements; change the sign of one of them")
+    if there["-cracks.png"] and not there["-cracks.png"].read_bytes().startswith(PNG):
+        raise SceneError(there["-cracks.png"].name, "is no PNG picture")
     printed = [row.optional(column) for column in ("Vmax,+", "Vmax,-")]
     peaks = tuple(value for value in printed if value is not None) or _peaks(curve)
     said = re.split(r"[,;/+&]", row.text("from test report: failure type"))

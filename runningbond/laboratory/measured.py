@@ -15,8 +15,8 @@ SWING = 0.05
 LARGER = 1.1
 """Cycles not larger than the last one by this factor repeat it, and are left out of a prediction."""
 
-SHOWN = ("SW.30",)
-"""Walls that are shown and not scored, by how their names begin: their beam was not as free as it is said."""
+SHOWN = "SW.30"
+"""Walls of this load are shown and not scored: their beam was not as free as it is said."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class MeasuredWall:
     @property
     def is_scored(self) -> bool:
         """Whether it counts."""
-        return not self.name.startswith(SHOWN)
+        return not f"{self.name}.".startswith(f"{SHOWN}.")
 
     @property
     def peak(self) -> float | None:

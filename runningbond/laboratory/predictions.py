@@ -12,13 +12,13 @@ from runningbond.campaigns import Campaign, Cell, Task, run_tasks
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.models import TOLERANCE, Model
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Scene, SceneError
 
 from .ladder import FORMULAS, Rung, by_hand
 from .measured import MeasuredWall
 from .modes import ROCKING, SLIDING, measured_modes, predicted_mode
 from .rig import scene_of
-from .scores import Marks, cycle_peaks, marks_of, ratio
+from .scores import Marks, cycle_peaks, energy_ratio, marks_of, ratio
 
 ARRIVED = 0.99
 """Part of the path's way after which a wall has been followed to its end."""
@@ -112,10 +112,10 @@ class Prediction:
                 ("stiffness_ratio", "stiffness"),
                 ("peak_displacement_ratio", "at_peak"),
                 ("drift_ratio", "at_loss"),
-                ("energy_ratio", "dissipated"),
                 ("residual_ratio", "residual"),
             )
         }
+        energy = energy_ratio(own.loops, test.loops) if own and test else None
         return {
             "wall": self.wall.name,
             "model": self.rung.name,
@@ -124,6 +124,7 @@ class Prediction:
             "V_measured": self.wall.peak,
             "dV": self.error,
             **over,
+            "energy_ratio": energy,
             "cycle_ratio": self._cycles(),
             "mode": self.mode,
             "mode_measured": ", ".join(self.wall.modes) or None,
@@ -144,7 +145,16 @@ class Prediction:
 
 def scenes_of(walls: Sequence[MeasuredWall], rungs: Sequence[Rung]) -> dict[Cell, Scene]:
     """The scene of every wall for every rung; `SceneError` where one cannot be made."""
-    return {(wall.name, rung.name): scene_of(wall, rung.features) for wall in walls for rung in rungs}
+    scenes: dict[Cell, Scene] = {}
+    for wall in walls:
+        try:
+            scenes |= {(wall.name, rung.name): scene_of(wall, rung.features) for rung in rungs}
+        except SceneError as error:
+            where = wall.row.place if wall.scene_file is None else wall.scene_file.name
+            if where in error.key:
+                raise
+            raise SceneError(f"{where}: {error.key}", error.remedy, error.value) from None
+    return scenes
 
 
 def predict(

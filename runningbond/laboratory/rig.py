@@ -19,6 +19,12 @@ FAR = 0.03
 STIFFER = 10
 """How many times as stiff as what they join inner joints are, where that deforms itself."""
 
+UNALIKE = 2.0
+"""Factor between the load that a wall's name tells and that of the table from which on the name tells none."""
+
+MOST_BLOCKS = 5000
+"""Blocks of a wall that fits into a laboratory."""
+
 LEAST_BEAM = 0.2
 """Least height of the beam [m] where the actuator's height does not give it; of no influence, for it is stiff."""
 
@@ -81,6 +87,9 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
     length, thickness, at = row.number("L"), row.number("t"), row.number("H0")
     height, width = row.number("hb"), row.number("lb")
     courses = _courses(wall, stone, height)
+    if (blocks := courses * length / width) > MOST_BLOCKS:
+        remedy = f"makes {blocks:.3g} blocks with lb = {row.text('lb')} and L = {row.text('L')}; are their units right?"
+        raise SceneError(row.key("hb"), remedy, row.text("hb"))
     pressed = vertical_load(wall)
     start, growth = stone.stiffness(height, deformable=features.deformable)
     normal = start + growth * pressed / (length * thickness)
@@ -171,12 +180,17 @@ def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
 
 
 def vertical_load(wall: MeasuredWall) -> float:
-    """The load on the beam [N]: the number in the wall's name, or Ntot less the weight of the wall."""
-    named = LOAD_IN_NAME.match(wall.name)
-    if named and float(named[1]) > 0:
-        return 1e3 * float(named[1])
-    row = wall.row
+    """The load on the beam [N]: the number in the wall's name, or Ntot less the weight of the wall.
+
+    A number that is far from that, as of the third wall, is no load.
+    """
+    row, name = wall.row, LOAD_IN_NAME.match(wall.name)
+    named = 1e3 * float(name[1]) if name else 0.0
+    if named and row.optional("Ntot") is None:
+        return named
     load = row.number("Ntot") - UNIT_WEIGHT * row.number("L") * row.number("t") * row.number("H")
+    if named / UNALIKE < load < named * UNALIKE:
+        return named
     if load <= 0:
         raise SceneError(row.key("Ntot"), "must be more than the weight of the wall", row.text("Ntot"))
     return load

@@ -4,13 +4,17 @@ Curves are displacements [m] and forces [N], ``(n, 2)``; rows that are not numbe
 that does not exist is None.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from runningbond.dynamics.lead import LOSS
 from runningbond.scene import Array
+
+from .measured import LARGER, SWING
 
 SECANT = 0.3
 """Share of the strength at which the stiffness is read."""
@@ -30,9 +34,10 @@ class Marks:
     stiffness
         Secant at 0.3 of the strength [N/m]; of a curve to both sides, of the first branch from one to the other.
     at_peak, at_loss
-        Displacements [m] of the largest force, and where it has first fallen to 0.8 of it, on the side pushed to first.
-    dissipated
-        Work of the force over the whole record [J], of a curve to both sides.
+        Displacements [m] of the largest force, and where it has first fallen to 0.8 of it, on the side pushed to first;
+        of a curve to both sides, where it has fallen so far for good.
+    loops
+        Of a curve to both sides, as `loops` has them.
     residual
         Largest displacement [m] without force, of a curve to both sides.
     """
@@ -41,8 +46,15 @@ class Marks:
     stiffness: float | None
     at_peak: float
     at_loss: float | None
-    dissipated: float | None = None
+    loops: tuple["Loop", ...] = ()
     residual: float | None = None
+
+
+class Loop(NamedTuple):
+    """A loop of a record: how far it goes to the positive side [m], and the work of the force along it [J]."""
+
+    reach: float
+    work: float
 
 
 def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
@@ -50,17 +62,25 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
     known = curve[~np.isnan(curve).any(axis=1)]
     if len(known) < 2 or known[:, 1].max() <= 0:
         return None
-    sides = [backbone(known), backbone(-known)] if cyclic else [known]
+    sides = [backbone(known), backbone(-known)] if cyclic else [_from_rest(known)]
     peaks = [float(side[:, 1].max()) for side in sides]
     strength = float(np.mean([peak for peak in peaks if peak > 0]))
     force = SECANT * strength
-    reach = swing(known, force) if cyclic else first_crossing(known, force)
+    reach = swing(known, force) if cyclic else first_crossing(sides[0], force)
     stiffness = (2 if cyclic else 1) * force / reach if reach else None
     side = sides[0]
     top = int(side[:, 1].argmax())
-    loss = first_crossing(side[top:] * (1, -1), -LOSS * float(side[top, 1]))
-    energies = (dissipated(curve), residual(curve)) if cyclic else (None, None)
-    return Marks(strength, stiffness, float(side[top, 0]), loss, *energies)
+    after, borne = side[top:], LOSS * float(side[top, 1])
+    if cyclic:  # a reload may pass below what the envelope bears
+        after = after[int(np.flatnonzero(after[:, 1] >= borne)[-1]) :]
+    loss = first_crossing(after * (1, -1), -borne)
+    both = (tuple(loops(curve)), residual(curve)) if cyclic else ((), None)
+    return Marks(strength, stiffness, float(side[top, 0]), loss, *both)
+
+
+def _from_rest(curve: Array) -> Array:
+    """A curve to one side, which starts at rest even where its record does not."""
+    return np.concatenate([np.zeros((1, 2)), curve]) if curve[0, 0] > 0 and curve[0, 1] > 0 else curve
 
 
 def backbone(curve: Array) -> Array:
@@ -99,14 +119,75 @@ def swing(curve: Array, force: float) -> float | None:
     return None
 
 
-def dissipated(curve: Array) -> float:
-    """Work of the force [J] along a curve, by trapezia; nothing where the record is parted.
+def loops(curve: Array) -> list[Loop]:
+    """The loops of a record, in its order.
 
-    What comes back but for rounding was not dissipated.
+    A loop leads from where the force vanishes on its way up, and springs hold nothing, to where it next does; one more
+    closes a part of the record that comes back to where it began. What is left at the ends of other parts is none, nor
+    is what goes no farther than noise, `SWING`.
     """
-    steps = np.diff(curve[:, 0]) * (curve[1:, 1] + curve[:-1, 1]) / 2
-    work, turnover = float(np.nansum(steps)), float(np.nansum(np.abs(steps)))
-    return work if abs(work) > ROUNDING * turnover else 0.0
+    found = list[Loop]()
+    for part in _parts(curve):
+        part = _with_zeros(part)
+        rises, closed = _rises(part), abs(part[-1, 0] - part[0, 0]) <= SWING * np.ptp(part[:, 0])
+        pieces = [part[start : end + 1] for start, end in pairwise(rises)]
+        if closed:
+            pieces.append(np.concatenate([part[rises[-1] :], part[: rises[0] + 1]]) if rises else part)
+        least = SWING * np.ptp(part[:, 0])
+        found += [Loop(float(each[:, 0].max()), _work(each)) for each in pieces if np.ptp(each[:, 0]) > least]
+    return found
+
+
+def energy_ratio(predicted: Sequence[Loop], measured: Sequence[Loop]) -> float | None:
+    """Work of predicted loops over that of the measured ones that go as far, to `LARGER`; of several alike, the first.
+
+    None where no loop goes as far as a measured one.
+    """
+    own, theirs, farthest = 0.0, 0.0, 0.0
+    for loop in measured:
+        alike = [each.work for each in predicted if loop.reach / LARGER <= each.reach <= loop.reach * LARGER]
+        if loop.reach > LARGER * farthest and alike:
+            own, theirs, farthest = own + alike[0], theirs + loop.work, loop.reach
+    return own / theirs if theirs > 0 else None
+
+
+def _parts(curve: Array) -> list[Array]:
+    """Stretches of a record between rows that are no numbers; those that go on where one ended are one."""
+    parted = np.flatnonzero(np.isnan(curve).any(axis=1))
+    parts = list[Array]()
+    for stretch in np.split(curve, parted):
+        points = stretch[1:] if np.isnan(stretch[:1]).any() else stretch
+        if len(parts) and len(points) and np.array_equal(parts[-1][-1], points[0]):
+            parts[-1] = np.concatenate([parts[-1], points[1:]])
+        elif len(points) > 1:
+            parts.append(points)
+    return parts
+
+
+def _with_zeros(part: Array) -> Array:
+    """A stretch of a record with a point wherever the force changes its sign."""
+    (x0, y0), (x1, y1) = part[:-1].T, part[1:].T
+    k = np.flatnonzero(y0 * y1 < 0)
+    zeros = np.column_stack([x0[k] - y0[k] * (x1[k] - x0[k]) / (y1[k] - y0[k]), np.zeros(len(k))])
+    return np.insert(part, k + 1, zeros, axis=0)
+
+
+def _rises(part: Array) -> list[int]:
+    """Points where the force vanishes on its way up, after it was well below nothing, or at the beginning."""
+    least = SWING * float(np.abs(part[:, 1]).max())
+    rises, below = list[int](), abs(part[0, 1]) < least
+    for k, force in enumerate(part[:, 1].tolist()):
+        if below and force >= 0:
+            rises.append(k)
+        below = force <= -least or (below and force < 0)
+    return rises
+
+
+def _work(piece: Array) -> float:
+    """Work of the force [J] along a piece, by trapezia; what comes back but for rounding was not dissipated."""
+    steps = np.diff(piece[:, 0]) * (piece[1:, 1] + piece[:-1, 1]) / 2
+    work = float(steps.sum())
+    return work if abs(work) > ROUNDING * float(np.abs(steps).sum()) else 0.0
 
 
 def residual(curve: Array) -> float | None:

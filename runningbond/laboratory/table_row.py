@@ -39,9 +39,14 @@ class TableRow:
             entries[name] = (cell.strip(), parts[2] or USUAL.get(name, ""))
         return cls(path, line, entries)
 
+    @property
+    def place(self) -> str:
+        """What the row is called in a message."""
+        return f"{self.path.name}, line {self.line}"
+
     def key(self, column: str) -> str:
         """What an entry is called in a message."""
-        return f"{self.path.name}, line {self.line}: {column}"
+        return f"{self.place}: {column}"
 
     def text(self, column: str) -> str:
         """An entry as it is written; empty where there is none."""
