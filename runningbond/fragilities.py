@@ -88,6 +88,8 @@ def fragility(
     """
     if wall.scene.history is None or "file" not in wall.description["load"]["history"]:
         raise SceneError("load.history.file", "is missing: the record that others are to take the place of")
+    if isinstance(records, (str, bytes)):
+        raise SceneError("records", "must be a list of files", records)
     names = [str(record) for record in records]
     runs = sweep(wall, {"load.history.file": names}, model, tolerance=tolerance, folder=folder, jobs=jobs)
     levels: dict[bool, list[float]] = {True: [], False: []}  # by whether the wall fell
@@ -100,7 +102,13 @@ def fragility(
             levels[fell].append((scale if fell else lower) * peak)
     fallen, stood = np.sort(levels[True]), np.sort(levels[False])
     if len(fallen) < 2:
-        raise SceneError("records", "must be two at least that bring the wall down", len(fallen))
+        refused = [
+            f"{name}: {told}"
+            for name, status, told in zip(names, runs["status"], runs["message"], strict=True)
+            if status in ("failed", "refused")
+        ]
+        remedy = "; ".join(["must be two at least that bring the wall down", *refused])
+        raise SceneError("records", remedy, len(fallen))
     level, stands = np.concatenate([fallen, stood]), np.arange(len(fallen) + len(stood)) >= len(fallen)
     again = np.random.default_rng(seed).integers(len(level), size=(draws, len(level)))
     medians = [fitted(level[drawn], stands[drawn])[0] for drawn in again]

@@ -13,7 +13,7 @@ from .pictures.flat import draw_mechanism, figure_of
 from .results import Outcome, Status
 from .results.mechanism import rigid_jumps
 from .results.outcome import number
-from .scene import Array
+from .scene import Array, SceneError
 from .tables import Table, table
 from .wall import Wall, new_axes
 
@@ -107,6 +107,8 @@ class Result:
 
     def plot(self, what: Literal["mechanism", "curve"] | None = None, axes: "Axes | None" = None) -> "Axes":
         """Draw the mechanism, the curve where there is no mechanism, or what is asked for, into axes."""
+        if what not in (None, "mechanism", "curve"):
+            raise SceneError("what", "must be mechanism or curve", what)
         axes = axes or new_axes()
         if what == "mechanism" or (what is None and (len(self.motion) or not len(self.outcome.curve))):
             draw_mechanism(axes, self.wall.scene, self.outcome)

@@ -40,6 +40,8 @@ CONTACT = 1e-4
 
 def read(folder: Path) -> tuple[Any, dict[str, Any], dict[str, np.ndarray]]:
     """Scene, record and arrays of a result folder; of the scene each part has its fields as attributes."""
+    if not (folder / "outcome.json").is_file():
+        raise SystemExit(f"{folder}: holds no outcome.json of a limit analysis")
     record = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
     with np.load(io.BytesIO((folder / record["arrays"]).read_bytes())) as stored:
         arrays = dict(stored)

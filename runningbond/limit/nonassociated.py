@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 
 from runningbond.results import Outcome, collapse_state
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Scene, SceneError, table_of
 
 from .associated import LimitState, judge, limit_state, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
@@ -65,6 +65,11 @@ def limit_nonassociated(
         collapse load exceeds. Of a support that moves, `multiplier` is the largest share of the dead load that it was
         found to bear as the wall gives way, and the associated share is a lower bound.
 
+    Raises
+    ------
+    SceneError
+        For joints that crush.
+
     Notes
     -----
     A wall whose normal forces balance any multiple of the live load is ``unbounded``, which is proved: no mechanism
@@ -74,6 +79,7 @@ def limit_nonassociated(
     proved.
     """
     start = time.perf_counter()
+    _refuse_crushing(scene)
     system = equilibrium(scene).under_live_load()
     state = limit_state(system)
     status, message = judge(state)
@@ -85,6 +91,15 @@ def limit_nonassociated(
     else:
         outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)
+
+
+def _refuse_crushing(scene: Scene) -> None:
+    """Certificates know of no crushing: their forces may be more than such joints bear."""
+    for material in scene.joint_materials:
+        if material.compressive_strength is not None:
+            key = f"{table_of(material)}.compressive_strength"
+            remedy = "is not taken by limit-nonassociated, which knows no crushing; limit, dem-dynamic and fem do"
+            raise SceneError(key, remedy, material.compressive_strength)
 
 
 def _collapse(

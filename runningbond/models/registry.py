@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
+from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from homog import homog
@@ -146,7 +147,7 @@ def find_model(model: str | Model, key: str = "model") -> Model:
 
 def check_tolerance(tolerance: float, key: str = "tolerance") -> None:
     """Refuse a tolerance that is no relative width, by its key or option."""
-    if not (math.isfinite(tolerance) and 0 < tolerance < 1):
+    if not (isinstance(tolerance, Real) and math.isfinite(tolerance) and 0 < tolerance < 1):
         raise SceneError(key, "must be a number above 0 and below 1", tolerance)
 
 
@@ -216,7 +217,7 @@ def check_response(
     if scene.history is None:
         raise SceneError("load.history", "is missing: the motion of the ground that the wall is to follow")
     model.check(scene)
-    if not (math.isfinite(scale) and scale != 0):
+    if not (isinstance(scale, Real) and math.isfinite(scale) and scale != 0):
         raise SceneError(scale_key, "must be a finite number, not zero", scale)
     return model.respond
 

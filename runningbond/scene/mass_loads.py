@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from .wall import Scene
 
 SIDES = {"right": (1.0, 0.0), "left": (-1.0, 0.0)}
+LEVEL = 1e-6
+"""Cosine between gravity and the ground that is none."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,16 @@ class Tilt(Lateral):
     Along the ground the weight of each block counts λ times, and across it once. Of a wall turned by α both are less
     by cos α, which matters only where joints have a strength, or other loads act, that does not grow with the weight.
     """
+
+    def check(self, scene: "Scene", key: str) -> None:
+        """Refuse a direction that is not along the ground, across the weight: λ would be the tangent of no angle."""
+        super().check(scene, key)
+        weight = np.array(scene.load.gravity)
+        if abs(weight @ self.direction) > LEVEL * np.hypot(*weight):
+            remedy = (
+                f"must be across gravity, along the ground; to the right that is [{-weight[1]:.4g}, {weight[0]:.4g}]"
+            )
+            raise SceneError(f"{key}.direction", remedy, np.round(self.direction, 6).tolist())
 
     def note(self, multiplier: float) -> str:
         """The angle in degrees."""

@@ -27,7 +27,7 @@ from runningbond.limit import limit
 from runningbond.limit.dilatancy import sliding_dilates
 from runningbond.models import MODELS
 from runningbond.results import Outcome
-from runningbond.scene import Scene
+from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness
 from tests.walls import courses, panel
 
 KNOWN = {
@@ -145,6 +145,49 @@ def known(bound: float, certified: tuple[float, float], *draws: tuple[float, flo
         histories = [collapse(HISTORY.name, *each) for each in draws]
         found.learn(HISTORY, together(histories), draws=histories)
     return found
+
+
+def test_joints_that_crush_are_followed_and_no_load_above_the_bound_is_certified() -> None:
+    """A slender pier that a soft toe brings down at .1002 where hard joints would bear .1667."""
+    mortar = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+    pier = courses([[1]] * 6, joint__mortar=mortar, joint__compressive_strength=2e4)
+    advice = advise(pier, 0.1)
+    assert climbed(advice) == ["homog", "limit", "dem-dynamic"]
+    found = advice.outcome()
+    assert found.lower is not None
+    assert found.lower <= (limit(pier).upper or 0.0)
+
+
+def test_what_closes_under_pressure_is_followed_by_a_model_that_knows_of_it() -> None:
+    scene = published_scene("wall-w3")
+    stiff = scene.with_joint(elasticity=Stiffness(1e10, 4e9))
+    closing = Knowledge(stiff.with_joint(closure=Closure(1e5, 1e12)), 0.05)
+    assert [model.name for model in closing.histories] == ["dem-dynamic", "fem"]
+    assert [model.name for model in Knowledge(scene, 0.05).histories] == ["dem-static", "dem-dynamic", "fem"]
+
+
+def test_what_the_ladder_has_no_bound_of_is_refused_by_name() -> None:
+    scene = published_scene("wall-w3")
+    sinking = replace(scene, load=replace(scene.load, live=(Settlement(((-1.0, -1.0), (1.0, 0.0)), (0.0, -1.0)),)))
+    with pytest.raises(SceneError, match="load.live settlement: is not advised on"):
+        advise(sinking)
+
+
+def test_a_history_above_the_certified_loads_is_no_agreement() -> None:
+    """Where no bound holds it: certified at .80 to .81, and a fall at .90."""
+    found = known(1.0, (0.80, 0.81))
+    found.bound = None
+    found.learn(HISTORY, collapse(HISTORY.name, 0.89, 0.90))
+    assert (found.evidence, bracket_of(found), found.lowest) == ("history", (0.89, 0.90), 0.80)
+
+
+def test_no_fall_is_told_above_the_bound() -> None:
+    found = known(0.85, (0.5, 0.8), (0.84, 0.86))
+    assert (found.lowest, bracket_of(found)) == (0.5, (0.84, 0.85))
+    found = Knowledge(published_scene("wall-w3"), 0.05)
+    found.bound = 0.85
+    found.learn(HISTORY, collapse(HISTORY.name, 0.84, 0.86))
+    assert found.lowest == 0.85
 
 
 def bracket_of(found: Knowledge) -> tuple[float | None, float | None]:

@@ -29,6 +29,7 @@ from runningbond.scene import (
     Load,
     PointLoad,
     Scene,
+    SceneError,
     build_scene,
     scene_from_dict,
 )
@@ -437,13 +438,14 @@ def test_forces_at_the_ends_are_what_points_without_a_cap_might_carry() -> None:
     assert system.strength.violation(*force.T).max() < 1e-9 * np.abs(force).max()
 
 
-def test_true_friction_leaves_the_strength_out_and_says_so() -> None:
+def test_certificates_know_no_crushing_and_refuse_it() -> None:
+    """They would certify loads that such a wall cannot bear."""
     scene = courses([[1], [1]], joint__compressive_strength=2e4)
-    outcome, without = (run_model("limit-nonassociated", scene.with_joint(compressive_strength=f)) for f in (2e4, None))
-    assert "not taken into account: joint.compressive_strength" in outcome.message
-    assert outcome.lower == without.lower
-    assert outcome.lower is not None
-    assert collapse(scene) < 0.9 * outcome.lower
+    without = run_model("limit-nonassociated", scene.with_joint(compressive_strength=None))
+    assert without.lower is not None
+    assert collapse(scene) < 0.9 * without.lower
+    with pytest.raises(SceneError, match="joint.compressive_strength = 20000.0: is not taken by limit-nonassociated"):
+        run_model("limit-nonassociated", scene)
 
 
 def test_a_large_wall_is_bracketed_by_the_repaired_interior_point() -> None:

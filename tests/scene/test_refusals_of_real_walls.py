@@ -84,6 +84,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (assign({"block": "oak", "box": BOX, "orientation": "bed"}), "assign[0].orientation = 'bed': is not a key"),
         # loads
         (live({"kind": "tilt", "direction": "down"}), "load.live[0].direction = 'down': must be one of"),
+        (live({"kind": "tilt", "direction": [1, -1]}), "load.live.direction = [0.707107, -0.707107]: must be"),
         (live({"kind": "lateral", "direction": [0, 0]}), "load.live[0].direction = [0.0, 0.0]: must not be zero"),
         (dead({"kind": "tilt"}), "load.dead[0].kind = 'tilt': must be one of"),
         (dead(SINK), "load.dead[0].kind = 'settlement': must be one of"),

@@ -71,7 +71,9 @@ class Advice:
         message = known.meaning() or last.next.reason
         if last.outcome is None and known.answer is not None:
             finite = last.model.endswith("finite")
-            message += "; at small displacements, though they are not small" if finite else f"; {last.next.reason}"
+            large = (known.displacement or 0.0) > known.tolerance
+            small = "; at small displacements" + (", though they are not small" if large else "")
+            message += small if finite else f"; {last.next.reason}"
         elif last.outcome is not None and last.outcome.status != "collapse" and known.answer is not None:
             message += f"; {last.model}: {last.next.reason}"
         return replace(answer, seconds=known.seconds, message=message)

@@ -12,7 +12,7 @@ from runningbond.limit.dilatancy import sliding_dilates
 from runningbond.models import MODELS, Kind, Model
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
-from runningbond.scene import Scene
+from runningbond.scene import Scene, SceneError
 
 from .costs import Estimate, estimate, pace
 
@@ -22,6 +22,20 @@ Evidence: TypeAlias = Literal["", "proof", "certificate", "history", "finite"]  
 def ladder(kind: Kind) -> list[Model]:
     """Models of a kind whose cost is known, the cheapest first."""
     return [model for model in MODELS.values() if model.kind == kind and model.cost is not None]
+
+
+def _refuse(scene: Scene) -> None:
+    """Refuse what the ladder's bounds and certificates say nothing of, or mean the other way round."""
+    if scene.settlement:
+        remedy = (
+            "is not advised on: λ is the share that the support bears; take runningbond run, limit-nonassociated first"
+        )
+        raise SceneError("load.live settlement", remedy)
+    if scene.history is not None:
+        remedy = (
+            "is not advised on; take runningbond run or respond with dem-dynamic, or with fem where blocks are soft"
+        )
+        raise SceneError("load.history", remedy)
 
 
 def deforms(model: Model) -> bool:
@@ -51,6 +65,10 @@ class Knowledge:
             for material in self.scene.joint_materials
         )
         self.cracks = self.scene.inner_joint is not None  # blocks may crack
+        materials = self.scene.joint_materials
+        self.crushes = any(each.compressive_strength is not None for each in materials)
+        self.closes = any(each.closure is not None for each in materials)
+        _refuse(self.scene)
 
     def learn(self, model: Model, outcome: Outcome, *, finite: bool = False, draws: Sequence[Outcome] = ()) -> None:
         """Take in the outcome of a model, at `finite` displacements or at small ones, or what its draws come to."""
@@ -74,6 +92,13 @@ class Knowledge:
             self.draws = max(1, len(falls))
             self._follow(outcome, min(falls, default=outcome.upper))
 
+    @property
+    def histories(self) -> list[Model]:
+        """Models that follow the wall, those aside that do not know its joints; the cheapest first."""
+        known = {"joint.compressive_strength": self.crushes, "joint.closure": self.closes}
+        wanted = {key for key, is_wanted in known.items() if is_wanted}
+        return [model for model in ladder("history") if wanted <= model.reads]
+
     def _follow(self, outcome: Outcome, fall: float) -> None:
         """Take in the bracket of histories, the first of which ended at a load; certified loads stay that it fits."""
         assert outcome.lower is not None
@@ -82,7 +107,8 @@ class Knowledge:
         if self.bound is not None and outcome.multiplier is not None:  # it cannot have stood above that
             upper = max(outcome.lower, min(outcome.upper, self.bound))
             history = replace(outcome, upper=upper, multiplier=min(outcome.multiplier, upper))
-        if self.narrow and self.answer is not None and self.answer.lower is not None:
+            fall = min(fall, self.bound)
+        if self.narrow and self.answer is not None and self.answer.lower is not None and not self._is_above(outcome):
             lower = self.answer.lower if fall >= self.answer.lower else outcome.lower
             wider = replace(self.answer, lower=min(lower, self.answer.lower))
             self.contradicted = not _within(wider, self.tolerance)
@@ -90,6 +116,11 @@ class Knowledge:
                 self._answer("certificate", wider, fall)
                 return
         self._answer("history", history, fall)
+
+    def _is_above(self, history: Outcome) -> bool:
+        """Whether a history ends farther above certified loads, which no bound holds, than the tolerance."""
+        upper = None if self.answer is None else self.answer.upper
+        return self.bound is None and upper is not None and (history.lower or 0.0) > upper * (1 + self.tolerance)
 
     @property
     def narrow(self) -> bool:

@@ -54,19 +54,21 @@ def after_refusal(known: Knowledge, step: Step, refusal: str) -> Step:
 
 
 def _after_bound(known: Knowledge, outcome: Outcome) -> Step:
-    histories = ladder("history")
+    histories = known.histories
     bound = "no wall stands above it" if outcome.status == "collapse" else outcome.status
     if known.cracks:
         model = next(model for model in histories if "cracks" in model.parameters)
         return Step(model, f"{bound}; blocks may crack elsewhere than on their axes, and do in {model.name} alone")
     if known.softens:
         softening = [model for model in histories if "joint.fracture_energy_1" in model.reads]
-        others = [model.name for model in (*ladder("certificate"), *histories) if model not in softening]
+        others = [model.name for model in (*ladder("certificate"), *ladder("history")) if model not in softening]
         reason = f"joints soften, which {' and '.join(others)} do not take into account"
         return Step(softening[0], f"{bound}; {reason}")
     if known.evidence == "proof":
         return _enough(known, "nothing slides on a closed joint, so dilatancy has no influence")
     model, why = _history(known)
+    if known.crushes:
+        return Step(model, f"{bound}; joints crush, of which certificates know nothing: {why}")
     if not any(known.scene.load.gravity):
         return Step(model, f"{bound}; without weight certified intervals are wide: {why}")
     return Step(ladder("certificate")[0], f"{bound}; true friction does not dilate, and collapse may come earlier")
@@ -89,7 +91,7 @@ def _after_history(known: Knowledge, step: Step, model: Model, outcome: Outcome)
     if known.evidence == "certificate":
         agrees = f"the history is {outcome.status}, and the certified loads stay"
         return _enough(known, "a history agrees with them" if outcome.status == "collapse" else agrees)
-    histories = ladder("history")
+    histories = known.histories
     onward = histories[histories.index(model) + 1 :]
     if outcome.status in ("undecided", "failed") and onward and (known.soft or not deforms(onward[0])):
         return Step(onward[0], f"{outcome.status}: {outcome.message}")
@@ -109,12 +111,12 @@ def _after_history(known: Knowledge, step: Step, model: Model, outcome: Outcome)
 def _history(known: Knowledge) -> tuple[Model, str]:
     """The model that is to follow the wall, and why that one."""
     if known.soft:
-        return next(model for model in ladder("history") if deforms(model)), _compliance(known)
+        return next(model for model in known.histories if deforms(model)), _compliance(known)
     return _cheapest_rigid(known), "it is followed by the cheapest model of rigid blocks"
 
 
 def _cheapest_rigid(known: Knowledge) -> Model:
-    rigid = [model for model in ladder("history") if not deforms(model)]
+    rigid = [model for model in known.histories if not deforms(model)]
     return min(rigid, key=lambda model: known.estimate(model).seconds)
 
 
@@ -125,7 +127,7 @@ def _compliance(known: Knowledge) -> str:
 
 def _enough(known: Knowledge, why: str) -> Step:
     """The answer so far suffices, unless the wall moves so far before that its geometry is another."""
-    finite = next(model for model in ladder("history") if model.pushover and deforms(model) == known.soft)
+    finite = next(model for model in known.histories if model.pushover and deforms(model) == known.soft)
     if known.finite:
         return Step(finite, f"{why}; finite displacements are asked for", finite=True)
     moved = known.displacement
