@@ -15,7 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from runningbond.dynamics import Observer, Run, State, no_observer
 from runningbond.results.mechanism import carried
-from runningbond.scene import Array
+from runningbond.scene import Array, SceneError
 
 from .ground import Ground
 from .response import ENERGIES, MISSED, Response, Verdict, supplied, unaccounted
@@ -153,7 +153,7 @@ def follow(
     Response
         Without a row for a wall that does not rest under its dead load, ``infeasible`` or ``undecided``.
     """
-    places = rest.top if points is None else np.reshape(points, (-1, 2))
+    places = rest.top if points is None else _places(rest, points)
     if rest.trouble:
         return _not_shaken(rest, scale, places, *rest.trouble)
     response = _followed(rest, scale, PART, after, places, rows, observe)
@@ -161,6 +161,20 @@ def follow(
         return response
     again = _followed(rest, scale, PART / 2, after, places, rows, observe)
     return replace(again, steps=response.steps + again.steps, seconds=response.seconds + again.seconds)
+
+
+def _places(rest: Resting, points: Array) -> Array:
+    """Points to follow, ``(k, 2)``: drifts are shares of their heights above the ground."""
+    try:
+        places = np.array(points, dtype=float)
+    except (TypeError, ValueError):
+        places = np.zeros(0)
+    above = rest.top[:, 1].min() - rest.height
+    if places.ndim != 2 or places.shape[1] != 2 or not len(places) or not (places[:, 1] > above).all():
+        raise SceneError("points", f"must be a list of points [x, y] in metres, higher than {above:.4g}", points)
+    if not np.isfinite(places).all():
+        raise SceneError("points", "must be numbers", points)
+    return places
 
 
 def _followed(

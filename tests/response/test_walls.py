@@ -15,7 +15,7 @@ from runningbond.models import respond, run_model
 from runningbond.response import critical_scale, follow
 from runningbond.response.critical import RATIO, Search
 from runningbond.response.response import Verdict
-from runningbond.scene import History, Lateral, Load, Scene, Stiffness
+from runningbond.scene import History, Lateral, Load, Scene, SceneError, Stiffness
 from runningbond.scene.history import pulse
 from tests.walls import panel
 
@@ -207,3 +207,10 @@ def test_half_the_step_is_taken_where_the_ledger_does_not_close(monkeypatch: pyt
     closed = follow(rest, 2.6, rows=50)
     assert closed.unaccounted < 0.9 * once.unaccounted
     assert closed.steps > 2.5 * once.steps
+
+
+@pytest.mark.parametrize("points", [[], "ab", [[0.1, float("nan")]], [[0.0, 0.0]], [0.0, 1.0]])
+def test_points_that_drift_is_no_share_of_are_refused(points: Any) -> None:
+    scene = wall(shaken("half-sine", 8.0, 0.3))
+    with pytest.raises(SceneError, match="points"):
+        respond("dem-dynamic", scene, points=points)
