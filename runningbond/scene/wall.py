@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import shapely
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -29,6 +30,9 @@ from .ties import NO_TIES, Tie, Ties, place_ties
 
 SAME_COLUMN = 1e-9
 """Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
+
+NEAR = 0.1
+"""Gap, in block sizes, that looks like one of a survey."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -444,7 +448,15 @@ def _refuse_floating_blocks(scene: Scene) -> None:
     held = np.union1d(np.flatnonzero(scene.fixed), scene.pins.block[scene.pins.direction.any(axis=1)])
     floating = ~np.isin(component, component[held])
     if floating.any():
-        raise SceneError(
-            scene.blocks.name(int(np.argmax(floating))),
-            "is a floating block: nothing joins it to the support",
-        )
+        remedy = "is a floating block: nothing joins it to the support"
+        raise SceneError(scene.blocks.name(int(np.argmax(floating))), remedy + _gap_to(scene, floating))
+
+
+def _gap_to(scene: Scene, floating: Mask) -> str:
+    """How far floating blocks ``(nb,)`` are from what is held, where they nearly touch it."""
+    free, standing = (shapely.union_all(scene.blocks.shapes(np.flatnonzero(which))) for which in (floating, ~floating))
+    gap = float(shapely.distance(free, standing))
+    if not 0 < gap < NEAR * scene.block_size:
+        return ""
+    bridged = f"joints bridge {scene.blocks.tolerance:.2g} m"
+    return f" over a gap of {gap:.3g} m, and {bridged}; wall.heal closes gaps of drawings"

@@ -243,6 +243,7 @@ def test_the_installed_command_leaves_with_the_same_code(tmp_path: Path) -> None
         ([[(0, 0), (200, 0), (200, 100), (0, 100)], [(100, 50), (300, 50), (300, 150), (100, 150)]], "overlaps"),
         ([[(0, 0), (200, 0), (200, 100), (100, 0), (0, 100)]], "crosses"),
         ([[(0, 40), (200, 40), (200, 100), (0, 100)]], "is a floating block"),
+        ([[(0, 0.5), (200, 0.5), (200, 100), (0, 100)]], "over a gap of 0.0005 m, and joints bridge"),
         ([], "needs the ground and at least one block"),
     ],
 )
