@@ -87,9 +87,6 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
     length, thickness, at = row.number("L"), row.number("t"), row.number("H0")
     height, width = row.number("hb"), row.number("lb")
     courses = _courses(wall, stone, height)
-    if (blocks := courses * length / width) > MOST_BLOCKS:
-        remedy = f"makes {blocks:.3g} blocks with lb = {row.text('lb')} and L = {row.text('L')}; are their units right?"
-        raise SceneError(row.key("hb"), remedy, row.text("hb"))
     pressed = vertical_load(wall)
     start, growth = stone.stiffness(height, deformable=features.deformable)
     normal = start + growth * pressed / (length * thickness)
@@ -176,6 +173,10 @@ def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
     courses = round(tall / height)
     if courses < 1 or abs(courses * height - tall) > 0.02 * height:
         raise SceneError(wall.row.key(column), f"must be a whole number of courses of {height:g} m", f"{tall:g} m")
+    row = wall.row
+    if (blocks := courses * row.number("L") / row.number("lb")) > MOST_BLOCKS:
+        remedy = f"makes {blocks:.3g} blocks with lb = {row.text('lb')} and L = {row.text('L')}; are their units right?"
+        raise SceneError(row.key("hb"), remedy, row.text("hb"))
     return courses
 
 

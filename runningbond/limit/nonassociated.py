@@ -51,7 +51,7 @@ def limit_nonassociated(
         smaller load, and of very large walls one alone.
     programs
         Linear programs after which no further start is made, those over parts of the wall counted by what they cost;
-        where they are not given, as many as take half a minute or so on walls of 150 to 600 blocks.
+        where they are not given, as many as take up to three quarters of a minute on walls of 150 to 600 blocks.
     observe
         Is shown what the search has found, from time to time.
 

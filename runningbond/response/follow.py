@@ -170,10 +170,9 @@ def _places(rest: Resting, points: Array) -> Array:
     except (TypeError, ValueError):
         places = np.zeros(0)
     above = rest.top[:, 1].min() - rest.height
-    if places.ndim != 2 or places.shape[1] != 2 or not len(places) or not (places[:, 1] > above).all():
+    are_points = places.ndim == 2 and places.shape[1] == 2 and len(places) and np.isfinite(places).all()
+    if not are_points or places[:, 1].min() <= above:
         raise SceneError("points", f"must be a list of points [x, y] in metres, higher than {above:.4g}", points)
-    if not np.isfinite(places).all():
-        raise SceneError("points", "must be numbers", points)
     return places
 
 

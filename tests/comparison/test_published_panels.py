@@ -68,7 +68,7 @@ NONASSOCIATED = {1: (0.6, 0.6), 2: (0.4771, 0.4997), 4: (0.0893, 0.1592), 5: (0.
 ends may move apart as the search gets better; they may not come closer."""
 
 SHORT, SHORTER = 300, 110
-"""Linear programs that find them, and those of the tall panels; the usual search goes on for up to half a minute."""
+"""Linear programs that find them, and those of the tall panels; the usual search goes on for up to 45 s."""
 
 USUAL = NONASSOCIATED | {3: (0.2591, 0.3098), 9: (0.4208, 0.4259), 12: (0.0662, 0.0986)}
 """What that finds, of `make compare`."""
