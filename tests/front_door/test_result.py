@@ -143,6 +143,13 @@ def test_mechanism_and_curve_are_drawn_into_axes() -> None:
     assert mechanism.has_data()
     result.plot("curve", curve)
     assert np.array_equal(curve.lines[0].get_xdata(), result.outcome.curve[:, 0])
+    with pytest.raises(rb.SceneError, match="what = 'curves': must be mechanism or curve"):
+        result.plot("curves")  # type: ignore[arg-type]
+
+
+def test_a_tolerance_that_is_no_number_is_refused() -> None:
+    with pytest.raises(rb.SceneError, match="tolerance = 'a': must be a number above 0 and below 1"):
+        rb.read("wall-w1").run("limit", tolerance="a")  # type: ignore[arg-type]
 
 
 def test_an_unknown_model_is_refused_with_what_there_is() -> None:

@@ -8,7 +8,9 @@ import pytest
 
 from runningbond.laboratory import SHIPPED, MeasuredWall, read_folder
 from runningbond.laboratory.folder import DATA
+from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.measured import growing, turning_points
+from runningbond.laboratory.predictions import scenes_of
 from runningbond.laboratory.rig import Features, scene_of, vertical_load
 from runningbond.laboratory.stones import STONES
 from runningbond.scene import Closure, SceneError, Stiffness
@@ -214,6 +216,7 @@ def test_cyclic_walls_are_pushed_to_both_sides_and_ever_farther() -> None:
         (GRANITE.replace("Dry", "Mortar"), "tests.csv, line 2: Joints = 'Mortar': must be \"Dry\""),
         (GRANITE.replace("WS.175", "wall").replace("179.8", "3"), "tests.csv, line 2: Ntot = '3': must be more than"),
         (GRANITE.replace("WS.175", "wall").replace("179.8", ""), "tests.csv, line 2: Ntot: is missing"),
+        (GRANITE.replace(",150,", ",0.15,"), "tests.csv, line 2: hb = '0.15': makes 4e+04 blocks"),
         (GRANITE.replace(",200,179.8", ",350,179.8"), "wall.length = 1.0: must be a whole number of half blocks"),
     ],
 )
@@ -230,6 +233,11 @@ def test_row_that_describes_no_wall_is_refused_by_file_and_line(tmp_path: Path, 
         ([], HEADS, "tests.csv: holds no wall, only heads"),
         ([GRANITE, GRANITE], HEADS, "tests.csv, line 3: Test unit name = 'WS.175': is the second row of that name"),
         (["/etc/x" + GRANITE[6:]], HEADS, "Test unit name = '/etc/x': must be a name"),
+        (
+            ["a$b" + GRANITE[6:]],
+            HEADS,
+            "'a$b': must be a name, as it may be that of a file, without $",
+        ),
         ([GRANITE[6:]], HEADS, "tests.csv, line 2: Test unit name = '': must be a name"),
         ([GRANITE + ",1,2"], HEADS, "tests.csv, line 2: must have 14 entries, as its heads; has 16"),
         ([GRANITE.replace(",61,", ",x,")], HEADS, "tests.csv, line 2: Vmax,+ = 'x': must be a number above 0"),
@@ -260,6 +268,7 @@ def test_table_that_is_none_is_refused(tmp_path: Path, rows: list[str], heads: s
         ("displacement_mm,force_kN\n1,1\n1,2\n", "WS.175.csv: must hold points of a curve"),
         ("displacement_mm,force_kN\n0,0\n1,0\n", "WS.175.csv: must hold points of a curve"),
         ("displacement_mm,force_kN\nNaN,NaN\n", "WS.175.csv: must hold points of a curve"),
+        ("displacement_mm,force_kN\n0,0\n1,-2\n", "WS.175.csv: has its forces against its displacements"),
     ],
 )
 def test_curve_that_is_none_is_refused(tmp_path: Path, curve: str, said: str) -> None:
@@ -285,3 +294,36 @@ def test_scene_of_its_own_without_a_drive_is_refused(tmp_path: Path) -> None:
     (folder / "WS.175.toml").write_text("[wall]\n")
     with pytest.raises(SceneError, match="WS.175.toml: beam.drive: is missing"):
         scene_of(read_folder(folder)[0], Features())
+
+
+@pytest.mark.parametrize(("name", "load"), [("WS.175", 175e3), ("Wall 3", 185.2e3), ("WS-1.250", 185.2e3)])
+def test_a_number_in_a_name_is_a_load_where_the_table_agrees(tmp_path: Path, name: str, load: float) -> None:
+    """Else it is what Ntot leaves of the weight, 20 kN/m³ of 0.24 m³."""
+    row = GRANITE.replace("WS.175", name).replace("179.8", "190")
+    assert vertical_load(one(tmp_path, row)) == pytest.approx(load, rel=1e-9)
+
+
+def test_cracks_that_are_no_picture_are_refused(tmp_path: Path) -> None:
+    folder = write_folder(tmp_path / "walls", GRANITE)
+    (folder / "WS.175-cracks.png").write_text("none")
+    with pytest.raises(SceneError, match=r"WS\.175-cracks\.png: is no PNG picture"):
+        read_folder(folder)
+
+
+def test_a_scene_that_cannot_be_made_is_refused_by_its_wall(tmp_path: Path) -> None:
+    walls = read_folder(
+        write_folder(tmp_path / "walls", GRANITE, SANDSTONE.replace(",1000,200,1000", ",1050,200,1000"))
+    )
+    with pytest.raises(SceneError, match=r"tests\.csv, line 3: wall\.length = 1\.05"):
+        scenes_of(walls, list(LADDER.values()))
+
+
+def test_walls_of_another_load_than_that_of_a_few_are_scored(tmp_path: Path) -> None:
+    walls = [one(tmp_path / name, SANDSTONE.replace("SW.100.1", name)) for name in ("SW.30.3", "SW.300.1", "SW.30")]
+    assert [wall.is_scored for wall in walls] == [False, True, False]
+
+
+def test_a_curve_to_the_negative_side_may_begin_with_noise(tmp_path: Path) -> None:
+    curve = "displacement_mm,force_kN\n0.01,0\n-1,-30\n-10,-61\n"
+    wall = read_folder(write_folder(tmp_path / "walls", GRANITE, curve=curve))[0]
+    assert wall.curve[-1] == pytest.approx([0.01, 61e3])

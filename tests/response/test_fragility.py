@@ -39,6 +39,10 @@ def test_fragility_of_a_block_over_some_records(tmp_path: Path) -> None:
     assert found.probability(found.median * np.array([0.5, 1.0, 2.0])) == pytest.approx([0, 0.5, 1], abs=1e-3)
     again = rb.fragility(wall, records, "dem-dynamic", tolerance=0.05, folder=tmp_path / "kept", jobs=1)
     assert np.array_equal(again.intensity, found.intensity)
+    with pytest.raises(rb.SceneError, match="nowhere.csv: .*nowhere.csv"):  # and why it was refused
+        rb.fragility(wall, [records[0], tmp_path / "nowhere.csv"], "dem-dynamic", tolerance=0.05, jobs=1)
+    with pytest.raises(rb.SceneError, match="records = .*: must be a list of files"):
+        rb.fragility(wall, str(records[0]), "dem-dynamic")
 
 
 def test_a_wall_without_a_record_has_no_fragility() -> None:
