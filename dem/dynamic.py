@@ -13,7 +13,17 @@ from typing import Any
 import numpy as np
 
 from runningbond.contacts.outline import Outline
-from runningbond.dynamics import U_CRIT, Observer, Run, collapse_by_steps, no_observer, pushover_curve
+from runningbond.dynamics import (
+    U_CRIT,
+    Observer,
+    Run,
+    collapse_by_steps,
+    inertia_note,
+    largest_scaling,
+    no_observer,
+    pushover_curve,
+    with_highest_frequency,
+)
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
@@ -24,8 +34,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
 from .finite_system import finite_system
-from .highest_frequency import with_highest_frequency
-from .rigid_system import contact_points, rigid_system
+from .rigid_system import contact_points, rigid_system, with_fictitious_inertia
 
 
 def dem_dynamic(
@@ -60,15 +69,17 @@ def dem_dynamic(
     start = time.perf_counter()
     finite = is_finite(displacements, "dem-dynamic", scene)
     points = contact_points(scene)
+    run, note = (Run(finite_system(scene), local=MOVING), "") if finite else _small_run(scene)
     outcome = collapse_by_steps(
         scene,
         "dem-dynamic",
-        Run(finite_system(scene), local=MOVING) if finite else _small_run(scene),
+        run,
         tolerance,
         points=points,
         point_order=np.argsort(points.joint, kind="stable"),
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: proved_bound(scene),
+        note=note,
         collapse=collapse,
         first_step=first_step,
         budget=budget,
@@ -77,10 +88,13 @@ def dem_dynamic(
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _small_run(scene: Scene) -> Run:
-    """Rigid blocks at small displacements; what leads a wall does so at a speed that goes by usual time steps."""
+def _small_run(scene: Scene) -> tuple[Run, str]:
+    """Rigid blocks at small displacements, and a note; what leads a wall goes by usual time steps, and minds masses."""
     system = rigid_system(scene)
-    return Run(system if scene.is_led else with_highest_frequency(system))
+    if scene.is_led:
+        return Run(system), ""
+    heavier = with_fictitious_inertia(scene, system)
+    return Run(with_highest_frequency(heavier)), inertia_note(largest_scaling(heavier.mass, system.mass))
 
 
 def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:

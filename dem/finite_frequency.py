@@ -8,6 +8,7 @@ import numpy as np
 
 from runningbond.contacts.rigid_sides import ONE, THREE, TWO, RigidSides
 from runningbond.dynamics import joint_shares
+from runningbond.dynamics.highest_frequency import largest_of_tridiagonal
 from runningbond.joints.compiled import kernel
 from runningbond.scene import Array, Indices
 
@@ -35,12 +36,6 @@ def frequencies_squared(sides: RigidSides, normal: Array, shear: Array, mass: Ar
     bound, found = float(np.linalg.eigvalsh(own).max()), largest_of_tridiagonal(diagonal, beside)
     # A library's last digits differ from machine to machine, and blocks that bounce tell the last one of a time step.
     return float(f"{bound:.{DIGITS}g}"), float(f"{found:.{DIGITS}g}")
-
-
-def largest_of_tridiagonal(diagonal: Array, beside: Array) -> float:
-    """Largest eigenvalue of a symmetric matrix that Lanczos' method leaves; the first entry beside is of no use."""
-    matrix = np.diag(diagonal) + np.diag(beside[1:], 1) + np.diag(beside[1:], -1)
-    return float(np.linalg.eigvalsh(matrix).max(initial=0.0))
 
 
 @kernel

@@ -1,5 +1,7 @@
 """A scene as a block system of rigid blocks."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from runningbond.dynamics import (
@@ -10,6 +12,8 @@ from runningbond.dynamics import (
     Interface,
     Restraint,
     force_unit,
+    inertia_factors,
+    restrain,
     rigid_frequency_squared,
     tie_rows,
 )
@@ -55,6 +59,23 @@ def rigid_system(scene: Scene) -> BlockSystem:
         kernels = gather_along(gather_rigid), scatter_along(scatter_rigid)
         interface = Interface(law, points.area, *kernels, order.between, bound)
     return system_on(scene, interface, order.block[:, None] + len(scene.blocks) * np.arange(3))
+
+
+def with_fictitious_inertia(scene: Scene, system: BlockSystem) -> BlockSystem:
+    """Rigid blocks at small displacements that are as slow in each of their motions as in the slowest (`inertia`).
+
+    Those on pins, which move about them, stay as they are.
+    """
+    points, law = contact_points(scene), system.interface.law
+    mass = held_masses(scene).reshape(-1, 3)
+    joints = (points, points.block, scene.blocks.centroid)
+    springs = (law.stiffest, law.shear_stiffness)
+    factors = inertia_factors(*joints, mass, *springs)
+    factors[scene.pins.block] = 1.0
+    heavier = system.mass.copy()
+    heavier[system.rigid] *= factors
+    bound = rigid_frequency_squared(*joints, mass * factors, *springs) or 1.0
+    return replace(system, mass=heavier, interface=replace(system.interface, frequency_squared=bound))
 
 
 def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: ContactSearch | None = None) -> BlockSystem:
@@ -109,13 +130,6 @@ def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw)
     mass = held_masses(scene).reshape(-1, 3)
     normal, shear = law.stiffest, law.shear_stiffness
     return rigid_frequency_squared(points, points.block, scene.blocks.centroid, mass, normal, shear) or 1.0
-
-
-def restrain(row: Array, restraint: Restraint) -> Array:
-    """A row per motion of the blocks ``(3 nb,)``, in place turned into one per restrained coordinates."""
-    for freedom, basis in zip(*restraint, strict=True):
-        row[freedom] = np.einsum("ij,i->j", basis, row[freedom])
-    return row
 
 
 def _restraint(scene: Scene, mass: Array) -> tuple[Restraint, Array]:

@@ -29,21 +29,32 @@ ROOM = 1.1
 CLOSE = 1e-3
 """Relative accuracy of ω²."""
 
-LOWEST = 20
-"""Number of the lowest frequencies that scaling leaves as they are, in walls of ten blocks or more.
 
-In smaller ones it is the lowest two thirds of those that the wall has of rigid blocks: in the highest of them one
-block swings against the others, and to keep these as they are is almost to scale nothing.
-"""
+@dataclass(frozen=True)
+class Allowance:
+    """How far masses may be scaled.
 
-LOST = 2e-3
-"""Part of them that it may take."""
+    In walls of less than ten blocks it is at most the lowest two thirds of those frequencies that a wall has of rigid
+    blocks: in the highest of them one block swings against the others, and to keep these is almost to scale nothing.
+    """
+
+    lowest: int  # number of the lowest frequencies that scaling leaves as they are
+    lost: float  # part of them that it may take
+    # times a deformation's share of its joints' stiffness that its mass is scaled for, besides its own
+    of_joints: float
+
+
+IN_TIME = Allowance(lowest=20, lost=2e-3, of_joints=0.0)
+"""Where it matters how a wall vibrates."""
+
+AT_REST = Allowance(lowest=1, lost=1e-2, of_joints=4.0)
+"""Where only what it bears at rest does, and how long it takes to come to rest."""
 
 LARGE = 1000
 """Number of blocks, or of triangles that may part, beyond which they are not looked at, to save the memory.
 
 The twentieth frequency of so large a wall is far below what limits the step; in a single course, whose waves travel
-one way only, it may lose more than `LOST` all the same.
+one way only, it may lose more than is allowed all the same.
 """
 
 
@@ -71,9 +82,13 @@ class _Kind:
     mass: Array
     stiffness: Array
     joints: Array
+    # what masses are scaled for, ``(m,)``: the modes' own stiffness and some times their share of the joints
+    scaled_for: Array
 
 
-def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) -> ScaledModes:
+def scaled_modes(
+    wall: ModalWall, damping: float, *, mass_scaling: bool = True, allowance: Allowance = IN_TIME
+) -> ScaledModes:
     """Scale the masses of a wall's modes as far as the joints' step asks for.
 
     Parameters
@@ -84,16 +99,19 @@ def scaled_modes(wall: ModalWall, damping: float, *, mass_scaling: bool = True) 
         Viscous damping ratio of the deformable modes.
     mass_scaling
         Whether masses are scaled at all.
+    allowance
+        How far they may be.
     """
-    kinds = _tightest(wall)
+    kinds = _tightest(wall, allowance.of_joints)
+    stiffness = _of_coordinates(wall, kinds)
     if mass_scaling:
         square = _smallest(kinds, damping)
-        fit = _square_to_scale_for(wall, square)
+        fit = _square_to_scale_for(wall, stiffness, square, allowance)
         if fit > square:
             square = _smallest(kinds, damping, fit)
     else:
         fit, square = np.inf, _smallest(kinds, damping, np.inf)
-    mass = _scaled(wall.mass, wall.stiffness, fit)
+    mass = _scaled(wall.mass, stiffness, fit)
     return ScaledModes(square, mass, modal_viscosity(wall.stiffness, mass, damping))
 
 
@@ -102,9 +120,20 @@ def undeformed_frequency_squared(wall: ModalWall) -> float:
     return _rigid_bound(_tightest(wall))
 
 
-def _tightest(wall: ModalWall) -> list[_Kind]:
+def _tightest(wall: ModalWall, of_joints: float = 0.0) -> list[_Kind]:
     """Blocks with the shares of their joints that bound rigid ones most closely."""
-    return min((_kinds(wall, exponent) for exponent in EXPONENTS), key=_rigid_bound)
+    return min((_kinds(wall, exponent, of_joints) for exponent in EXPONENTS), key=_rigid_bound)
+
+
+def _of_coordinates(wall: ModalWall, kinds: list[_Kind]) -> Array:
+    """What masses are scaled for, ``(nd,)``: `wall.stiffness` where the joints' share does not count."""
+    each, result = iter(kinds), []
+    for template in wall.templates:
+        stiffness, moving = template.modes.stiffness.copy(), np.isfinite(template.modes.mass)
+        if moving.any():
+            stiffness[moving] = next(each).scaled_for
+        result.append(np.repeat(stiffness, len(template.blocks)))
+    return np.concatenate([*result, [0.0]])
 
 
 def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> float:
@@ -122,26 +151,20 @@ def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> f
     return high
 
 
-def _square_to_scale_for(wall: ModalWall, square: float) -> float:
+def _square_to_scale_for(wall: ModalWall, stiffness: Array, square: float, allowance: Allowance) -> float:
     """An ω² from `square` up for which masses may be scaled, so that the lowest frequencies stay as they are.
 
     It is the smallest, but where what is lost falls faster than 1 / ω², in walls of a few blocks.
     """
     rigid = int(((wall.stiffness == 0) & np.isfinite(wall.mass)).sum())
-    lowest = min(LOWEST, 2 * rigid // 3)
+    lowest = min(allowance.lowest, 2 * rigid // 3)
     if not lowest or not wall.stiffness.any() or (~wall.scene.fixed).sum() > LARGE:
         return square
     shift = frequency_shift(wall, lowest, square)
     # Rounded, for a library's frequencies differ in their last bits from machine to machine.
-    while (lost := round(shift(_scaled(wall.mass, wall.stiffness, square)) / LOST, 6)) > 1:
+    while (lost := round(shift(_scaled(wall.mass, stiffness, square)) / allowance.lost, 6)) > 1:
         square *= lost * (1 + CLOSE)
     return square
-
-
-def largest_scaling(wall: ModalWall, mass: Array) -> float:
-    """Largest factor by which modal masses ``(nd,)`` [kg] exceed those of a wall's blocks."""
-    moving = np.isfinite(mass)
-    return float((mass[moving] / wall.mass[moving]).max())
 
 
 def _scaled(mass: Array, stiffness: Array, square: float) -> Array:
@@ -165,13 +188,13 @@ def _rigid_bound(kinds: list[_Kind]) -> float:
 
 
 def _bound(kind: _Kind, square: float, damping: float, fit: float) -> float:
-    mass = _scaled(kind.mass, kind.stiffness, fit)
+    mass = _scaled(kind.mass, kind.scaled_for, fit)
     viscosity = modal_viscosity(kind.stiffness, mass, damping)
     own = kind.stiffness + 2 / stable_step(square, VISCOUS, LOCAL) * viscosity
     return float(block_frequency_squared(kind.joints + np.diag(own), mass[None]).max())
 
 
-def _kinds(wall: ModalWall, exponent: float) -> list[_Kind]:
+def _kinds(wall: ModalWall, exponent: float, of_joints: float) -> list[_Kind]:
     """Blocks that differ in their mesh, their pins or their joints, shared with an exponent (`joint_shares`)."""
     joint = wall.elements
     n, ne, _ = joint.weights.shape
@@ -207,5 +230,7 @@ def _kinds(wall: ModalWall, exponent: float) -> list[_Kind]:
                 frame = np.array([joint.normal[e], [-joint.normal[e, 1], joint.normal[e, 0]]])
                 jumps = np.einsum("dx,pxm->dpm", frame, at_points)
                 matrix += part[side] * np.einsum("dp,dpm,dpk->mk", springs[:, :, e], jumps, jumps)
-        result.append(_Kind(modes.mass[moving], modes.stiffness[moving], joints))
+        stiffness = modes.stiffness[moving]
+        share = np.where(stiffness > 0, of_joints * np.diagonal(joints, axis1=1, axis2=2).max(axis=0), 0.0)
+        result.append(_Kind(modes.mass[moving], stiffness, joints, stiffness + share))
     return result

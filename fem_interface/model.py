@@ -12,7 +12,17 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from runningbond.dynamics import U_CRIT, BlockSystem, Observer, Run, collapse_by_steps, no_observer, pushover_curve
+from runningbond.dynamics import (
+    U_CRIT,
+    BlockSystem,
+    Observer,
+    Run,
+    collapse_by_steps,
+    inertia_note,
+    largest_scaling,
+    no_observer,
+    pushover_curve,
+)
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import CALMING, LOCAL, MOVING
@@ -25,10 +35,10 @@ from runningbond.scene import Array, Scene, SceneError
 
 from .coupled_masses import with_coupled_masses
 from .cracks import Cracks, added_compliance
+from .fictitious_inertia import with_fictitious_inertia
 from .finite_system import finite_system
 from .fracture import Energies
 from .loads import Loads
-from .mass_scaling import largest_scaling
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .node_outline import node_outline
@@ -108,7 +118,7 @@ def fem(
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
             if mass_scaling:
-                system = with_heavier_pieces(wall, with_coupled_masses(wall, system))
+                system = _with_longer_steps(wall, system)
             run = Run(system, local=CALMING if len(system.coupling.freedom) else LOCAL)
     note = _note(wall, run.system, cracks)
     if scene.history:
@@ -131,10 +141,21 @@ def fem(
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
+def _with_longer_steps(wall: ModalWall, system: BlockSystem) -> BlockSystem:
+    """Inertia that nobody asks after: of pieces where a beam leads the wall, else of all blocks under its loads."""
+    if wall.scene.is_led:
+        return with_heavier_pieces(wall, system)
+    coupled = with_coupled_masses(wall, system)
+    return coupled if len(coupled.coupling.freedom) else with_fictitious_inertia(wall, system)
+
+
 def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
     """What a message says of how the blocks were taken."""
-    factor = largest_scaling(wall, system.mass)
-    note = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
+    deformed = wall.stiffness > 0
+    factor = largest_scaling(system.mass[deformed], wall.mass[deformed])
+    notes = [inertia_note(largest_scaling(system.mass[~deformed], wall.mass[~deformed]))]
+    notes += [f"masses of deformable modes scaled up to {factor:.3g} times"] if factor > 1.005 else []
+    note = "; ".join(filter(None, notes))
     note += ", those of soft blocks coupled across joints" if len(system.coupling.freedom) else ""
     note += ", pieces of blocks heavier against one another" if len(system.clusters.cluster) else ""
     if cracks == "blocks" and (more := added_compliance(wall.pieces)) > SOFTER:

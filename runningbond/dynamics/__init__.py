@@ -3,10 +3,12 @@
 from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
 from .controls import Drive, drive, pushover_curve, ramp, settled_drive
+from .highest_frequency import with_highest_frequency
+from .inertia import inertia_factors, inertia_note, largest_scaling
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
-from .system import NOTHING_CARRIED, BlockSystem, Carried, ContactSearch, Interface, Restraint, force_unit
+from .system import NOTHING_CARRIED, BlockSystem, Carried, ContactSearch, Interface, Restraint, force_unit, restrain
 from .ties import tie_rows
 from .time_step import (
     block_frequency_squared,
@@ -35,15 +37,20 @@ __all__ = [
     "collapse_by_steps",
     "drive",
     "force_unit",
+    "inertia_factors",
+    "inertia_note",
     "joint_shares",
+    "largest_scaling",
     "load_steps",
     "mass_factor",
     "no_observer",
     "pushover_curve",
     "ramp",
+    "restrain",
     "rigid_frequency_squared",
     "settle",
     "settled_drive",
     "stable_step",
     "tie_rows",
+    "with_highest_frequency",
 ]

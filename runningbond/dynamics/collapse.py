@@ -19,8 +19,8 @@ A wall without weight may slip as far and be caught by the pressure that the sli
 enough it does not.
 """
 
-DRAGGED = 1 / 8
-"""Part of a budget after which a wall that neither rests nor falls is damped so that it is not dragged on.
+DRAGGED = 50_000
+"""Steps after which a wall that neither rests nor falls is damped so that it is not dragged on.
 
 Contacts that slip without an end may shake for as long, and local damping drags on what drifts while it shakes.
 """
@@ -39,7 +39,7 @@ class Criteria:
     rest: float = 1e-5  # unbalanced force, in the system's units, below which the wall is at rest
     budget: int = 2_000_000  # steps after which the question is left undecided
     interval: int = 200  # steps between two looks
-    dragged: float = DRAGGED  # part of the budget after which what drifts is not dragged on
+    dragged: float = DRAGGED  # steps after which what drifts is not dragged on
 
 
 def settle(
@@ -78,9 +78,9 @@ def hold_load(
     start, given = state.motion.copy(), run.given(state)
     detector = CollapseDetector(elastic=sudden or run.system.weightless)
     halfway = start
-    calm, looks = 0, criteria.budget // criteria.interval
-    for look in range(looks):
-        if look == round(criteria.dragged * looks):
+    calm, late = 0, criteria.dragged / criteria.interval
+    for look in range(criteria.budget // criteria.interval):
+        if late <= look < late + 1:
             run = run.drifting
         run.hold(state, multiplier, criteria.interval, given=given)
         observe(run, state, multiplier)

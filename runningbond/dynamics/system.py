@@ -39,6 +39,13 @@ class Restraint(NamedTuple):
         return cls(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3)))
 
 
+def restrain(row: Array, restraint: Restraint) -> Array:
+    """A row per motion of bodies ``(nd,)``, in place turned into one per restrained coordinates."""
+    for freedom, basis in zip(*restraint, strict=True):
+        row[freedom] = np.einsum("ij,i->j", basis, row[freedom])
+    return row
+
+
 class Carried(NamedTuple):
     """Supports that move."""
 

@@ -91,18 +91,33 @@ def rigid_frequency_squared(
     normal, shear : (np,) float
         Stiffness of the joints at their points [Pa/m].
     """
-    moving, bounds = np.isfinite(mass).all(axis=1), []
-    for exponent in EXPONENTS:
-        part, own = joint_shares(mass[side, 0], exponent), np.zeros((len(mass), 3, 3))
-        for direction, stiffness in ((points.normal, normal), (points.tangent, shear)):
-            for s in (0, 1):
-                arm = points.position - centroid[side[:, s]]
-                turning = direction[:, 1] * arm[:, 0] - direction[:, 0] * arm[:, 1]
-                jump = np.column_stack([direction, turning])
-                spring = stiffness * points.area * part[:, s]
-                np.add.at(own, side[:, s], spring[:, None, None] * (jump[:, :, None] * jump[:, None, :]))
-        bounds.append(float(block_frequency_squared(own[moving], mass[moving]).max()))
-    return min(bounds)
+    moving = np.isfinite(mass).all(axis=1)
+    each = (rigid_stiffness(points, side, centroid, mass, normal, shear, exponent) for exponent in EXPONENTS)
+    return min(float(block_frequency_squared(own[moving], mass[moving]).max()) for own in each)
+
+
+def rigid_stiffness(
+    points: JointPoints,
+    side: Indices,
+    centroid: Array,
+    mass: Array,
+    normal: Array,
+    shear: Array,
+    exponent: float = 0.5,
+) -> Array:
+    """Stiffness of each rigid block against its share of its joints, ``(nb, 3, 3)`` [N/m, N, N m].
+
+    Arguments are those of `rigid_frequency_squared`, with the exponent of `joint_shares`.
+    """
+    part, own = joint_shares(mass[side, 0], exponent), np.zeros((len(mass), 3, 3))
+    for direction, stiffness in ((points.normal, normal), (points.tangent, shear)):
+        for s in (0, 1):
+            arm = points.position - centroid[side[:, s]]
+            turning = direction[:, 1] * arm[:, 0] - direction[:, 0] * arm[:, 1]
+            jump = np.column_stack([direction, turning])
+            spring = stiffness * points.area * part[:, s]
+            np.add.at(own, side[:, s], spring[:, None, None] * (jump[:, :, None] * jump[:, None, :]))
+    return own
 
 
 def mass_factor(stiffness: Array, mass: Array, dt: float, local: float = 0.0) -> Array:

@@ -11,11 +11,11 @@ from itertools import product
 import numpy as np
 from matplotlib.figure import Figure
 
-from fem_interface.mass_scaling import LOWEST, largest_scaling
+from fem_interface.mass_scaling import IN_TIME
 from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
 from fem_interface.system import system_of
-from runningbond.dynamics import BlockSystem, Run
+from runningbond.dynamics import BlockSystem, Run, largest_scaling
 from runningbond.dynamics.vibrations import vibrations
 from runningbond.pictures.charts import bracket, level, looks_of, series
 from runningbond.scene import Scene
@@ -26,7 +26,11 @@ YOUNG = (1e9, 1e10, 1e11, 1e12, 1e13)
 EXPENSIVE = 1e11  # E [Pa] beyond which the wall is not brought down without mass scaling: it would take minutes
 NONE, EACH, UNIFORM = SCALINGS = ("none", "each mode by its own", "all modes by one factor")
 KIND, YOUNGS = "masses scaled", "E [Pa]"
-PART, STEP, SHIFT = "W1, its blocks ever stiffer", "time step [µs]", f"largest shift of the {LOWEST} lowest ω [%]"
+PART, STEP, SHIFT = (
+    "W1, its blocks ever stiffer",
+    "time step [µs]",
+    f"largest shift of the {IN_TIME.lowest} lowest ω [%]",
+)
 
 
 def wall(young: float) -> Scene:
@@ -51,10 +55,10 @@ def measure(young: float, scaling: str) -> Row:
         system = uniformly_scaled(result, plain, rigid.interface.frequency_squared)
     frequencies, exact, of_rigid = (vibrations(each)[0] for each in (system, plain, rigid))
     row: Row = {
-        "largest factor": largest_scaling(result, system.mass),
+        "largest factor": largest_scaling(system.mass, result.mass),
         STEP: 1e6 * Run(system).dt,
         "of rigid blocks [µs]": 1e6 * Run(rigid).dt,
-        SHIFT: 100 * float(np.abs(frequencies[:LOWEST] / exact[:LOWEST] - 1).max()),
+        SHIFT: 100 * float(np.abs(frequencies[: IN_TIME.lowest] / exact[: IN_TIME.lowest] - 1).max()),
         "modes in the band of rigid blocks": int((frequencies <= of_rigid[-1] * (1 + 1e-9)).sum()),
     }
     if scaling == EACH or (scaling == NONE and young <= EXPENSIVE):
@@ -101,7 +105,8 @@ def _draw(figure: Figure, rows: Rows) -> None:
 STUDY = Study(
     "block-stiffness",
     "Block stiffness",
-    trusted="λ does not depend on the blocks' stiffness, and `fem`'s own scaling leaves the lowest frequencies alone",
+    trusted="λ does not depend on the blocks' stiffness, and scaling each mode by its own leaves the lowest "
+    "frequencies alone",
     beyond="many times as many steps without scaling; with one factor for all deformable modes blocks would vibrate in "
     "the band in which they move as wholes, and `fem` does not offer it",
     parts={PART: Part((YOUNGS, KIND), [*product(YOUNG, SCALINGS)], measure)},

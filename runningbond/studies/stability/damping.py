@@ -55,7 +55,7 @@ def judged(
     wall = known_wall(name)
     drag = mass_rate * np.where(np.isfinite(wall.system.mass), wall.system.mass, 0.0)
     run = Run(replace(wall.system, viscosity=wall.system.viscosity + drag), local=local, viscous=viscous)
-    state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget, dragged=1.0)
+    state, criteria = State.at_rest(wall.system), Criteria(collapse=wall.far, budget=budget, dragged=np.inf)
     verdict, right = settle(run, state, 0.0, criteria, sudden=True), False
     if verdict == "stable":
         ramp(run, state, 0.0, load * wall.multiplier, RAMP * state.steps)

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh, null_space
 
-from dem.highest_frequency import with_highest_frequency
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.compare import published_scene
-from runningbond.dynamics import BlockSystem, Run, State
+from runningbond.dynamics import BlockSystem, Run, State, with_highest_frequency
 from runningbond.joints.stiffness import joint_stiffness
 from runningbond.limit.kinematics import jump_operator, mass_matrix_diagonal, movable_freedoms, pin_operator
 from runningbond.scene import Scene

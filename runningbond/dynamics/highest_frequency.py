@@ -1,4 +1,4 @@
-"""The highest frequency of rigid blocks whose joints are all closed, by Lanczos' method.
+"""The highest frequency of a system whose joints are all closed, by Lanczos' method.
 
 Bounds from each block alone hold whatever its neighbours do, as if each moved against its own shadow in a mirror; of a
 running bond, whose joints do not line up, no motion does that everywhere, and they are a fifth too high. Steps may be
@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.dynamics import BlockSystem
 from runningbond.scene import Array
 
-from .finite_frequency import largest_of_tridiagonal
-from .rigid_system import restrain
+from .run import LOCAL, VISCOUS
+from .system import BlockSystem, restrain
+from .time_step import stable_step
 
 STEPS = 60
 """Most steps of Lanczos' method, which comes from below to a thousandth and has places where it hardly moves."""
@@ -28,12 +28,20 @@ DIGITS = 6
 
 
 def with_highest_frequency(system: BlockSystem) -> BlockSystem:
-    """Rigid blocks at small displacements whose time steps go by their own highest frequency, in place of a bound."""
+    """Blocks at small displacements whose time steps go by their own highest frequency, in place of a bound.
+
+    The viscosity of the blocks themselves counts as a stiffness, as it does for the bound (`stable_step`).
+    """
     interface, root = system.interface, 1 / np.sqrt(system.mass)  # nothing for what is held
+    own = system.stiffness + 2 / stable_step(interface.frequency_squared, VISCOUS, LOCAL) * system.viscosity
+
+    def product(motion: Array) -> Array:
+        moved = root * motion
+        return root * (_closed_joints(system, moved) + own * moved)
+
     # Without a pattern that a mode of the wall could be at right angles to.
     start = np.random.default_rng(0).standard_normal(len(root)) * (root > 0)
-    highest = _largest_eigenvalue(lambda motion: root * _closed_joints(system, root * motion), start)
-    closer = min(interface.frequency_squared, float(f"{highest:.{DIGITS}g}"))
+    closer = min(interface.frequency_squared, float(f"{_largest_eigenvalue(product, start):.{DIGITS}g}"))
     return replace(system, interface=replace(interface, closer=closer or None))
 
 
@@ -62,6 +70,12 @@ def _largest_eigenvalue(product: Callable[[Array], Array], vector: Array) -> flo
             vector = vector - np.einsum("i,i", one, vector) * one
         length = _length(vector)
     return largest_of_tridiagonal(np.array(diagonal), np.array(beside))
+
+
+def largest_of_tridiagonal(diagonal: Array, beside: Array) -> float:
+    """Largest eigenvalue of a symmetric matrix that Lanczos' method leaves; the first entry beside is of no use."""
+    matrix = np.diag(diagonal) + np.diag(beside[1:], 1) + np.diag(beside[1:], -1)
+    return float(np.linalg.eigvalsh(matrix).max(initial=0.0))
 
 
 def _length(vector: Array) -> float:

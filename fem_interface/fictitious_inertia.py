@@ -1,0 +1,47 @@
+"""Fictitious inertia of deformable blocks under loads that grow slowly (`runningbond.dynamics.inertia`).
+
+Rigid motions are made as slow as those of rigid blocks. What is left to limit the step are deformations that are stiff
+against their blocks but no stiffer than the joints: their masses are scaled for the joints' share as well.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from runningbond.dynamics import BlockSystem, inertia_factors, with_highest_frequency
+from runningbond.joints.wall_points import wall_stiffness
+
+from .mass_scaling import AT_REST, scaled_modes
+from .modal_wall import ModalWall
+from .system import DAMPING
+
+
+def with_fictitious_inertia(wall: ModalWall, system: BlockSystem) -> BlockSystem:
+    """Give a wall's blocks inertia that allows long steps.
+
+    Parameters
+    ----------
+    wall
+        The wall.
+    system
+        Its blocks.
+    """
+    scaled = scaled_modes(_heavier(wall), DAMPING, allowance=AT_REST)
+    interface = replace(system.interface, frequency_squared=scaled.frequency_squared)
+    heavier = replace(system, mass=scaled.mass, viscosity=scaled.viscosity, interface=interface)
+    return with_highest_frequency(heavier)
+
+
+def _heavier(wall: ModalWall) -> ModalWall:
+    """The wall with heavier rigid motions; blocks of one template share the largest factors of any of them."""
+    points, scene = wall.elements.points, wall.scene
+    mass = wall.mass[wall.rigid]
+    springs = wall_stiffness(scene, points.joint, closed=True)
+    factors = inertia_factors(points, points.block, scene.blocks.centroid, mass, *springs)
+    factors[scene.pins.block] = 1.0
+    templates = []
+    for template in wall.templates:
+        scale = np.ones_like(template.modes.mass)
+        scale[:3] = factors[template.blocks].max(axis=0)
+        templates.append(replace(template, modes=replace(template.modes, mass=template.modes.mass * scale)))
+    return replace(wall, templates=templates)

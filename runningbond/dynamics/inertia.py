@@ -1,0 +1,40 @@
+"""Inertia that lets a wall under slowly growing loads take longer steps: fictitious masses, as of dynamic relaxation.
+
+What bears a load at rest knows no masses (`underwood1983`, `olovsson2005`), and what limits the step is a single block
+on its joints, which mostly turns: the corners have more leverage than their springs have stiffness. A block is made
+so heavy, in each of its three motions by itself, that none of these is faster than most blocks are in the slowest of
+them. The slowest vibrations of a wall, which it takes to come to rest, lie in that one, and stay nearly as they are.
+"""
+
+import numpy as np
+
+from runningbond.joints import JointPoints
+from runningbond.scene import Array, Indices
+
+from .time_step import rigid_stiffness
+
+
+def inertia_factors(
+    points: JointPoints, side: Indices, centroid: Array, mass: Array, normal: Array, shear: Array
+) -> Array:
+    """Factors on the masses and on the moment of inertia of each block ``(nb, 3)``, none below one.
+
+    Arguments are those of `rigid_frequency_squared`.
+    """
+    stiffness = np.diagonal(rigid_stiffness(points, side, centroid, mass, normal, shear), axis1=1, axis2=2)
+    square = stiffness / mass
+    moving, result = np.flatnonzero(np.isfinite(mass).all(axis=1) & (square > 0).all(axis=1)), np.ones_like(mass)
+    if len(moving):
+        result[moving] = np.maximum(square[moving] / np.median(square[moving], axis=0).min(), 1.0)
+    return result
+
+
+def largest_scaling(mass: Array, of_blocks: Array) -> float:
+    """Largest factor by which modal masses ``(nd,)`` [kg] exceed those of the blocks, of what moves."""
+    moving = np.isfinite(of_blocks)
+    return float((mass[moving] / of_blocks[moving]).max(initial=1.0))
+
+
+def inertia_note(factor: float) -> str:
+    """What a message says of blocks that move with more inertia than they have."""
+    return f"inertia of blocks scaled up to {factor:.3g} times" if factor > 1.005 else ""

@@ -1,0 +1,150 @@
+"""Fictitious inertia: what it makes longer, and what it leaves alone."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from dem.dynamic import _small_run, dem_dynamic
+from dem.rigid_system import contact_points, held_masses, rigid_system, with_fictitious_inertia
+from fem_interface import fictitious_inertia
+from fem_interface.modal_wall import modal_wall
+from fem_interface.model import _with_longer_steps, fem
+from fem_interface.system import system_of
+from runningbond.compare import published_scene
+from runningbond.dynamics import (
+    BlockSystem,
+    Criteria,
+    Run,
+    State,
+    inertia_factors,
+    settle,
+    with_highest_frequency,
+)
+from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.dynamics.time_step import rigid_stiffness, stable_step
+from runningbond.dynamics.vibrations import elastic_stiffness, vibrations
+from runningbond.joints.wall_points import wall_stiffness
+from runningbond.scene import Array, Scene
+from tests.walls import panel
+
+MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
+STONE = {"block__young": 1e10, "block__poisson": 0.2, "joint__mortar": MORTAR}
+
+
+def rigid(scene: Scene) -> tuple[BlockSystem, BlockSystem]:
+    """Rigid blocks with their own inertia, and with fictitious one."""
+    system = rigid_system(scene)
+    return system, with_fictitious_inertia(scene, system)
+
+
+def deformable(scene: Scene) -> tuple[BlockSystem, BlockSystem]:
+    """The same of deformable blocks."""
+    wall = modal_wall(scene)
+    system = system_of(wall)
+    return system, fictitious_inertia.with_fictitious_inertia(wall, system)
+
+
+BOTH = pytest.mark.parametrize("systems", [rigid, deformable])
+
+
+def factors_of(scene: Scene, stiffer: float = 1.0, heavier: float = 1.0) -> tuple[Array, Array]:
+    """Factors of a wall's blocks, and ω² of their three motions against their own joints [1/s²]."""
+    points, mass = contact_points(scene), heavier * held_masses(scene).reshape(-1, 3)
+    normal, shear = (stiffer * each for each in wall_stiffness(scene, points.joint))
+    joints = (points, points.block, scene.blocks.centroid, mass, normal, shear)
+    return inertia_factors(*joints), np.diagonal(rigid_stiffness(*joints), axis1=1, axis2=2) / mass
+
+
+@pytest.mark.parametrize("changes", [{}, {"wall__block_height": 0.24}, {"wall__height": 0.24}])
+def test_no_motion_of_a_block_stays_faster_than_most_are_in_the_slowest(changes: dict[str, Any]) -> None:
+    scene = panel(joint__mortar=MORTAR, **changes)
+    factors, square = factors_of(scene)
+    moving = ~scene.fixed
+    slowest = np.median(square[moving], axis=0).min()
+    assert (square / factors)[moving] == pytest.approx(np.minimum(square, slowest)[moving])
+    assert (factors >= 1).all()
+    assert (factors[scene.fixed] == 1).all()
+    # Half of the blocks at least keep their mass in one direction.
+    assert (factors[moving] == 1).mean(axis=0).max() >= 0.5
+    assert factors_of(scene, stiffer=1e3, heavier=1e-4)[0] == pytest.approx(factors)
+
+
+@BOTH
+@pytest.mark.parametrize(("name", "times"), [("panel-01", 1.6), ("panel-04", 2.0), ("wall-w1", 1.5)])
+def test_steps_become_longer(systems: Any, name: str, times: float) -> None:
+    own, heavier = systems(published_scene(name))
+    assert Run(with_highest_frequency(heavier)).dt > times * Run(with_highest_frequency(own)).dt
+
+
+@BOTH
+@pytest.mark.parametrize("name", ["panel-01", "wall-w1"])
+def test_the_frequency_that_steps_go_by_is_the_highest_of_the_heavier_wall(systems: Any, name: str) -> None:
+    """Against eigenvalues of full matrices; the viscosity of blocks counts as stiffness."""
+    _, system = systems(published_scene(name))
+    interface = with_highest_frequency(system).interface
+    stiffness, mass = elastic_stiffness(system)
+    moving = np.isfinite(system.mass)
+    damped = 2 / stable_step(interface.frequency_squared, VISCOUS, LOCAL) * system.viscosity[moving]
+    exact = float(eigh(stiffness + np.diag(damped), np.diag(mass), eigvals_only=True)[-1])
+    assert interface.closer == pytest.approx(exact, rel=1e-3)
+    assert exact <= interface.frequency_squared * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("young", [1e10, 1e12])
+@pytest.mark.parametrize("name", ["panel-01", "panel-04", "wall-w1"])
+def test_deformations_leave_the_lowest_frequency_to_a_hundredth(name: str, young: float) -> None:
+    """Beside that of the same wall whose rigid motions alone are heavier."""
+    wall = modal_wall(published_scene(name).with_block(young=young))
+    heavier = fictitious_inertia._heavier(wall)
+    alone = replace(system_of(wall), mass=heavier.mass)
+    both = fictitious_inertia.with_fictitious_inertia(wall, system_of(wall))
+    lowest, slowed = (vibrations(system)[0][0] for system in (alone, both))
+    assert 0.99 * lowest <= slowed <= lowest * (1 + 1e-9)
+
+
+@BOTH
+def test_what_a_wall_bears_at_rest_knows_no_masses(systems: Any) -> None:
+    """The same rest under its weight, to what is not balanced of it; joints are glued, so that nothing slips."""
+    scene = panel(joint__cohesion=1e9, **STONE)
+    rests = []
+    for system in systems(scene):
+        run, state = Run(system), State.at_rest(system)
+        assert settle(run, state, 0.0, Criteria(collapse=1.0, rest=1e-9), sudden=True) == "stable"
+        rests.append(run.system.motion_of_blocks(state.motion))
+    assert np.abs(rests[0]).max() > 0
+    assert rests[1] == pytest.approx(rests[0], abs=1e-6 * np.abs(rests[0]).max())
+
+
+@pytest.mark.parametrize("pinned", [False, True])
+def test_blocks_on_pins_keep_their_masses(pinned: bool) -> None:
+    scene = panel(**STONE, **({"support__kind": "pinned-corners"} if pinned else {}))
+    held = np.unique(scene.pins.block)
+    assert bool(len(held)) is pinned
+    for own, heavier in (rigid(scene), deformable(scene)):
+        freedom = own.rigid[held]
+        assert (heavier.mass[freedom] == own.mass[freedom]).all()
+        assert (heavier.mass[own.rigid] > own.mass[own.rigid]).any()
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_the_message_says_how_much_heavier_blocks_are(model: Any) -> None:
+    """Of both models, which have the same joint points on this wall."""
+    scene = published_scene("wall-w1")
+    said = model(scene).message
+    factors, _ = factors_of(scene)
+    assert f"inertia of blocks scaled up to {factors.max():.3g} times" in said
+
+
+def test_blocks_that_a_beam_leads_have_their_own_inertia() -> None:
+    """Its path takes time, in which they have to move."""
+    beam = {"height": 0.1, "condition": "level", "force": [0, -2e3], "drive": {"displacement": [1e-3, 0]}}
+    scene = panel(load__live=None, beam=beam, **STONE)
+    run, note = _small_run(scene)
+    assert note == ""
+    assert (run.system.mass == rigid_system(scene).mass).all()
+    wall = modal_wall(scene)
+    system = system_of(wall)
+    assert (_with_longer_steps(wall, system).mass == system.mass).all()
