@@ -14,6 +14,7 @@ import numpy as np
 
 from runningbond.contacts.outline import Outline
 from runningbond.dynamics import (
+    CALMER,
     U_CRIT,
     Observer,
     Run,
@@ -94,7 +95,8 @@ def _small_run(scene: Scene) -> tuple[Run, str]:
     if scene.is_led:
         return Run(system), ""
     heavier = with_fictitious_inertia(scene, system)
-    return Run(with_highest_frequency(heavier)), inertia_note(largest_scaling(heavier.mass, system.mass))
+    run = Run(with_highest_frequency(heavier, CALMER), viscous=CALMER)
+    return run, inertia_note(largest_scaling(heavier.mass, system.mass))
 
 
 def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:

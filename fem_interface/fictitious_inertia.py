@@ -29,7 +29,7 @@ def with_fictitious_inertia(wall: ModalWall, system: BlockSystem) -> BlockSystem
     scaled = scaled_modes(_heavier(wall), DAMPING, allowance=AT_REST)
     interface = replace(system.interface, frequency_squared=scaled.frequency_squared)
     heavier = replace(system, mass=scaled.mass, viscosity=scaled.viscosity, interface=interface)
-    return with_highest_frequency(heavier)
+    return with_highest_frequency(heavier, AT_REST.viscous)
 
 
 def _heavier(wall: ModalWall) -> ModalWall:

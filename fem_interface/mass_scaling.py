@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runningbond.dynamics import block_frequency_squared, joint_shares, mass_factor, stable_step
+from runningbond.dynamics import CALMER, block_frequency_squared, joint_shares, mass_factor, stable_step
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.dynamics.time_step import EXPONENTS
 from runningbond.joints.wall_points import wall_stiffness
@@ -42,12 +42,13 @@ class Allowance:
     lost: float  # part of them that it may take
     # times a deformation's share of its joints' stiffness that its mass is scaled for, besides its own
     of_joints: float
+    viscous: float  # the joints' viscous damping ratio that goes with it
 
 
-IN_TIME = Allowance(lowest=20, lost=2e-3, of_joints=0.0)
+IN_TIME = Allowance(lowest=20, lost=2e-3, of_joints=0.0, viscous=VISCOUS)
 """Where it matters how a wall vibrates."""
 
-AT_REST = Allowance(lowest=1, lost=1e-2, of_joints=4.0)
+AT_REST = Allowance(lowest=1, lost=1e-2, of_joints=4.0, viscous=CALMER)
 """Where only what it bears at rest does, and how long it takes to come to rest."""
 
 LARGE = 1000
@@ -105,12 +106,12 @@ def scaled_modes(
     kinds = _tightest(wall, allowance.of_joints)
     stiffness = _of_coordinates(wall, kinds)
     if mass_scaling:
-        square = _smallest(kinds, damping)
+        square = _smallest(kinds, damping, allowance.viscous)
         fit = _square_to_scale_for(wall, stiffness, square, allowance)
         if fit > square:
-            square = _smallest(kinds, damping, fit)
+            square = _smallest(kinds, damping, allowance.viscous, fit)
     else:
-        fit, square = np.inf, _smallest(kinds, damping, np.inf)
+        fit, square = np.inf, _smallest(kinds, damping, allowance.viscous, np.inf)
     mass = _scaled(wall.mass, stiffness, fit)
     return ScaledModes(square, mass, modal_viscosity(wall.stiffness, mass, damping))
 
@@ -136,11 +137,11 @@ def _of_coordinates(wall: ModalWall, kinds: list[_Kind]) -> Array:
     return np.concatenate([*result, [0.0]])
 
 
-def _smallest(kinds: list[_Kind], damping: float, fit: float | None = None) -> float:
+def _smallest(kinds: list[_Kind], damping: float, viscous: float, fit: float | None = None) -> float:
     """Smallest ω² that bounds the wall, with masses scaled for `fit`, or for that ω² itself where there is none."""
 
     def bound(square: float) -> float:
-        return max(_bound(kind, square, damping, fit or square) for kind in kinds)
+        return max(_bound(kind, square, damping, viscous, fit or square) for kind in kinds)
 
     low = high = _rigid_bound(kinds) or 1.0  # a block whose pins leave no rigid motion has its deformations only
     while bound(high) > high:
@@ -187,10 +188,10 @@ def _rigid_bound(kinds: list[_Kind]) -> float:
     return result
 
 
-def _bound(kind: _Kind, square: float, damping: float, fit: float) -> float:
+def _bound(kind: _Kind, square: float, damping: float, viscous: float, fit: float) -> float:
     mass = _scaled(kind.mass, kind.scaled_for, fit)
     viscosity = modal_viscosity(kind.stiffness, mass, damping)
-    own = kind.stiffness + 2 / stable_step(square, VISCOUS, LOCAL) * viscosity
+    own = kind.stiffness + 2 / stable_step(square, viscous, LOCAL) * viscosity
     return float(block_frequency_squared(kind.joints + np.diag(own), mass[None]).max())
 
 

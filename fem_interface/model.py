@@ -13,6 +13,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.dynamics import (
+    CALMER,
     U_CRIT,
     BlockSystem,
     Observer,
@@ -25,7 +26,7 @@ from runningbond.dynamics import (
 )
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
-from runningbond.dynamics.run import CALMING, LOCAL, MOVING
+from runningbond.dynamics.run import CALMING, MOVING
 from runningbond.joints import Rule
 from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import is_self_locking, proved_bound
@@ -117,9 +118,7 @@ def fem(
         else:
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
-            if mass_scaling:
-                system = _with_longer_steps(wall, system)
-            run = Run(system, local=CALMING if len(system.coupling.freedom) else LOCAL)
+            run = _run_of_longer_steps(wall, system) if mass_scaling else Run(system)
     note = _note(wall, run.system, cracks)
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
@@ -141,12 +140,14 @@ def fem(
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _with_longer_steps(wall: ModalWall, system: BlockSystem) -> BlockSystem:
-    """Inertia that nobody asks after: of pieces where a beam leads the wall, else of all blocks under its loads."""
+def _run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:
+    """Blocks with inertia that nobody asks after: pieces of them where a beam leads the wall, else all of them."""
     if wall.scene.is_led:
-        return with_heavier_pieces(wall, system)
+        return Run(with_heavier_pieces(wall, system))
     coupled = with_coupled_masses(wall, system)
-    return coupled if len(coupled.coupling.freedom) else with_fictitious_inertia(wall, system)
+    if len(coupled.coupling.freedom):
+        return Run(coupled, local=CALMING)
+    return Run(with_fictitious_inertia(wall, system), viscous=CALMER)
 
 
 def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:

@@ -4,7 +4,7 @@ from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
 from .controls import Drive, drive, pushover_curve, ramp, settled_drive
 from .highest_frequency import with_highest_frequency
-from .inertia import inertia_factors, inertia_note, largest_scaling
+from .inertia import CALMER, inertia_factors, inertia_note, largest_scaling
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
@@ -19,6 +19,7 @@ from .time_step import (
 )
 
 __all__ = [
+    "CALMER",
     "NOTHING_CARRIED",
     "U_CRIT",
     "BlockSystem",

@@ -27,13 +27,14 @@ DIGITS = 6
 """Digits that are kept of it: the last ones of a library's eigenvalues differ from machine to machine."""
 
 
-def with_highest_frequency(system: BlockSystem) -> BlockSystem:
+def with_highest_frequency(system: BlockSystem, viscous: float = VISCOUS) -> BlockSystem:
     """Blocks at small displacements whose time steps go by their own highest frequency, in place of a bound.
 
-    The viscosity of the blocks themselves counts as a stiffness, as it does for the bound (`stable_step`).
+    The viscosity of the blocks themselves counts as a stiffness, as it does for the bound (`stable_step`), at the step
+    that goes with the joints' viscous damping ratio.
     """
     interface, root = system.interface, 1 / np.sqrt(system.mass)  # nothing for what is held
-    own = system.stiffness + 2 / stable_step(interface.frequency_squared, VISCOUS, LOCAL) * system.viscosity
+    own = system.stiffness + 2 / stable_step(interface.frequency_squared, viscous, LOCAL) * system.viscosity
 
     def product(motion: Array) -> Array:
         moved = root * motion

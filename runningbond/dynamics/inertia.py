@@ -4,6 +4,9 @@ What bears a load at rest knows no masses (`underwood1983`, `olovsson2005`), and
 on its joints, which mostly turns: the corners have more leverage than their springs have stiffness. A block is made
 so heavy, in each of its three motions by itself, that none of these is faster than most blocks are in the slowest of
 them. The slowest vibrations of a wall, which it takes to come to rest, lie in that one, and stay nearly as they are.
+
+Slips start waves, which such blocks hold for longer: dashpots in the joints are four times as strong as elsewhere. With
+usual ones panel-12 takes one branch or another as the load's pace is changed by a tenth (docs/fem-study.md).
 """
 
 import numpy as np
@@ -12,6 +15,9 @@ from runningbond.joints import JointPoints
 from runningbond.scene import Array, Indices
 
 from .time_step import rigid_stiffness
+
+CALMER = 0.4
+"""The joints' viscous damping ratio at the highest frequency where inertia is fictitious."""
 
 
 def inertia_factors(

@@ -11,7 +11,7 @@ from .growth import FAR, Growth
 from .run import Observer, Run, no_observer
 from .state import State
 
-LOADING, LOADING_WEIGHTLESS = 32, 4
+LOADING, LOADING_WEIGHTLESS = 24, 4
 """Times in which the load grows by its first step, in times that the wall takes to rest under that step put on at once.
 
 A wall that is loaded faster slips in several places at once where it would slip in one after the other, and so comes
