@@ -20,7 +20,6 @@ from runningbond.dynamics import (
     Run,
     collapse_by_steps,
     inertia_note,
-    largest_scaling,
     no_observer,
     pushover_curve,
     with_highest_frequency,
@@ -70,7 +69,7 @@ def dem_dynamic(
     start = time.perf_counter()
     finite = is_finite(displacements, "dem-dynamic", scene)
     points = contact_points(scene)
-    run, note = (Run(finite_system(scene), local=MOVING), "") if finite else _small_run(scene)
+    run = Run(finite_system(scene), local=MOVING) if finite else quasi_static_run(scene)
     outcome = collapse_by_steps(
         scene,
         "dem-dynamic",
@@ -80,7 +79,7 @@ def dem_dynamic(
         point_order=np.argsort(points.joint, kind="stable"),
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: proved_bound(scene),
-        note=note,
+        note=inertia_note(run.system.inertia_scaling),
         collapse=collapse,
         first_step=first_step,
         budget=budget,
@@ -89,14 +88,15 @@ def dem_dynamic(
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _small_run(scene: Scene) -> tuple[Run, str]:
-    """Rigid blocks at small displacements, and a note; what leads a wall goes by usual time steps, and minds masses."""
+def quasi_static_run(scene: Scene) -> Run:
+    """Rigid blocks at small displacements under loads that grow slowly, for which their inertia does not matter.
+
+    What leads a wall does so at a speed that goes by usual time steps, and blocks have theirs.
+    """
     system = rigid_system(scene)
     if scene.is_led:
-        return Run(system), ""
-    heavier = with_fictitious_inertia(scene, system)
-    run = Run(with_highest_frequency(heavier, CALMER), viscous=CALMER)
-    return run, inertia_note(largest_scaling(heavier.mass, system.mass))
+        return Run(system)
+    return Run(with_highest_frequency(with_fictitious_inertia(scene, system), CALMER), viscous=CALMER)
 
 
 def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:

@@ -75,7 +75,8 @@ def with_fictitious_inertia(scene: Scene, system: BlockSystem) -> BlockSystem:
     heavier = system.mass.copy()
     heavier[system.rigid] *= factors
     bound = rigid_frequency_squared(*joints, mass * factors, *springs) or 1.0
-    return replace(system, mass=heavier, interface=replace(system.interface, frequency_squared=bound))
+    interface = replace(system.interface, frequency_squared=bound)
+    return replace(system, mass=heavier, interface=interface, inertia_scaling=float(factors.max()))
 
 
 def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: ContactSearch | None = None) -> BlockSystem:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from runningbond.dynamics import BlockSystem, inertia_factors, with_highest_frequency
+from runningbond.dynamics import BlockSystem, inertia_factors, largest_scaling, with_highest_frequency
 from runningbond.joints.wall_points import wall_stiffness
 
 from .mass_scaling import AT_REST, scaled_modes
@@ -26,9 +26,16 @@ def with_fictitious_inertia(wall: ModalWall, system: BlockSystem) -> BlockSystem
     system
         Its blocks.
     """
-    scaled = scaled_modes(_heavier(wall), DAMPING, allowance=AT_REST)
+    rigid = _heavier(wall)
+    scaled = scaled_modes(rigid, DAMPING, allowance=AT_REST)
     interface = replace(system.interface, frequency_squared=scaled.frequency_squared)
-    heavier = replace(system, mass=scaled.mass, viscosity=scaled.viscosity, interface=interface)
+    heavier = replace(
+        system,
+        mass=scaled.mass,
+        viscosity=scaled.viscosity,
+        interface=interface,
+        inertia_scaling=largest_scaling(rigid.mass, wall.mass),
+    )
     return with_highest_frequency(heavier, AT_REST.viscous)
 
 

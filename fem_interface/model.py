@@ -154,7 +154,7 @@ def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
     """What a message says of how the blocks were taken."""
     deformed = wall.stiffness > 0
     factor = largest_scaling(system.mass[deformed], wall.mass[deformed])
-    notes = [inertia_note(largest_scaling(system.mass[~deformed], wall.mass[~deformed]))]
+    notes = [inertia_note(system.inertia_scaling)]
     notes += [f"masses of deformable modes scaled up to {factor:.3g} times"] if factor > 1.005 else []
     note = "; ".join(filter(None, notes))
     note += ", those of soft blocks coupled across joints" if len(system.coupling.freedom) else ""

@@ -155,6 +155,7 @@ class BlockSystem:
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
     rig: Rig | None = None  # what drives its beam at finite displacements
     coupling: Coupling = NOT_COUPLED  # inertia that modes have in common; only where a load alone acts on them
+    inertia_scaling: float = 1.0  # largest factor by which bodies have more inertia than they have (`inertia`)
     clusters: Clusters = NO_CLUSTERS  # bodies with more inertia against one another; without live load on them
     # (3 nb, 3 n) rigid motion of the blocks per rigid motion of the bodies; None where each body is a block
     block_motion: csr_array | None = None

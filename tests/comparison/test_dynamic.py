@@ -4,11 +4,10 @@ from typing import Any
 
 import pytest
 
-from dem.dynamic import dem_dynamic
-from dem.rigid_system import rigid_system
+from dem.dynamic import dem_dynamic, quasi_static_run
 from fem_interface.model import fem
 from runningbond.compare import published_scene
-from runningbond.dynamics import Criteria, Run, load_steps
+from runningbond.dynamics import Criteria, load_steps
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING
@@ -42,7 +41,7 @@ def test_rounded_walls_fall_where_they_should(name: str) -> None:
 def test_bracket_stays_where_it_is(name: str) -> None:
     """Twice the displacement that counts as collapse, half the first load step, half the speed: brackets overlap."""
     scene = rounded(name)
-    run, far = Run(rigid_system(scene)), U_CRIT * scene.block_size
+    run, far = quasi_static_run(scene), U_CRIT * scene.block_size
 
     def bracket(first: float = FIRST_STEP, collapse: float = far, loading: float = LOADING) -> tuple[float, float]:
         found = load_steps(run, first, 0.01, Criteria(collapse=collapse), loading=loading)
@@ -69,7 +68,7 @@ def test_walls_without_weight_are_loaded_slowly_enough(name: str, bound: float) 
     assert outcome.upper is not None
     assert outcome.lower is not None
     assert outcome.lower <= bound * 1.001
-    run = Run(rigid_system(scene))
+    run = quasi_static_run(scene)
     first, criteria = FIRST_STEP / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
     slower = load_steps(run, first, 0.01, criteria, loading=2 * LOADING)
     assert slower.lower == pytest.approx(outcome.lower, rel=0.01)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from dem.rigid_system import rigid_system
+from dem.dynamic import quasi_static_run
 from runningbond.compare.published import published_scene
-from runningbond.dynamics import Criteria, Run, State, drive, load_steps, settle
+from runningbond.dynamics import Criteria, State, drive, load_steps, settle
 from runningbond.dynamics.collapse import U_CRIT
 from runningbond.dynamics.collapse_load import FIRST_STEP
 from runningbond.dynamics.load_stepping import LOADING
@@ -69,7 +69,7 @@ def test_pushed_slowly_walls_peak_at_what_is_certified() -> None:
         assert push_row(W1, steps)["λ"] == pytest.approx(0.58558, rel=0.01)
     scene = published_scene("wall-w1")
     certified = limit_nonassociated(scene, starts=4)
-    run = Run(rigid_system(scene))
+    run = quasi_static_run(scene)
     rest = State.at_rest(run.system)
     assert settle(run, rest, 0.0, Criteria(collapse=0.01)) == "stable"
     assert certified.lower is not None
@@ -96,7 +96,7 @@ def test_a_slender_dry_wall_bears_another_load_in_haste() -> None:
 def test_a_slender_dry_wall_loaded_slower_still_bears_one_load(first_step: float) -> None:
     """Panel-12 at a quarter of the suite's speed, in any load steps: 0.077 to 2 %."""
     scene = published_scene("panel-12")
-    run = Run(rigid_system(scene))
+    run = quasi_static_run(scene)
     first, criteria = first_step / run.system.measure(run.system.live), Criteria(U_CRIT * scene.block_sizes)
     result = load_steps(run, first, BRACKET, criteria, loading=4 * LOADING)
     assert result.lower == pytest.approx(0.077, rel=0.02)

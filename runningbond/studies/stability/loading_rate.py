@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from dem.rigid_system import rigid_system
+from dem.dynamic import quasi_static_run
 from runningbond.compare.published import published_scene
 from runningbond.dynamics import U_CRIT, Criteria, Run, drive, load_steps, settle, settled_drive
 from runningbond.dynamics.collapse_load import FIRST_STEP
@@ -86,7 +86,7 @@ def push_row(name: str, steps: int) -> Row:
 def search_of(name: str) -> tuple[Run, float, Criteria]:
     """What a search for λ of a wall takes: its blocks, its first load step, and when it has fallen."""
     scene = published_scene(name) if name in DRY else known_scene(name)
-    run = Run(rigid_system(scene))
+    run = quasi_static_run(scene)
     far: float | Array = U_CRIT * scene.block_sizes if name in DRY else U_CRIT * scene.block_size
     return run, FIRST_STEP / run.system.measure(run.system.live), Criteria(collapse=far)
 
