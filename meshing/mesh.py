@@ -1,6 +1,7 @@
 """The mesh of a wall: blocks in triangles, joints as elements without thickness between nodes of their own."""
 
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 
@@ -76,7 +77,7 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
     SceneError
         For a number of cells that is none or too large, and where gmsh cannot be loaded.
     """
-    if cells < 1:
+    if isinstance(cells, bool) or not isinstance(cells, Integral) or cells < 1:
         raise SceneError("cells", "must be a whole number, at least 1", cells)
     if 8 * cells**2 * len(scene.blocks) > MOST_TRIANGLES:
         raise SceneError("cells", f"gives more than {MOST_TRIANGLES} triangles; take fewer cells", cells)

@@ -156,7 +156,11 @@ class Wall:
         runningbond.scene.errors.SceneError: joint.friktion = 0.4: is not a key of [joint]; did you mean "friction"?
         """
         description = self._description
+        if not isinstance(changes, Mapping | None):
+            raise SceneError("with_", 'takes values by the full names of keys, {"joint.friction": 0.7}', changes)
         for name, value in (changes or {}).items():
+            if not isinstance(name, str):
+                raise SceneError("with_", 'takes keys by their full names, "joint.friction"', name)
             nested = value
             for part in reversed(name.split(".")):
                 nested = {part: nested}

@@ -7,11 +7,12 @@ import warnings
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass, field
+from numbers import Integral
 from pathlib import Path
 
 from runningbond.models import MODELS, TOLERANCE, Model, check_tolerance, find_model
 from runningbond.results import Outcome, StoreError, load_outcome, save_outcome
-from runningbond.scene import Scene
+from runningbond.scene import Scene, SceneError
 
 from .tasks import Answer, Cell, ClusterError, Task
 
@@ -97,10 +98,14 @@ def run_tasks(
 
     Raises
     ------
+    SceneError
+        For a number of processes that is none.
     Interrupted
         On Ctrl-C, where the folder takes no more or the cluster is lost, with what there is; the same tasks go on
         from there.
     """
+    if isinstance(jobs, bool) or not isinstance(jobs, Integral) or jobs == 0:
+        raise SceneError("jobs", "must be a number of processes, or -1 for one a core", jobs)
     campaign = Campaign()
     scenes = {task.cell: task.scene for task in tasks}
     try:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Integral
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -130,7 +131,7 @@ class Drawing:
     scatter: str = "bits"
 
     def __post_init__(self) -> None:
-        if isinstance(self.number, bool) or not isinstance(self.number, int):
+        if isinstance(self.number, bool) or not isinstance(self.number, Integral):
             raise SceneError("--draws", f"must be a whole {str(NUMBER).removeprefix('a ')}", self.number)
         NUMBER.take("--draws", self.number)
         if self.model.kind != "history":

@@ -160,3 +160,25 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
     axes = Figure().add_subplot()
     assert rb.Wall.running_bond(**PANEL).plot(axes) is axes
     assert axes.has_data()
+
+
+@pytest.mark.parametrize(
+    ("ask", "said"),
+    [
+        (lambda wall: wall.with_("joint.friction"), "with_ = 'joint.friction': takes values by the full names"),
+        (lambda wall: wall.with_({3: 1}), "with_ = 3: takes keys by their full names"),
+        (lambda wall: wall.draws("dem-static", 2, jobs=0), "jobs = 0: must be a number of processes"),
+        (lambda wall: wall.run("fem", cells=1.5), "cells = 1.5: must be a whole number, at least 1"),
+        (lambda wall: wall.run("fem", cells=True), "cells = True: must be a whole number, at least 1"),
+        (lambda wall: wall.run("fem", cells="2"), "cells = '2': must be a whole number, at least 1"),
+    ],
+)
+def test_arguments_of_another_kind_are_refused_by_name(ask: Any, said: str) -> None:
+    with pytest.raises(rb.SceneError, match=re.escape(said)):
+        ask(rb.read("wall-w1"))
+
+
+def test_numbers_of_numpy_are_whole_numbers_too() -> None:
+    number: Any = np.int64(2)
+    draws = rb.read("wall-w1").draws("dem-static", number, jobs=1, tolerance=0.05)
+    assert len(draws.outcomes) == 2

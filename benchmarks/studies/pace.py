@@ -1,0 +1,60 @@
+"""λ of models in motion over the pace at which loads grow, on walls whose load belongs to a history.
+
+Prints a Markdown table, a row a pace and model as it ends: in how many times to rest the load grows by its first step,
+and the range of λ over draws of the wall that differ in their last bits.
+
+    python benchmarks/studies/pace.py panel-12
+    python benchmarks/studies/pace.py --models dem-dynamic --viscous 0.1 panel-12
+"""
+
+import argparse
+from unittest.mock import patch
+
+import numpy as np
+
+import dem.dynamic
+from runningbond.compare import published_scene
+from runningbond.draws import Scatter
+from runningbond.dynamics import CALMER, load_stepping
+from runningbond.dynamics.load_stepping import LOADING
+from runningbond.models import MODELS, run_model
+
+MOVING = ["dem-dynamic", "fem"]
+TOLERANCE = 0.005
+
+
+def row(model: str, name: str, loading: float, draws: int) -> str:
+    """Cells of a row: lowest, median and highest λ, and the mean number of time steps."""
+    found, steps = [], 0
+    with patch.object(load_stepping, "LOADING", loading):
+        for draw in range(draws):
+            outcome = run_model(model, Scatter().draw(published_scene(name), draw), TOLERANCE)
+            steps += (outcome.steps or 0) // draws
+            if outcome.multiplier is not None:
+                found.append(outcome.multiplier)
+    low, middle, high = np.quantile(found, [0, 0.5, 1])
+    return f"{low:.4f} | {middle:.4f} | {high:.4f} | {steps}"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("walls", nargs="+")
+    parser.add_argument("--models", nargs="+", choices=MOVING, default=MOVING)
+    parser.add_argument("--loadings", nargs="+", type=float, default=[12, 16, 20, LOADING, 28, 32, 36])
+    parser.add_argument("--draws", type=int, default=4)
+    parser.add_argument("--viscous", type=float, default=CALMER, help="damping ratio of dem-dynamic's joints")
+    asked = parser.parse_args()
+    assert set(asked.models) <= MODELS.keys()
+    print("| wall | model | times to rest | lowest | median | highest | time steps |")
+    print("|---|---|---|---|---|---|---|")
+    for name in asked.walls:
+        for model in asked.models:
+            for loading in asked.loadings:
+                with patch.object(dem.dynamic, "CALMER", asked.viscous):
+                    cells = row(model, name, loading, asked.draws)
+                print(f"| {name} | `{model}` | {loading:g} | {cells} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
