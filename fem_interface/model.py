@@ -118,7 +118,7 @@ def fem(
         else:
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
-            run = _run_of_longer_steps(wall, system) if mass_scaling else Run(system)
+            run = run_of_longer_steps(wall, system) if mass_scaling else Run(system)
     note = _note(wall, run.system, cracks)
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
@@ -140,7 +140,7 @@ def fem(
     return replace(outcome, seconds=time.perf_counter() - start)
 
 
-def _run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:
+def run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:
     """Blocks with inertia that nobody asks after: pieces of them where a beam leads the wall, else all of them."""
     if wall.scene.is_led:
         return Run(with_heavier_pieces(wall, system))

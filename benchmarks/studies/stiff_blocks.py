@@ -20,14 +20,13 @@ import numpy as np
 from scipy.linalg import eigh
 from threadpoolctl import threadpool_limits
 
-from dem.rigid_system import rigid_system
-from fem_interface.coupled_masses import with_coupled_masses
+from dem.dynamic import quasi_static_run
 from fem_interface.modal_wall import modal_wall
+from fem_interface.model import run_of_longer_steps
 from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.compare.table import bracket
-from runningbond.dynamics import BlockSystem, Run
-from runningbond.dynamics.run import CALMING, LOCAL
+from runningbond.dynamics import Run
 from runningbond.dynamics.vibrations import elastic_stiffness
 from runningbond.models import run_model
 from runningbond.models.second_opinion import share_loads
@@ -86,14 +85,15 @@ def timed(model: str, scene: Scene) -> tuple[Outcome, float]:
         return run_model(model, scene), time.process_time() - start
 
 
-def steps_in_a_period(system: BlockSystem, local: float) -> tuple[float, float]:
-    """Time steps of a run with local damping α in the lowest period, and its frequency [1/s]."""
+def steps_in_a_period(run: Run) -> tuple[float, float]:
+    """Time steps of a run in the lowest period, and its frequency [1/s]."""
+    system = run.system
     stiffness, own = elastic_stiffness(system)
     mass, place = np.diag(own), np.cumsum(np.isfinite(system.mass)) - 1
     coupled = place[system.coupling.freedom]
     mass[np.ix_(coupled, coupled)] += system.coupling.inertia
     frequency = math.sqrt(eigh(stiffness, mass, eigvals_only=True, subset_by_index=(0, 0))[0])
-    return 2 * math.pi / (frequency * Run(system, local=local).dt), frequency
+    return 2 * math.pi / (frequency * run.dt), frequency
 
 
 def periods(names: list[str], moduli: list[float]) -> Iterator[str]:
@@ -102,13 +102,12 @@ def periods(names: list[str], moduli: list[float]) -> Iterator[str]:
     yield "|---|---|---|---|---|---|"
     for name in names:
         scene = wall(name)
-        rigid, _ = steps_in_a_period(rigid_system(scene), LOCAL)
+        rigid, _ = steps_in_a_period(quasi_static_run(scene))
         for young in moduli:
             blocks = modal_wall(scene.with_block(young=1e9 * young))
             system = system_of(blocks)
-            alone, exact = steps_in_a_period(system, LOCAL)
-            coupled = with_coupled_masses(blocks, system)
-            steps, slowed = (alone, exact) if coupled is system else steps_in_a_period(coupled, CALMING)
+            alone, exact = steps_in_a_period(Run(system))
+            steps, slowed = steps_in_a_period(run_of_longer_steps(blocks, system))
             yield f"| {name} | {young:g} | {rigid:.0f} | {alone:.0f} | {steps:.0f} | {1 - slowed / exact:.1%} |"
 
 

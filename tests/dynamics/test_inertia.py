@@ -11,7 +11,7 @@ from dem.dynamic import dem_dynamic, quasi_static_run
 from dem.rigid_system import contact_points, held_masses, rigid_system, with_fictitious_inertia
 from fem_interface import fictitious_inertia
 from fem_interface.modal_wall import modal_wall
-from fem_interface.model import _run_of_longer_steps, fem
+from fem_interface.model import fem, run_of_longer_steps
 from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import (
@@ -148,4 +148,4 @@ def test_blocks_that_a_beam_leads_have_their_own_inertia() -> None:
     assert (run.system.mass == rigid_system(scene).mass).all()
     wall = modal_wall(scene)
     system = system_of(wall)
-    assert (_run_of_longer_steps(wall, system).system.mass == system.mass).all()
+    assert (run_of_longer_steps(wall, system).system.mass == system.mass).all()
