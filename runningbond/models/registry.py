@@ -109,7 +109,7 @@ _EVERY_MODEL = (
     Model(
         *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, INTERFACE, "history"),
         parameters=(*IN_STEPS, "displacements"),
-        cost=Cost(1.6, 1.21, 1.34, weightless=1.2, finer=0.17, start=KERNELS),
+        cost=Cost(1.0, 1.19, 1.40, weightless=1.2, finer=0.17, start=KERNELS),
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
         respond=partial(_late, "dem.dynamic", "dem_response"),
         **_IN_MOTION,
@@ -120,7 +120,7 @@ _EVERY_MODEL = (
     Model(
         *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
         parameters=(*IN_STEPS, *OF_BLOCKS, "displacements"),
-        cost=Cost(5.4, 1.13, 1.44, weightless=1.2, finer=0.16, start=KERNELS, cracked=6.0),
+        cost=Cost(3.2, 1.08, 1.43, weightless=1.4, finer=0.16, start=KERNELS, cracked=10.0),
         pushover=partial(_late, "fem_interface.model", "fem_pushover"),
         respond=partial(_late, "fem_interface.model", "fem_response"),
         **_IN_MOTION,
