@@ -96,7 +96,7 @@ def quasi_static_run(scene: Scene) -> Run:
     system = rigid_system(scene)
     if scene.is_led:
         return Run(system)
-    return Run(with_highest_frequency(with_fictitious_inertia(scene, system), CALMER), viscous=CALMER)
+    return Run(with_highest_frequency(with_fictitious_inertia(scene, system)), viscous=CALMER)
 
 
 def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:

@@ -53,7 +53,7 @@ def rigid_system(scene: Scene) -> BlockSystem:
     order = joint_order(scene)
     points = order.points
     law = kernel_law(scene.joint_materials, scene.material_of_joint[points.joint])
-    bound = largest_frequency_squared(scene, points, law)
+    bound = largest_frequency_squared(scene, points, law, held_masses(scene).reshape(-1, 3))
     interface = Interface(law, points.area, gather_rigid, scatter_rigid, order.runs, bound)
     if order.between is not None:
         kernels = gather_along(gather_rigid), scatter_along(scatter_rigid)
@@ -62,19 +62,12 @@ def rigid_system(scene: Scene) -> BlockSystem:
 
 
 def with_fictitious_inertia(scene: Scene, system: BlockSystem) -> BlockSystem:
-    """Rigid blocks at small displacements that are as slow in each of their motions as in the slowest (`inertia`).
-
-    Those on pins, which move about them, stay as they are.
-    """
-    points, law = contact_points(scene), system.interface.law
-    mass = held_masses(scene).reshape(-1, 3)
-    joints = (points, points.block, scene.blocks.centroid)
-    springs = (law.stiffest, law.shear_stiffness)
-    factors = inertia_factors(*joints, mass, *springs)
-    factors[scene.pins.block] = 1.0
+    """Rigid blocks at small displacements that are as slow in each of their motions as in the slowest (`inertia`)."""
+    points, mass = contact_points(scene), held_masses(scene).reshape(-1, 3)
+    factors = inertia_factors(scene, points, mass)
     heavier = system.mass.copy()
     heavier[system.rigid] *= factors
-    bound = rigid_frequency_squared(*joints, mass * factors, *springs) or 1.0
+    bound = largest_frequency_squared(scene, points, system.interface.law, mass * factors)
     interface = replace(system.interface, frequency_squared=bound)
     return replace(system, mass=heavier, interface=interface, inertia_scaling=float(factors.max()))
 
@@ -123,12 +116,11 @@ def held_masses(scene: Scene) -> Array:
     return np.where(np.repeat(scene.fixed, 3), np.inf, mass_matrix_diagonal(scene))
 
 
-def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw) -> float:
-    """Bound of the system's largest ω² [1/s²].
+def largest_frequency_squared(scene: Scene, points: JointPoints, law: KernelLaw, mass: Array) -> float:
+    """Bound of the largest ω² of blocks with masses ``(nb, 3)`` [1/s²].
 
     A single block held at both corners has no joint and no frequency: it does not move, and any will do.
     """
-    mass = held_masses(scene).reshape(-1, 3)
     normal, shear = law.stiffest, law.shear_stiffness
     return rigid_frequency_squared(points, points.block, scene.blocks.centroid, mass, normal, shear) or 1.0
 

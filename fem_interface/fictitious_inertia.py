@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from runningbond.dynamics import BlockSystem, inertia_factors, largest_scaling, with_highest_frequency
-from runningbond.joints.wall_points import wall_stiffness
 
 from .mass_scaling import AT_REST, scaled_modes
 from .modal_wall import ModalWall
@@ -41,12 +40,7 @@ def with_fictitious_inertia(wall: ModalWall, system: BlockSystem) -> BlockSystem
 
 def _heavier(wall: ModalWall) -> ModalWall:
     """The wall with heavier rigid motions; blocks of one template share the largest factors of any of them."""
-    points, scene = wall.elements.points, wall.scene
-    mass = wall.mass[wall.rigid]
-    springs = wall_stiffness(scene, points.joint, closed=True)
-    factors = inertia_factors(points, points.block, scene.blocks.centroid, mass, *springs)
-    factors[scene.pins.block] = 1.0
-    templates = []
+    factors, templates = inertia_factors(wall.scene, wall.elements.points, wall.mass[wall.rigid]), []
     for template in wall.templates:
         scale = np.ones_like(template.modes.mass)
         scale[:3] = factors[template.blocks].max(axis=0)

@@ -12,7 +12,8 @@ usual ones panel-12 takes one branch or another as the load's pace is changed by
 import numpy as np
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Indices
+from runningbond.joints.wall_points import wall_stiffness
+from runningbond.scene import Array, Scene
 
 from .time_step import rigid_stiffness
 
@@ -20,18 +21,27 @@ CALMER = 0.4
 """The joints' viscous damping ratio at the highest frequency where inertia is fictitious."""
 
 
-def inertia_factors(
-    points: JointPoints, side: Indices, centroid: Array, mass: Array, normal: Array, shear: Array
-) -> Array:
-    """Factors on the masses and on the moment of inertia of each block ``(nb, 3)``, none below one.
+def inertia_factors(scene: Scene, points: JointPoints, mass: Array) -> Array:
+    """Factors on the masses and on the moment of inertia of each block, ``(nb, 3)``, none below one.
 
-    Arguments are those of `rigid_frequency_squared`.
+    Blocks on pins, which move about them, and blocks that are held have none.
+
+    Parameters
+    ----------
+    scene
+        The wall.
+    points
+        Points of its joints.
+    mass : (nb, 3) float
+        Mass, mass and polar moment of inertia of each block [kg, kg, kg m²], inf where it is held.
     """
-    stiffness = np.diagonal(rigid_stiffness(points, side, centroid, mass, normal, shear), axis1=1, axis2=2)
-    square = stiffness / mass
+    normal, shear = wall_stiffness(scene, points.joint, closed=True)
+    stiffness = rigid_stiffness(points, points.block, scene.blocks.centroid, mass, normal, shear)
+    square = np.diagonal(stiffness, axis1=1, axis2=2) / mass
     moving, result = np.flatnonzero(np.isfinite(mass).all(axis=1) & (square > 0).all(axis=1)), np.ones_like(mass)
     if len(moving):
         result[moving] = np.maximum(square[moving] / np.median(square[moving], axis=0).min(), 1.0)
+    result[scene.pins.block] = 1.0
     return result
 
 
