@@ -114,7 +114,7 @@ def load_steps(
     Parameters
     ----------
     first
-        First step of the multiplier.
+        First step of the multiplier; larger where a bound of it is: `GROWTH` of the load up to which it grows faster.
     tolerance
         Relative width of the bracket at which to stop; it stops as well where the criterion of rest sees no more.
     most
@@ -162,6 +162,8 @@ def _search(
         return
     result.add(0.0, state, "stable", None)
     most, farthest, bound = limits
+    # Smaller first steps lead to where loads grow faster in dozens of holds: strong joints bear thousands of them.
+    first = max(first, GROWTH * FAR * bound)
     run = run.held_late(state)
     unhurried, result.steps = _unhurried(run, state, first, criteria, loading)
     step, undecided, in_vain, grows = first, UndecidedLoads(), 0, Growth(run, criteria, FAR * bound, unhurried)

@@ -32,9 +32,9 @@ NO_FORCE = 1e-7
 MOST_PIVOTS = 800
 """Corners after which loads that drive a mechanism are given up, or taken as they are."""
 
-FARTHEST = 10_000
+FARTHEST = 5_000
 """Corners between two programs of a sequence beyond which interior point and crossover take over: in walls of 600
-blocks so many take over a second, and they some tenths."""
+blocks so many take twice as long as they."""
 
 Corners: TypeAlias = "Sequence[highspy.HighsBasis | None]"
 """Corners from which the models of `Programs` start; None is nothing."""
