@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.scene import Array
 
-from .collapse import Criteria, Verdict, hold_load, settle
+from .collapse import CALM, Criteria, Verdict, hold_load, settle
 from .growth import FAR, Growth
 from .run import Observer, Run, no_observer
 from .state import State
@@ -47,6 +47,7 @@ class LoadSteps:
     verdict: Verdict = "undecided"
     borne: State | None = None  # state at rest under `lower`; None if not even the dead load was borne
     fallen: State | None = None  # state in the collapse under `upper`, or under the dead load
+    tried_from: float | None = None  # multiplier at rest from which the load last grew to `upper`
     # (nd,) where the wall was on its way to that collapse, the latest first: half the way before, then each rest
     fall_starts: list[Array] = field(default_factory=list)
     # every state at rest and its multiplier, in order of load
@@ -63,12 +64,16 @@ class LoadSteps:
         """Take note of a load and of the wall under it."""
         self.verdict = verdict
         if self.verdict == "stable":
+            if self.upper is not None and trial >= self.upper:  # on a way with more rests than that of the fall
+                self.upper, self.fallen = None, None
             self.lower, self.borne = trial, state
             self.rests.append((trial, state))
         elif self.verdict == "collapse":
             self.upper, self.fallen = trial, state
             rests = [rest.motion for _, rest in reversed(self.rests)]
             self.fall_starts = rests if halfway is None else [halfway, *rests]
+        if trial == self.upper:
+            self.verdict, self.tried_from = "collapse", self.lower  # it has fallen there, if without an answer now
 
 
 @dataclass(frozen=True)
@@ -109,12 +114,13 @@ def load_steps(
     Every trial starts from the last state at rest, or from the wall as it was when the load grew through that trial
     slowly, so that a fall leaves no trace in the states that count.
     Steps grow while they are borne, so that the first one need not know the answer's size. An undecided load is passed
-    by, just beside it; once a fall is known the bracket closes in on such loads from both sides.
+    by, just beside it; once a fall is known the bracket closes in on such loads from both sides. A wall without weight
+    is in the end brought to the load under which it fell from the largest that it bore, and goes on if it bears it.
 
     Parameters
     ----------
     first
-        First step of the multiplier; larger where a bound of it is: `GROWTH` of the load up to which it grows faster.
+        First step of the multiplier. It is doubled as long as the wall bears it, put on at once, with nothing lost.
     tolerance
         Relative width of the bracket at which to stop; it stops as well where the criterion of rest sees no more.
     most
@@ -133,79 +139,107 @@ def load_steps(
     LoadSteps
         Ctrl-C ends the search with the result so far.
     """
-    result = LoadSteps()
     if loading is None:
         loading = LOADING_WEIGHTLESS if run.system.weightless else LOADING
+    search = _Search(run, first, tolerance, criteria, most, farthest, bound or 0.0, loading, observe)
     try:
-        _search(result, run, first, tolerance, criteria, (most, farthest, bound or 0.0), loading, observe)
+        search.go()
     except KeyboardInterrupt:
-        result.interrupted, result.verdict = True, "undecided"
-    return result
+        search.result.interrupted, search.result.verdict = True, "undecided"
+    return search.result
 
 
-def _search(
-    result: LoadSteps,
-    run: Run,
-    first: float,
-    tolerance: float,
-    criteria: Criteria,
-    limits: tuple[float, float | Array, float],
-    loading: float,
-    observe: Observer,
-) -> None:
-    """Fill in the result of a search as it goes on."""
-    system, state = run.system, State.at_rest(run.system)
-    result.verdict = settle(run, state, 0.0, criteria, observe, sudden=True)
-    result.steps = state.steps
-    if result.verdict != "stable":
-        result.fallen = state
-        return
-    result.add(0.0, state, "stable", None)
-    most, farthest, bound = limits
-    # Smaller first steps lead to where loads grow faster in dozens of holds: strong joints bear thousands of them.
-    first = max(first, GROWTH * FAR * bound)
-    run = run.held_late(state)
-    unhurried, result.steps = _unhurried(run, state, first, criteria, loading)
-    step, undecided, in_vain, grows = first, UndecidedLoads(), 0, Growth(run, criteria, FAR * bound, unhurried)
-    narrowest = RESOLVED * criteria.rest / (system.measure(system.live) or 1.0)
-    while result.width > (enough := max(tolerance * (result.upper or 0.0), narrowest)):
-        if undecided.closed(result, enough):
-            result.verdict = "undecided"
+@dataclass(eq=False)
+class _Search:
+    """A search as it goes on; parameters are those of `load_steps`."""
+
+    run: Run
+    first: float
+    tolerance: float
+    criteria: Criteria
+    most: float
+    farthest: float | Array
+    bound: float  # 0 for none
+    loading: float
+    observe: Observer
+    result: LoadSteps = field(default_factory=LoadSteps)
+    undecided: UndecidedLoads = UndecidedLoads()
+
+    def go(self) -> None:
+        """Fill in the result."""
+        result, system, state = self.result, self.run.system, State.at_rest(self.run.system)
+        result.verdict = settle(self.run, state, 0.0, self.criteria, self.observe, sudden=True)
+        result.steps = state.steps
+        if result.verdict != "stable":
+            result.fallen = state
             return
-        trial = _next_trial(result, step, undecided, tolerance, bound)
-        if trial > most:
-            return
-        growth = 1.0 if trial > DOUBLED_BEYOND * first and not system.weightless else GROWTH
-        (lower, borne), before = result.rests[-1], grows.steps
-        trial, state = grows.reach(trial, borne, lower, (trial - lower) / max(first, growth * trial))
-        held = state.steps
-        verdict, halfway = hold_load(run, state, trial, criteria, observe)
-        taken = grows.steps - before + state.steps - held
-        result.steps += taken
-        result.add(trial, state, verdict, halfway)
-        in_vain += taken if verdict == "undecided" else 0
-        if in_vain > UNDECIDED_BUDGETS * criteria.budget:
-            return
-        undecided = undecided.after(result, trial)
-        if verdict == "stable":
-            if result.upper is None and system.farthest(state.motion - result.rests[0][1].motion, farthest) > 1:
+        result.add(0.0, state, "stable", None)
+        self.run = self.run.held_late(state)
+        grows, in_vain = self._load_at_once(), 0
+        step = max(self.first, GROWTH * result.rests[-1][0])
+        while (trial := self._next_trial(step)) is not None and trial <= self.most:
+            growth = 1.0 if trial > DOUBLED_BEYOND * self.first and not system.weightless else GROWTH
+            (lower, borne), before = result.rests[-1], grows.steps
+            trial, state = grows.reach(trial, borne, lower, (trial - lower) / max(self.first, growth * trial))
+            held = state.steps
+            verdict, halfway = hold_load(self.run, state, trial, self.criteria, self.observe)
+            taken = grows.steps - before + state.steps - held
+            result.steps += taken
+            result.add(trial, state, verdict, halfway)
+            in_vain += taken if verdict == "undecided" else 0
+            if in_vain > UNDECIDED_BUDGETS * self.criteria.budget:
                 return
-            if growth > GROWTH:
-                step = growth * trial
-            elif len(result.rests) % 3 == 0:
-                step = max(step, min(2 * step, GROWTH * trial))
+            self.undecided = self.undecided.after(result, trial)
+            if verdict == "stable":
+                moved = system.farthest(state.motion - result.rests[0][1].motion, self.farthest)
+                if result.upper is None and moved > 1:
+                    return
+                if growth > GROWTH:
+                    step = growth * trial
+                elif len(result.rests) % 3 == 0:
+                    step = max(step, min(2 * step, GROWTH * trial))
+
+    def _load_at_once(self) -> Growth:
+        """Put the first step on at once, and the same again while nothing is lost: elastic walls know no order.
+
+        Returns how the load grows from there.
+        """
+        result, run, criteria = self.result, self.run, self.criteria
+        most = min(self.most, self.bound or self.most)
+        load, (_, dead), grows = self.first, result.rests[0], Growth(run, criteria, FAR * self.bound, 0.0)
+        while load <= max(most, self.first):
+            borne, loaded = result.rests[-1][1], result.rests[-1][1].copy()
+            verdict = settle(run, loaded, load, criteria, sudden=True)
+            taken = loaded.steps - borne.steps
+            result.steps += taken
+            if load == self.first:
+                # A wall that comes to rest slowly is loaded as slowly as the budget allows.
+                unhurried = np.inf if verdict == "undecided" else self.loading * taken
+                grows.unhurried = min(unhurried, criteria.budget)
+            if verdict != "stable" or not loaded.has_lost_nothing_since(borne):
+                break
+            result.add(load, loaded, "stable", None)
+            for _ in range(CALM):  # as often as a rest is looked at: what is on its way there may yet be passed by
+                self.observe(run, loaded, load)
+            grows.softest = run.system.farthest(loaded.motion - dead.motion, criteria.collapse) / load
+            load *= 2
+        return grows
+
+    def _next_trial(self, step: float) -> float | None:
+        """Next load to try; None where the bracket is narrow enough, or around undecided loads."""
+        result, system = self.result, self.run.system
+        narrowest = RESOLVED * self.criteria.rest / (system.measure(system.live) or 1.0)
+        enough = max(self.tolerance * (result.upper or 0.0), narrowest)
+        if result.width > enough:
+            if not self.undecided.closed(result, enough):
+                return _next_load(result, step, self.undecided, self.tolerance, self.bound)
+            result.verdict = "undecided"
+            return None
+        # A wall without weight snaps, and may be carried past a rest where the load comes from far away.
+        return result.upper if system.weightless and result.tried_from != result.lower else None
 
 
-def _unhurried(run: Run, state: State, first: float, criteria: Criteria, loading: float) -> tuple[float, int]:
-    """Steps in which the load comes on by its first one, and those taken until that was known, the wall's included."""
-    probe = state.copy()
-    if settle(run, probe, first, criteria, sudden=True) == "undecided":
-        # A wall that comes to rest slowly is loaded as slowly as the budget allows.
-        return criteria.budget, probe.steps
-    return min(loading * (probe.steps - state.steps), criteria.budget), probe.steps
-
-
-def _next_trial(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float, bound: float) -> float:
+def _next_load(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float, bound: float) -> float:
     """Next load to try: a step up, or the middle of the bracket; beside an undecided load, or well off two."""
     lower, upper = result.lower or 0.0, result.upper
     if not undecided.loads:

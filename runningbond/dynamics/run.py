@@ -258,16 +258,19 @@ class Run:
         # What is held from now on has been damped; the ledger counts the damping of what moves.
         state.absorbed += float(state.damped[late].sum())
         state.damped[late] = 0.0
-        return self._of(system, self._damping)
+        return self._of(system, self.local, self._damping)
 
     @cached_property
     def drifting(self) -> "Run":
-        """The same run with combined damping, which does not drag on what drifts."""
-        return self._of(self.system, "combined")
+        """The same run with combined damping, which does not drag on what drifts, and as little of it as moves far.
 
-    def _of(self, system: BlockSystem, damping: Damping) -> "Run":
+        It drags on what drifts and shakes, the less the less there is of it.
+        """
+        return self._of(self.system, min(self.local, MOVING), "combined")
+
+    def _of(self, system: BlockSystem, local: float, damping: Damping) -> "Run":
         step, part = self._given_step, self._part
-        return Run(system, local=self.local, viscous=self.viscous, dt=step, part=part, damping=damping)
+        return Run(system, local=local, viscous=self.viscous, dt=step, part=part, damping=damping)
 
     def unaccounted(self, state: State, least: float = 0.0) -> float:
         """Share of the work of the loads, or of a least one [J], that the energy ledger misses.

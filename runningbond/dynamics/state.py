@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from runningbond.contacts.search import Contacts
-from runningbond.joints.law import OPENING_BEFORE, SLIP_BEFORE
+from runningbond.joints.law import COMMON_ROWS, FRICTION_WORK, OPENING_BEFORE, SLIP_BEFORE
 from runningbond.scene import Array, Mask
 
 from .system import BlockSystem, Interface
@@ -58,6 +58,12 @@ class State:
         """A state that goes its own way from here."""
         arrays = ("motion", "velocity", "history", "damped", "unbalanced", "bears", "supplied", "stretch")
         return replace(self, **{name: getattr(self, name).copy() for name in arrays})
+
+    def has_lost_nothing_since(self, before: "State") -> bool:
+        """Whether no joint point and no tie has yielded since: it would come back, as elastic bodies do."""
+        kept = [FRICTION_WORK, *range(len(COMMON_ROWS), len(self.history))]
+        same = np.array_equal(self.history[kept], before.history[kept])
+        return same and np.array_equal(self.stretch, before.stretch)
 
 
 def frames_of(interface: Interface, contacts: Contacts | None) -> Mask:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from runningbond.dynamics import Criteria, Run, State, settle
+from runningbond.dynamics.run import MOVING
 from runningbond.dynamics.update import Damping
 from tests.dynamics.test_dynamics import oscillator
 
@@ -72,3 +73,16 @@ def test_a_load_that_is_held_for_long_no_longer_drags(unit: float, verdict: str)
         free = 7 / 8
         exact = 0.25 * (1 - free) ** 2 + 0.5 * (1 - free) * free + 0.5 * free**2
         assert state.motion[0] == pytest.approx(exact * time**2, rel=1e-3)
+
+
+@pytest.mark.parametrize("local", [0.5, MOVING, 0.1])
+def test_what_is_held_for_long_is_damped_no_more_than_what_moves_far(local: float) -> None:
+    """Combined damping of α makes each half swing √((1 − α) / (1 + α)), and drags on what drifts and shakes."""
+    run = Run(replace(oscillator(), stiffness=np.ones(1)), local=local, viscous=0.0, dt=1e-4).drifting
+    state = State.at_rest(run.system)
+    state.motion[0] = 1.0
+    least = min(local, MOVING)
+    # Out of stretch the spring pulls with 1 − α of its force, and into stretch it resists with 1 + α of it.
+    half_swing = math.pi / 2 * (1 / math.sqrt(1 - least) + 1 / math.sqrt(1 + least))
+    run.hold(state, 0.0, round(half_swing / run.dt))
+    assert state.motion[0] == pytest.approx(-math.sqrt((1 - least) / (1 + least)), rel=1e-3)

@@ -9,11 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from dem.rigid_system import contact_points, rigid_system
-from runningbond.dynamics import Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps
+from runningbond.dynamics import U_CRIT, Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps, settle
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.controls import ramp
 from runningbond.dynamics.growth import FASTER, LOOKS, Growth
 from runningbond.dynamics.load_stepping import RESOLVED
+from runningbond.limit import limit
 from runningbond.scene import Array
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
@@ -23,10 +24,11 @@ SIZE = {"wall__length": 0.24, "wall__height": 0.06, "joint__mortar": MORTAR}
 BLOCK = Run(rigid_system(panel(**SIZE)))
 PRESSED = {"gravity": 0.0, "live": {"kind": "point", "at": [0.12, 0.06], "force": [0, -1]}}
 WEIGHTLESS = Run(rigid_system(panel(**SIZE, load=PRESSED)))
+ELASTIC = "has_lost_nothing_since"
 
 
 def searched(
-    answer: Callable[[float], Verdict], tolerance: float = 0.005, bound: float | None = None
+    answer: Callable[[float], Verdict], tolerance: float = 0.005, bound: float | None = None, run: Run = BLOCK
 ) -> tuple[LoadSteps, list[float]]:
     """Search on a wall that gives an answer to each load, and the loads that were tried."""
     tried: list[float] = []
@@ -37,9 +39,9 @@ def searched(
         return answer(multiplier), None
 
     module = "runningbond.dynamics.load_stepping"
-    settle = patch(f"{module}.settle", return_value="stable")
-    with settle, patch(f"{module}.hold_load", hold_load), patch("runningbond.dynamics.growth.ramp"):
-        return load_steps(BLOCK, FIRST, tolerance, Criteria(collapse=1.0), most=10.0, bound=bound), tried
+    settle, slips = patch(f"{module}.settle", return_value="stable"), patch.object(State, ELASTIC, return_value=False)
+    with settle, slips, patch(f"{module}.hold_load", hold_load), patch("runningbond.dynamics.growth.ramp"):
+        return load_steps(run, FIRST, tolerance, Criteria(collapse=1.0), most=10.0, bound=bound), tried
 
 
 def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
@@ -113,6 +115,62 @@ def test_a_bound_that_the_wall_bears_all_the_same_does_not_end_the_search() -> N
     found, tried = searched(lambda load: "stable" if load < 0.5 else "collapse", bound=0.2)
     assert found.lower == pytest.approx(0.5, rel=0.005)
     assert len(tried) < 60
+
+
+def test_a_wall_is_loaded_at_once_as_far_as_it_is_elastic() -> None:
+    """A glued block that bears some λ: from a quarter of it to the half, put on at once, it swings to three quarters.
+
+    So the last load before which nothing is lost is more than a quarter; the block rests there as under a load that
+    grows slowly.
+    """
+    scene = panel(**SIZE, joint__cohesion=1e5, joint__tensile_strength=1e5)
+    run = Run(rigid_system(scene))
+    strong = limit(scene).multiplier
+    assert strong is not None
+    observed: list[float] = []
+    found = load_steps(
+        run, FIRST, 0.01, Criteria(collapse=U_CRIT * 0.06), observe=lambda _run, _state, load: observed.append(load)
+    )
+    loads = [load for load, _ in found.rests]
+    doubled = [load for load in loads[1:] if np.log2(load / FIRST).is_integer()]
+    assert loads[: len(doubled) + 1] == [0.0, *doubled]
+    assert strong / 4 < doubled[-1] < strong
+    assert set(doubled) <= set(observed)
+    dead, (load, borne) = found.rests[0][1], found.rests[len(doubled)]
+    slowly = dead.copy()
+    ramp(run, slowly, 0.0, load, 20_000)
+    assert settle(run, slowly, load, Criteria(collapse=1.0)) == "stable"
+    assert borne.motion - dead.motion == pytest.approx(slowly.motion - dead.motion, rel=1e-3, abs=1e-12)
+    assert found.lower == pytest.approx(strong, rel=0.01)
+
+
+@pytest.mark.parametrize("again", ["stable", "collapse", "undecided"])
+def test_a_wall_without_weight_is_brought_to_its_fall_from_the_largest_load_it_bore(again: Verdict) -> None:
+    """A load under which it falls from far away: where it bears it from near by, the search goes on."""
+    hasty: list[float] = []
+
+    def answer(multiplier: float) -> Verdict:
+        if multiplier in hasty:
+            hasty.append(multiplier)
+            return again
+        if multiplier < (0.7 if again == "stable" and len(hasty) > 1 else 0.4124):
+            return "stable"
+        if multiplier < 0.413:
+            hasty.append(multiplier)
+        return "collapse"
+
+    found, tried = searched(answer, run=WEIGHTLESS)
+    assert len(hasty) == 2
+    assert tried.count(hasty[0]) == 2
+    assert found.verdict == "collapse"
+    assert found.lower is not None
+    assert found.upper is not None
+    assert found.upper - found.lower <= 0.005 * found.upper
+    assert found.tried_from == found.lower
+    if again == "stable":
+        assert found.lower == pytest.approx(0.7, rel=0.005)
+    else:
+        assert found.upper == hasty[-1]
 
 
 def test_a_load_grows_faster_far_below_its_bound_and_where_the_wall_is_as_stiff_as_at_first() -> None:
@@ -206,8 +264,8 @@ def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farthe
         return "collapse", halfway
 
     scene, module = panel(**SIZE), "runningbond.dynamics.load_stepping"
-    settle = patch(f"{module}.settle", return_value="stable")
-    with settle, patch(f"{module}.hold_load", hold_load), patch("runningbond.dynamics.growth.ramp"):
+    settle, slips = patch(f"{module}.settle", return_value="stable"), patch.object(State, ELASTIC, return_value=False)
+    with settle, slips, patch(f"{module}.hold_load", hold_load), patch("runningbond.dynamics.growth.ramp"):
         points, order = contact_points(scene), np.arange(2)
         outcome = collapse_by_steps(
             scene, "", BLOCK, 0.005, points=points, point_order=order, is_self_locking=lambda: False
