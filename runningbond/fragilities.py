@@ -49,8 +49,12 @@ class Fragility:
     left_out: int
 
     def probability(self, intensity: Array | float) -> Array:
-        """Probability of a collapse at intensities [g]."""
-        return np.asarray(ndtr(np.log(np.asarray(intensity) / self.median) / max(self.dispersion, 1e-12)))
+        """Probability of a collapse at intensities [g], not negative, which a `SceneError` refuses."""
+        intensity = np.asarray(intensity, dtype=float)
+        if not (intensity >= 0).all():
+            raise SceneError("intensity", "must be at least 0, in g", intensity.tolist())
+        with np.errstate(divide="ignore"):  # at none
+            return np.asarray(ndtr(np.log(intensity / self.median) / max(self.dispersion, 1e-12)))
 
     def __repr__(self) -> str:
         records = f"{len(self.intensity)} records, {len(self.stood)} under which it stands, {self.left_out} left out"

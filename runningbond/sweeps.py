@@ -10,6 +10,7 @@ from typing import Any
 from .campaigns import Campaign, ctrl_c_passed_on, run_campaign
 from .campaigns.fingerprint import fingerprint
 from .models import TOLERANCE, Model, find_model
+from .results import make_folder
 from .scene import Scene, SceneError
 from .tables import Table, table
 from .wall import Wall
@@ -80,5 +81,6 @@ def _campaign(
 ) -> Campaign:
     with ExitStack() as stack:
         where = Path(folder if folder is not None else stack.enter_context(TemporaryDirectory()))
+        make_folder(where)
         with ctrl_c_passed_on():
             return run_campaign(scenes, [model], folder=where, tolerance=tolerance, jobs=jobs)

@@ -167,3 +167,9 @@ def test_an_interrupted_sweep_is_an_interruption(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(tasks, "run_model", interrupted)
     with pytest.raises(KeyboardInterrupt):
         rb.sweep(WALL, {"joint.friction": [0.3]}, "limit", jobs=1)
+
+
+def test_a_folder_that_is_a_file_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
+    (tmp_path / "kept").write_text("")
+    with pytest.raises(FileExistsError, match="kept"):
+        rb.sweep(WALL, {"joint.friction": [0.2, 0.3]}, "limit", folder=tmp_path / "kept", jobs=1)

@@ -45,6 +45,17 @@ def test_fragility_of_a_block_over_some_records(tmp_path: Path) -> None:
         rb.fragility(wall, str(records[0]), "dem-dynamic")
 
 
+def test_a_fragility_is_of_intensities_that_are_not_negative() -> None:
+    """The normal distribution of the logarithm: none at none, a sixth at a dispersion below the median."""
+    runs = table({"status": ["collapse"]})
+    found = rb.Fragility(np.array([0.5]), np.zeros(0), 0.5, 0.4, (0.4, 0.6), runs, 0)
+    probability = found.probability(np.array([0.0, 0.5 * np.exp(-0.4), 0.5, np.inf]))
+    assert probability == pytest.approx([0.0, norm.cdf(-1.0), 0.5, 1.0], abs=1e-12)
+    for bad in (-1.0, np.array([0.1, np.nan])):
+        with pytest.raises(rb.SceneError, match="intensity = .*: must be at least 0"):
+            found.probability(bad)
+
+
 def test_a_wall_without_a_record_has_no_fragility() -> None:
     with pytest.raises(rb.SceneError, match="load.history.file: is missing"):
         rb.fragility(rb.read("panel-01"), ["a.csv"], "dem-dynamic")
