@@ -5,30 +5,41 @@ and the range of λ over draws of the wall that differ in their last bits.
 
     python benchmarks/studies/pace.py panel-12
     python benchmarks/studies/pace.py --models dem-dynamic --viscous 0.1 panel-12
+    python benchmarks/studies/pace.py --models fem --points joints panel-12
 """
 
 import argparse
+from typing import get_args
 from unittest.mock import patch
 
 import numpy as np
 
 import dem.dynamic
+from fem_interface.model import fem
+from fem_interface.operators import PointsOn
 from runningbond.compare import published_scene
 from runningbond.draws import Scatter
 from runningbond.dynamics import CALMER, load_stepping
 from runningbond.dynamics.load_stepping import LOADING
 from runningbond.models import run_model
+from runningbond.results import Outcome
+from runningbond.scene import Scene
 
 MOVING = ["dem-dynamic", "fem"]
 TOLERANCE = 0.005
 
 
-def row(model: str, name: str, loading: float, draws: int) -> str:
+def outcome_of(model: str, scene: Scene, points: PointsOn) -> Outcome:
+    """Outcome of a model, `fem` with its joint points on elements or on whole joints."""
+    return fem(scene, TOLERANCE, points=points) if model == "fem" else run_model(model, scene, TOLERANCE)
+
+
+def row(model: str, name: str, loading: float, draws: int, points: PointsOn) -> str:
     """Cells of a row: lowest, median and highest λ, and the mean number of time steps."""
     found, steps = [], 0
     with patch.object(load_stepping, "LOADING", loading):
         for draw in range(draws):
-            outcome = run_model(model, Scatter().draw(published_scene(name), draw), TOLERANCE)
+            outcome = outcome_of(model, Scatter().draw(published_scene(name), draw), points)
             steps += (outcome.steps or 0) // draws
             if outcome.multiplier is not None:
                 found.append(outcome.multiplier)
@@ -44,6 +55,9 @@ def main() -> None:
     parser.add_argument("--loadings", nargs="+", type=float, default=[12, 16, 20, LOADING, 28, 32, 36])
     parser.add_argument("--draws", type=int, default=4)
     parser.add_argument("--viscous", type=float, default=CALMER, help="damping ratio of dem-dynamic's joints")
+    parser.add_argument(
+        "--points", choices=get_args(PointsOn), default="elements", help="where fem has its joint points"
+    )
     asked = parser.parse_args()
     print("| wall | model | times to rest | lowest | median | highest | time steps |")
     print("|---|---|---|---|---|---|---|")
@@ -51,7 +65,7 @@ def main() -> None:
         for model in asked.models:
             for loading in asked.loadings:
                 with patch.object(dem.dynamic, "CALMER", asked.viscous):
-                    cells = row(model, name, loading, asked.draws)
+                    cells = row(model, name, loading, asked.draws, asked.points)
                 print(f"| {name} | `{model}` | {loading:g} | {cells} |", flush=True)
 
 
