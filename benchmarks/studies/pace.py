@@ -5,41 +5,34 @@ and the range of λ over draws of the wall that differ in their last bits.
 
     python benchmarks/studies/pace.py panel-12
     python benchmarks/studies/pace.py --models dem-dynamic --viscous 0.1 panel-12
-    python benchmarks/studies/pace.py --models fem --points joints panel-12
+    python benchmarks/studies/pace.py --models fem --points joints --draws 3 panel-12
 """
 
 import argparse
-from typing import get_args
+from typing import Any, get_args
 from unittest.mock import patch
 
 import numpy as np
 
 import dem.dynamic
-from fem_interface.model import fem
 from fem_interface.operators import PointsOn
 from runningbond.compare import published_scene
 from runningbond.draws import Scatter
 from runningbond.dynamics import CALMER, load_stepping
 from runningbond.dynamics.load_stepping import LOADING
 from runningbond.models import run_model
-from runningbond.results import Outcome
-from runningbond.scene import Scene
 
 MOVING = ["dem-dynamic", "fem"]
 TOLERANCE = 0.005
 
 
-def outcome_of(model: str, scene: Scene, points: PointsOn) -> Outcome:
-    """Outcome of a model, `fem` with its joint points on elements or on whole joints."""
-    return fem(scene, TOLERANCE, points=points) if model == "fem" else run_model(model, scene, TOLERANCE)
-
-
 def row(model: str, name: str, loading: float, draws: int, points: PointsOn) -> str:
     """Cells of a row: lowest, median and highest λ, and the mean number of time steps."""
     found, steps = [], 0
+    parameters: dict[str, Any] = {"points": points} if model == "fem" else {}
     with patch.object(load_stepping, "LOADING", loading):
         for draw in range(draws):
-            outcome = outcome_of(model, Scatter().draw(published_scene(name), draw), points)
+            outcome = run_model(model, Scatter().draw(published_scene(name), draw), TOLERANCE, **parameters)
             steps += (outcome.steps or 0) // draws
             if outcome.multiplier is not None:
                 found.append(outcome.multiplier)

@@ -205,25 +205,23 @@ class _Search:
         Returns how the load grows from there.
         """
         result, run, criteria = self.result, self.run, self.criteria
-        most = min(self.most, self.bound or self.most)
-        load, (_, dead), grows = self.first, result.rests[0], Growth(run, criteria, FAR * self.bound, 0.0)
-        while load <= max(most, self.first):
+        dead, load, unhurried, softness = result.rests[0][1], self.first, 0.0, np.inf
+        while load == self.first or load <= min(self.most, self.bound or np.inf):
             borne, loaded = result.rests[-1][1], result.rests[-1][1].copy()
             verdict = settle(run, loaded, load, criteria, sudden=True)
             taken = loaded.steps - borne.steps
             result.steps += taken
             if load == self.first:
                 # A wall that comes to rest slowly is loaded as slowly as the budget allows.
-                unhurried = np.inf if verdict == "undecided" else self.loading * taken
-                grows.unhurried = min(unhurried, criteria.budget)
+                unhurried = criteria.budget if verdict == "undecided" else min(self.loading * taken, criteria.budget)
             if verdict != "stable" or not loaded.has_lost_nothing_since(borne):
                 break
             result.add(load, loaded, "stable", None)
-            for _ in range(CALM):  # as often as a rest is looked at: what is on its way there may yet be passed by
+            for _ in range(CALM):  # observers take a wall to be at rest that is so at as many looks
                 self.observe(run, loaded, load)
-            grows.softest = run.system.farthest(loaded.motion - dead.motion, criteria.collapse) / load
+            softness = run.system.farthest(loaded.motion - dead.motion, criteria.collapse) / load
             load *= 2
-        return grows
+        return Growth(run, criteria, FAR * self.bound, unhurried, softness)
 
     def _next_trial(self, step: float) -> float | None:
         """Next load to try; None where the bracket is narrow enough, or around undecided loads."""

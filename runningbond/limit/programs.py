@@ -34,7 +34,7 @@ MOST_PIVOTS = 800
 
 FARTHEST = 5_000
 """Corners between two programs of a sequence beyond which interior point and crossover take over: in walls of 600
-blocks so many take twice as long as they."""
+blocks so many take longer than they."""
 
 Corners: TypeAlias = "Sequence[highspy.HighsBasis | None]"
 """Corners from which the models of `Programs` start; None is nothing."""
