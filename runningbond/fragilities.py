@@ -57,7 +57,8 @@ class Fragility:
             return np.asarray(ndtr(np.log(intensity / self.median) / max(self.dispersion, 1e-12)))
 
     def __repr__(self) -> str:
-        records = f"{len(self.intensity)} records, {len(self.stood)} under which it stands, {self.left_out} left out"
+        left_out = f"{self.left_out} left out" + (" (`runs` says why)" if self.left_out else "")
+        records = f"{len(self.intensity)} records, {len(self.stood)} under which it stands, {left_out}"
         return f"<Fragility: median {self.median:.3g} g, dispersion {self.dispersion:.3g}; {records}>"
 
 

@@ -52,6 +52,9 @@ def sweep(
         describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
     """
     model = find_model(model)
+    if not isinstance(changes, Mapping):
+        remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
+        raise SceneError("changes", remedy, changes)
     for key, values in changes.items():
         if not isinstance(values, Iterable) or isinstance(values, (str, Mapping)):
             raise SceneError(key, "must be a list of the values that it is to take", values)

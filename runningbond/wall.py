@@ -57,6 +57,8 @@ class Wall:
     """
 
     def __init__(self, description: Mapping[str, Any], folder: str | Path = ".") -> None:
+        if not isinstance(description, Mapping):
+            raise SceneError("description", "must be a mapping of the tables of a scene file", description)
         self._description: dict[str, Any] = _as_in_a_file(description)
         self.folder = Path(folder)
         self.scene  # noqa: B018 - built at once, so that what is wrong is said where it is written

@@ -15,7 +15,7 @@ from fem_interface.model import fem
 from runningbond.commands.command_line import command
 from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.advice import TOLERANCE, Advice, advise, experiment
-from runningbond.compare.advice.climb import together
+from runningbond.compare.advice.climb import Rung, together
 from runningbond.compare.advice.costs import estimate, pace
 from runningbond.compare.advice.experiment import ModelError, error_of, read_errors, write_errors
 from runningbond.compare.advice.knowledge import Knowledge
@@ -397,6 +397,20 @@ def test_a_wall_that_leans_before_it_falls_is_followed_at_finite_displacements()
     assert advice.known.bound is not None
     assert advice.known.bound == pytest.approx(0.4 / (4 * 0.175), rel=1e-6)
     assert 0.9 * advice.known.bound < found.upper < advice.known.bound
+
+
+@pytest.mark.parametrize(("leans_by", "said"), [(0.01, False), (0.5, True)])
+def test_an_answer_at_small_displacements_tells_where_they_are_not_small(leans_by: float, said: bool) -> None:
+    """`Advice` ends with a rung at finite displacements that refused the scene: a curve leans by so many blocks."""
+    found = known(0.41, (0.35, 0.40))
+    size = found.scene.block_size
+    curve = np.array([[0.0, 0.0], [leans_by * size, 0.36]])
+    history = Outcome("", HISTORY.name, "collapse", 0.36, 0.36, 0.37, curve=curve)
+    found.learn(HISTORY, history, draws=[history])
+    refused = Rung(f"{HISTORY.name}, finite", None, Step(None, "refused"), None, 0.0)
+    message = Advice(found, [refused]).outcome().message
+    assert "at small displacements" in message
+    assert ("though they are not small" in message) == said
 
 
 # --- costs and what is printed ----------------------------------------------------------------------------------

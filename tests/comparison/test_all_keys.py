@@ -133,6 +133,12 @@ def test_the_checker_sees_what_is_wrong(array: str, tmp_path: Path) -> None:
     assert "WRONG" in found.stdout
 
 
+def test_the_checker_names_a_folder_without_a_result(tmp_path: Path) -> None:
+    found = subprocess.run([sys.executable, str(SCRIPT), str(tmp_path)], capture_output=True, text=True, check=False)
+    assert found.returncode == 1
+    assert found.stderr == f"{tmp_path}: holds no outcome.json of a limit analysis\n"
+
+
 def test_the_checker_needs_numpy_alone() -> None:
     imported = [line.split()[1] for line in SCRIPT.read_text().splitlines() if line.startswith(("import ", "from "))]
     assert {name.partition(".")[0] for name in imported} <= {*sys.stdlib_module_names, "numpy"}

@@ -167,6 +167,8 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
     [
         (lambda wall: wall.with_("joint.friction"), "with_ = 'joint.friction': takes values by the full names"),
         (lambda wall: wall.with_({3: 1}), "with_ = 3: takes keys by their full names"),
+        (lambda _: rb.Wall.from_dict([1]), "description = [1]: must be a mapping of the tables of a scene file"),  # type: ignore[arg-type]
+        (lambda wall: rb.sweep(wall, [0.4], "limit"), "changes = [0.4]: must be lists of values by the full names"),
         (lambda wall: wall.draws("dem-static", 2, jobs=0), "jobs = 0: must be a number of processes"),
         (lambda wall: wall.run("fem", cells=1.5), "cells = 1.5: must be a whole number, at least 1"),
         (lambda wall: wall.run("fem", cells=True), "cells = True: must be a whole number, at least 1"),

@@ -1,5 +1,6 @@
 """Fragility over a set of records."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -51,6 +52,8 @@ def test_a_fragility_is_of_intensities_that_are_not_negative() -> None:
     found = rb.Fragility(np.array([0.5]), np.zeros(0), 0.5, 0.4, (0.4, 0.6), runs, 0)
     probability = found.probability(np.array([0.0, 0.5 * np.exp(-0.4), 0.5, np.inf]))
     assert probability == pytest.approx([0.0, norm.cdf(-1.0), 0.5, 1.0], abs=1e-12)
+    assert "0 left out>" in repr(found)
+    assert "1 left out (`runs` says why)>" in repr(replace(found, left_out=1))
     for bad in (-1.0, np.array([0.1, np.nan])):
         with pytest.raises(rb.SceneError, match="intensity = .*: must be at least 0"):
             found.probability(bad)
