@@ -137,7 +137,7 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
         For a scene that is not of this kind.
     """
     if scene.extras:
-        raise SceneError(scene.extras[0], "is not taken at finite displacements")
+        raise SceneError(scene.extras[0], "is not taken at finite displacements; leave it out")
     run = Run(finite_system(scene), local=local)
     outline = Outline.of(scene)
     block, at, direction = scene.control_point

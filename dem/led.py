@@ -8,14 +8,15 @@ along the way. The whole way is gone through again in steps half as long until i
 The answer is the largest reaction of a beam's drive along its first move, or the share of the dead load that supports
 bear at the settlement asked for. It is one of a collapse if a mechanism has formed: if over the last tenth of the way
 it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still sheds
-load, where the way ends, and the answer bounds the collapse from one side only.
+load, where the way ends, and the answer bounds the collapse from one side only. A wall at rest on a support that bears
+nothing any more bridges it.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.dynamics.lead import last_leg
+from runningbond.dynamics.lead import UNLOADED, bears_nothing, last_leg
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
@@ -177,6 +178,8 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     so_far = replace(outcome, lower=None if lead.settles else lower, upper=upper if lead.settles else None)
     if run.stopped and not run.fell:
         return replace(so_far, message=f"no answer: at {at} it neither rested nor fell; {what}")
+    if lead.settles and not run.fell and bears_nothing(answers[-1]):
+        return replace(outcome, status="unbounded", message=f"{UNLOADED}; {what}")
     formed = run.fell or _formed(lead, outcome.curve, tolerance)
     if formed and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
         fall = f"; the wall falls at {at}, this is of its last rest" if run.fell else ""

@@ -217,7 +217,7 @@ def fem_pushover(
         For a scene that is not of this kind.
     """
     if scene.extras:
-        raise SceneError(scene.extras[0], "is not taken at finite displacements")
+        raise SceneError(scene.extras[0], "is not taken at finite displacements; leave it out")
     blocks = node_outline(scene, cells, modes)
     run = Run(finite_system(blocks), local=local)
     held, at, direction = scene.control_point

@@ -1,6 +1,6 @@
 """A wall in Python: the tables of a scene file, checked like one, changed by copies, run and drawn."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cached_property
 from os.path import relpath
@@ -125,14 +125,17 @@ class Wall:
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
         table_of = {key: table for table, its_keys in TABLES.items() for key in its_keys}
         table_of |= dict.fromkeys(("first_course", "ends"), "wall")
-        description = {"title": title, "wall": wall, **DEFAULTS}
+        description, tables = {"title": title, "wall": wall, **DEFAULTS}, list[dict[str, Any]]()
         for key, value in keys.items():
             if isinstance(value, (int, float)) and key not in table_of:
                 likely = get_close_matches(key, table_of, n=1)
                 hint = f'; did you mean "{likely[0]}"?' if likely else ""
                 raise SceneError(key, f"is not a key of a wall{hint}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
-            description = _merged(description, {table_of[key]: {key: named}} if key in table_of else {key: named})
+            tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
+        _refuse_given_twice(tables)
+        for table in tables:
+            description = _merged(description, table)
         if ("drive" in keys.get("beam", {}) or "history" in keys) and "live" not in keys:
             description = _merged(description, {"load": {"live": None}})
         return cls(description)
@@ -157,7 +160,7 @@ class Wall:
             ...
         runningbond.scene.errors.SceneError: joint.friktion = 0.4: is not a key of [joint]; did you mean "friction"?
         """
-        description = self._description
+        description, nested_changes = self._description, list[dict[str, Any]]()
         if not isinstance(changes, Mapping | None):
             raise SceneError("with_", 'takes values by the full names of keys, {"joint.friction": 0.7}', changes)
         for name, value in (changes or {}).items():
@@ -166,8 +169,12 @@ class Wall:
             nested = value
             for part in reversed(name.split(".")):
                 nested = {part: nested}
-            description = _merged(description, nested)
-        return Wall(_merged(description, tables), self.folder)
+            nested_changes.append(nested)
+        nested_changes.append(tables)
+        _refuse_given_twice(nested_changes)
+        for change in nested_changes:
+            description = _merged(description, change)
+        return Wall(description, self.folder)
 
     @property
     def description(self) -> dict[str, Any]:
@@ -337,6 +344,25 @@ def _as_in_a_file(value: Any) -> Any:
     if isinstance(value, (np.ndarray, np.generic)):
         return value.tolist()
     return str(value) if isinstance(value, Path) else value
+
+
+def _refuse_given_twice(tables: Iterable[Mapping[str, Any]]) -> None:
+    """Refuse keys, by a `SceneError`, that more than one of some nested tables have."""
+    given: set[str] = set()
+    for table in tables:
+        for name, value in _leaves(table):
+            if name in given:
+                raise SceneError(name, "is given twice; give it once", value)
+            given.add(name)
+
+
+def _leaves(table: Mapping[str, Any], name: str = "") -> Iterator[tuple[str, Any]]:
+    """Full names and values of the keys in nested tables."""
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, f"{name}{key}.")
+        else:
+            yield f"{name}{key}", value
 
 
 def _merged(old: Mapping[str, Any], new: Mapping[str, Any], name: str = "") -> dict[str, Any]:

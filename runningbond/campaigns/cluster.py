@@ -58,6 +58,8 @@ def on_cluster(tasks: Sequence[Task], where: str) -> Iterator[Answer]:
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are reported here, in a line
     try:
         address = json.loads(Path(where).read_bytes())["address"] if Path(where).is_file() else where
+        if ":" not in address:  # no port: a client would try for a minute to go there, and another to give that up
+            raise ValueError(address)
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError, KeyError) as error:
         raise SceneError("--cluster", "is neither the address of a Dask scheduler nor its file", where) from error

@@ -106,6 +106,8 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
     for scene in scenes:
         path = find_scene(scene)
         name = plain_stem(path)
+        if not name.strip("."):
+            raise SceneError(scene, "must have a name before .toml that is more than dots; results are kept by it")
         if name in walls:
             raise SceneError(scene, f'is the second scene called "{name}"; results are kept by file name')
         try:

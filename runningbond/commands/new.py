@@ -1,5 +1,6 @@
 """``runningbond new``: a scene to start from."""
 
+import shlex
 from importlib.resources import files
 from pathlib import Path
 
@@ -26,5 +27,5 @@ def new(file: Path, /) -> int:
     write_atomically(file, files(__package__).joinpath("scene.toml").read_bytes())
     print(f"{file}\nwhat to do next:")
     for line in NEXT:
-        print(f"  runningbond {line.format(file, file.with_suffix('.svg'))}")
+        print("  runningbond", line.format(*(shlex.quote(str(name)) for name in (file, file.with_suffix(".svg")))))
     return DONE

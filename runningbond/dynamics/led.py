@@ -3,7 +3,8 @@
 The whole way is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
 along its first move, or the share of the dead load that supports bear at the settlement asked for. It is one of a
 collapse if a mechanism has formed: if over the last tenth of the way it has changed by less than the tolerance, or the
-wall falls. Else the wall still hardens, or the support still sheds load, where the way ends.
+wall falls. Else the wall still hardens, or the support still sheds load, where the way ends. A wall at rest on a
+support that bears nothing any more bridges it.
 """
 
 from collections.abc import Callable
@@ -18,7 +19,7 @@ from runningbond.results.reactions import AT_REST, WORKS
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, settle
-from .lead import BEAM, Lead, Way, last_leg
+from .lead import BEAM, UNLOADED, Lead, Way, bears_nothing, last_leg
 from .run import CALMING, Observer, Run, Unstable
 from .state import State
 
@@ -164,8 +165,10 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     if way.verdict == "undecided" or len(answers) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
     least, most = _bracket(answers)
-    outcome = replace(outcome, lower=least, upper=most)
     fell = way.verdict == "collapse"
+    if lead.settles and not fell and bears_nothing(least) and bears_nothing(most):
+        return replace(outcome, status="unbounded", message=f"{UNLOADED}; {what}")
+    outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
         still = "the support still sheds load" if lead.settles else "the wall still hardens"
         message = f"no answer: {still} at the displacement asked for, {at}: {number(answers[-1])}; {what}"

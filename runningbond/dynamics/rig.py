@@ -69,7 +69,7 @@ def check_finite(scene: Scene) -> None:
     """Refuse, by a `SceneError`, what models do not know of at finite displacements."""
     for key in scene.extras:
         if key != "load.history" and not ((scene.history or _is_driven(scene)) and key.startswith("beam")):
-            raise SceneError(key, "is not taken at finite displacements")
+            raise SceneError(key, "is not taken at finite displacements; leave it out")
     beam = scene.beam.block if scene.beam else None
     if (scene.pins.block != beam).any():
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')

@@ -52,6 +52,14 @@ def plain_stem(path: Path) -> str:
     return os.fsencode(path.stem).decode(errors="replace")
 
 
+def _title(text: str) -> str:
+    """A title in one line; what no picture can hold in one is refused."""
+    title = " ".join(text.split())
+    if any(letter < " " or letter in "\ufffe\uffff" for letter in title):  # XML knows neither
+        raise SceneError("title", "must be a string without control characters", title)
+    return title
+
+
 def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_title: str = "untitled") -> Scene:
     """Build a scene from the tables of a scene file.
 
@@ -70,7 +78,7 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
         As `read_scene`.
     """
     top = Table("", content)
-    title = " ".join(top.text("title", default_title).split())
+    title = _title(top.text("title", default_title))
     wall, block, joint, support, load = (top.table(key) for key in ("wall", "block", "joint", "support", "load"))
     inner, beam_table = top.optional_table("inner_joint"), top.optional_table("beam")
     material_tables, joint_tables = top.tables_by_name("materials"), top.tables_by_name("joints")

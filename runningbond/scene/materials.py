@@ -10,6 +10,9 @@ from .ranges import ABOVE_ZERO, NotNegative, Positive, Range, check_numbers, one
 Softening: TypeAlias = Literal["linear", "exponential"]
 """How strength falls with a jump: on a straight line, or exponentially (Lourenço & Rots 1997)."""
 
+CAP_SHEAR = 9.0
+"""C_ss of the cap on pressures where none is given."""
+
 LEAST_FRICTION = 1e-6
 """Least tan φ that is not 0: what is smaller is lost in a linear program's tolerance, cohesion / tan φ with it."""
 
@@ -148,7 +151,7 @@ class JointMaterial:
     softening: Softening = "linear"
     compressive_strength: Positive | None = None
     compressive_fracture_energy: Positive | None = None
-    cap_shear: NotNegative = 9.0
+    cap_shear: NotNegative = CAP_SHEAR
     peak_closure: NotNegative = 0.0
     closure: Closure | None = None
     law: object = None
@@ -177,7 +180,8 @@ class JointMaterial:
 
     def _check_crushing(self) -> None:
         energy = self.compressive_fracture_energy
-        if self.compressive_strength is None and (energy is not None or self.peak_closure):
+        shaped = energy is not None or self.peak_closure or self.cap_shear != CAP_SHEAR
+        if self.compressive_strength is None and shaped:
             what = "is missing; a joint that crushes needs a strength"
             raise SceneError("joint.compressive_strength", what)
         if energy is not None and energy <= self.energy_to_peak:

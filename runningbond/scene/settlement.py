@@ -55,6 +55,8 @@ class Settlement(Action):
         object.__setattr__(self, "rotation_angle", angle)
         if self.about is not None:
             object.__setattr__(self, "about", vector("load.live.about", self.about))
+            if not self.rotation_angle:
+                raise SceneError("load.live.rotation_angle", "is missing; about is the point that it turns about")
         object.__setattr__(self, "path", turning_points("load.live.path", self.path))
         if not any(self.by) and not self.rotation_angle:
             raise SceneError("load.live.by", "must move the support, or rotation_angle must turn it", list(self.by))

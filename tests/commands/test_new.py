@@ -1,5 +1,6 @@
 """A newcomer's first minute: a scene to start from, names that are nearly right, and the file that is not."""
 
+import shlex
 import tomllib
 from pathlib import Path
 
@@ -23,6 +24,13 @@ def test_a_new_scene_runs_and_nothing_in_it_looks_like_a_slip(
     assert not warnings(scene)
     assert not scene.notes
     assert limit(scene).status == "collapse"
+
+
+def test_what_to_do_next_can_be_pasted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "my wall.toml"
+    assert command(["new", str(path)]) == 0
+    for line in capsys.readouterr().out.splitlines()[2:]:
+        assert str(path) in shlex.split(line)
 
 
 def test_every_line_of_a_new_scene_is_said_what_it_is(tmp_path: Path) -> None:

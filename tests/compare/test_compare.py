@@ -417,6 +417,16 @@ def test_a_killed_process_loses_one_case_and_no_more(tmp_path: Path) -> None:
     assert "Traceback" not in errors
 
 
+@pytest.mark.parametrize("name", ["..toml", "...toml"])
+def test_a_name_of_dots_is_refused_for_it_names_no_folder(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_toml(content(), tmp_path / name)
+    assert command(["compare", str(tmp_path / name), "--models", "limit", "--out", str(tmp_path / "out")]) == 2
+    assert "must have a name before .toml" in capsys.readouterr().err
+    assert [each.name for each in tmp_path.iterdir()] == [name]
+
+
 def test_a_scene_file_whose_name_is_no_text_is_compared(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tables = content(wall__length=0.48, wall__height=0.24)
     del tables["title"]

@@ -427,3 +427,13 @@ def test_a_recorder_keeps_the_way_that_counts() -> None:
 def test_a_mechanism_has_formed_where_the_force_no_longer_grows(force: list[float], expected: bool) -> None:
     x: Array = np.array([0.0, 0.5, 1.0])
     assert formed(np.column_stack([x, force]), 0.01) == expected
+
+
+@pytest.mark.parametrize("model", [dem_static, *MODELS])
+def test_a_wall_that_does_without_the_support_that_sinks_bridges_it(model: Any) -> None:
+    """The block's weight is over the ground that stays."""
+    box = [[-1.0, -1.0], [0.06, 0.0]]
+    outcome = model(block(load__live={"kind": "settlement", "box": box, "by": [0, -1e-3]}))
+    assert outcome.status == "unbounded"
+    assert "bridges the support" in outcome.message
+    assert (outcome.multiplier, outcome.lower, outcome.upper) == (None, None, None)

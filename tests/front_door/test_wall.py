@@ -167,8 +167,22 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
     [
         (lambda wall: wall.with_("joint.friction"), "with_ = 'joint.friction': takes values by the full names"),
         (lambda wall: wall.with_({3: 1}), "with_ = 3: takes keys by their full names"),
+        (
+            lambda wall: wall.with_({"joint.friction": 0.3}, joint={"friction": 0.4}),
+            "joint.friction = 0.4: is given twice",
+        ),
+        (
+            lambda wall: wall.with_({"joint.friction": 0.3, "joint": {"friction": 0.4}}),
+            "joint.friction = 0.4: is given",
+        ),
+        (lambda _: rb.Wall.running_bond(**PANEL, joint={"friction": 0.4}), "joint.friction = 0.4: is given twice"),
+        (
+            lambda _: rb.Wall.running_bond(**PANEL, live="tilt", load={"live": {"kind": "tilt"}}),
+            "load.live.kind = 'tilt': is",
+        ),
+        (lambda _: rb.Wall.running_bond(**PANEL, title="a\0b"), "title = 'a\\x00b': must be a string without control"),
         (lambda _: rb.Wall.from_dict([1]), "description = [1]: must be a mapping of the tables of a scene file"),  # type: ignore[arg-type]
-        (lambda wall: rb.sweep(wall, [0.4], "limit"), "changes = [0.4]: must be lists of values by the full names"),
+        (lambda wall: rb.sweep(wall, [0.4], "limit"), "changes = [0.4]: must be lists of values by the full names"),  # type: ignore[arg-type]
         (lambda wall: wall.draws("dem-static", 2, jobs=0), "jobs = 0: must be a number of processes"),
         (lambda wall: wall.run("fem", cells=1.5), "cells = 1.5: must be a whole number, at least 1"),
         (lambda wall: wall.run("fem", cells=True), "cells = True: must be a whole number, at least 1"),

@@ -24,6 +24,7 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
     ({"joint__compresive_strength": 1e7}, 'did you mean "compressive_strength"?'),
     ({"joint__compressive_fracture_energy": 5e3}, "joint.compressive_strength: is missing; a joint that crushes"),
     ({"joint__peak_closure": 9e-5}, "joint.compressive_strength: is missing; a joint that crushes"),
+    ({"joint__cap_shear": 3.0}, "joint.compressive_strength: is missing; a joint that crushes"),
     (
         {"joint__compressive_strength": 1e7, "joint__compressive_fracture_energy": 0},
         "joint.compressive_fracture_energy = 0: must be a number above 0",

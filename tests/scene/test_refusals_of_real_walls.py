@@ -104,6 +104,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (live({"kind": "settlement", "box": SINK["box"]}), "load.live[0].by: is missing"),
         (live(SINK | {"box": [[5, 5], [6, 6]]}), "load.live.box = [[5.0, 5.0], [6.0, 6.0]]: holds no ground"),
         (live(SINK | {"rotation_angle": 30}), "load.live[0].rotation_angle = 30.0: must be a number at least -10"),
+        (live(SINK | {"about": [1, 1]}), "load.live[0].rotation_angle: is missing; about is the point"),
         (live(SINK | {"about": [1]}), "load.live[0].about = [1]: must be a pair"),
         (live(SINK | {"path": []}), "load.live[0].path = []: must be a list of finite numbers that are not all zero"),
         (live(SINK | {"path": 2}), "load.live[0].path = 2: must be a list"),
