@@ -26,9 +26,6 @@ SEEN = 10
 STAGES = 20
 """Rests on the way of a settlement."""
 
-UNFELT = 1e-6
-"""Share of the dead load on a support that counts as none."""
-
 UNLOADED = "it bridges the support, which bears nothing of it where the settlement ends"
 
 LOSS = 0.8
@@ -207,11 +204,6 @@ def last_leg(curve: Array) -> Array:
     ways = np.sign(np.diff(curve[:, 0]))
     start = int(np.flatnonzero(ways != ways[-1])[-1]) + 1 if (ways != ways[-1:]).any() else 0
     return np.column_stack([np.abs(curve[start:, 0] - curve[start, 0]), curve[start:, 1]])
-
-
-def bears_nothing(share: float) -> bool:
-    """Whether a support bears no share of the dead load any more, so that a wall at rest does without it."""
-    return abs(share) <= UNFELT
 
 
 def failing(curve: Array) -> int:

@@ -19,7 +19,7 @@ from runningbond.results.reactions import AT_REST, WORKS
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, settle
-from .lead import BEAM, UNLOADED, Lead, Way, bears_nothing, last_leg
+from .lead import BEAM, UNLOADED, Lead, Way, last_leg
 from .run import CALMING, Observer, Run, Unstable
 from .state import State
 
@@ -166,7 +166,7 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
     least, most = _bracket(answers)
     fell = way.verdict == "collapse"
-    if lead.settles and not fell and bears_nothing(least) and bears_nothing(most):
+    if not fell and _stands_without_support(lead, way):
         return replace(outcome, status="unbounded", message=f"{UNLOADED}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
@@ -178,6 +178,15 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
         return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
     fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""
     return replace(outcome, status="collapse", multiplier=answers[-1], message=what + fall)
+
+
+def _stands_without_support(lead: Lead, way: Way) -> bool:
+    """Whether supports that moved bear nothing any more of a wall at rest."""
+    settlement = lead.scene.settlement
+    if settlement is None:
+        return False
+    supports = Supports(lead.scene, lead.points, lead.run.system.owner)
+    return supports.are_idle(settlement.moving(lead.scene), way.points[-1], way.ties[-1])
 
 
 def formed(curve: Array, tolerance: float, least: float | None = None) -> bool:

@@ -14,10 +14,13 @@ from typing import Any
 import numpy as np
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Forces, Indices, Scene
+from runningbond.scene import Array, Forces, Indices, Mask, Scene
 
 WORKS = ("work of the dead load [J]", "work of the live load [J]")
 AT_REST = "at rest"
+
+UNFELT = 1e-6
+"""Force, beside the largest in any joint, that counts as none."""
 
 
 def resultants(body: Indices, at: Array, force: Array, about: Array) -> Array:
@@ -120,6 +123,12 @@ class Supports:
         if not at_rest:
             total[~self._scene.fixed[self.block]] = np.nan
         return np.append(total.ravel(), tie)
+
+    def are_idle(self, blocks: Mask, force: Array, tie: Array) -> bool:
+        """Whether some of the held blocks ``(nb,)`` bear nothing; forces of points and ties as of `reactions`."""
+        of_points, of_ties = blocks[self.block][self._body], blocks[self.block][self._tied]
+        borne = np.append(np.hypot(*force[self._point[of_points]].T), tie[self._tie[of_ties]])
+        return bool(borne.max(initial=0.0) <= UNFELT * np.hypot(*force.T).max(initial=0.0))
 
     def path(
         self,
