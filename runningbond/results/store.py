@@ -4,6 +4,7 @@ A result folder holds ``outcome.json`` and the arrays it names. The arrays are w
 that carries their digest; the JSON file is moved into place last, and only what it vouches for is read.
 """
 
+import errno
 import hashlib
 import io
 import json
@@ -63,6 +64,8 @@ def write_atomically(path: Path, content: bytes) -> None:
 
 def make_folder(folder: Path) -> None:
     """Make a folder and check that files can be written there, before a long computation; an OSError names it."""
+    if folder.exists() and not folder.is_dir():
+        raise FileExistsError(errno.EEXIST, "is no folder; name one, or what is not there yet", str(folder))
     with _errors_named(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder) as file:
