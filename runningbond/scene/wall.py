@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import shapely
@@ -27,6 +27,8 @@ from .segments import Joints, find_joints
 from .settlement import Settlement, cut_ground
 from .supports import NO_PINS, SUPPORT_KINDS, Pins, SupportKind, corner_pins, first_course
 from .ties import NO_TIES, Tie, Ties, place_ties
+
+Material = TypeVar("Material", BlockMaterial, JointMaterial)
 
 SAME_COLUMN = 1e-9
 """Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
@@ -338,6 +340,8 @@ def build_scene(
         assignments,
         None if beam is None else (len(polygons), beam.joint or joint.name),
     )
+    blocks_of, material, no_blocks = _in_use(block_materials, material)
+    joints_of, material_of_joint, no_joints = _in_use(joint_materials, material_of_joint)
     scene = Scene(
         title,
         blocks,
@@ -346,20 +350,31 @@ def build_scene(
         pins,
         found,
         thickness,
-        block_materials,
+        blocks_of,
         material,
-        joint_materials,
+        joints_of,
         material_of_joint,
         load,
         bond,
         place_ties(ties, blocks, fixed),
         beam,
-        tuple(notes),
+        (*notes, *no_blocks, *no_joints),
         part_of,
         tuple(text for _, text in sorted((assigned | of_joints).items())),
     )
     _check(scene)
     return scene
+
+
+def _in_use(materials: Sequence[Material], of: Indices) -> tuple[tuple[Material, ...], Indices, list[str]]:
+    """Materials that anything is of, those of the tables without a name, their numbers, and notes on the others."""
+    kept = np.array([table_of(each) == each.name or bool((of == k).any()) for k, each in enumerate(materials)])
+    notes = [
+        f"{table_of(each)}: nothing is of it; it is left out"
+        for each, keeps in zip(materials, kept, strict=True)
+        if not keeps
+    ]
+    return tuple(each for each, keeps in zip(materials, kept, strict=True) if keeps), (np.cumsum(kept) - 1)[of], notes
 
 
 def _bodies(

@@ -169,7 +169,7 @@ def test_draws_and_responses_are_told_in_a_line() -> None:
     assert repr(rb.Draws(tuple(each), Scatter())) == told
     assert repr(rb.Draws(tuple(each[2:3]), Scatter())) == "<Draws of mine on 'small', bits: 0 of 1 collapse>"
     found = rb.Fragility(np.ones(3), np.ones(1), 0.25, 0.4, (0.2, 0.3), WALL.run("limit").blocks, 2)
-    records = "3 records, 1 under which it stands, 2 left out"
+    records = "3 records, 1 under which it stands, 2 left out (`runs` says why)"
     assert repr(found) == f"<Fragility: median 0.25 g, dispersion 0.4; {records}>"
 
 

@@ -7,6 +7,7 @@ import ezdxf
 import numpy as np
 import pytest
 
+from runningbond.joints import wall_points
 from runningbond.results.scene_arrays import scene_from_arrays, scene_to_arrays
 from runningbond.scene import Scene, read_scene
 from tests.walls import content, panel, write_toml
@@ -104,3 +105,18 @@ def test_a_scene_of_everything_survives_its_file_of_arrays() -> None:
     assert (again.material_of_block == scene.material_of_block).all()
     assert (again.ties.ends == scene.ties.ends).all()
     assert (again.dead_forces.force == scene.dead_forces.force).all()
+
+
+def test_a_material_that_nothing_is_of_changes_nothing_and_is_told() -> None:
+    """Joints that crush would spread pressures over nine points, and be asked for a stiffness."""
+    unused = {
+        "materials": {"oak": {"density": 700.0}},
+        "joints": {"weak": {"friction": 0.1, "compressive_strength": 1e6}},
+    }
+    plain, scene = panel(), panel(**unused)
+    assert (scene.block_materials, scene.joint_materials) == (plain.block_materials, plain.joint_materials)
+    assert len(wall_points(scene)) == len(wall_points(plain))
+    assert scene.notes == (
+        "materials.oak: nothing is of it; it is left out",
+        "joints.weak: nothing is of it; it is left out",
+    )

@@ -18,7 +18,8 @@ from runningbond.studies.walls import KNOWN, known_scene
 from ..walls import content, courses, panel, write_toml
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
-OAK = {"materials": {"oak": {"density": 700.0}}}
+FIRST = {"assign": [{"block": "oak", "blocks": [0]}]}
+OAK = {"materials": {"oak": {"density": 700.0}}} | FIRST
 
 
 def test_no_published_wall_looks_like_a_slip() -> None:
@@ -77,7 +78,7 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         (scaled(0.01, 0.001), "wall.length = 0.0144: is not within 0.05 … 200 m", scaled(0.1, 0.012)),
         ({"wall__thickness": 120.0}, "wall.thickness = 120: is odd for blocks of about 0.12 m; are 120 mm meant?", 3.0),
         ({"wall__thickness": 1e-3}, "wall.thickness = 0.001: is odd for blocks", 0.01),
-        ({"materials": {"oak": {"density": 7.0}}}, "materials.oak.density = 7: * is 7 kN/m³ meant", OAK),
+        ({"materials": {"oak": {"density": 7.0}}} | FIRST, "materials.oak.density = 7: * is 7 kN/m³ meant", OAK),
         (tie(210.0), "tie[0].young = 210: * is 210 GPa meant", tie(2.1e11)),
         (settles(2.0), "load.live.by = 2: moves a support by more than a tenth", settles(0.02)),
     ],
