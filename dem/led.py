@@ -178,7 +178,8 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     so_far = replace(outcome, lower=None if lead.settles else lower, upper=upper if lead.settles else None)
     if run.stopped and not run.fell:
         return replace(so_far, message=f"no answer: at {at} it neither rested nor fell; {what}")
-    if not run.fell and _stands_without_support(lead, run):
+    supports, last = Supports(lead.scene, lead.system.equilibrium.points), run.states[-1]
+    if not run.fell and supports.have_come_free(last.force, last.pull):
         return replace(outcome, status="unbounded", message=f"{UNLOADED}; {what}")
     formed = run.fell or _formed(lead, outcome.curve, tolerance)
     if formed and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
@@ -199,15 +200,6 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
         return replace(outcome, status="unbounded", message=message)
     message = f"no answer: the wall still hardens where its drive ends, which takes {reached}; {what}"
     return replace(so_far, message=message)
-
-
-def _stands_without_support(lead: Lead, run: Run) -> bool:
-    """Whether supports that moved bear nothing any more of a wall at rest."""
-    settlement, state = lead.scene.settlement, run.states[-1]
-    if settlement is None:
-        return False
-    supports = Supports(lead.scene, lead.system.equilibrium.points)
-    return supports.are_idle(settlement.moving(lead.scene), state.force, state.pull)
 
 
 def _formed(lead: Lead, curve: Array, tolerance: float) -> bool:

@@ -166,7 +166,8 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
     least, most = _bracket(answers)
     fell = way.verdict == "collapse"
-    if not fell and _stands_without_support(lead, way):
+    supports = Supports(lead.scene, lead.points, lead.run.system.owner)
+    if not fell and way.points and supports.have_come_free(way.points[-1], way.ties[-1]):
         return replace(outcome, status="unbounded", message=f"{UNLOADED}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
@@ -178,15 +179,6 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
         return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
     fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""
     return replace(outcome, status="collapse", multiplier=answers[-1], message=what + fall)
-
-
-def _stands_without_support(lead: Lead, way: Way) -> bool:
-    """Whether supports that moved bear nothing any more of a wall at rest."""
-    settlement = lead.scene.settlement
-    if settlement is None:
-        return False
-    supports = Supports(lead.scene, lead.points, lead.run.system.owner)
-    return supports.are_idle(settlement.moving(lead.scene), way.points[-1], way.ties[-1])
 
 
 def formed(curve: Array, tolerance: float, least: float | None = None) -> bool:

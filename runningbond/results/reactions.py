@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Forces, Indices, Mask, Scene
+from runningbond.scene import Array, Forces, Indices, Scene
 
 WORKS = ("work of the dead load [J]", "work of the live load [J]")
 AT_REST = "at rest"
@@ -124,9 +124,13 @@ class Supports:
             total[~self._scene.fixed[self.block]] = np.nan
         return np.append(total.ravel(), tie)
 
-    def are_idle(self, blocks: Mask, force: Array, tie: Array) -> bool:
-        """Whether some of the held blocks ``(nb,)`` bear nothing; forces of points and ties as of `reactions`."""
-        of_points, of_ties = blocks[self.block][self._body], blocks[self.block][self._tied]
+    def have_come_free(self, force: Array, tie: Array) -> bool:
+        """Whether there are supports that move, and these bear nothing; forces of points and ties as of `reactions`."""
+        settlement = self._scene.settlement
+        if settlement is None:
+            return False
+        moving = settlement.moving(self._scene)[self.block]
+        of_points, of_ties = moving[self._body], moving[self._tied]
         borne = np.append(np.hypot(*force[self._point[of_points]].T), tie[self._tie[of_ties]])
         return bool(borne.max(initial=0.0) <= UNFELT * np.hypot(*force.T).max(initial=0.0))
 
