@@ -16,11 +16,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.dynamics.lead import UNLOADED, last_leg
+from runningbond.dynamics.lead import last_leg
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
+from runningbond.results.reactions import COME_FREE
 from runningbond.scene import Array
 
 from .lead import Lead
@@ -179,8 +180,8 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     if run.stopped and not run.fell:
         return replace(so_far, message=f"no answer: at {at} it neither rested nor fell; {what}")
     supports, last = Supports(lead.scene, lead.system.equilibrium.points), run.states[-1]
-    if not run.fell and supports.have_come_free(last.force, last.pull):
-        return replace(outcome, status="unbounded", message=f"{UNLOADED}; {what}")
+    if lead.settles and not run.fell and supports.have_come_free(last.force, last.pull):
+        return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     formed = run.fell or _formed(lead, outcome.curve, tolerance)
     if formed and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
         fall = f"; the wall falls at {at}, this is of its last rest" if run.fell else ""

@@ -125,7 +125,7 @@ class Wall:
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
         table_of = {key: table for table, its_keys in TABLES.items() for key in its_keys}
         table_of |= dict.fromkeys(("first_course", "ends"), "wall")
-        description, tables = {"title": title, "wall": wall, **DEFAULTS}, list[dict[str, Any]]()
+        tables: list[dict[str, Any]] = []
         for key, value in keys.items():
             if isinstance(value, (int, float)) and key not in table_of:
                 likely = get_close_matches(key, table_of, n=1)
@@ -133,9 +133,7 @@ class Wall:
                 raise SceneError(key, f"is not a key of a wall{hint}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
-        _refuse_given_twice(tables)
-        for table in tables:
-            description = _merged(description, table)
+        description = _changed({"title": title, "wall": wall, **DEFAULTS}, tables)
         if ("drive" in keys.get("beam", {}) or "history" in keys) and "live" not in keys:
             description = _merged(description, {"load": {"live": None}})
         return cls(description)
@@ -160,7 +158,7 @@ class Wall:
             ...
         runningbond.scene.errors.SceneError: joint.friktion = 0.4: is not a key of [joint]; did you mean "friction"?
         """
-        description, nested_changes = self._description, list[dict[str, Any]]()
+        nested_changes: list[dict[str, Any]] = []
         if not isinstance(changes, Mapping | None):
             raise SceneError("with_", 'takes values by the full names of keys, {"joint.friction": 0.7}', changes)
         for name, value in (changes or {}).items():
@@ -170,11 +168,7 @@ class Wall:
             for part in reversed(name.split(".")):
                 nested = {part: nested}
             nested_changes.append(nested)
-        nested_changes.append(tables)
-        _refuse_given_twice(nested_changes)
-        for change in nested_changes:
-            description = _merged(description, change)
-        return Wall(description, self.folder)
+        return Wall(_changed(self._description, [*nested_changes, tables]), self.folder)
 
     @property
     def description(self) -> dict[str, Any]:
@@ -346,14 +340,16 @@ def _as_in_a_file(value: Any) -> Any:
     return str(value) if isinstance(value, Path) else value
 
 
-def _refuse_given_twice(tables: Iterable[Mapping[str, Any]]) -> None:
-    """Refuse keys, by a `SceneError`, that more than one of some nested tables have."""
+def _changed(description: dict[str, Any], changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
+    """A description with nested tables put in; a key that two of them have is refused by a `SceneError`."""
     given: set[str] = set()
-    for table in tables:
-        for name, value in _leaves(table):
+    for change in changes:
+        for name, value in _leaves(change):
             if name in given:
                 raise SceneError(name, "is given twice; give it once", value)
             given.add(name)
+        description = _merged(description, change)
+    return description
 
 
 def _leaves(table: Mapping[str, Any], name: str = "") -> Iterator[tuple[str, Any]]:

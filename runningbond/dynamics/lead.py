@@ -26,7 +26,6 @@ SEEN = 10
 STAGES = 20
 """Rests on the way of a settlement."""
 
-UNLOADED = "it bridges the support, which bears nothing of it where the settlement ends"
 
 LOSS = 0.8
 """Share of the largest force to which it falls where the wall has failed, and its mechanism is drawn."""

@@ -15,11 +15,11 @@ import numpy as np
 from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
-from runningbond.results.reactions import AT_REST, WORKS
+from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import Criteria, settle
-from .lead import BEAM, UNLOADED, Lead, Way, last_leg
+from .lead import BEAM, Lead, Way, last_leg
 from .run import CALMING, Observer, Run, Unstable
 from .state import State
 
@@ -167,8 +167,8 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     least, most = _bracket(answers)
     fell = way.verdict == "collapse"
     supports = Supports(lead.scene, lead.points, lead.run.system.owner)
-    if not fell and way.points and supports.have_come_free(way.points[-1], way.ties[-1]):
-        return replace(outcome, status="unbounded", message=f"{UNLOADED}; {what}")
+    if lead.settles and not fell and supports.have_come_free(way.points[-1], way.ties[-1]):
+        return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
         still = "the support still sheds load" if lead.settles else "the wall still hardens"

@@ -14,13 +14,16 @@ from typing import Any
 import numpy as np
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Forces, Indices, Scene
+from runningbond.scene import Array, Forces, Indices, Mask, Scene
 
 WORKS = ("work of the dead load [J]", "work of the live load [J]")
 AT_REST = "at rest"
 
 UNFELT = 1e-6
 """Force, beside the largest in any joint, that counts as none."""
+
+COME_FREE = "it bridges the support, which bears nothing of it where the settlement ends"
+"""What is said of a wall at rest whose supports have come free."""
 
 
 def resultants(body: Indices, at: Array, force: Array, about: Array) -> Array:
@@ -125,11 +128,8 @@ class Supports:
         return np.append(total.ravel(), tie)
 
     def have_come_free(self, force: Array, tie: Array) -> bool:
-        """Whether there are supports that move, and these bear nothing; forces of points and ties as of `reactions`."""
-        settlement = self._scene.settlement
-        if settlement is None:
-            return False
-        moving = settlement.moving(self._scene)[self.block]
+        """Whether the supports that move bear nothing; forces of points and ties as of `reactions`."""
+        moving: Mask = self._scene.support_motion[self.block].any(axis=1)
         of_points, of_ties = moving[self._body], moving[self._tied]
         borne = np.append(np.hypot(*force[self._point[of_points]].T), tie[self._tie[of_ties]])
         return bool(borne.max(initial=0.0) <= UNFELT * np.hypot(*force.T).max(initial=0.0))

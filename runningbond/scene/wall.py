@@ -340,8 +340,8 @@ def build_scene(
         assignments,
         None if beam is None else (len(polygons), beam.joint or joint.name),
     )
-    blocks_of, material, no_blocks = _in_use(block_materials, material)
-    joints_of, material_of_joint, no_joints = _in_use(joint_materials, material_of_joint)
+    block_materials, material, no_blocks = _in_use(block_materials, material)
+    joint_materials, material_of_joint, no_joints = _in_use(joint_materials, material_of_joint)
     scene = Scene(
         title,
         blocks,
@@ -350,9 +350,9 @@ def build_scene(
         pins,
         found,
         thickness,
-        blocks_of,
+        block_materials,
         material,
-        joints_of,
+        joint_materials,
         material_of_joint,
         load,
         bond,
@@ -368,13 +368,10 @@ def build_scene(
 
 def _in_use(materials: Sequence[Material], of: Indices) -> tuple[tuple[Material, ...], Indices, list[str]]:
     """Materials that anything is of, those of the tables without a name, their numbers, and notes on the others."""
-    kept = np.array([table_of(each) == each.name or bool((of == k).any()) for k, each in enumerate(materials)])
-    notes = [
-        f"{table_of(each)}: nothing is of it; it is left out"
-        for each, keeps in zip(materials, kept, strict=True)
-        if not keeps
-    ]
-    return tuple(each for each, keeps in zip(materials, kept, strict=True) if keeps), (np.cumsum(kept) - 1)[of], notes
+    kept = [k for k, each in enumerate(materials) if table_of(each) == each.name or (of == k).any()]
+    unused = [each for k, each in enumerate(materials) if k not in kept]
+    notes = [f"{table_of(each)}: nothing is of it; it is left out" for each in unused]
+    return tuple(materials[k] for k in kept), np.searchsorted(kept, of), notes
 
 
 def _bodies(
