@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from runningbond.joints import JointPoints
-from runningbond.scene import Array, Forces, Indices, Mask, Scene
+from runningbond.scene import Array, Forces, Indices, Scene
 
 WORKS = ("work of the dead load [J]", "work of the live load [J]")
 AT_REST = "at rest"
@@ -129,7 +129,7 @@ class Supports:
 
     def have_come_free(self, force: Array, tie: Array) -> bool:
         """Whether the supports that move bear nothing; forces of points and ties as of `reactions`."""
-        moving: Mask = self._scene.support_motion[self.block].any(axis=1)
+        moving = np.asarray(self._scene.support_motion[self.block].any(axis=1))
         of_points, of_ties = moving[self._body], moving[self._tied]
         borne = np.append(np.hypot(*force[self._point[of_points]].T), tie[self._tie[of_ties]])
         return bool(borne.max(initial=0.0) <= UNFELT * np.hypot(*force.T).max(initial=0.0))
