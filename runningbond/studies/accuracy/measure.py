@@ -35,7 +35,7 @@ def measure(name: str, model: str, parameter: str, setting: str) -> Row:
     if interval is not None:
         row |= {"answer_low": interval[0], "answer_high": interval[1]}
     brought_down = wall.question == "collapse"
-    ask(wall.question, model, accuracy_walls()["block-slides"].scene if brought_down else wall.scene, settings)
+    ask(wall.question, model, accuracy_walls()["stack-of-5"].scene if brought_down else wall.scene, settings)
     if brought_down:
         ask(wall.question, REFERENCE, wall.scene, {})
     spent: dict[str, list[float]] = {"wall_s": [], "cpu_s": [], "ratio": []}
