@@ -214,11 +214,8 @@ def stands_under_dead_load(system: Equilibrium) -> bool | None:
     dry = system.without_strength(system.dead)
     if solve_forces(dry, frozen_friction(dry.strength, np.zeros(len(dry.points))), "zero").status == "optimal":
         return True
-    for method in ("highs-ds", "highs-ipm"):
-        status = solve_forces(system, coulomb(system.strength), "zero", method=method).status
-        if status in ("optimal", "infeasible"):
-            return status == "optimal"
-    return None
+    status = solve_forces(system, coulomb(system.strength), "zero").status
+    return status == "optimal" if status in ("optimal", "infeasible") else None
 
 
 def is_self_locking(scene: Scene) -> bool:

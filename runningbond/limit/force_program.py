@@ -13,7 +13,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from scipy.optimize import OptimizeResult, linprog
-from scipy.sparse import csc_array, hstack
+from scipy.sparse import csc_array, hstack, identity
 
 from runningbond.joints import PointStrength
 from runningbond.scene import Array
@@ -25,6 +25,9 @@ Aim: TypeAlias = Literal["largest", "smallest", "zero"]
 
 ProgramStatus: TypeAlias = Literal["optimal", "budget", "infeasible", "unbounded", "numerical"]
 STATUS: dict[int, ProgramStatus] = {0: "optimal", 1: "budget", 2: "infeasible", 3: "unbounded", 4: "numerical"}
+
+BALANCED = 1e-6
+"""Sum of unbalanced forces, in force units, below which a load is held to be balanced."""
 
 LOOK = 0.5
 """Seconds after which one who waits for a program looks up."""
@@ -153,14 +156,60 @@ def solve_program(program: dict[str, Any], method: str) -> OptimizeResult:
 def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *, method: str = "") -> ForceSolution:
     """Solve `force_program`: by interior point and crossover, or by simplex where nothing is optimised."""
     method = method or ("highs-ds" if aim == "zero" else "highs-ipm")
-    result = solve_program(force_program(system, forces, aim), method)
-    status = STATUS[int(result.status)]
+    program = force_program(system, forces, aim)
+    plain, of_rays = np.ones(len(program["c"])), ray_units(forces, len(program["c"]))
+    elastic = [(of_rays, _least_unbalanced), (plain, _least_unbalanced)] if aim == "zero" else []
+    for unit, solve in ((plain, _solved), (of_rays, _solved), *elastic):
+        status, result = solve(in_units(program, unit), method)
+        if status != "numerical":
+            break
     if result.x is None or status != "optimal":
         none = np.zeros(0)
         return ForceSolution(status, np.nan, none, none, none, none, int(result.nit))
-    return solution_of(
-        system, forces, status, np.asarray(result.x), np.asarray(result.eqlin.marginals), int(result.nit)
-    )
+    marginals = np.asarray(result.eqlin.marginals)
+    return solution_of(system, forces, status, result.x * unit, marginals, int(result.nit))
+
+
+def ray_units(forces: ForceSet, n: int) -> Array:
+    """Units ``(n,)`` of a program's unknowns in which no ray bears more shear than it is.
+
+    HiGHS forgives pressures of -1e-7, of which a tan φ of 1e6 makes a tenth of a block's weight.
+    """
+    slopes = np.abs(np.concatenate(forces.slopes))
+    return np.append(1 / slopes.clip(min=1.0), np.ones(n - len(slopes)))
+
+
+def in_units(program: dict[str, Any], unit: Array) -> dict[str, Any]:
+    """A program whose unknowns are measured in units ``(n,)``."""
+    bounds = program["bounds"] / unit[:, None]
+    return {**program, "c": program["c"] * unit, "A_eq": program["A_eq"] * unit, "bounds": bounds}
+
+
+def _solved(program: dict[str, Any], method: str) -> tuple[ProgramStatus, OptimizeResult]:
+    result = solve_program(program, method)
+    return STATUS[int(result.status)], result
+
+
+def _least_unbalanced(program: dict[str, Any], method: str) -> tuple[ProgramStatus, OptimizeResult]:
+    """Whether forces balance the load, from those that leave the least of it unbalanced.
+
+    Such forces there always are, and a mechanism beside them, where HiGHS loses a program without any: it cannot tell
+    with a tan φ of 1e6 whether a wall rests on its corners, and leaves whole weights unbalanced here.
+    """
+    n_equations, n = program["A_eq"].shape
+    unbalanced = identity(n_equations, format="csc")
+    elastic = {
+        "c": np.append(np.zeros(n), np.ones(2 * n_equations)),
+        "A_eq": hstack([program["A_eq"], unbalanced, -unbalanced], format="csc"),
+        "b_eq": program["b_eq"],
+        "bounds": np.vstack([program["bounds"], np.tile([0.0, np.inf], (2 * n_equations, 1))]),
+    }
+    status, result = _solved(elastic, method)
+    if result.x is None or status != "optimal":
+        return status, result
+    balanced = result.x[n:].sum() <= BALANCED
+    result["x"] = result.x[:n]
+    return "optimal" if balanced else "infeasible", result
 
 
 def solution_of(

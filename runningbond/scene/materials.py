@@ -13,8 +13,11 @@ Softening: TypeAlias = Literal["linear", "exponential"]
 CAP_SHEAR = 9.0
 """C_ss of the cap on pressures where none is given."""
 
-LEAST_FRICTION = 1e-6
-"""Least tan φ that is not 0: what is smaller is lost in a linear program's tolerance, cohesion / tan φ with it."""
+LEAST_FRICTION, MOST_FRICTION = 1e-6, 1e6
+"""Least tan φ that is not 0: what is smaller is lost in a linear program's tolerance, cohesion / tan φ with it.
+
+The largest is where normal forces that decide are lost beside the shear that they allow.
+"""
 
 
 @dataclass(frozen=True)
@@ -215,7 +218,9 @@ class JointMaterial:
 
 
 def check_friction(key: str, friction: float, value: float) -> None:
-    """Refuse a tan φ too small to tell from none, given as a value under some key."""
+    """Refuse a tan φ too small to tell from none, or too large to tell from no slip; the value is what was given."""
+    if friction > MOST_FRICTION:
+        raise SceneError(key, f"must be such that tan φ ≤ {MOST_FRICTION:g}, with which no joint slides", value)
     if 0.0 < friction < LEAST_FRICTION:
         what = f"must be 0, for joints without friction, or such that tan φ ≥ {LEAST_FRICTION:g}"
         raise SceneError(key, what, value)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import approx_fprime
+from scipy.optimize import approx_fprime, linprog
 
 from runningbond.joints import joint_points
 from runningbond.limit import equilibrium, is_self_locking, limit, limit_nonassociated, limit_state
@@ -30,6 +30,7 @@ from runningbond.scene import (
     Load,
     PointLoad,
     Scene,
+    SceneError,
     build_scene,
     scene_from_dict,
 )
@@ -394,6 +395,31 @@ def test_friction_without_bound_is_proved_too() -> None:
     outcome = limit(scene)
     assert outcome.status == "collapse"
     assert outcome.lower == pytest.approx(0.016 / 0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("friction", [10.0, 1e3, 1e4, 1e5, 3e5, 1e6])
+@pytest.mark.parametrize(("columns", "rows"), [(2, 5), (3, 3), (4, 1)])
+def test_no_friction_holds_a_wall_on_its_corners(columns: int, rows: int, friction: float) -> None:
+    """Blocks come apart without any slip, which no friction resists: HiGHS alone cannot tell from tan φ = 3000 on."""
+    size = {"wall__length": 0.2 * columns, "wall__height": 0.1 * rows, "wall__block_width": 0.2}
+    scene = panel(**size, wall__block_height=0.1, support__kind="corners", joint__friction=friction)
+    system = equilibrium(scene).under_dead_load()
+    parts = linprog(
+        -system.dead,
+        A_ub=system.opening.T.toarray(),
+        b_ub=np.zeros(len(system.points)),
+        A_eq=np.vstack([system.slip.T.toarray(), system.reaction.T.toarray()]),
+        b_eq=np.zeros(len(system.points) + system.reaction.shape[1]),
+        bounds=(-1, 1),
+    )
+    assert parts.fun is not None
+    assert parts.fun < -0.1  # in weights of a block
+    assert limit(scene).status == "infeasible"
+
+
+def test_more_friction_than_programs_can_tell_from_no_slip_is_refused() -> None:
+    with pytest.raises(SceneError, match=r"joint\.friction = 10000000\.0: must be such that tan φ ≤ 1e\+06"):
+        panel(joint__friction=1e7)
 
 
 @pytest.mark.parametrize("model", [limit, limit_nonassociated])
