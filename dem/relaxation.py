@@ -159,6 +159,8 @@ def _creep(
                 best, kept = error, (tried, dragged, answer, left)
             if error < (1 - share / 4) * size:
                 break
+        if not np.isfinite(best):
+            return None, taken
         x, drag, response, residual = kept
         size, tangent = best, response.tangent
         if size <= max(FOLLOWED * _norm(drag), EXACT * _largest(response)):

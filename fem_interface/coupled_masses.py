@@ -8,7 +8,7 @@ at ω if
 
     K ≤ ω² M*,   M* = diag(m_r) + (1 + a) K_rr / ω²  ⊕  diag(m_d + β (k_b + (1 + 1/a) s) / ω²),
 
-whatever ω is, with K_rr the closed joints' stiffness in the rigid motions, k_b the blocks' in their deformations d and
+whatever ω is, with K_rr the joints' largest stiffness in the rigid motions, k_b the blocks' in their deformations d and
 s the joints' in these, summed to a diagonal that is no smaller. For jumps are sums of both parts, and for any a > 0
 (u_r + u_d)² ≤ (1 + a) u_r² + (1 + 1/a) u_d². What is at rest knows no masses (`olovsson2005`).
 """
@@ -63,7 +63,7 @@ def with_coupled_masses(wall: ModalWall, system: BlockSystem) -> BlockSystem:
     rigid = (wall.stiffness == 0)[moving]
     if more or (~scene.fixed).sum() > LARGEST or rigid.all() or not rigid.any():
         return system
-    stiffness, mass = elastic_stiffness(wall), wall.mass[moving]
+    stiffness, mass = elastic_stiffness(wall, closed=True), wall.mass[moving]
     of_rigid, square = undeformed_frequency_squared(wall), system.interface.frequency_squared
     slow, slow_rigid = _lowest(stiffness, mass, square), _lowest(stiffness[rigid][:, rigid], mass[rigid], square)
     # Steps of a period, squared, but for a factor that is the same for both.

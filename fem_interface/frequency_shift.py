@@ -21,8 +21,11 @@ DENSE = 400
 """Coordinates of a body up to which its matrices are taken as full ones."""
 
 
-def elastic_stiffness(wall: ModalWall) -> csr_array:
-    """Stiffness of a wall whose joints are all closed, in the coordinates that move, ``(n, n)`` [N/m]."""
+def elastic_stiffness(wall: ModalWall, *, closed: bool = False) -> csr_array:
+    """Stiffness of a wall none of whose joints is open, in the coordinates that move, ``(n, n)`` [N/m].
+
+    Joints that close under pressure are as stiff as without any, or, where they are `closed`, as they ever get.
+    """
     of_node, of_coordinate, values = [], [], []
     for template, first in zip(wall.templates, wall.first, strict=False):
         n, shape = len(template.blocks), template.modes.shape
@@ -33,9 +36,9 @@ def elastic_stiffness(wall: ModalWall) -> csr_array:
     entries = [np.concatenate([part.ravel() for part in parts]) for parts in (values, of_node, of_coordinate)]
     basis = csr_array((entries[0], (entries[1], entries[2])), shape=(2 * len(wall.mesh.points), len(wall.mass)))
     jump, points = nodal_jump(wall.elements, len(wall.mesh.points)), wall.elements.points
-    moving = np.flatnonzero(np.isfinite(wall.mass))
+    moving, springs = np.flatnonzero(np.isfinite(wall.mass)), wall_stiffness(wall.scene, points.joint, closed=closed)
     result = diags_array(wall.stiffness).tocsr()
-    for operator, stiffness in zip((jump.opening, jump.slip), wall_stiffness(wall.scene, points.joint), strict=True):
+    for operator, stiffness in zip((jump.opening, jump.slip), springs, strict=True):
         B = operator @ basis
         result = result + B.T @ (B * (stiffness * points.area)[:, None])
     return csr_array(result[moving][:, moving])

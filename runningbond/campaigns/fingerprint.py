@@ -20,7 +20,7 @@ COMPUTING_ROOMS = (  # packages in which a change can change a number
     *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics", "response")),
     *("meshing", "fem_interface", "dem", "homog", "runningbond.models"),
 )
-LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh")
+LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh", "clarabel", "highspy")
 
 
 def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:

@@ -15,16 +15,15 @@ from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
 
 from .terminal import (
-    BAD_INPUT,
     DONE,
     NO_ANSWER,
-    STOPPED,
     Flag,
     Tolerance,
     check_jobs,
     print_table,
     progress_bar,
     remarks,
+    told_interruption,
 )
 
 
@@ -87,11 +86,7 @@ def compare(
     except Interrupted as stopped:
         again = "the same command without --fresh" if fresh else "the same command"
         kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
-        why = f"runningbond: {stopped.reason}" if stopped.reason else "Interrupted"
-        print(f"{why}: {kept}", file=sys.stderr)
-        if isinstance(stopped.__cause__, OSError):
-            return BAD_INPUT
-        return NO_ANSWER if stopped.reason else STOPPED
+        return told_interruption(stopped, kept)
     _report(Comparison(walls, chosen, campaign, published), out, tolerance)
     failed = [(cell, outcome.message) for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for cell, message in failed:

@@ -22,7 +22,6 @@ from runningbond.scene import Scene, SceneError, read_scene
 
 from .left_behind import CURVE_FILES, DRAWS, remove_older
 from .terminal import (
-    BAD_INPUT,
     DONE,
     NO_ANSWER,
     STOPPED,
@@ -39,6 +38,7 @@ from .terminal import (
     remarks,
     tell_cost,
     together,
+    told_interruption,
 )
 
 
@@ -124,8 +124,7 @@ def _draws(
     except Interrupted as stopped:
         kept = "nothing is kept without --out" if folder is None else f"{stopped.campaign.kept} of {number} draws are "
         kept += "" if folder is None else f"kept in {folder}; the same command goes on."
-        print(f"{f'runningbond: {stopped.reason}' if stopped.reason else 'Interrupted'}: {kept}", file=sys.stderr)
-        return BAD_INPUT if stopped.reason else STOPPED
+        return told_interruption(stopped, kept)
     for line in remarks(wall):
         print(line, file=sys.stderr)
     outcome = found.outcomes[0]

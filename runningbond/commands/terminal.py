@@ -15,6 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
+from runningbond.campaigns import Interrupted
 from runningbond.compare.advice.costs import estimate
 from runningbond.models import Model
 from runningbond.pictures.offscreen import why_not_drawn
@@ -56,6 +57,14 @@ def check_jobs(jobs: int) -> None:
     """Refuse what is no number of processes."""
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+
+
+def told_interruption(stopped: Interrupted, kept: str) -> int:
+    """Say on standard error why a campaign stopped, and what is kept of it; the exit code."""
+    print(f"{f'runningbond: {stopped.reason}' if stopped.reason else 'Interrupted'}: {kept}", file=sys.stderr)
+    if isinstance(stopped.__cause__, OSError):
+        return BAD_INPUT
+    return NO_ANSWER if stopped.reason else STOPPED
 
 
 def print_table(sheet: Sheet) -> None:

@@ -2,14 +2,12 @@
 
 import json as to_json
 import signal
-import sys
 from pathlib import Path
 
 from runningbond.campaigns import Interrupted
 from runningbond.results import make_folder
-from runningbond.scene import SceneError
 
-from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, UNDECIDED, Flag, Json, print_table, progress_bar
+from .terminal import DONE, NO_ANSWER, UNDECIDED, Flag, Json, check_jobs, print_table, progress_bar, told_interruption
 
 
 def validate(
@@ -46,8 +44,7 @@ def validate(
     from runningbond.laboratory.summary import as_json, summary_sheet, totals, verdicts
 
     rungs = find_rungs(models)
-    if jobs == 0 or jobs < -1:
-        raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+    check_jobs(jobs)
     walls = [wall for folder in ((data,) if data else SHIPPED) for wall in read_folder(folder)]
     scenes = scenes_of(walls, rungs)
     make_folder(out)
@@ -59,8 +56,9 @@ def validate(
                 walls, rungs, scenes, out, jobs=jobs, fresh=fresh, progress=lambda cell: advance(", ".join(cell))
             )
     except Interrupted as stopped:
-        print(f"Interrupted: {stopped.campaign.kept} of {total} cases are kept in {out}.", file=sys.stderr)
-        return BAD_INPUT if isinstance(stopped.__cause__, OSError) else STOPPED
+        again = "the same command without --fresh" if fresh else "the same command"
+        kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
+        return told_interruption(stopped, kept)
     written, sums = write_laboratory(predictions, out), totals(predictions)
     if json:
         content = {"walls": [each.row() for each in predictions], "summary": as_json(sums)}

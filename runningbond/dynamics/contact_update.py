@@ -141,7 +141,7 @@ def _spread(interface: Interface, state: State, share: Array) -> float:
     grown = (share < 1) & (-opening > seat)
     (normal, _), before = _borne(interface, opening, slip, history)
     part = share[grown]
-    seat[grown] = -opening[grown] - closed(law, np.maximum(0.0, -share * normal))[grown]
+    seat[grown] = -opening[grown] - closed(law, np.maximum(0.0, -share * normal))[0][grown]
     rest[grown] = part * rest[grown] + (1 - part) * slip[grown]
     _, after = _borne(interface, opening, slip, history)
     return float(interface.area[grown] @ (part * before[grown] - after[grown]))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,6 +36,17 @@ BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]", TO
 """What else is known of each row of a beam's way."""
 
 
+class WayRow(NamedTuple):
+    """What was seen at one place of a way."""
+
+    moved: float  # displacement [m], or part of a settlement
+    force: float  # reaction [N], or share of the dead load
+    carried: Array  # (np, 2) forces of joint points [N], or, at finite displacements, (n, 3) `Run.resultants`
+    tie: Array  # (nt,) forces of the ties [N]
+    works: tuple[float, float]  # of the dead load and of what leads [J]
+    beam: tuple[float, ...]  # `BEAM` of one that is driven, else nothing
+
+
 @dataclass
 class Way:
     """What was seen on a way that was gone through once, from a state at rest."""
@@ -42,18 +54,13 @@ class Way:
     best: State  # where the answer is
     motion: Array  # (nd,) how the wall moved where it had come farthest
     moves: bool  # whether forces are means of a motion, and not of rests
-    rows: list[tuple[float, float]] = field(default_factory=list)  # displacement [m] and force
-    points: list[Array] = field(default_factory=list)  # (np, 2) forces of the joint points [N], at small displacements,
-    resultants: list[Array] = field(default_factory=list)  # or (n, 3) `Run.resultants` on the bodies, at finite ones
-    ties: list[Array] = field(default_factory=list)  # (nt,) forces of the ties [N] in each
-    works: list[tuple[float, float]] = field(default_factory=list)  # of the dead load and of what leads [J]
-    beam: list[tuple[float, float, float, float]] = field(default_factory=list)  # `BEAM` of one that is driven
+    rows: list[WayRow] = field(default_factory=list)
     verdict: Verdict = "stable"
 
     @property
     def curve(self) -> Array:
         """Displacement [m] and force, ``(n, 2)``; of a motion each force is the middle one of three."""
-        curve = np.array(self.rows)
+        curve = np.array([(row.moved, row.force) for row in self.rows])
         if self.moves and len(curve) > 2:
             force = curve[:, 1]
             curve[1:-1, 1] = np.median([force[:-2], force[1:-1], force[2:]], axis=0)
@@ -102,17 +109,15 @@ class Lead:
 
     def note(self, way: Way, state: State, moved: float, force: float) -> None:
         """Add a row of a state to a way."""
-        dead = self.run.dead_work(state)
-        way.rows.append((moved, force))
-        if self.run.system.contacts is None:
-            way.points.append(np.column_stack(self.run.forces(state)))
-        else:
-            way.resultants.append(self.run.resultants(state, force))
+        run, beam = self.run, tuple[float, ...]()
+        small = run.system.contacts is None
+        carried = np.column_stack(run.forces(state)) if small else run.resultants(state, force)
         if not self.settles and self.scene.beam is not None:
-            _, uplift, rotation = self.run.system.motion_of_blocks(state.motion - self.start.motion)[self.beam]
-            way.beam.append((rotation, uplift, self.run.ledger(state).friction, self.broken_toe(state, moved)))
-        way.ties.append(self.run.system.ties.force(state.motion, state.stretch))
-        way.works.append((dead, state.external - dead))
+            _, uplift, rotation = run.system.motion_of_blocks(state.motion - self.start.motion)[self.beam]
+            beam = rotation, uplift, run.ledger(state).friction, self.broken_toe(state, moved)
+        dead = run.dead_work(state)
+        tie = run.system.ties.force(state.motion, state.stretch)
+        way.rows.append(WayRow(moved, force, carried, tie, (dead, state.external - dead), beam))
 
     def broken_toe(self, state: State, moved: float) -> float:
         """How far a toe has been crushed, or blocks have split there [m], whichever is more.

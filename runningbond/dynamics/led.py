@@ -138,17 +138,18 @@ def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Out
 
 def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Way) -> Outcome:
     """Curve, reactions and works of a way; its states rest, but for those of a motion, whose inertia is left out."""
-    supports, works, beam = Supports(scene, points, run.system.owner), np.array(way.works), np.array(way.beam)
+    supports = Supports(scene, points, run.system.owner)
+    _, force, carried, tie, works, beam = map(np.array, zip(*way.rows, strict=True))
     columns = (*supports.columns, *WORKS, AT_REST)
     if run.system.contacts is not None:
-        held = np.array(way.resultants)[:, supports.block]
+        held = carried[:, supports.block]
         held[:, :, 2] -= supports.about[:, 0] * held[:, :, 1] - supports.about[:, 1] * held[:, :, 0]
         path = np.column_stack([-held.reshape(len(held), -1), works, np.zeros(len(held))])
     else:
-        loads = [force if way.moves else 0.0 for _, force in way.rows]
-        path = supports.path(way.points, way.ties, loads, works)["path"]
+        loads = force if way.moves else np.zeros(len(force))
+        path = supports.path(carried, tie, loads, works)["path"]
         path[:, -1] = not way.moves
-    if len(beam):
+    if beam.size:
         path, columns = np.column_stack([path[:, :-1], beam, path[:, -1]]), (*columns[:-1], *BEAM, AT_REST)
     return replace(outcome, curve=way.curve, path=path, path_columns=columns)
 
@@ -167,7 +168,7 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     least, most = _bracket(answers)
     fell = way.verdict == "collapse"
     supports = Supports(lead.scene, lead.points, lead.run.system.owner)
-    if lead.settles and not fell and supports.have_come_free(way.points[-1], way.ties[-1]):
+    if lead.settles and not fell and supports.have_come_free(way.rows[-1].carried, way.rows[-1].tie):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):

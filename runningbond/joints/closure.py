@@ -60,4 +60,5 @@ def stored_at(pressure: float, curve: Curve) -> float:
 def stiffness_at(pressure: float, curve: Curve) -> float:
     """Tangent stiffness [Pa/m] of a joint under a pressure [Pa]."""
     k_n, growth, _, _, largest = curve
-    return min(k_n + growth * pressure, largest)
+    stiffness: float = np.minimum(k_n + growth * pressure, largest)
+    return stiffness

@@ -17,7 +17,7 @@ from typing import Any
 
 import numba
 import numpy as np
-from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator, _SourceFileBackedLocatorMixin
 from numba.core.dispatcher import Dispatcher
 from numba.core.event import Event, Listener, install_listener
 from numba.core.serialize import dumps
@@ -63,7 +63,8 @@ def _forget_old(folder: Path) -> None:
             shutil.rmtree(old, ignore_errors=True)
 
 
-numba.config.CACHE_DIR = _cache_folder()
+FOLDER = _cache_folder()
+"""Folder of the kernels; a user's own, which `kernel` has not compiled, are kept where Numba keeps them."""
 
 
 def _is_own(module: str) -> bool:
@@ -75,7 +76,7 @@ class PackageLocator(_CacheLocator):  # type: ignore[misc]
     """Where one of the package's own kernels is kept: a place that does not tell where the package is installed."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
-        self._folder = Path(numba.config.CACHE_DIR) / function.__module__.rpartition(".")[0]
+        self._folder = Path(FOLDER) / function.__module__.rpartition(".")[0]
         self._line = function.__code__.co_firstlineno
 
     def get_cache_path(self) -> str:
@@ -92,8 +93,8 @@ class PackageLocator(_CacheLocator):  # type: ignore[misc]
 
     @classmethod
     def from_function(cls, py_func: Callable[..., Any], _: str) -> "PackageLocator | None":
-        """The place of a kernel; None for one of a user's own, which Numba goes by the file of, or where none is."""
-        if not numba.config.CACHE_DIR or not _is_own(py_func.__module__):
+        """The place of a kernel; None for one of a user's own, or where none is."""
+        if not FOLDER or not _is_own(py_func.__module__):
             return None
         locator = cls(py_func)
         with suppress(OSError):
@@ -102,8 +103,20 @@ class PackageLocator(_CacheLocator):  # type: ignore[misc]
         return None
 
 
+class UserLocator(_SourceFileBackedLocatorMixin, _CacheLocator):  # type: ignore[misc]
+    """Where a kernel of a user's own is kept, a law or what is closed over one: by the file that it stands in."""
+
+    def __init__(self, function: Callable[..., Any], file: str) -> None:
+        self._py_file, self._lineno = file, function.__code__.co_firstlineno
+        self._folder = Path(FOLDER) / self.get_suitable_cache_subpath(file)
+
+    def get_cache_path(self) -> str:
+        """Folder of the kernels of a folder of files."""
+        return str(self._folder)
+
+
 class _Kept(CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes = (PackageLocator, *CompileResultCacheImpl._locator_classes)
+    _locator_classes = (PackageLocator, UserLocator, *CompileResultCacheImpl._locator_classes)
 
 
 class SharedCache(FunctionCache):  # type: ignore[misc]
@@ -124,7 +137,7 @@ class SharedCache(FunctionCache):  # type: ignore[misc]
     _impl_class = _Kept
 
     def _index_key(self, sig: Any, codegen: Any) -> tuple[Any, ...]:
-        return sig, codegen.magic_tuple(), identity(self._py_func)
+        return sig, codegen.magic_tuple(), identity(self._py_func), _digest()
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Give the compiled kernel for a signature, or None; what is compiled next has symbols of its own."""
@@ -171,6 +184,17 @@ def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
     return function.__module__, code.co_qualname, repr(own), *known_by
 
 
+def class_identity(given: type) -> tuple[Any, ...]:
+    """What a class is called in its source, and the functions written in it and in what it is derived from."""
+    known_by: list[Any] = [given.__module__, given.__qualname__]
+    for kind in given.__mro__:
+        for _, value in sorted(vars(kind).items()):
+            function = getattr(value, "fget", getattr(value, "__func__", value))
+            if hasattr(function, "__code__") and function.__code__.co_qualname.startswith(f"{kind.__qualname__}."):
+                known_by.append(identity(function))
+    return tuple(known_by)
+
+
 def symbol(function: Any) -> str:
     """Name that a function's symbols go by: that in its source, and a digest of what else it is known by, if any."""
     module, name, *known_by = identity(function)
@@ -183,7 +207,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     """Decorator of every kernel: compiled on first use, serial, exact arithmetic (no fastmath)."""
     dispatcher: Any = numba.njit(error_model="numpy", nogil=True)(function)
     with suppress(RuntimeError):  # where there is no folder to keep it in
-        if not numba.config.CACHE_DIR:
+        if not FOLDER:
             return dispatcher
         dispatcher._cache = SharedCache(function)
     return dispatcher

@@ -45,9 +45,10 @@ def curve_of(points: KernelLaw) -> tuple[Array, ...]:
     return tuple(points.of_points(CURVE + k) for k in range(5))
 
 
-def closed_under(points: KernelLaw, pressure: Array) -> Array:
-    """Elastic closure of points under a pressure [Pa], ``(np,)`` [m]."""
-    return np.asarray(closure_at.py_func(pressure, curve_of(points)))
+def closed_under(points: KernelLaw, pressure: Array) -> tuple[Array, Array]:
+    """Elastic closure [m] of points under a pressure [Pa] and their tangent stiffness [Pa/m], two ``(np,)``."""
+    curve = curve_of(points)
+    return closure_at.py_func(pressure, curve), stiffness_at.py_func(pressure, curve)
 
 
 def stored_when_seated(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:

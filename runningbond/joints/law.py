@@ -59,8 +59,8 @@ class Law:
     stiffest
         Number of the constant that is the largest normal stiffness [Pa/m], by which time steps go.
     closed
-        ``closed(points, pressure)``: elastic closure ``(np,)`` [m] under a pressure [Pa], not negative, of a law whose
-        points have a `PLASTIC_CLOSURE`; None for another.
+        ``closed(points, pressure)``: elastic closure ``(np,)`` [m] and tangent normal stiffness ``(np,)`` [Pa/m] under
+        a pressure [Pa], not negative, of a law whose points have a `PLASTIC_CLOSURE`; None for another, of k_n.
     """
 
     name: str
@@ -72,7 +72,7 @@ class Law:
     cone: Callable[[JointMaterial], tuple[float, float, float]] = field(default=truncated_cone, compare=False)
     response: Callable[[PointStrength, Array, Array], PointLaw] | None = field(default=None, compare=False)
     stiffest: int = 0
-    closed: Callable[["KernelLaw", Array], Array] | None = None
+    closed: Callable[["KernelLaw", Array], tuple[Array, Array]] | None = None
 
     def __post_init__(self) -> None:
         if self.history[:4] != COMMON_ROWS:
@@ -83,10 +83,12 @@ class Law:
     @property
     def identity(self) -> tuple[Any, ...]:
         """What tells the law from others, in every process the same: its names, and its functions' code."""
-        from .compiled import identity
+        from .compiled import class_identity, identity
 
-        functions = (getattr(self.kernel, "py_func", self.kernel), self.constants, self.stored, self.cone)
-        return self.name, self.history, *map(identity, functions)
+        kernel = getattr(self.kernel, "py_func", self.kernel)
+        functions = (kernel, self.constants, self.stored, self.cone, self.response, self.closed)
+        known_by = (class_identity(one) if isinstance(one, type) else one and identity(one) for one in functions)
+        return self.name, self.history, self.damage, self.stiffest, *known_by
 
     def row(self, name: str) -> int:
         """Number of a row of the history; a law without it is refused by name."""
@@ -159,6 +161,10 @@ class KernelLaw:
     def tension(self) -> Array:
         """Largest tension of each point, ``(np,)`` [Pa]."""
         return self.of_points(2)
+
+    def normal_tangent(self, pressure: Array) -> Array:
+        """Stiffness of closed points against more or less of a pressure ``(np,)`` [Pa], not negative; [Pa/m]."""
+        return self.normal_stiffness if self.law.closed is None else self.law.closed(self, pressure)[1]
 
     def of_points(self, constant: int) -> Array:
         """A constant of each point's material, ``(np,)``."""

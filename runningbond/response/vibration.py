@@ -1,9 +1,11 @@
 """Natural vibrations of a wall about its rest: joints that are closed are springs, those that are open are none.
 
-With closed points of opening rows b_n, slip rows b_t and areas w,
+With closed points of opening rows b_n, slip rows b_t and areas w, and ties of elongation rows g that neither hang
+slack nor yield,
 
-    K = diag(k) + B_nᵀ diag(w k_n) B_n + B_tᵀ diag(w k_t) B_t,    K φ = ω² M φ.
+    K = diag(k) + B_nᵀ diag(w k_n) B_n + B_tᵀ diag(w k_t) B_t + Gᵀ diag(E A / L) G,    K φ = ω² M φ.
 
+Of a joint that closes the more it is pressed, k_n is the tangent under its pressure at rest.
 The weight closes the joints; of what it does besides, the moment of a block that leans, nothing is in K.
 """
 
@@ -15,6 +17,7 @@ from scipy.sparse import csr_array, diags_array, vstack
 from scipy.sparse.linalg import eigsh
 
 from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics.ties import STIFFNESS, YIELD
 from runningbond.scene import Array, Mask, Scene, SceneError
 
 DENSE = 200
@@ -65,9 +68,11 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     system = run.system
     _, _, normal, _ = run.tractions(state)
     law, damage = run.interface.law, run.interface.law.damage(state.history)
+    pull, most = system.ties.force(state.motion, state.stretch), system.ties.constants[:, YIELD]
     closed = (normal < 0) | ((law.tension > 0) & (damage < 1) & (normal < law.tension))
     moving = np.flatnonzero(np.isfinite(system.mass))
-    stiffness = stiffness_matrix(system, closed)[moving][:, moving]
+    springs = closed * np.array([law.normal_tangent(np.maximum(0.0, -normal)), law.shear_stiffness])
+    stiffness = stiffness_matrix(system, springs, (pull > 0) & (pull < most))[moving][:, moving]
     root = 1 / np.sqrt(system.mass[moving])
     scaled = diags_array(root) @ stiffness @ diags_array(root)
     count = min(count, len(moving))
@@ -94,10 +99,18 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     return Vibration(np.sqrt(square) / (2 * np.pi), shape.reshape(len(square), -1, 3), share, loose)
 
 
-def stiffness_matrix(system: BlockSystem, closed: Mask) -> csr_array:
-    """Stiffness ``(nd, nd)`` [N/m] of the bodies and of closed joint points ``(np,)``, read off their kernels."""
-    interface, units = system.interface, np.eye(len(system.mass))
-    per_mode = vstack([csr_array(np.concatenate(interface.jumps(system.unrestrained(unit)))[None]) for unit in units])
-    spring = np.concatenate([interface.law.normal_stiffness, interface.law.shear_stiffness])
-    weight = diags_array(np.tile(closed * interface.area, 2) * spring)
+def stiffness_matrix(system: BlockSystem, springs: Array, taut: Mask) -> csr_array:
+    """Stiffness ``(nd, nd)`` [N/m] of the bodies, of springs at joint points ``(2, np)`` [Pa/m] and of `taut` ties.
+
+    Rows are read off the kernels, mode by mode.
+    """
+    interface, ties, unit, rows = system.interface, system.ties, np.zeros(len(system.mass)), []
+    for mode in range(len(unit)):
+        unit[mode] = 1.0
+        jumps = interface.jumps(system.unrestrained(unit))
+        rows.append(csr_array(np.concatenate([*jumps, ties.elongation(unit)])[None]))
+        unit[mode] = 0.0
+    per_mode = vstack(rows)
+    of_ties = np.where(taut, ties.constants[:, STIFFNESS], 0.0)
+    weight = diags_array(np.concatenate([(springs * interface.area).ravel(), of_ties]))
     return csr_array(per_mode @ weight @ per_mode.T + diags_array(system.stiffness))

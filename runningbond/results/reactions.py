@@ -136,8 +136,8 @@ class Supports:
 
     def path(
         self,
-        forces: Sequence[Array],
-        ties: Sequence[Array],
+        forces: Sequence[Array] | Array,
+        ties: Sequence[Array] | Array,
         multipliers: Iterable[float],
         works: Array,
         *,

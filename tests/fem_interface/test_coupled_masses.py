@@ -15,7 +15,7 @@ from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.run import CALMING
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Closure, Indices, Scene, Stiffness
 from tests.walls import panel
 
 from .walls import GLUE, MORTAR, damped_without_giving_back, patch, wall
@@ -55,6 +55,15 @@ def test_coupled_masses_bound_the_frequency_and_a_period_takes_few_steps(name: s
     assert slowest <= first * (1 + 1e-9)
     assert steps < 2 * np.pi / np.sqrt(first) / Run(plain).dt / 2
     assert steps < 300
+
+
+def test_coupled_masses_bound_joints_that_have_closed() -> None:
+    """The step is that of joints as stiff as they ever get, a hundred times as stiff as before they were pressed."""
+    scene = wall(5e8).with_joint(closure=Closure(growth=1e5, stiffest=1e12), elasticity=Stiffness(1e10, 4e9))
+    found, system = coupled(scene)
+    K, (_, M) = elastic_stiffness(found, closed=True).toarray(), masses(system)
+    fastest = eigh(K, M, eigvals_only=True, subset_by_index=(len(K) - 1, len(K) - 1))[0]
+    assert fastest <= system.interface.frequency_squared
 
 
 @pytest.mark.parametrize("young", SOFT)

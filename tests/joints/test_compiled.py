@@ -13,7 +13,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import numba
 import numpy as np
 import pytest
 from numba.core.caching import IndexDataCacheFile
@@ -45,7 +44,7 @@ def plus_one(law: Callable[[float], float]) -> Any:
 
 @pytest.fixture
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr("runningbond.joints.compiled.FOLDER", str(tmp_path))
     return tmp_path
 
 
@@ -206,11 +205,25 @@ def test_where_nothing_can_be_kept_kernels_are_compiled_all_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "file").write_text("")
-    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "file"))
+    monkeypatch.setattr("runningbond.joints.compiled.FOLDER", str(tmp_path / "file"))
     monkeypatch.setattr(
         "numba.core.caching._CacheLocator.ensure_cache_path", lambda self: (_ for _ in ()).throw(OSError)
     )
     assert plus_one(doubled)(5.0) == 11.0
+
+
+def test_a_users_other_kernels_are_kept_where_numba_keeps_them(tmp_path: Path) -> None:
+    """The package is a guest in their Python, and would forget them with its own of other versions."""
+    (tmp_path / "mine.py").write_text(
+        "from runningbond.joints import compiled\nimport numba\n"
+        "@numba.njit(cache=True)\ndef half(x):\n    return x / 2\n"
+        "print(half(5.0), bool(numba.config.CACHE_DIR))\n"
+    )
+    own = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment = own | {"XDG_CACHE_HOME": str(tmp_path / "cache"), "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "mine.py"], cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert done.stdout == "2.5 False\n", done.stderr
+    assert list((tmp_path / "__pycache__").glob("mine.half*.nbc"))
 
 
 def test_a_law_of_a_users_own_that_has_changed_is_compiled_anew(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from dem.static import dem_static
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.central_differences import step
-from runningbond.joints import KernelLaw, Law, joint_stiffness
+from runningbond.joints import KernelLaw, Law, PointLaw, PointResponse, joint_stiffness
 from runningbond.joints.compiled import kernel
 from runningbond.joints.coulomb import COULOMB
 from runningbond.joints.law import COMMON_ROWS, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE, Parameters
@@ -170,5 +170,18 @@ print(fingerprint(tower(law=SPRINGS), "limit", 0.01))
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True)
     own = fingerprint(tower(law=SPRINGS), "limit", 0.01)
     assert done.stdout.strip() == own
-    other = replace(SPRINGS, constants=lambda material: (1.0, 1.0, np.inf))
-    assert len({own, *(fingerprint(tower(law=law), "limit", 0.01) for law in (None, other))}) == 3
+    others = [
+        replace(SPRINGS, constants=lambda material: (1.0, 1.0, np.inf)),
+        replace(SPRINGS, response=PointLaw),
+        replace(SPRINGS, response=Doubled),
+        replace(SPRINGS, closed=lambda points, pressure: (pressure, pressure)),
+        replace(SPRINGS, stiffest=1),
+    ]
+    assert len({own, *(fingerprint(tower(law=law), "limit", 0.01) for law in (None, *others))}) == 7
+
+
+class Doubled(PointLaw):
+    """A response that is another one for a method alone."""
+
+    def __call__(self, opening: Array, slip: Array, plastic_slip: Array) -> PointResponse:
+        return super().__call__(2 * opening, slip, plastic_slip)

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from dem.dynamic import dem_vibration
 from fem_interface.model import fem_vibration
 from runningbond.response import Vibration
-from runningbond.scene import Scene, Stiffness, scene_from_dict
+from runningbond.scene import Closure, Scene, Stiffness, scene_from_dict
 from tests.walls import content
 
 THICKNESS, DENSITY = 0.12, 1800.0
@@ -84,3 +84,28 @@ def test_blocks_that_deform_on_joints_that_do_not_are_timoshenkos_too() -> None:
     found = swaying(fem_vibration(scene, 4, cells=3, modes="all"))
     stiff = (young * THICKNESS * width**3 / 12, 5 / 6 * young / 2 * THICKNESS * width)
     assert found[0] == pytest.approx(timoshenko(n * height, width, stiff, 0), rel=0.02)
+
+
+@pytest.mark.parametrize("growth", [1e5, 1e7])
+def test_a_joint_that_has_closed_is_as_stiff_as_its_pressure_makes_it(growth: float) -> None:
+    """A block on a joint with k = k_n + g p up to k_∞ bounces at √(k A / m), p = m g / A its weight's pressure."""
+    width, height, first, last = 0.4, 0.2, 1e8, 5e9
+    scene = stack(1, width, height, first, first)
+    scene = scene.with_joint(closure=Closure(growth, last))
+    found = dem_vibration(scene, 3)
+    bounce = next(f for f, share in zip(found.frequency, found.share, strict=True) if share[1] > 0.5)
+    area, mass = width * THICKNESS, DENSITY * width * height * THICKNESS
+    stiffness = min(first + growth * mass * 9.81 / area, last)
+    assert stiffness > 3 * first
+    assert bounce == pytest.approx(math.sqrt(stiffness * area / mass) / (2 * math.pi), rel=1e-6)
+
+
+@pytest.mark.parametrize("others", [0, 1])
+def test_a_taut_tie_is_a_spring_and_a_slack_one_is_none(others: int) -> None:
+    """A rod holds a block sideways; one beside it, which the pull of the first one slackens, does not."""
+    width, height, shear, rod = 0.4, 0.2, 1e6, 4e4
+    tie = {"from": [width, height / 2], "to": [width + 1.0, height / 2], "area": 1e-4, "young": rod / 1e-4}
+    ties = [tie | {"yield": 1e5, "preload": preload} for preload in (10.0, *[0.0] * others)]
+    slowest = swaying(dem_vibration(stack(1, width, height, 1e11, shear, tie=ties), 3))[0]
+    mass, spring = DENSITY * width * height * THICKNESS, shear * width * THICKNESS + rod
+    assert slowest == pytest.approx(math.sqrt(spring / mass) / (2 * math.pi), rel=1e-3)
