@@ -142,7 +142,8 @@ def follow(
     after
         Time for which it is followed once a block has fallen [s].
     points : (k, 2) float, optional
-        Points to follow [m], on the blocks with the nearest corners; without any the wall's upper corners.
+        Points to follow [m], on the blocks with the nearest corners and within a block's size of the wall; without any
+        the wall's upper corners.
     rows
         Rows in a second, and at least in the record.
     observe
@@ -173,6 +174,12 @@ def _places(rest: Resting, points: Array) -> Array:
     are_points = places.ndim == 2 and places.shape[1] == 2 and len(places) and np.isfinite(places).all()
     if not are_points or places[:, 1].min() <= above:
         raise SceneError("points", f"must be a list of points [x, y] in metres, higher than {above:.4g}", points)
+    corners, near = rest.scene.blocks.vertices[rest.scene.wall[rest.scene.blocks.owner]], rest.scene.block_size
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    for k, place in enumerate(places):
+        if (place < low - near).any() or (place > high + near).any():
+            box = " and ".join("[{:.4g}, {:.4g}]".format(*corner) for corner in (low, high))
+            raise SceneError(f"points[{k}]", f"must lie on the wall, which is between {box} m", place.tolist())
     return places
 
 
