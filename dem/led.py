@@ -16,13 +16,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.dynamics.lead import last_leg
+from runningbond.dynamics.lead import LITTLE, formed
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.results.reactions import COME_FREE
-from runningbond.scene import Array
 
 from .lead import Lead
 from .pushover import NOISE, LoadPath, StaticState, state_of
@@ -31,17 +30,8 @@ from .relaxation import Rest
 RUNS = 4
 """Runs, each in steps half as long as those before, after which a way is left undecided."""
 
-LAST = 0.1
-"""Part of a way over which a force that has formed a mechanism no longer changes."""
-
 HALVINGS = 20
 """Steps to the fall of a wall from its last rest, each half as long as the last one."""
-
-STILL = 1e-6
-"""Change of a share that counts as none, beside the tolerance's part of all its change."""
-
-LITTLE = 0.01
-"""Share of the dead load below which a reaction need not be relatively accurate."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,13 +172,13 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     supports, last = Supports(lead.scene, lead.system.equilibrium.points), run.states[-1]
     if lead.settles and not run.fell and supports.have_come_free(last.force, last.pull):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
-    formed = run.fell or _formed(lead, outcome.curve, tolerance)
-    if formed and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
+    ends = run.fell or formed(outcome.curve, tolerance, settles=lead.settles, least=_least(lead))
+    if ends and len(answers) > 1 and _spread(lead, answers[-2:]) <= tolerance:
         fall = f"; the wall falls at {at}, this is of its last rest" if run.fell else ""
         return replace(
             outcome, status="collapse", multiplier=answers[-1], lower=lower, upper=upper, message=what + fall
         )
-    if formed:
+    if ends:
         message = f"no answer: other steps change it by more than the bracket; {what}"
         return replace(outcome, lower=lower, upper=upper, message=message)
     ended = outcome.curve[-1, 0] if lead.settles else outcome.curve[:, 0].max()
@@ -201,16 +191,6 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
         return replace(outcome, status="unbounded", message=message)
     message = f"no answer: the wall still hardens where its drive ends, which takes {reached}; {what}"
     return replace(so_far, message=message)
-
-
-def _formed(lead: Lead, curve: Array, tolerance: float) -> bool:
-    """Whether a mechanism has formed: whether nothing grows, or changes, over the last part of the way."""
-    value, force = (last_leg(curve) if lead.settles else curve).T
-    late = value >= (1 - LAST) * value.max()
-    if lead.settles:
-        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + STILL)
-    most = float(force[late].max())
-    return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, _least(lead))
 
 
 def _notes(lead: Lead, outcome: Outcome) -> str:

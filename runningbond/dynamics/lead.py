@@ -31,6 +31,15 @@ STAGES = 20
 LOSS = 0.8
 """Share of the largest force to which it falls where the wall has failed, and its mechanism is drawn."""
 
+LAST = 0.1
+"""Part of a way over which a force that has formed a mechanism no longer changes."""
+
+STILL = 1e-6
+"""Change of a share that counts as none, beside the tolerance's part of all its change."""
+
+LITTLE = 0.01
+"""Share of the dead load below which a reaction need not be relatively accurate."""
+
 TOE = "broken toe [m]"
 BEAM = ("beam rotation [rad]", "beam uplift [m]", "work spent in joints [J]", TOE)
 """What else is known of each row of a beam's way."""
@@ -208,6 +217,28 @@ def last_leg(curve: Array) -> Array:
     ways = np.sign(np.diff(curve[:, 0]))
     start = int(np.flatnonzero(ways != ways[-1])[-1]) + 1 if (ways != ways[-1:]).any() else 0
     return np.column_stack([np.abs(curve[start:, 0] - curve[start, 0]), curve[start:, 1]])
+
+
+def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0) -> bool:
+    """Whether a mechanism has formed: whether nothing grows, or changes, over the last part of a way.
+
+    Parameters
+    ----------
+    curve : (n, 2) float
+        Displacement and force, or share of the dead load.
+    tolerance
+        Part of the force by which it may still grow; of all its change, by which a share may still change.
+    settles
+        Whether supports are led. An elastic wall sheds load too: of a short way hardly any, and the same all along.
+    least
+        Force below which growth need not be small.
+    """
+    value, force = (last_leg(curve) if settles else curve).T
+    late = value >= (1 - LAST) * value.max()
+    if settles:
+        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + STILL)
+    most = float(force[late].max())
+    return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, least)
 
 
 def failing(curve: Array) -> int:

@@ -16,10 +16,10 @@ from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria, settle
-from .lead import BEAM, Lead, Way, last_leg
+from .lead import BEAM, LITTLE, Lead, Way, formed
 from .run import CALMING, Observer, Run, Unstable
 from .state import State
 
@@ -27,12 +27,6 @@ STEPS, UNHURRIED, FAR = 20_000, 20, 2
 """Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
 at small displacements, and at finite ones, whose ways are longer.
 """
-
-LAST = 0.1
-"""Part of a way over which a force that has formed a mechanism no longer changes."""
-
-LITTLE = 0.01
-"""Share of the dead load below which a reaction need not be relatively accurate."""
 
 UNACCOUNTED = 0.01
 """Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
@@ -171,7 +165,7 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     if lead.settles and not fell and supports.have_come_free(way.rows[-1].carried, way.rows[-1].tie):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
-    if not fell and not formed(outcome.curve, tolerance, LITTLE if lead.settles else None):
+    if not fell and not formed(outcome.curve, tolerance, settles=lead.settles):
         still = "the support still sheds load" if lead.settles else "the wall still hardens"
         message = f"no answer: {still} at the displacement asked for, {at}: {number(answers[-1])}; {what}"
         bounds = (None, most) if lead.settles else (least, None)
@@ -180,21 +174,3 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
         return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
     fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""
     return replace(outcome, status="collapse", multiplier=answers[-1], message=what + fall)
-
-
-def formed(curve: Array, tolerance: float, least: float | None = None) -> bool:
-    """Whether a mechanism has formed: a force no longer grows over the last part of a way.
-
-    Parameters
-    ----------
-    curve : (n, 2) float
-        Displacement and force.
-    least
-        Smallest force that matters, of one that is not to change at all.
-    """
-    value, force = (curve if least is None else last_leg(curve)).T
-    late = value >= (1 - LAST) * value.max()
-    if least is not None:
-        return bool(np.ptp(force[late]) <= tolerance * max(float(np.abs(force[late]).max()), least))
-    most = float(force[late].max())
-    return most - float(force[~late].max(initial=0.0)) <= tolerance * most
