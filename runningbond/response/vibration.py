@@ -13,12 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.sparse import csr_array, diags_array, vstack
+from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
-from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
-from runningbond.dynamics.ties import STIFFNESS, YIELD
-from runningbond.scene import Array, Mask, Scene, SceneError
+from runningbond.dynamics import U_CRIT, Criteria, Run, State, settle
+from runningbond.dynamics.ties import YIELD
+from runningbond.dynamics.vibrations import stiffness_matrix
+from runningbond.scene import Array, Scene, SceneError
 
 DENSE = 200
 """Freedoms up to which all modes are computed at once."""
@@ -97,20 +98,3 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     share = (modes @ ground.T) ** 2 / ground.sum(axis=1)
     shape = np.array([system.motion_of_blocks(mode) for mode in modes])
     return Vibration(np.sqrt(square) / (2 * np.pi), shape.reshape(len(square), -1, 3), share, loose)
-
-
-def stiffness_matrix(system: BlockSystem, springs: Array, taut: Mask) -> csr_array:
-    """Stiffness ``(nd, nd)`` [N/m] of the bodies, of springs at joint points ``(2, np)`` [Pa/m] and of `taut` ties.
-
-    Rows are read off the kernels, mode by mode.
-    """
-    interface, ties, unit, rows = system.interface, system.ties, np.zeros(len(system.mass)), []
-    for mode in range(len(unit)):
-        unit[mode] = 1.0
-        jumps = interface.jumps(system.unrestrained(unit))
-        rows.append(csr_array(np.concatenate([*jumps, ties.elongation(unit)])[None]))
-        unit[mode] = 0.0
-    per_mode = vstack(rows)
-    of_ties = np.where(taut, ties.constants[:, STIFFNESS], 0.0)
-    weight = diags_array(np.concatenate([(springs * interface.area).ravel(), of_ties]))
-    return csr_array(per_mode @ weight @ per_mode.T + diags_array(system.stiffness))
