@@ -81,7 +81,7 @@ def _check_backend() -> None:
         try:
             import matplotlib  # noqa: F401
         except ValueError as error:
-            what = "is no backend of matplotlib; leave it unset, or take agg"
+            what = "is not a backend of matplotlib; leave it unset, or take agg"
             raise SceneError("MPLBACKEND", what, backend) from error
 
 

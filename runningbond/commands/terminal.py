@@ -42,7 +42,7 @@ UNDECIDED = ("undecided", "failed")
 def _whole(_: type, tokens: Sequence[Token]) -> int:
     """Read a whole number; cyclopts would round any other."""
     if not tokens[0].value.lstrip("+-").isdecimal():
-        raise ValueError(f"{tokens[0].value!r} is no whole number")
+        raise ValueError(f"{tokens[0].value!r} is not a whole number")
     return int(tokens[0].value)
 
 

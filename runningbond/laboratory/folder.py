@@ -73,9 +73,9 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
     except OSError as error:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
-        raise SceneError(path.name, "is no table: it is not UTF-8 text") from error
+        raise SceneError(path.name, "is not a table: it is not UTF-8 text") from error
     except csv.Error as error:
-        raise SceneError(f"{path.name}, line {reader.line_num}", f"is no line of a CSV file: {error}") from error
+        raise SceneError(f"{path.name}, line {reader.line_num}", f"is not a line of a CSV file: {error}") from error
 
 
 def _wall(folder: Path, name: str, row: TableRow) -> MeasuredWall:

@@ -81,7 +81,7 @@ def _run(
     watched = {} if observe is None else {"observe": observe}
     for key in settings:
         if key not in MODELS[base].parameters:
-            raise SceneError(f"model {base}: {key}", "is no parameter of it")
+            raise SceneError(f"model {base}: {key}", "is not a parameter of it")
     with compilation() as compiled:
         start = time.process_time()
         outcome = MODELS[base].solve(scene, tolerance, **settings, **watched)

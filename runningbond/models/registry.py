@@ -183,7 +183,7 @@ def run_model(
     for name, value in parameters.items():
         if name not in model.parameters:
             own = ", ".join(model.parameters) or "none"
-            raise SceneError(f"model {model.name}: {name}", f"is no parameter of it; it has {own}", value)
+            raise SceneError(f"model {model.name}: {name}", f"is not a parameter of it; it has {own}", value)
     model.check(scene)
     if observe is not None and (model.observer or model.progress):
         parameters["observe"] = observe

@@ -65,7 +65,7 @@ def write_atomically(path: Path, content: bytes) -> None:
 def make_folder(folder: Path) -> None:
     """Make a folder and check that files can be written there, before a long computation; an OSError names it."""
     if folder.exists() and not folder.is_dir():
-        raise FileExistsError(errno.EEXIST, "is no folder; name one, or what is not there yet", str(folder))
+        raise FileExistsError(errno.EEXIST, "is not a folder; name one, or a new one", str(folder))
     with _errors_named(folder):
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder) as file:

@@ -156,7 +156,7 @@ def _became(entries: Sequence[Assignment], chosen: Mapping[int, Mask], what: str
         later |= chosen[k]
         text = f"{kept} {what}{'s' * (kept != 1)} of {entries[k].material}"
         if kept == 0:
-            text = f"nothing is of {entries[k].material} by it: later entries choose all of its {n} {what}s"
+            text = f"assigns {entries[k].material} to nothing: later entries choose all of its {n} {what}s"
         elif kept < n:
             text += f"; later entries choose {n - kept} more that it chose"
         said[k] = f"{entries[k].key}: {text}"

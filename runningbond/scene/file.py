@@ -42,9 +42,9 @@ def read_description(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
-        raise SceneError(str(path), "is no scene file: it is not UTF-8 text") from error
+        raise SceneError(str(path), "is not a scene file: it is not UTF-8 text") from error
     except (RecursionError, ValueError) as error:
-        raise SceneError(str(path), f"is no valid TOML: {error}") from error
+        raise SceneError(str(path), f"is not valid TOML: {error}") from error
 
 
 def plain_stem(path: Path) -> str:

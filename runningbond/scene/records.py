@@ -55,12 +55,12 @@ def read_record(path: Path, key: str) -> Record:
     """
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe, which may never end
-            raise SceneError(key, "cannot be read: it is no regular file", path.name)
+            raise SceneError(key, "cannot be read: it is not a regular file", path.name)
         lines = path.read_text(encoding="utf-8-sig").splitlines()
     except OSError as error:
         raise SceneError(key, f"cannot be read: {error.strerror or error}", path.name) from error
     except UnicodeDecodeError as error:
-        raise SceneError(key, "is no record: it is not UTF-8 text", path.name) from error
+        raise SceneError(key, "is not a record: it is not UTF-8 text", path.name) from error
     return _peer(path, lines) if path.suffix.lower() in PEER else _columns(path, lines)
 
 

@@ -370,7 +370,7 @@ def _in_use(materials: Sequence[Material], of: Indices) -> tuple[tuple[Material,
     """Materials that anything is of, those of the tables without a name, their numbers, and notes on the others."""
     kept = [k for k, each in enumerate(materials) if table_of(each) == each.name or (of == k).any()]
     unused = [each for k, each in enumerate(materials) if k not in kept]
-    notes = [f"{table_of(each)}: nothing is of it; it is left out" for each in unused]
+    notes = [f"{table_of(each)}: is assigned to nothing; it is left out" for each in unused]
     return tuple(materials[k] for k in kept), np.searchsorted(kept, of), notes
 
 

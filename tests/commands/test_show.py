@@ -78,7 +78,7 @@ def test_it_says_what_became_of_every_assign() -> None:
     heads = int((np.ptp(scene.joints.ends[:, :, 0], axis=1) < 1e-9).sum())
     assert told["assign[0]"] == "2 blocks of oak; later entries choose 2 more that it chose"
     assert told["assign[1]"] == "2 blocks of brick"
-    assert told["assign[2]"] == f"nothing is of mortar by it: later entries choose all of its {heads} joints"
+    assert told["assign[2]"] == f"assigns mortar to nothing: later entries choose all of its {heads} joints"
     assert told["assign[3]"] == f"{len(scene.joints)} joints of joint"
     assert "  of mortar" not in told
 

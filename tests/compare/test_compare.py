@@ -145,7 +145,7 @@ def test_the_parameters_of_a_model_are_those_that_it_takes() -> None:
         taken = inspect.signature(solvers.get(name, model.solve)).parameters.values()
         own = {parameter.name for parameter in taken if parameter.kind == parameter.KEYWORD_ONLY}
         assert set(model.parameters) == own - {"observe"}
-    with pytest.raises(SceneError, match="model limit: modes = 3: is no parameter"):
+    with pytest.raises(SceneError, match="model limit: modes = 3: is not a parameter"):
         run_model("limit", panel(), modes=3)
 
 
@@ -460,7 +460,7 @@ def test_a_backend_that_is_none_is_bad_input() -> None:
     line = [SCRIPT, "compare", "panel-04", "--models", "limit"]
     said = subprocess.run(line, capture_output=True, text=True, check=False, env=wrong)
     assert said.returncode == 2
-    assert said.stderr.startswith("runningbond: MPLBACKEND = 'nonsense': is no backend of matplotlib")
+    assert said.stderr.startswith("runningbond: MPLBACKEND = 'nonsense': is not a backend of matplotlib")
     assert said.stderr.count("\n") == 1
 
 

@@ -171,5 +171,5 @@ def test_an_interrupted_sweep_is_an_interruption(monkeypatch: pytest.MonkeyPatch
 
 def test_a_folder_that_is_a_file_is_refused_before_anything_is_computed(tmp_path: Path) -> None:
     (tmp_path / "kept").write_text("")
-    with pytest.raises(FileExistsError, match="is no folder; name one.*kept"):
+    with pytest.raises(FileExistsError, match="is not a folder; name one.*kept"):
         rb.sweep(WALL, {"joint.friction": [0.2, 0.3]}, "limit", folder=tmp_path / "kept", jobs=1)

@@ -243,7 +243,7 @@ def test_row_that_describes_no_wall_is_refused_by_file_and_line(tmp_path: Path, 
         ([GRANITE.replace(",61,", ",x,")], HEADS, "tests.csv, line 2: Vmax,+ = 'x': must be a number above 0"),
         ([GRANITE], HEADS.replace("Vmax,+ [kN]", "Vmax,+ [kip]"), "Vmax,+ = 'kip': must have a unit, one of mm"),
         ([GRANITE], HEADS.replace("Test unit name", "wall"), 'a CSV file with a column "Test unit name"; it has none'),
-        (['"WS.175'], HEADS, "tests.csv, line 2: is no line of a CSV file"),
+        (['"WS.175'], HEADS, "tests.csv, line 2: is not a line of a CSV file"),
     ],
 )
 def test_table_that_is_none_is_refused(tmp_path: Path, rows: list[str], heads: str, said: str) -> None:
@@ -285,7 +285,7 @@ def test_folder_that_is_none_or_holds_two_tables_or_bytes_is_refused(tmp_path: P
     with pytest.raises(SceneError, match="it has 2: more.csv, tests.csv"):
         read_folder(tmp_path)
     (tmp_path / "more.csv").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(SceneError, match="more.csv: is no table: it is not UTF-8 text"):
+    with pytest.raises(SceneError, match="more.csv: is not a table: it is not UTF-8 text"):
         read_folder(tmp_path)
 
 

@@ -483,7 +483,7 @@ def test_command_writes_a_mesh(suffix: str, tmp_path: Path, capsys: pytest.Captu
         (["panel-01", "-o", "wall.stl"], "wall.stl: must end in .msh or .vtu, the formats of a mesh"),
         (["panel-01", "-o", "wall"], "wall: must end in .msh or .vtu"),
         (["panel-01", "-o", "wall.msh", "--cells", "0"], "cells = 0: must be a whole number, at least 1"),
-        (["panel-01", "-o", "wall.msh", "--cells", "1.5"], "--cells: '1.5' is no whole number"),
+        (["panel-01", "-o", "wall.msh", "--cells", "1.5"], "--cells: '1.5' is not a whole number"),
         (["panel-01", "-o", "wall.msh", "--cells", "99999"], "cells = 99999: gives more than 10000000 triangles"),
         (["panel-99", "-o", "wall.msh"], "panel-99: there is no such file"),
         (["panel-01"], "--out"),

@@ -117,6 +117,6 @@ def test_a_material_that_nothing_is_of_changes_nothing_and_is_told() -> None:
     assert (scene.block_materials, scene.joint_materials) == (plain.block_materials, plain.joint_materials)
     assert len(wall_points(scene)) == len(wall_points(plain))
     assert scene.notes == (
-        "materials.oak: nothing is of it; it is left out",
-        "joints.weak: nothing is of it; it is left out",
+        "materials.oak: is assigned to nothing; it is left out",
+        "joints.weak: is assigned to nothing; it is left out",
     )

@@ -158,38 +158,41 @@ def holed(found: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "is no valid JSON file"),
-        ("{", "is no valid JSON file"),
-        ("[" * 100_000, "is no valid JSON file"),
+        ("", "is not a valid JSON file"),
+        ("{", "is not a valid JSON file"),
+        ("[" * 100_000, "is not a valid JSON file"),
         (
             "[1, 2]",
             'wall.drawing, dtype = \'(none)\': must be "compas_assembly.datastructures/Assembly" or "compas_dem',
         ),
         ('{"dtype": "compas.datastructures/Mesh", "data": {}}', "wall.drawing, dtype = 'compas.datastructures/Mesh'"),
         ('{"dtype": 7}', "wall.drawing, dtype = 7: must be"),
-        ('{"dtype": "compas_assembly.datastructures/Assembly"}', "is no COMPAS assembly"),
+        ('{"dtype": "compas_assembly.datastructures/Assembly"}', "is not a COMPAS assembly"),
         ('{"assembly": {"vertex": {}}, "blocks": {}}', "is an assembly without blocks"),
-        (spoilt(lambda a: a.pop("data")), "is no COMPAS assembly"),
-        (spoilt(lambda a: nodes(a)["0"].pop("block")), "is no COMPAS assembly: KeyError, 'block'"),
-        (spoilt(lambda a: vertices(a)["0"].pop("x")), "is no COMPAS assembly: KeyError, 'x'"),
-        (spoilt(lambda a: vertices(a)["0"].update(x="a")), "is no COMPAS assembly: ValueError"),
+        (spoilt(lambda a: a.pop("data")), "is not a COMPAS assembly"),
+        (spoilt(lambda a: nodes(a)["0"].pop("block")), "is not a COMPAS assembly: KeyError, 'block'"),
+        (spoilt(lambda a: vertices(a)["0"].pop("x")), "is not a COMPAS assembly: KeyError, 'x'"),
+        (spoilt(lambda a: vertices(a)["0"].update(x="a")), "is not a COMPAS assembly: ValueError"),
         (spoilt(lambda a: vertices(a)["0"].update(x=math.nan)), "node 0: must have its corners at finite coordinates"),
-        (spoilt(lambda a: vertices(a)["0"].update(x=-0.1)), "node 0: is no prism across the wall"),
-        (spoilt(lambda a: nodes(a)["0"]["block"]["data"]["face"].pop("0")), "node 0: is no prism across the wall"),
-        (spoilt(lambda a: nodes(a)["0"]["block"]["data"]["face"].update({"0": [0, 1, 99]})), "is no COMPAS assembly"),
+        (spoilt(lambda a: vertices(a)["0"].update(x=-0.1)), "node 0: is not a prism across the wall"),
+        (spoilt(lambda a: nodes(a)["0"]["block"]["data"]["face"].pop("0")), "node 0: is not a prism across the wall"),
+        (
+            spoilt(lambda a: nodes(a)["0"]["block"]["data"]["face"].update({"0": [0, 1, 99]})),
+            "is not a COMPAS assembly",
+        ),
         (
             spoilt(lambda a: [v.update(y=v["y"] + 0.3) for v in vertices(a).values()]),
             "node 0: is not as thick along any",
         ),
         (spoilt(lambda a: [v.update(y=2 * v["y"]) for v in vertices(a).values()]), "node 0: is not as thick along any"),
         (spoilt(lambda a: [n.update(is_support=True) for n in nodes(a).values()]), "is an assembly of supports"),
-        (spoilt(holed), "node 0: is no prism across the wall, with one outline on either side and no hole"),
-        (spoilt(lambda a: a["blocks"]["0"].pop("face"), untyped), "is no COMPAS assembly: KeyError, 'face'"),
+        (spoilt(holed), "node 0: is not a prism across the wall, with one outline a side and no hole"),
+        (spoilt(lambda a: a["blocks"]["0"].pop("face"), untyped), "is not a COMPAS assembly: KeyError, 'face'"),
         (spoilt(lambda a: a["data"].update(transformation={}), model), "element Block 0: is moved as a whole"),
         (spoilt(lambda a: a["data"]["elements"]["0"]["data"].pop("geometry"), model), "element Block 0: is moved as a"),
         (
             spoilt(lambda a: a["data"]["elements"]["1"]["data"].update(transformation={}), model),
-            "is no COMPAS assembly",
+            "is not a COMPAS assembly",
         ),
     ],
 )
@@ -204,7 +207,7 @@ def test_a_json_file_that_is_no_assembly_of_a_wall(text: str, said: str, tmp_pat
 
 def test_a_folder_is_no_assembly(tmp_path: Path) -> None:
     (tmp_path / "wall.json").mkdir()
-    with pytest.raises(SceneError, match="cannot be read as JSON: it is no regular file"):
+    with pytest.raises(SceneError, match="cannot be read as JSON: it is not a regular file"):
         scene_of(tmp_path / "wall.json", units="m")
     with pytest.raises(SceneError, match="cannot be read as JSON: No such file"):
         scene_of(tmp_path / "none.json", units="m")

@@ -197,14 +197,14 @@ def test_a_history_that_is_none(given: Any, said: str, tmp_path: Path, capsys: p
 
 def test_text_that_is_no_text(tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_bytes(b"\xff\xfe0,1")
-    with pytest.raises(SceneError, match="is no record: it is not UTF-8 text"):
+    with pytest.raises(SceneError, match="is not a record: it is not UTF-8 text"):
         of({"file": "record.csv", "quantity": "g"}, tmp_path)
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no pipes in its folders")
 def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "record.csv")
-    with pytest.raises(SceneError, match="cannot be read: it is no regular file"):
+    with pytest.raises(SceneError, match="cannot be read: it is not a regular file"):
         of({"file": "record.csv", "quantity": "g"}, tmp_path)
 
 

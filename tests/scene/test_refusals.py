@@ -168,11 +168,11 @@ def test_a_scene_that_is_no_wall(
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (b"this is no TOML", "is no valid TOML"),
+        (b"this is no TOML", "is not valid TOML"),
         (b"", "wall: is missing"),
         (b"\xff\xfe\x00", "is not UTF-8 text"),
-        (b"x = " + b"[" * 5000, "is no valid TOML"),
-        (b"x = " + b"9" * 5000, "is no valid TOML"),
+        (b"x = " + b"[" * 5000, "is not valid TOML"),
+        (b"x = " + b"9" * 5000, "is not valid TOML"),
     ],
 )
 def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

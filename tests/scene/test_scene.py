@@ -395,6 +395,6 @@ def test_a_drawing_that_is_a_pipe_a_device_or_a_folder_is_not_read(tmp_path: Pat
     made: list[Callable[[Path], Any]] = [os.mkfifo, Path.mkdir, lambda path: path.symlink_to("/dev/zero")]
     for make in made:
         make(tmp_path / "wall.dxf")
-        with pytest.raises(SceneError, match="it is no regular file"):
+        with pytest.raises(SceneError, match="it is not a regular file"):
             read_drawn(tmp_path)
         (tmp_path / "wall.dxf").rename(tmp_path / f"was {made.index(make)}")

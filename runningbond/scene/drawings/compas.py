@@ -41,19 +41,19 @@ def read_compas(path: Path) -> tuple[list[Array], list[Array], str]:
         For what is no assembly, or none in a plane.
     """
     if path.exists() and not path.is_file():
-        raise SceneError(KEY, "cannot be read as JSON: it is no regular file", str(path))
+        raise SceneError(KEY, "cannot be read as JSON: it is not a regular file", str(path))
     try:
         content = json.loads(path.read_bytes())
     except OSError as error:
         raise SceneError(KEY, f"cannot be read as JSON: {error.strerror or error}", str(path)) from error
     except (RecursionError, ValueError) as error:
-        raise SceneError(KEY, f"is no valid JSON file: {error}", str(path)) from error
+        raise SceneError(KEY, f"is not a valid JSON file: {error}", str(path)) from error
     try:
         found = [(name, *_mesh(block, name), held) for name, block, held in _blocks(content)]
     except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as error:
         if isinstance(error, SceneError):
             raise
-        raise SceneError(KEY, f"is no COMPAS assembly: {type(error).__name__}, {error}", str(path)) from error
+        raise SceneError(KEY, f"is not a COMPAS assembly: {type(error).__name__}, {error}", str(path)) from error
     if not found:
         raise SceneError(KEY, "is an assembly without blocks", str(path))
     across, plane, size = _plane([(name, points) for name, points, *_ in found])
@@ -146,5 +146,5 @@ def _outline(
         or front.interiors
         or front.symmetric_difference(back).area > thin
     ):
-        raise SceneError(f"{KEY}, {name}", "is no prism across the wall, with one outline on either side and no hole")
+        raise SceneError(f"{KEY}, {name}", "is not a prism across the wall, with one outline a side and no hole")
     return np.array(front.exterior.coords)[:-1]

@@ -55,7 +55,7 @@ def read_dxf(path: Path) -> Sheet:
         For what is no DXF file, for meshes and for curves out of the drawing's plane.
     """
     if path.exists() and not path.is_file():  # a device has no end, and a pipe may have no other one
-        raise SceneError(KEY, "cannot be read as DXF: it is no regular file", str(path))
+        raise SceneError(KEY, "cannot be read as DXF: it is not a regular file", str(path))
     try:
         from ezdxf.filemanagement import readfile
     except Exception as error:  # its import reads settings of the user's, who may have no home
@@ -76,7 +76,7 @@ def read_dxf(path: Path) -> Sheet:
     except OSError as error:
         raise SceneError(KEY, f"cannot be read as DXF: {error.strerror or error}", str(path)) from error
     except Exception as error:  # whatever its parsers raise on a file that is damaged
-        raise SceneError(KEY, f"is no valid DXF file: {error}", str(path)) from error
+        raise SceneError(KEY, f"is not a valid DXF file: {error}", str(path)) from error
 
 
 class _Walk:
