@@ -7,6 +7,7 @@ collapse.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -63,34 +64,34 @@ def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -
     )
 
 
-def certify(system: Equilibrium, motion: Array) -> Certificate | None:
-    """Look for the loads that drive a mechanism; None where there are none. Of loads without end, the least counts."""
+def certify(
+    system: Equilibrium, motion: Array, extreme: Callable[[ForceSet, Aim], ForceSolution | None] | None = None
+) -> Certificate | None:
+    """Look for the loads that drive a mechanism; None where there are none. Of loads without end, the least counts.
+
+    Forces at the ``smallest`` and the ``largest`` load are as exact as what is given to find them; without it proved.
+    """
     forces = driving_forces(system, motion)
     if forces is None:
         return None
-    least = _end(system, forces, "smallest")
-    if least.status != "optimal":
+    find = partial(_end, system) if extreme is None else extreme
+    least = find(forces, "smallest")
+    if least is None or least.status != "optimal":
         return None
-    most = _end(system, forces, "largest")
-    if most.status == "unbounded":
+    most = find(forces, "largest")
+    if most is not None and most.status == "unbounded":
         return Certificate(motion, least, least)
-    return Certificate(motion, least, most) if most.status == "optimal" else None
+    return Certificate(motion, least, most) if most is not None and most.status == "optimal" else None
 
 
 def roughly_certified(system: Equilibrium, motion: Array, count: Callable[[int], None]) -> Certificate | None:
     """Loads that drive a mechanism, near its ends, by interior points, each of which counts; `certify` proves them."""
-    driving = driving_forces(system, motion)
-    if driving is None:
-        return None
-    count(1)
-    least = near(system, driving, "smallest")
-    if least.status != "optimal":
-        return None
-    count(1)
-    most = near(system, driving)
-    if most.status == "unbounded":
-        return Certificate(motion, least, least)
-    return Certificate(motion, least, most) if most.status == "optimal" else None
+
+    def extreme(forces: ForceSet, aim: Aim) -> ForceSolution:
+        count(1)
+        return near(system, forces, aim)
+
+    return certify(system, motion, extreme)
 
 
 def _end(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution:

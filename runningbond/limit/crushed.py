@@ -149,14 +149,8 @@ class InnerProgram:
         result = solve_program(self.arguments(), "highs-ipm")
         status = STATUS[int(result.status)]
         if result.x is None or status != "optimal":
-            return nothing(status, int(result.nit))
+            return ForceSolution.none(status, int(result.nit))
         return self.solution(status, np.asarray(result.x), np.asarray(result.eqlin.marginals), int(result.nit))
-
-
-def nothing(status: ProgramStatus, iterations: int = 0) -> ForceSolution:
-    """A solution that is none."""
-    none = np.zeros(0)
-    return ForceSolution(status, np.nan, none, none, none, none, iterations)
 
 
 def closest(system: Equilibrium) -> float:
@@ -172,16 +166,16 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
     dead = system.under_dead_load()
     rests, known = _resting(dead, joints)
     if not rests:
-        return nothing("numerical" if rests is None else "infeasible"), rests
+        return ForceSolution.none("numerical" if rests is None else "infeasible"), rests
     program, point, iterations = _narrowed(system, joints, known)
     if point.status != "optimal":
-        return nothing(point.status, iterations), True
+        return ForceSolution.none(point.status, iterations), True
     found = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
     if found is None or _width(system, found) > closest(system):
         vertex = program.vertex()
         if vertex.status == "optimal":
             found = vertex if found is None else _best(system, found, vertex)
-    return (nothing("numerical") if found is None else replace(found, iterations=iterations)), True
+    return (ForceSolution.none("numerical") if found is None else replace(found, iterations=iterations)), True
 
 
 def _width(system: Equilibrium, found: ForceSolution) -> float:

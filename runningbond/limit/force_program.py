@@ -107,6 +107,12 @@ class ForceSolution:
     iterations: int
     tie: Array = field(default_factory=lambda: np.zeros(0))
 
+    @classmethod
+    def none(cls, status: ProgramStatus, iterations: int = 0) -> "ForceSolution":
+        """What a program without an optimum gives."""
+        empty = np.zeros(0)
+        return cls(status, np.nan, empty, empty, empty, empty, iterations)
+
 
 def force_program(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> dict[str, Any]:
     """Arguments of `scipy.optimize.linprog` that look for a multiplier which forces of a set can balance."""
@@ -164,8 +170,7 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
         if status != "numerical":
             break
     if result.x is None or status != "optimal":
-        none = np.zeros(0)
-        return ForceSolution(status, np.nan, none, none, none, none, int(result.nit))
+        return ForceSolution.none(status, int(result.nit))
     marginals = np.asarray(result.eqlin.marginals)
     return solution_of(system, forces, status, result.x * unit, marginals, int(result.nit))
 

@@ -152,6 +152,5 @@ class Programs:
         self._count()
         status, found, motion = model.solve(low, high, cost, method, pivots)
         if status not in ("optimal", "budget"):
-            none = np.zeros(0)
-            return ForceSolution(status, np.nan, none, none, none, none, 0)
+            return ForceSolution.none(status)
         return solution_of(self.system, forces, "optimal", found, motion, 0)

@@ -56,14 +56,13 @@ def proved(system: Equilibrium, resting: Array | None) -> ForceSolution:
     forces = coulomb(system.strength)
     program = force_program(system, forces)
     point = interior_point(program, STOP[tolerance_of(system)], unfinished=True)
-    none = np.zeros(0)
     if point.status in ("infeasible", "unbounded"):
-        return ForceSolution(point.status, np.nan, none, none, none, none, point.iterations)
+        return ForceSolution.none(point.status, point.iterations)
     within = None if resting is None else loaded(system, program, resting)
     found, motion = balanced(program, point, within), admissible(program, point)
     if found is None or motion is None or system.live @ motion <= 0:
         status: ProgramStatus = "budget" if point.interrupted else "numerical"
-        return ForceSolution(status, np.nan, none, none, none, none, point.iterations)
+        return ForceSolution.none(status, point.iterations)
     solution = solution_of(
         system, forces, "budget" if point.interrupted else "optimal", found, motion, point.iterations
     )

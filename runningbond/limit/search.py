@@ -19,10 +19,10 @@ import numpy as np
 
 from runningbond.scene import Array
 
-from .certificates import Certificate, driving_forces
+from .certificates import Certificate, certify
 from .descent import Descent, is_lower, random_weights
 from .equilibrium import Equilibrium
-from .force_program import ForceSolution, coulomb, solve_forces
+from .force_program import Aim, ForceSet, ForceSolution, coulomb, solve_forces
 from .programs import Corners, Programs
 from .simplex import PRIMAL
 
@@ -302,13 +302,11 @@ def short_sequence(descent: Descent, pressure: Array, weight: float | None) -> I
 
 def certified(descent: Descent, motion: Array) -> Certificate | None:
     """The loads that drive a mechanism ``(nd,)``; None where there are none. Of loads without end, the least counts."""
-    forces, least = driving_forces(descent.system, motion), descent.least(motion)
-    if forces is None or least is None:
-        return None
-    most = descent.programs.extreme(forces, -1.0, PRIMAL)
-    if most.status == "unbounded":
-        return Certificate(motion, least, least)
-    return Certificate(motion, least, most) if most.status == "optimal" else None
+
+    def extreme(forces: ForceSet, aim: Aim) -> ForceSolution | None:
+        return descent.least(motion) if aim == "smallest" else descent.programs.extreme(forces, -1.0, PRIMAL)
+
+    return certify(descent.system, motion, extreme)
 
 
 def averaged(pressure: Array, new: Array, weight: float) -> Array:
