@@ -193,11 +193,16 @@ def run_model(
         raise
     except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
-    unread = model.unread(scene)
-    notes = [outcome.message, f"not taken into account: {', '.join(unread)}" if unread else ""]
+    notes = [outcome.message, _left_out(model, scene)]
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
     return replace(outcome, model=model.name, message="; ".join(filter(None, notes)))
+
+
+def _left_out(model: Model, scene: Scene) -> str:
+    """The keys of a scene that a model does not take into account; empty if it reads all."""
+    unread = model.unread(scene)
+    return f"not taken into account: {', '.join(unread)}" if unread else ""
 
 
 def check_response(
@@ -225,9 +230,13 @@ def check_response(
 def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: Any) -> "Response":
     """Follow a scene through the motion of its ground, `scale` times as large; settings as of `follow`.
 
+    The response's message ends with the keys of the scene that the model does not take into account.
+
     Raises
     ------
     SceneError
         As of `check_response`.
     """
-    return check_response(model, scene, scale)(scene, scale, **settings)
+    follow = check_response(model, scene, scale)
+    response = follow(scene, scale, **settings)
+    return replace(response, message="; ".join(filter(None, [response.message, _left_out(find_model(model), scene)])))

@@ -81,7 +81,8 @@ class Settlement(Action):
         """Fixed blocks that move, ``(nb,)``."""
         low, high = np.array(self.box)
         centre = scene.blocks.centroid
-        inside = (centre[:, 0] > low[0]) & (centre[:, 0] < high[0]) & (scene.blocks.boxes[0][:, 1] < high[1])
+        bottom, top = (ends[:, 1] for ends in scene.blocks.boxes)
+        inside = (centre[:, 0] > low[0]) & (centre[:, 0] < high[0]) & (bottom < high[1]) & (top > low[1])
         moving: Mask = scene.fixed & inside
         return moving
 

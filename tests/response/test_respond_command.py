@@ -71,3 +71,10 @@ def test_files_of_somebodys_own_stay(ask: Any, tmp_path: Path) -> None:
     ask("respond", own, **SHAKEN)
     assert (own / "arrays-of-sensors.npz").read_text() == "measured"
     assert not (own / "outcome.json").exists()
+
+
+def test_a_response_says_what_its_model_leaves_out(ask: Any, tmp_path: Path) -> None:
+    """As a run does; rigid blocks know nothing of their stiffness, which decides how far a soft column sways."""
+    soft = {"block__young": 1e9, "block__poisson": 0.2}
+    told = json.loads(ask("respond", tmp_path / "out", "--json", **SHAKEN, **soft))["message"]
+    assert told.endswith("; not taken into account: block.young, block.poisson")

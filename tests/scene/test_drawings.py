@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from runningbond.scene import SceneError
 from runningbond.scene.drawings import curves, read_drawing
 
 from .drafting import BRICKS, COURSES, Draw, box, closed, dxf, lines, multiplier, own_lines, scene_of
@@ -176,6 +177,13 @@ def test_without_such_a_layer_the_lowest_outline_is_the_ground_and_is_said_to_be
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, box(-500, -50, 900, 0)]), ground=False), "mm")
     assert (len(drawing.blocks), len(drawing.grounds)) == (7, 1)
     assert drawing.notes == ("ground: no layer is named ground, so it is the lowest outline, at (0.2, -0.025)",)
+
+
+def test_of_several_outlines_that_lie_lowest_none_is_taken_for_the_ground(tmp_path: Path) -> None:
+    """Three stones side by side, drawn without ground: one would be held, and the others hang in the air."""
+    path = dxf(tmp_path / "wall.dxf", closed([box(x, 0, x + 300, 200) for x in (0, 300, 600)]), ground=False)
+    with pytest.raises(SceneError, match="has no layer named ground, and 3 outlines lie as low"):
+        read_drawing(path, "mm")
 
 
 def test_a_header_with_other_units_is_pointed_out(tmp_path: Path) -> None:

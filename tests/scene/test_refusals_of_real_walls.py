@@ -103,6 +103,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (live(SINK | {"by": [0, 0]}), "load.live[0].by = [0.0, 0.0]: must move the support"),
         (live({"kind": "settlement", "box": SINK["box"]}), "load.live[0].by: is missing"),
         (live(SINK | {"box": [[5, 5], [6, 6]]}), "load.live.box = [[5.0, 5.0], [6.0, 6.0]]: holds no ground"),
+        (live(SINK | {"box": [[0, 5], [0.7, 6]]}), "load.live.box = [[0.0, 5.0], [0.7, 6.0]]: holds no ground"),
         (live(SINK | {"rotation_angle": 30}), "load.live[0].rotation_angle = 30.0: must be a number at least -10"),
         (live(SINK | {"about": [1, 1]}), "load.live[0].rotation_angle: is missing; about is the point"),
         (live(SINK | {"about": [1]}), "load.live[0].about = [1]: must be a pair"),

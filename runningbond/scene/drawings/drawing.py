@@ -156,7 +156,12 @@ def _without_ground(
     ground = [k for k, layer in enumerate(layers) if layer.lower() in GROUND_LAYERS]
     notes = []
     if not ground:
-        ground = [min(range(len(outlines)), key=lambda k: float(outlines[k][:, 1].mean()))]
+        middle = np.array([outline[:, 1].mean() for outline in outlines])
+        ground = [int(middle.argmin())]
+        beside = int((middle < outlines[ground[0]][:, 1].max()).sum())
+        if beside > 1:
+            what = f"has no layer named ground, and {beside} outlines lie as low; put the ground on one of that name"
+            raise SceneError(KEY, what, path)
         x, y = outlines[ground[0]].mean(axis=0)
         notes.append(f"ground: no layer is named ground, so it is the lowest outline, at ({x:.4g}, {y:.4g})")
     if len(ground) == len(outlines):
