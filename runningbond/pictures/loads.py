@@ -147,7 +147,7 @@ class LoadDrawing:
         return bool(self.scene.wall[found].any())
 
     def _line(self, load: LineLoad, live: bool, colour: str, name: str) -> None:
-        """A row of arrows under a bar, moved outwards until no other row is in its way."""
+        """A row of arrows under a bar; outside the wall moved outwards until no other row is in its way."""
         a, direction = self.a, unit_vector(np.array(load.force))
         block, share = load.parts(self.scene)
         run = np.subtract(load.end, load.start)
@@ -165,15 +165,17 @@ class LoadDrawing:
         middle = tips.mean(axis=0)
         is_shear = abs(along @ direction) > 0.97
         away = np.array([-along[1], along[0]]) if is_shear else -direction
-        if self._inside(middle + 0.5 * a * away) and not self._inside(middle - 0.5 * a * away):
+        beyond, before = self._inside(middle + 0.5 * a * away), self._inside(middle - 0.5 * a * away)
+        if beyond and not before:
             away = -away
-        if is_shear:
+        within = beyond and before
+        if is_shear and not within:
             tips = tips + 0.6 * a * away
-        elif away @ direction > 0:  # it pulls
+        elif not is_shear and away @ direction > 0:  # it pulls
             tips = tips + 1.5 * a * direction
         both = np.concatenate([tips - (0.9 if is_shear else 1.5) * a * direction, tips])
         air = 0.35 * a * away if is_shear else np.zeros(2)
-        while any(_meet(np.concatenate([both - air, both + air]), box) for box in self.rows):
+        while not within and any(_meet(np.concatenate([both - air, both + air]), box) for box in self.rows):
             both = both + 0.5 * a * away
         tails, tips = both[:n], both[n:]
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))

@@ -33,6 +33,9 @@ Material = TypeVar("Material", BlockMaterial, JointMaterial)
 SAME_COLUMN = 1e-9
 """Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
 
+CANCELLED = 1e-12
+"""Share of the largest live load on a block, or of the largest moment, that is what rounding leaves of none."""
+
 NEAR = 0.1
 """Gap, in block sizes, that looks like one of a survey."""
 
@@ -443,6 +446,24 @@ def _check(scene: Scene) -> None:
         size = sum(float(np.abs(part).sum()) for part in (forces.acceleration, forces.moment, forces.force))
         if not 0 < size < np.inf:
             raise SceneError(key, "must put finite forces on the blocks, not all of them zero", load)
+    if len(scene.load.live) > 1 and _cancel(scene):
+        raise SceneError("load.live", "must not cancel out on every block: nothing is multiplied by λ")
+
+
+def _cancel(scene: Scene) -> bool:
+    """Whether live loads leave no force and no moment on any block that moves."""
+    each = [_resultants(scene, load.forces(scene)) for load in scene.load.live]
+    most = np.max(np.abs(each), axis=(0, 1))
+    return bool((np.abs(np.sum(each, axis=0)) <= CANCELLED * most)[~scene.fixed].all())
+
+
+def _resultants(scene: Scene, loads: Forces) -> Array:
+    """Forces on blocks and moments about their centroids, ``(nb, 3)`` [N, N m]."""
+    result = np.column_stack([scene.mass[:, None] * loads.acceleration, loads.moment])
+    arm = loads.at - scene.blocks.centroid[loads.block]
+    moment = arm[:, 0] * loads.force[:, 1] - arm[:, 1] * loads.force[:, 0]
+    np.add.at(result, loads.block, np.column_stack([loads.force, moment]))
+    return result
 
 
 def table_of(material: BlockMaterial | JointMaterial) -> str:

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from runningbond.commands.command_line import command
-from tests.walls import content, write_toml
+from runningbond.scene import SceneError
+from tests.walls import content, panel, write_toml
 
 from .test_scene import drawing
 
@@ -261,3 +262,13 @@ def test_a_drawing_that_is_no_wall(
     assert said in printed.err
     assert printed.err.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("opposite", ["left", [-1.0, 0.0]])
+def test_live_loads_that_cancel_are_refused(opposite: Any) -> None:
+    """They would be self-locking to every model; what is left of them moves no block."""
+    loads = [{"kind": "lateral"}, {"kind": "lateral", "direction": opposite}]
+    with pytest.raises(SceneError, match=r"load\.live: must not cancel out on every block"):
+        panel(load__live=loads)
+    apart = [{"kind": "point", "at": [x, 0.33], "force": [force, 0.0]} for x, force in ((0.1, 5.0), (0.5, -5.0))]
+    assert panel(load__live=apart).load.live
