@@ -108,6 +108,7 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
         grounds=outlines.grounds,
         bond=outlines.bond,
         inner_joint=inner_material,
+        whole_up_to=outlines.whole_up_to,
         materials=materials,
         joints=joints,
         assignments=assignments,

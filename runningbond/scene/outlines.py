@@ -19,6 +19,10 @@ ALIKE = 1e-9
 """How far heights of courses that are alike may differ, and their sum from the wall's height, relatively."""
 
 
+WHOLE = 0.75
+"""Width of a bonded wall's block, in nominal ones, up to which it stays whole where others may split."""
+
+
 @dataclass(frozen=True, eq=False)
 class Outlines:
     """What a scene file says of its blocks.
@@ -31,6 +35,8 @@ class Outlines:
         Pieces of the ground [m]; none where the support is to make one.
     bond
         Nominal block, where the wall is bonded in courses that are alike.
+    whole_up_to
+        Width up to which blocks stay whole where others may split [m].
     layers
         Layer of each block in a drawing; none of other walls.
     materials
@@ -42,6 +48,7 @@ class Outlines:
     polygons: list[Array]
     grounds: list[Array] = field(default_factory=list)
     bond: Bond | None = None
+    whole_up_to: float = 0.0
     layers: tuple[str, ...] = ()
     materials: dict[int, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
@@ -87,10 +94,10 @@ def read_outlines(wall: Table, folder: Path, block_names: Sequence[str]) -> Outl
         rows = bonded_rows(width, length, n_courses, first, ends)
     levels = bond.levels(len(rows)) if bond else np.cumsum([0.0, *cast(Array, heights)])
     polygons, openings = rectangles(rows, width, levels), read_openings(wall, block_names)
-    if not openings:
-        return Outlines(polygons, bond=bond)
-    polygons, materials = cut_openings(polygons, openings, width)
-    return Outlines(polygons, bond=bond, materials=materials)
+    materials: dict[int, str] = {}
+    if openings:
+        polygons, materials = cut_openings(polygons, openings, width)
+    return Outlines(polygons, bond=bond, whole_up_to=WHOLE * width, materials=materials)
 
 
 def _course_heights(wall: Table) -> Array | None:

@@ -272,6 +272,7 @@ def build_scene(
     grounds: Sequence[Array] = (),
     bond: Bond | None = None,
     inner_joint: JointMaterial | None = None,
+    whole_up_to: float = 0.0,
     materials: Sequence[BlockMaterial] = (),
     joints: Sequence[JointMaterial] = (),
     assignments: Sequence[Assignment] = (),
@@ -290,8 +291,9 @@ def build_scene(
     grounds : list of (n, 2) float
         Outlines of the ground; without any a flat strip is laid under the lowest course where the support needs one.
     inner_joint
-        Material of a potential crack on the vertical axis of every block; in a bonded wall, of every block wider
-        than half the nominal one.
+        Material of a potential crack on the vertical axis of every block.
+    whole_up_to
+        Width up to which blocks have none [m].
     materials, joints
         Further materials of blocks and joints, by their names.
     assignments
@@ -323,7 +325,7 @@ def build_scene(
     material, assigned = assign_blocks(whole, names, layers, material_of or {}, assignments)
     owner = np.arange(len(polygons))
     if inner_joint is not None:
-        polygons, owner = cut_in_half(polygons, 0.75 * bond.width if bond else 0.0)
+        polygons, owner = cut_in_half(polygons, whole_up_to)
     blocks, beam, number_of_grounds = _bodies(polygons, grounds, beam, support, load)
     others = len(blocks) - len(polygons)
     wall = np.arange(len(blocks)) < len(blocks) - number_of_grounds

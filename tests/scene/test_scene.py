@@ -398,3 +398,13 @@ def test_a_drawing_that_is_a_pipe_a_device_or_a_folder_is_not_read(tmp_path: Pat
         with pytest.raises(SceneError, match="it is not a regular file"):
             read_drawn(tmp_path)
         (tmp_path / "wall.dxf").rename(tmp_path / f"was {made.index(make)}")
+
+
+@pytest.mark.parametrize("last", [0.1, 0.1001, 0.15])
+def test_half_blocks_stay_whole_whatever_the_heights_of_the_courses(last: float) -> None:
+    """Blocks of three quarters of the nominal width and less do not split, in courses that are alike or not."""
+    wall = {"block_width": 0.2, "thickness": 0.1, "courses": [[1, 1], [0.5, 1, 0.5], [0.75, 1, 0.25]]}
+    table = content(inner_joint={"friction": 0.6, "cohesion": 1e5})
+    table["wall"] = wall | {"course_heights": [0.1, 0.1, last]}
+    widths = np.ptp(scene_from_dict(table).blocks.boxes, axis=0)[:-1, 0]  # without the ground
+    assert np.sort(widths / 0.2) == pytest.approx([0.25, *[0.5] * 10, 0.75])
