@@ -91,9 +91,10 @@ def interior_point(program: dict[str, Any], tolerance: float, *, unfinished: boo
     slack[boxed] -= slacks[n:]
     motion = np.array(solution.x)[:m]
     unit = (np.abs(motion).max() or 1.0) / (dual[:n].max(initial=0.0) or 1.0)
-    with np.errstate(divide="ignore", over="ignore"):
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         stiffness = slacks[:n] / dual[:n]
         stiffness[n - n_boxed :] += slacks[n:] / dual[n:]
+        stiffness[np.isnan(stiffness)] = unit  # 0 / 0: neither bears anything nor moves
         compliance[order] = (unit / stiffness).clip(1 / FARTHEST, FARTHEST)
     compliance[free] = FARTHEST
     return InteriorPoint(

@@ -115,7 +115,11 @@ def _friction(key: str, friction: float) -> Iterator[str]:
         hint = f"; is friction_angle = {friction:g} meant, tan φ = {math.tan(math.radians(friction)):.3g}?"
         yield f"{key} = {friction:.4g}: is tan φ, and above {most:g}{hint if angle else ''}"
     elif 0 < friction < least:
-        yield f"{key} = {friction:.4g}: is tan φ, and below {least:g}; an angle is friction_angle, in degrees"
+        angle = math.degrees(math.atan(friction))
+        hint = "an angle is friction_angle, in degrees"
+        if ANGLES[0] <= math.degrees(angle) <= ANGLES[1]:
+            hint += f"; is {math.degrees(angle):.3g} meant, which is {angle:.3g} in radians?"
+        yield f"{key} = {friction:.4g}: is tan φ, and below {least:g}; {hint}"
 
 
 def _sizes(scene: Scene) -> Iterator[str]:

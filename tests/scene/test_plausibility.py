@@ -65,6 +65,7 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         ({"joint__friction": 30.0}, "joint.friction = 30: * is friction_angle = 30 meant, tan φ = 0.577?", 1.5),
         ({"joint__friction": 1.6}, "joint.friction = 1.6: is tan φ, and above 1.5", 1.4),
         ({"joint__friction": 0.01}, "joint.friction = 0.01: is tan φ, and below 0.1; an angle is friction_angle", 0.0),
+        ({"joint__friction": 0.009425}, "joint.friction = 0.009425: * is 30.9 meant, which is 0.54 in radians?", 0.0),
         (joint(mortar=MORTAR | {"young": 1.0}), "joint.mortar.young = 1: * is 1 GPa meant", joint()),
         (joint(mortar=MORTAR | {"thickness": 10}), "joint.mortar.thickness = 10: * is 10 mm meant", joint()),
         (joint(cohesion=0.2), "joint.cohesion = 0.2: * is 0.2 MPa meant, which is 2e+05 Pa?", joint(cohesion=200.0)),

@@ -52,8 +52,10 @@ class ModelError:
 
     def __str__(self) -> str:
         names = self.walls.split()
+        extra = ["joints that crush"] * self.crushes + ["blocks that split"] * self.splits
+        rung = f"{self.rung} ({self.base} with {' and '.join(extra)})" if extra else self.rung
         return (
-            f"{self.rung} was off by {self.median:.0%} in the median, {self.least:+.0%} to {self.most:+.0%}, on "
+            f"{rung} was off by {self.median:.0%} in the median, {self.least:+.0%} to {self.most:+.0%}, on "
             f"{len(names)} tested walls with {self.joints} joints ({', '.join(names)})"
         )
 
