@@ -10,10 +10,12 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
+import shapely
 
 from .arrays import Array, Mask
 from .blocks import touching_boxes
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
+from .ties import ANCHOR
 from .wall import Scene, table_of
 
 
@@ -57,6 +59,10 @@ OF_MORTAR = {
     "thickness": Plausible(2e-4, 0.2, "m", {"mm": 1e-3, "cm": 1e-2}),
 }
 OF_TIES = Plausible(1e8, 1e12, "Pa", PRESSURES)
+AREA = Plausible(1e-8, 0.1, "m²", {"mm²": 1e-6, "cm²": 1e-4})
+STRONGEST = 5e9
+"""Stress at which a tie yields [Pa] that none comes near."""
+
 SIZE = Plausible(0.05, 200.0, "m", {"mm": 1e-3, "cm": 1e-2, "km": 1e3})
 GRAVITY = Plausible(9.3, 10.3, "m/s²")
 SHAKING = Plausible(0.01, 50.0, "m/s²", {"cm/s²": 1e-2})
@@ -87,7 +93,7 @@ def warnings(scene: Scene) -> tuple[str, ...]:
 
 
 def _materials(scene: Scene) -> Iterator[str]:
-    """Numbers of materials, and of ties."""
+    """Numbers of materials."""
     materials: tuple[BlockMaterial | JointMaterial, ...] = (*scene.block_materials, *scene.joint_materials)
     for material in materials:
         table = table_of(material)
@@ -103,8 +109,6 @@ def _materials(scene: Scene) -> Iterator[str]:
                     yield from STIFFNESS.doubts(f"{table}.{own}_stiffness", getattr(value, own))
             elif name == "friction":
                 yield from _friction(f"{table}.friction", value)
-    for k, young in enumerate(scene.ties.young.tolist()):
-        yield from OF_TIES.doubts(f"tie[{k}].young", young)
 
 
 def _friction(key: str, friction: float) -> Iterator[str]:
@@ -115,10 +119,10 @@ def _friction(key: str, friction: float) -> Iterator[str]:
         hint = f"; is friction_angle = {friction:g} meant, tan φ = {math.tan(math.radians(friction)):.3g}?"
         yield f"{key} = {friction:.4g}: is tan φ, and above {most:g}{hint if angle else ''}"
     elif 0 < friction < least:
-        angle = math.degrees(math.atan(friction))
+        given = math.degrees(math.atan(friction))
         hint = "an angle is friction_angle, in degrees"
-        if ANGLES[0] <= math.degrees(angle) <= ANGLES[1]:
-            hint += f"; is {math.degrees(angle):.3g} meant, which is {angle:.3g} in radians?"
+        if ANGLES[0] <= math.degrees(given) <= ANGLES[1]:
+            hint += f"; is {math.degrees(given):.3g} meant, which is {given:.3g} in radians?"
         yield f"{key} = {friction:.4g}: is tan φ, and below {least:g}; {hint}"
 
 
@@ -140,6 +144,38 @@ def _sizes(scene: Scene) -> Iterator[str]:
     moved = float(np.hypot(*scene.support_motion[:, :2].T).max())
     if moved > LARGEST_SETTLEMENT * longest:
         yield f"load.live.by = {moved:g}: moves a support by more than a tenth of the wall's size; are mm meant?"
+
+
+def _ties(scene: Scene) -> Iterator[str]:
+    """Numbers of ties, and ends that are anchors in space just beside the wall."""
+    ties = scene.ties
+    for k, (young, area, most) in enumerate(zip(ties.young, ties.area, ties.yield_force, strict=True)):
+        yield from OF_TIES.doubts(f"tie[{k}].young", young)
+        yield from AREA.doubts(f"tie[{k}].area", area)
+        if most / area > STRONGEST and AREA.least <= area <= AREA.most:
+            yield f"tie[{k}].yield = {most:g}: is a force, {most / area:.3g} Pa on the tie's area; is a stress meant?"
+    if not len(ties):
+        return
+    wall = shapely.union_all([shapely.Polygon(scene.blocks.polygon(int(b))) for b in np.flatnonzero(scene.wall)])
+    for k, side in np.argwhere(ties.block == ANCHOR).tolist():
+        away = float(shapely.distance(wall, shapely.Point(ties.ends[k, side])))
+        if 0 < away <= scene.block_size:
+            end = f"tie[{k}].{('from', 'to')[side]} = {ties.ends[k, side].tolist()}"
+            yield f"{end}: is an anchor fixed in space, {away:.3g} m beside the wall; is a point on the wall meant?"
+
+
+def _beam(scene: Scene) -> Iterator[str]:
+    """A beam, or its way, that is longer than the wall."""
+    if scene.beam is None:
+        return
+    low, high = scene.blocks.extent(_own_blocks(scene))
+    longest, drive = float(max(high - low)), scene.beam.drive
+    sizes = {"beam.height": scene.beam.height}
+    if drive is not None and drive.path:
+        sizes["beam.drive.displacement"] = max(map(abs, drive.path))
+    for key, size in sizes.items():
+        if size > longest:
+            yield f"{key} = {size:g}: is more than the wall's size, {longest:.3g} m; are mm meant?"
 
 
 def _shaking(scene: Scene) -> Iterator[str]:
@@ -221,4 +257,4 @@ def _head_joints(scene: Scene) -> Iterator[str]:
         yield f"wall: no head joint: blocks that stand side by side are up to {gap} apart, and nowhere touch"
 
 
-CHECKS = (_sizes, _materials, _shaking, _courses, _head_joints)
+CHECKS = (_sizes, _materials, _ties, _beam, _shaking, _courses, _head_joints)

@@ -41,8 +41,13 @@ def stiff(**keys: Any) -> dict[str, Any]:
     return {"joint": {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9} | keys}
 
 
-def tie(young: float) -> dict[str, Any]:
-    return {"tie": [{"from": [0.1, 0.7], "to": [1.4, 0.7], "area": 1e-4, "young": young, "yield": 2e4}]}
+def tie(young: float, area: float = 1e-4, most: float = 2e4, to: float = 1.4) -> dict[str, Any]:
+    return {"tie": [{"from": [0.1, 0.7], "to": [to, 0.7], "area": area, "young": young, "yield": most}]}
+
+
+def beam(height: float, moves: float | None = None) -> dict[str, Any]:
+    drive = {} if moves is None else {"drive": {"displacement": [moves, 0.0]}}
+    return {"beam": {"height": height, "force": [0.0, -1e3], **drive}} | ({"load__live": None} if drive else {})
 
 
 def settles(by: float) -> dict[str, Any]:
@@ -81,6 +86,11 @@ def scaled(size: float, thickness: float = 0.12) -> dict[str, Any]:
         ({"wall__thickness": 1e-3}, "wall.thickness = 0.001: is odd for blocks", 0.01),
         ({"materials": {"oak": {"density": 7.0}}} | FIRST, "materials.oak.density = 7: * is 7 kN/m³ meant", OAK),
         (tie(210.0), "tie[0].young = 210: * is 210 GPa meant", tie(2.1e11)),
+        (tie(2.1e11, area=314.0), "tie[0].area = 314: * is 314 mm² meant, which is 0.000314 m²?", tie(2.1e11)),
+        (tie(2.1e11, most=2.35e8), "tie[0].yield = 2.35e+08: is a force * is a stress meant?", tie(2.1e11, most=3e5)),
+        (tie(2.1e11, to=1.45), "tie[0].to = [1.45, 0.7]: is an anchor * 0.01 m beside the wall", tie(2.1e11, to=2.0)),
+        (beam(250.0), "beam.height = 250: is more than the wall's size, 1.44 m; are mm meant?", beam(0.25)),
+        (beam(0.2, 10.0), "beam.drive.displacement = 10: is more than", beam(0.2, 0.01)),
         (settles(2.0), "load.live.by = 2: moves a support by more than a tenth", settles(0.02)),
     ],
 )
