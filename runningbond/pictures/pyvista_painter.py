@@ -23,6 +23,9 @@ CROSS = 0.09
 FINE, FAINTEST = 12.0, 0.25
 """Pixels of a block's height below which lines give way to what they lie on, and the least opacity of a joint's."""
 
+LEAST = 1.5
+"""Pixels in width below which VTK drops a line that runs along the border of two columns of pixels."""
+
 REFERENCE = 1000
 """Pixels of a side of an image in which lines have the widths above."""
 
@@ -95,7 +98,7 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
     wall.cell_data["colour"] = np.rint(255 * shape.block_colours()).astype(np.uint8)
     plotter.add_mesh(wall, scalars="colour", rgb=True, **flat)
     edges = _lines(shape.placed, shape.edges, 1.5)
-    plotter.add_mesh(edges, color=EDGE, line_width=0.8 * width, opacity=strength, **flat)
+    plotter.add_mesh(edges, color=EDGE, **_thin(0.8 * width, strength), **flat)
 
     for level, (state, colour) in enumerate(STATE_COLOURS.items()):
         corners = shape.placed_faces[shape.drawn_state == state].reshape(-1, 2)
@@ -103,13 +106,18 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
             gaps = _polygons(corners, np.arange(0, len(corners) + 1, 4), 2.0 + level)
             faces = _lines(corners, np.arange(len(corners)).reshape(-1, 2), 2.5 + level)
             plotter.add_mesh(gaps, color=tint(state), **flat)
-            thin = {"line_width": WIDTHS[state] * width * strength, "opacity": max(strength, FAINTEST)}
+            thin = _thin(WIDTHS[state] * width * strength, max(strength, FAINTEST))
             plotter.add_mesh(faces, color=colour, **thin, **flat)
     if len(shape.crosses):
         arm = CROSS * shape.scene.block_size * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
         ends = (shape.crosses[:, None, None] + arm).reshape(-1, 2)
         crosses = _lines(ends, np.arange(len(ends)).reshape(-1, 2), 8.0)
         plotter.add_mesh(crosses, color=CRUSHED, line_width=3.4 * width, **flat)
+
+
+def _thin(width: float, opacity: float) -> dict[str, float]:
+    """How a line of a width in pixels is drawn: one that would be lost between pixels is wider, and fainter."""
+    return {"line_width": max(width, LEAST), "opacity": opacity * min(1.0, width / LEAST)}
 
 
 def _polygons(points: Array, first: Indices, height: float) -> Any:

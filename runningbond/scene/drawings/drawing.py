@@ -158,7 +158,8 @@ def _without_ground(
     if not ground:
         middle = np.array([outline[:, 1].mean() for outline in outlines])
         ground = [int(middle.argmin())]
-        beside = int((middle < outlines[ground[0]][:, 1].max()).sum())
+        lowest = np.array([outline[:, 1].min() for outline in outlines])
+        beside = int((lowest < middle[ground[0]]).sum())
         if beside > 1:
             what = f"has no layer named ground, and {beside} outlines lie as low; put the ground on one of that name"
             raise SceneError(KEY, what, path)
