@@ -113,6 +113,8 @@ class Result:
         if what == "mechanism" or (what is None and (len(self.motion) or not len(self.outcome.curve))):
             draw_mechanism(axes, self.wall.scene, self.outcome)
             return axes
+        if not len(self.outcome.curve):
+            raise SceneError("what", f"must be mechanism: {self.model} has no curve here", what)
         axes.plot(*self.outcome.curve.T, marker=".")
         axes.set(xlabel="displacement of the control point [m]", ylabel="λ", title=self.outcome.scene)
         return axes

@@ -30,6 +30,9 @@ TABLES = {
 }
 """Keys of a scene file's tables that `Wall.running_bond` and `Wall.courses` take as keywords of their own."""
 
+TABLE_OF = {key: table for table, keys in TABLES.items() for key in keys}
+"""The table of each of them."""
+
 DEFAULTS: dict[str, Any] = {
     "block": {},
     "joint": {},
@@ -123,8 +126,7 @@ class Wall:
 
     @classmethod
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
-        table_of = {key: table for table, its_keys in TABLES.items() for key in its_keys}
-        table_of |= dict.fromkeys(("first_course", "ends"), "wall")
+        table_of = TABLE_OF | dict.fromkeys(("first_course", "ends"), "wall")
         tables: list[dict[str, Any]] = []
         for key, value in keys.items():
             if isinstance(value, (int, float)) and key not in table_of:
@@ -168,6 +170,10 @@ class Wall:
             for part in reversed(name.split(".")):
                 nested = {part: nested}
             nested_changes.append(nested)
+        for name, value in tables.items():
+            if name in TABLE_OF and not isinstance(value, Mapping):
+                what = f'is a key of [{TABLE_OF[name]}]; give it as {{"{TABLE_OF[name]}.{name}": {value}}}'
+                raise SceneError(name, what, value)
         return Wall(_changed(self._description, [*nested_changes, tables]), self.folder)
 
     @property

@@ -5,10 +5,12 @@ import sys
 from pathlib import Path
 
 from runningbond.pictures.style import Colouring
+from runningbond.pictures.time_series import MACRO
 from runningbond.results import StoreError, load_scene
 from runningbond.results.store import RECORD
 from runningbond.scene import SceneError
 
+from .left_behind import RESPONSE_FILES
 from .terminal import DONE, NO_ANSWER, Flag, can_draw
 
 LISTED = 6
@@ -59,5 +61,8 @@ def _check(folder: Path) -> None:
     if inner:
         more = f" and {len(inner) - LISTED} more" if len(inner) > LISTED else ""
         what = f"holds no outcome itself; draw one of {', '.join(map(str, inner[:LISTED]))}{more}"
+        raise StoreError(f"{folder}: {what}")
+    if not (folder / RECORD).is_file() and (folder / RESPONSE_FILES[0]).is_file():
+        what = f"holds a response, which is in {' and '.join(RESPONSE_FILES)}; {MACRO} shows its motion in ParaView"
         raise StoreError(f"{folder}: {what}")
     load_scene(folder)

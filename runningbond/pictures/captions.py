@@ -25,6 +25,9 @@ WIDTH, TALLEST, DPI = 3.5, 4.2, 300
 LINE, KEY_LINE, NOTE_LINE, AIR = 0.14, 0.14, 0.105, 0.08
 """Heights of a line of the title, of an entry of the key, of a line more, and of the air above and below [in]."""
 
+TITLE = 48
+"""Letters in a line of the title, which the narrowest of pictures has room for."""
+
 
 @dataclass(frozen=True)
 class Caption:
@@ -134,7 +137,7 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
 
 def wall_title(title: str) -> list[str]:
     """Lines of a wall's name, none longer than a figure is wide."""
-    return textwrap.wrap(title, 60) or [""]
+    return textwrap.wrap(title, TITLE) or [""]
 
 
 def colour_key(

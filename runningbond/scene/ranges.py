@@ -34,7 +34,8 @@ class Range:
         """A value as a number of the range; any other is refused under its key."""
         number = _finite(value)
         if number is None or not (self.least <= number <= self.most and self.above < number < self.below):
-            raise SceneError(key, f"must be {self}", value)
+            infinite = isinstance(value, float) and not math.isfinite(value) and "finite" not in str(self)
+            raise SceneError(key, f"must be {self}{', finite' * infinite}", value)
         return number
 
 

@@ -10,7 +10,7 @@ import pytest
 import runningbond as rb
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.compare.published import PUBLISHED, published_scene
-from runningbond.scene import Scene
+from runningbond.scene import Scene, SceneError
 
 PANEL: dict[str, Any] = {
     "length": 1.44,
@@ -198,3 +198,20 @@ def test_numbers_of_numpy_are_whole_numbers_too() -> None:
     number: Any = np.int64(2)
     draws = rb.read("wall-w1").draws("dem-static", number, jobs=1, tolerance=0.05)
     assert len(draws.outcomes) == 2
+
+
+def test_a_key_without_its_table_is_told_its_full_name() -> None:
+    with pytest.raises(SceneError, match=r'friction = 0.3: is a key of \[joint\]; give it as {"joint.friction": 0.3}'):
+        rb.read("wall-w1").with_(friction=0.3)
+
+
+@pytest.mark.parametrize("value", [float("inf"), float("nan"), -float("inf")])
+def test_what_is_not_finite_is_said_to_be(value: float) -> None:
+    with pytest.raises(SceneError, match=r"joint\.friction = .*: must be a number at least 0, finite"):
+        rb.read("wall-w1").with_({"joint.friction": value})
+
+
+def test_a_curve_that_is_not_there_is_not_drawn() -> None:
+    result = rb.read("wall-w1").run("limit")
+    with pytest.raises(SceneError, match="what = 'curve': must be mechanism: limit has no curve here"):
+        result.plot("curve")

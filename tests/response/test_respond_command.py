@@ -78,3 +78,11 @@ def test_a_response_says_what_its_model_leaves_out(ask: Any, tmp_path: Path) -> 
     soft = {"block__young": 1e9, "block__poisson": 0.2}
     told = json.loads(ask("respond", tmp_path / "out", "--json", **SHAKEN, **soft))["message"]
     assert told.endswith("; not taken into account: block.young, block.poisson")
+
+
+def test_a_response_is_not_rendered_and_says_where_it_is(
+    ask: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ask("respond", tmp_path / "out", **SHAKEN)
+    assert command(["render", str(tmp_path / "out")]) == 2
+    assert "holds a response, which is in response.csv and response.png; open_run.py shows" in capsys.readouterr().err

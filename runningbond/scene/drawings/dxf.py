@@ -76,7 +76,7 @@ def read_dxf(path: Path) -> Sheet:
     except OSError as error:
         raise SceneError(KEY, f"cannot be read as DXF: {error.strerror or error}", str(path)) from error
     except Exception as error:  # whatever its parsers raise on a file that is damaged
-        raise SceneError(KEY, f"is not a valid DXF file: {error}", str(path)) from error
+        raise SceneError(KEY, f"is not a valid DXF file: {str(error) or type(error).__name__}", str(path)) from error
 
 
 class _Walk:
