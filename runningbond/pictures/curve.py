@@ -39,7 +39,8 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
     axes.annotate(
         f"{answer}  {bracket}".strip(),
         (0.02, level),
-        (0, 2),
+        (0, -2 if scene.settlement else 2),  # a share falls to its level
+        va="top" if scene.settlement else "baseline",
         xycoords=("axes fraction", "data"),
         textcoords="offset points",
         fontsize=TYPE,
@@ -62,13 +63,23 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
             spot: dict[str, Any] = {"textcoords": "offset points", "ha": align, "fontsize": SMALL_TYPE}
             axes.annotate(word, (linear, 0.0), (place, 3), **spot)
     axes.set_ylim(min(0.0, 1.12 * load.min()), 1.12 * max(load.max(), level) or 1.0)
-    point = "displacement of the control point along the live load"
-    axes.set_xlabel(f"{'largest displacement of the top' if scene.history else point} [mm]", fontsize=TYPE + 1)
-    axes.set_ylabel(f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}", fontsize=TYPE + 1)
+    x, y = _quantities(scene, symbol)
+    axes.set_xlabel(f"{x} [mm]", fontsize=TYPE + 1)
+    axes.set_ylabel(y, fontsize=TYPE + 1)
     axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2)
     axes.tick_params(labelsize=TYPE)
     bare(axes)
     return figure
+
+
+def _quantities(scene: Scene, symbol: str) -> tuple[str, str]:
+    """What is drawn over what: x, and y with its unit."""
+    load = f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}"
+    if scene.history:
+        return "largest displacement of the top", load
+    if scene.settlement:
+        return "displacement of the support", f"share {symbol} of the dead load on the support"
+    return "displacement of the control point along the live load", load
 
 
 def _half_way(moved: Array, load: Array) -> float:
