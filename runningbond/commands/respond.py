@@ -18,7 +18,7 @@ from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene
 
 from .left_behind import RESPONSE_FILES, holds_results, remove_older
-from .terminal import DONE, NO_ANSWER, Json, SceneName, progress_line, remarks, together
+from .terminal import DONE, NO_ANSWER, Json, SceneName, Together, progress_line, remarks
 
 if TYPE_CHECKING:
     from runningbond.response import Response
@@ -58,7 +58,7 @@ def respond(
         observers.append(recorder)
         settings["after"] = AFTER
     with progress_line(model, progress.line):
-        response = respond_with(model, wall, scale, observe=together(observers), **settings)
+        response = respond_with(model, wall, scale, observe=Together(observers), **settings)
     for line in remarks(wall):
         print(line, file=sys.stderr)
     summary = response.summary()

@@ -28,6 +28,7 @@ from .terminal import (
     UNDECIDED,
     Json,
     SceneName,
+    Together,
     Tolerance,
     Whole,
     check_jobs,
@@ -37,7 +38,6 @@ from .terminal import (
     progress_line,
     remarks,
     tell_cost,
-    together,
     told_interruption,
 )
 
@@ -88,7 +88,7 @@ def run(
     observers = [each for each in (recorder, progress) if each is not None]
     tell_cost(chosen, wall, tolerance)
     with progress_line(chosen.name, progress.line if progress else None):
-        outcome = run_model(chosen, wall, tolerance, together(observers) if observers else None)
+        outcome = run_model(chosen, wall, tolerance, Together(observers) if observers else None)
     for line in remarks(wall):  # not before: a scene that the model refuses is one line
         print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)

@@ -137,14 +137,20 @@ def _progress_lines(description: str, total: int) -> Callable[[str], None]:
     return advance
 
 
-def together(observers: Sequence[Callable[..., None]]) -> Callable[..., None]:
+class Together:
     """One observer of a run in place of several."""
 
-    def observe(*seen: object) -> None:
-        for observer in observers:
+    def __init__(self, observers: Sequence[Callable[..., None]]) -> None:
+        self.observers = observers
+
+    def __call__(self, *seen: object) -> None:
+        """Let all look."""
+        for observer in self.observers:
             observer(*seen)
 
-    return observe
+    def turn_to(self, other: str) -> "Together":
+        """Those of them that look at another run as well, of a name, for the same answer."""
+        return Together([observer.turn_to(other) for observer in self.observers if hasattr(observer, "turn_to")])
 
 
 @contextmanager

@@ -59,8 +59,16 @@ def _fem(scene: Scene, tolerance: float, **settings: Any) -> Outcome:
         return outcome
     chosen = {key: value for key, value in settings.items() if key in (*IN_STEPS, *OF_BLOCKS)}
     steps = {key: value for key, value in chosen.items() if key in IN_STEPS}
-    rigid_blocks = partial(_DEM_DYNAMIC, scene, tolerance, **steps)
-    return beside_others(outcome, rigid_blocks, partial(deformable, **chosen | {"cells": FINER}))
+    turn_to = getattr(settings.get("observe"), "turn_to", None)
+
+    def observed(other: str) -> dict[str, Any]:
+        return {} if turn_to is None else {"observe": turn_to(other)}
+
+    return beside_others(
+        outcome,
+        lambda: _DEM_DYNAMIC(scene, tolerance, **steps, **observed("with rigid blocks")),
+        lambda: deformable(**chosen | {"cells": FINER}, **observed(f"on a mesh {FINER} times as fine")),
+    )
 
 
 _RECORDER = partial(_late, "runningbond.pictures.recording")

@@ -1,6 +1,7 @@
 """What a run says of itself while it goes on: the load, the bracket so far, the motion, the part of the budget."""
 
 import math
+from typing import Self
 
 import numpy as np
 
@@ -40,6 +41,10 @@ class MotionProgress:
     """Looks at blocks in motion on their way."""
 
     def __init__(self) -> None:
+        self._begin("")
+
+    def _begin(self, of: str) -> None:
+        self._of = of
         self._load, self._looks, self._calm = math.nan, 0, 0
         self._lower: float | None = None
         self._upper: float | None = None
@@ -58,8 +63,16 @@ class MotionProgress:
             self._lower = multiplier
         self._seen = run, state
 
+    def turn_to(self, other: str) -> Self:
+        """Look, from now on, at another run for the same answer, whose name the line has; what looks at it."""
+        self._begin(other)
+        return self
+
     def line(self) -> str:
         """How far it has come."""
+        return f"{self._of}: {self._so_far()}" if self._of else self._so_far()
+
+    def _so_far(self) -> str:
         if self._seen is None:
             return "gets ready"
         run, state = self._seen

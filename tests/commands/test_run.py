@@ -20,9 +20,11 @@ import pytest
 from runningbond.commands import terminal
 from runningbond.commands.command_line import command
 from runningbond.compare.published import published_scene
+from runningbond.dynamics import Run, State
 from runningbond.models import MODELS, run_model
+from runningbond.models.second_opinion import asks_others
 from runningbond.pictures.curve import curve_figure
-from runningbond.pictures.progress import ResponseProgress
+from runningbond.pictures.progress import MotionProgress, ResponseProgress
 from runningbond.response import follow
 from runningbond.results import load_outcome
 from runningbond.results.outcome import number
@@ -107,6 +109,21 @@ def test_the_curve_is_drawn_with_its_bracket_and_units(model: str) -> None:
     assert drawn == pytest.approx(outcome.curve * (1e3, 1.0))
     assert ("falls" in [line.get_label() for line in axes.lines]) == (model == "dem-dynamic")
     assert axes.get_xscale() == "symlog"  # a plateau a thousand times as long as the elastic range
+
+
+def test_progress_of_soft_blocks_says_when_rigid_ones_are_asked() -> None:
+    """Two observers, of which the one that writes states looks at deformable blocks alone."""
+    progress, looks = MotionProgress(), list[str]()
+    scene = panel(**SMALL).with_block(young=1e9, poisson=0.2)
+    assert asks_others(scene, {})
+
+    def write(run: Run, state: State, multiplier: float) -> None:
+        looks.append(progress.line().partition(":")[0])
+
+    run_model("fem", scene, 0.05, terminal.Together([progress, write]))
+    assert looks
+    assert "with rigid blocks" not in looks
+    assert progress.line().startswith(("with rigid blocks: λ", "on a mesh 3 times as fine: λ"))
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
