@@ -11,7 +11,7 @@ import shutil
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -184,7 +184,18 @@ def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
     return function.__module__, code.co_qualname, repr(own), *known_by
 
 
-def class_identity(given: type) -> tuple[Any, ...]:
+def identity_of(given: Any) -> tuple[Any, ...]:
+    """What something that can be called, or None, is known by: functions, classes, their objects, partial calls."""
+    if given is None:
+        return ()
+    if isinstance(given, partial):
+        return identity_of(given.func), dumps((given.args, sorted(given.keywords.items())))
+    if hasattr(given, "__code__"):
+        return identity(given)
+    return _of_class(given if isinstance(given, type) else type(given))
+
+
+def _of_class(given: type) -> tuple[Any, ...]:
     """What a class is called in its source, and the functions written in it and in what it is derived from."""
     known_by: list[Any] = [given.__module__, given.__qualname__]
     for kind in given.__mro__:

@@ -83,12 +83,11 @@ class Law:
     @property
     def identity(self) -> tuple[Any, ...]:
         """What tells the law from others, in every process the same: its names, and its functions' code."""
-        from .compiled import class_identity, identity
+        from .compiled import identity_of
 
         kernel = getattr(self.kernel, "py_func", self.kernel)
         functions = (kernel, self.constants, self.stored, self.cone, self.response, self.closed)
-        known_by = (class_identity(one) if isinstance(one, type) else one and identity(one) for one in functions)
-        return self.name, self.history, self.damage, self.stiffest, *known_by
+        return self.name, self.history, self.damage, self.stiffest, *map(identity_of, functions)
 
     def row(self, name: str) -> int:
         """Number of a row of the history; a law without it is refused by name."""

@@ -27,7 +27,7 @@ ProgramStatus: TypeAlias = Literal["optimal", "budget", "infeasible", "unbounded
 STATUS: dict[int, ProgramStatus] = {0: "optimal", 1: "budget", 2: "infeasible", 3: "unbounded", 4: "numerical"}
 
 BALANCED = 1e-6
-"""Sum of unbalanced forces, in force units, below which a load is held to be balanced."""
+"""Sum of unbalanced forces, in largest ones of a load, below which it is held to be balanced."""
 
 LOOK = 0.5
 """Seconds after which one who waits for a program looks up."""
@@ -212,7 +212,7 @@ def _least_unbalanced(program: dict[str, Any], method: str) -> tuple[ProgramStat
     status, result = _solved(elastic, method)
     if result.x is None or status != "optimal":
         return status, result
-    balanced = result.x[n:].sum() <= BALANCED
+    balanced = result.x[n:].sum() <= BALANCED * np.abs(program["b_eq"]).max(initial=0.0)
     result["x"] = result.x[:n]
     return "optimal" if balanced else "infeasible", result
 

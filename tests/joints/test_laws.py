@@ -5,6 +5,7 @@ import pickle
 import subprocess
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -174,10 +175,11 @@ print(fingerprint(tower(law=SPRINGS), "limit", 0.01))
         replace(SPRINGS, constants=lambda material: (1.0, 1.0, np.inf)),
         replace(SPRINGS, response=PointLaw),
         replace(SPRINGS, response=Doubled),
+        replace(SPRINGS, response=partial(Doubled)),
         replace(SPRINGS, closed=lambda points, pressure: (pressure, pressure)),
         replace(SPRINGS, stiffest=1),
     ]
-    assert len({own, *(fingerprint(tower(law=law), "limit", 0.01) for law in (None, *others))}) == 7
+    assert len({own, *(fingerprint(tower(law=law), "limit", 0.01) for law in (None, *others))}) == 8
 
 
 class Doubled(PointLaw):
