@@ -178,6 +178,9 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
         return replace(
             outcome, status="collapse", multiplier=answers[-1], lower=lower, upper=upper, message=what + fall
         )
+    if ends and len(answers) == 1:
+        message = f"no answer: the budget ran out in steps half as long, which are to say how sure it is; {what}"
+        return replace(so_far, message=message)
     if ends:
         message = f"no answer: other steps change it by more than the bracket; {what}"
         return replace(outcome, lower=lower, upper=upper, message=message)

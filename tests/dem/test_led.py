@@ -33,7 +33,7 @@ from runningbond.scene import (
 )
 from runningbond.scene.beam import Condition, Drive
 from tests.limit.test_limit import rectangle
-from tests.walls import courses
+from tests.walls import courses, panel
 
 K_N, K_T, WEIGHT = 1e10, 4e9, 1962.0
 """Stiffness of joints [Pa/m], and weight of a square metre of wall of .1 m thickness [N]."""
@@ -400,3 +400,20 @@ def test_ctrl_c_leaves_the_way_so_far(after: int, rows: int, monkeypatch: pytest
     assert (outcome.status, outcome.multiplier) == ("undecided", None)
     assert "interrupted" in outcome.message
     assert len(outcome.curve) == len(outcome.path) == rows
+
+
+def test_one_run_along_a_settlement_is_no_bracket() -> None:
+    """What it says is an upper end; how far off, steps half as long would say, for which the budget is spent."""
+    sinks = {"kind": "settlement", "box": [[0.72, -1.0], [3.0, 0.0]], "by": [0.0, -1e-3]}
+    springs = {"joint__normal_stiffness": 1e11, "joint__shear_stiffness": 4e10}
+    scene = panel(load__live=sinks, **springs)
+    whole = dem_static(scene)
+    assert whole.status == "collapse"
+    tried = (dem_static(scene, budget=budget) for budget in (300, 500, 700, 1000))
+    outcome = next(found for found in tried if found.curve[-1, 0] > 9e-4)
+    assert outcome.status == "undecided"
+    assert (outcome.multiplier, outcome.lower) == (None, None)
+    assert outcome.upper == pytest.approx(outcome.curve[-1, 1], rel=1e-9)
+    assert whole.multiplier is not None
+    assert outcome.upper >= whole.multiplier
+    assert "the budget ran out in steps half as long" in outcome.message
