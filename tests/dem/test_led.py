@@ -415,5 +415,6 @@ def test_one_run_along_a_settlement_is_no_bracket() -> None:
     assert (outcome.multiplier, outcome.lower) == (None, None)
     assert outcome.upper == pytest.approx(outcome.curve[-1, 1], rel=1e-9)
     assert whole.multiplier is not None
+    assert outcome.upper is not None
     assert outcome.upper >= whole.multiplier
     assert "the budget ran out in steps half as long" in outcome.message
