@@ -164,8 +164,12 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
     method = method or ("highs-ds" if aim == "zero" else "highs-ipm")
     program = force_program(system, forces, aim)
     plain, of_rays = np.ones(len(program["c"])), ray_units(forces, len(program["c"]))
-    elastic = [(of_rays, _least_unbalanced), (plain, _least_unbalanced)] if aim == "zero" else []
-    for unit, solve in ((plain, _solved), (of_rays, _solved), *elastic):
+    attempts = [(plain, _solved)]
+    if aim == "zero" or not forces.has_shear:  # beside cohesion a small multiplier would be lost in units of the rays
+        attempts.append((of_rays, _solved))
+    if aim == "zero":
+        attempts += [(of_rays, _least_unbalanced), (plain, _least_unbalanced)]
+    for unit, solve in attempts:
         status, result = solve(in_units(program, unit), method)
         if status != "numerical":
             break
