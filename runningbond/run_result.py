@@ -9,6 +9,7 @@ from .joints import listed_points, wall_points
 from .models import Model, find_model, run_model
 from .path_states import PathState, collected
 from .pictures.captions import to_png, to_svg
+from .pictures.curve import curve_quantities
 from .pictures.flat import draw_mechanism, figure_of
 from .results import Outcome, Status
 from .results.mechanism import rigid_jumps
@@ -116,7 +117,8 @@ class Result:
         if not len(self.outcome.curve):
             raise SceneError("what", f"must be mechanism: {self.model} has no curve here", what)
         axes.plot(*self.outcome.curve.T, marker=".")
-        axes.set(xlabel="displacement of the control point [m]", ylabel="λ", title=self.outcome.scene)
+        displacement, load = curve_quantities(self.wall.scene)
+        axes.set(xlabel=f"{displacement} [m]", ylabel=load, title=self.outcome.scene)
         return axes
 
     def _mechanism(self) -> Array:

@@ -163,14 +163,15 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
     """Solve `force_program`: by interior point and crossover, or by simplex where nothing is optimised."""
     method = method or ("highs-ds" if aim == "zero" else "highs-ipm")
     program = force_program(system, forces, aim)
-    plain, of_rays = np.ones(len(program["c"])), ray_units(forces, len(program["c"]))
-    attempts = [(plain, _solved)]
-    if aim == "zero" or not forces.has_shear:  # beside cohesion a small multiplier would be lost in units of the rays
-        attempts.append((of_rays, _solved))
+    units = [np.ones(len(program["c"]))]
+    if (rays := _ray_units(forces, len(units[0]))).min() < 1:
+        units.append(rays)
+    # Beside cohesion a small multiplier would be lost in units of the rays.
+    attempts = [(unit, _solved) for unit in (units if aim == "zero" or not forces.has_shear else units[:1])]
     if aim == "zero":
-        attempts += [(of_rays, _least_unbalanced), (plain, _least_unbalanced)]
+        attempts += [(unit, _least_unbalanced) for unit in reversed(units)]
     for unit, solve in attempts:
-        status, result = solve(in_units(program, unit), method)
+        status, result = solve(program if unit is units[0] else _in_units(program, unit), method)
         if status != "numerical":
             break
     if result.x is None or status != "optimal":
@@ -179,7 +180,7 @@ def solve_forces(system: Equilibrium, forces: ForceSet, aim: Aim = "largest", *,
     return solution_of(system, forces, status, result.x * unit, marginals, int(result.nit))
 
 
-def ray_units(forces: ForceSet, n: int) -> Array:
+def _ray_units(forces: ForceSet, n: int) -> Array:
     """Units ``(n,)`` of a program's unknowns in which no ray bears more shear than it is.
 
     HiGHS forgives pressures of -1e-7, of which a tan φ of 1e6 makes a tenth of a block's weight.
@@ -188,7 +189,7 @@ def ray_units(forces: ForceSet, n: int) -> Array:
     return np.append(1 / slopes.clip(min=1.0), np.ones(n - len(slopes)))
 
 
-def in_units(program: dict[str, Any], unit: Array) -> dict[str, Any]:
+def _in_units(program: dict[str, Any], unit: Array) -> dict[str, Any]:
     """A program whose unknowns are measured in units ``(n,)``."""
     bounds = program["bounds"] / unit[:, None]
     return {**program, "c": program["c"] * unit, "A_eq": program["A_eq"] * unit, "bounds": bounds}

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from runningbond.joints import JointPoints
-from runningbond.scene import ANCHOR, Array, Forces, Indices, Pins, Scene
+from runningbond.scene import ANCHOR, Array, Indices, Pins, Scene
 
 
 def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
@@ -72,19 +72,12 @@ def mass_matrix_diagonal(scene: Scene) -> Array:
 
 def dead_load(scene: Scene) -> Array:
     """Loads that λ does not multiply, as forces and moments on the blocks' freedoms, ``(3 nb,)`` [N, N, N m]."""
-    return load_vector(scene, scene.dead_forces)
+    return scene.dead_forces.resultants(scene).ravel()
 
 
 def live_load(scene: Scene) -> Array:
     """Loads that λ multiplies, ``(3 nb,)`` [N, N, N m]."""
-    return load_vector(scene, scene.live_forces)
-
-
-def load_vector(scene: Scene, forces: Forces) -> Array:
-    """Forces on a scene's blocks as forces and moments on their freedoms, ``(3 nb,)`` [N, N, N m]."""
-    load = np.column_stack([scene.mass[:, None] * forces.acceleration, forces.moment]).ravel()
-    at_points = point_operator(forces.block, forces.at, forces.force, scene.blocks.centroid)
-    return np.asarray(load + at_points.T @ np.ones(len(forces.block)), dtype=np.float64)
+    return scene.live_forces.resultants(scene).ravel()
 
 
 def movable_freedoms(scene: Scene) -> Indices:

@@ -34,7 +34,7 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
         axes.axhspan(outcome.lower, outcome.upper, color=BAND, lw=0, alpha=0.6)
     if outcome.multiplier is not None:
         axes.axhline(outcome.multiplier, color=DARK, lw=0.8, ls="--")
-    symbol, (answer, bracket) = load_symbol(scene), multiplier_text(scene, outcome)
+    answer, bracket = multiplier_text(scene, outcome)
     level = max((x for x in (outcome.upper, outcome.multiplier, outcome.lower) if x is not None), default=load.max())
     axes.annotate(
         f"{answer}  {bracket}".strip(),
@@ -63,17 +63,18 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
             spot: dict[str, Any] = {"textcoords": "offset points", "ha": align, "fontsize": SMALL_TYPE}
             axes.annotate(word, (linear, 0.0), (place, 3), **spot)
     axes.set_ylim(min(0.0, 1.12 * load.min()), 1.12 * max(load.max(), level) or 1.0)
-    x, y = _quantities(scene, symbol)
-    axes.set_xlabel(f"{x} [mm]", fontsize=TYPE + 1)
-    axes.set_ylabel(y, fontsize=TYPE + 1)
+    displacement, load_axis = curve_quantities(scene)
+    axes.set_xlabel(f"{displacement} [mm]", fontsize=TYPE + 1)
+    axes.set_ylabel(load_axis, fontsize=TYPE + 1)
     axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2)
     axes.tick_params(labelsize=TYPE)
     bare(axes)
     return figure
 
 
-def _quantities(scene: Scene, symbol: str) -> tuple[str, str]:
-    """What is drawn over what: x, and y with its unit."""
+def curve_quantities(scene: Scene) -> tuple[str, str]:
+    """What a curve has: a displacement, without its unit, and a load, with its own if it has one."""
+    symbol = load_symbol(scene)
     load = f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}"
     if scene.history:
         return "largest displacement of the top", load

@@ -60,6 +60,14 @@ class Forces:
         joined = (np.concatenate([getattr(each, name) for each in (self, other)]) for name in ("block", "at", "force"))
         return Forces(self.acceleration + other.acceleration, self.moment + other.moment, *joined)
 
+    def resultants(self, scene: "Scene") -> Array:
+        """Forces on the blocks and moments about their centroids, ``(nb, 3)`` [N, N, N m]."""
+        arm = self.at - scene.blocks.centroid[self.block]
+        moment = arm[:, 0] * self.force[:, 1] - arm[:, 1] * self.force[:, 0]
+        result = np.zeros((len(scene.blocks), 3))
+        np.add.at(result, self.block, np.column_stack([self.force, moment]))
+        return result + np.column_stack([scene.mass[:, None] * self.acceleration, self.moment])
+
     @property
     def on_mass_alone(self) -> bool:
         """Whether they are proportional to mass: no force at a point and no moment."""

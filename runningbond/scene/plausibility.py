@@ -154,11 +154,10 @@ def _ties(scene: Scene) -> Iterator[str]:
         yield from AREA.doubts(f"tie[{k}].area", area)
         if most / area > STRONGEST and AREA.least <= area <= AREA.most:
             yield f"tie[{k}].yield = {most:g}: is a force, {most / area:.3g} Pa on the tie's area; is a stress meant?"
-    if not len(ties):
-        return
-    wall = shapely.union_all([shapely.Polygon(scene.blocks.polygon(int(b))) for b in np.flatnonzero(scene.wall)])
-    for k, side in np.argwhere(ties.block == ANCHOR).tolist():
-        away = float(shapely.distance(wall, shapely.Point(ties.ends[k, side])))
+    anchors = np.argwhere(ties.block == ANCHOR).tolist()
+    wall = [shapely.Polygon(scene.blocks.polygon(int(b))) for b in np.flatnonzero(scene.wall)] if anchors else []
+    for k, side in anchors:
+        away = float(shapely.distance(wall, shapely.Point(ties.ends[k, side])).min())
         if 0 < away <= scene.block_size:
             end = f"tie[{k}].{('from', 'to')[side]} = {ties.ends[k, side].tolist()}"
             yield f"{end}: is an anchor fixed in space, {away:.3g} m beside the wall; is a point on the wall meant?"

@@ -454,18 +454,9 @@ def _check(scene: Scene) -> None:
 
 def _cancel(scene: Scene) -> bool:
     """Whether live loads leave no force and no moment on any block that moves."""
-    each = [_resultants(scene, load.forces(scene)) for load in scene.load.live]
+    each = [load.forces(scene).resultants(scene) for load in scene.load.live]
     most = np.max(np.abs(each), axis=(0, 1))
     return bool((np.abs(np.sum(each, axis=0)) <= CANCELLED * most)[~scene.fixed].all())
-
-
-def _resultants(scene: Scene, loads: Forces) -> Array:
-    """Forces on blocks and moments about their centroids, ``(nb, 3)`` [N, N m]."""
-    result = np.column_stack([scene.mass[:, None] * loads.acceleration, loads.moment])
-    arm = loads.at - scene.blocks.centroid[loads.block]
-    moment = arm[:, 0] * loads.force[:, 1] - arm[:, 1] * loads.force[:, 0]
-    np.add.at(result, loads.block, np.column_stack([loads.force, moment]))
-    return result
 
 
 def table_of(material: BlockMaterial | JointMaterial) -> str:
