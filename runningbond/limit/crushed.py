@@ -132,17 +132,20 @@ class InnerProgram:
     def solution(self, status: ProgramStatus, found: Array, multipliers: Array, iterations: int) -> ForceSolution:
         """Unknowns and multipliers of rows, by what they are; a joint's shear is where its pressure is."""
         system, known, ends, n = self.system, self.known, self.joints.ends, len(self.joints)
-        multipliers = multipliers[: system.freedoms]
         rest = found[len(known.owner) + n :]
-        solution = solution_of(*self.others, status, rest, multipliers, iterations)
+        solution = solution_of(*self.others, status, rest, multipliers[: system.freedoms], iterations)
         shares = found[: len(known.owner)] / known.size
         *normal, shear = (np.bincount(known.owner, part * shares, n) for part in known.forces)
         pressure, tangential = solution.pressure.copy(), solution.tangential.copy()
         pressure[ends] = system.strength.tension[ends] - normal
         most = (system.strength.shear + system.strength.friction * pressure)[ends]
         tangential[ends] = shear * most / np.maximum(most.sum(axis=0), np.finfo(float).tiny)
-        motion = multipliers / (float(system.live @ multipliers) or 1.0)
-        return replace(solution, pressure=pressure, tangential=tangential, motion=motion)
+        return replace(solution, pressure=pressure, tangential=tangential, motion=self.mechanism(multipliers))
+
+    def mechanism(self, multipliers: Array) -> Array:
+        """Motion ``(nd,)`` that multipliers of rows ``(m,)`` are, f_live · q = 1 where the live load does work."""
+        motion = multipliers[: self.system.freedoms]
+        return np.asarray(motion / (float(self.system.live @ motion) or 1.0))
 
     def vertex(self) -> ForceSolution:
         """What HiGHS finds."""
@@ -170,11 +173,10 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
     program, point, iterations = _narrowed(system, joints, known)
     if point.status != "optimal":
         return ForceSolution.none(point.status, iterations), True
-    found = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
+    forces, motion = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
+    found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
     if found is None or _width(system, found) > closest(system):
-        vertex = program.vertex()
-        if vertex.status == "optimal":
-            found = vertex if found is None else _best(system, found, vertex)
+        found = _beside_vertex(program, forces, motion) or found
     return (ForceSolution.none("numerical") if found is None else replace(found, iterations=iterations)), True
 
 
@@ -184,14 +186,19 @@ def _width(system: Equilibrium, found: ForceSolution) -> float:
     return float(abs(bounds[1] - bounds[0]) / max(*np.abs(bounds), ZERO))
 
 
-def _best(system: Equilibrium, one: ForceSolution, other: ForceSolution) -> ForceSolution:
-    """The forces of the larger multiplier, and the mechanism of the smaller one."""
-    forces = max(one, other, key=lambda each: each.multiplier)
-    return replace(forces, motion=min(one.motion, other.motion, key=system.kinematic_multiplier))
+def _beside_vertex(program: InnerProgram, forces: Array | None, motion: Array | None) -> ForceSolution | None:
+    """Forces and mechanism that prove most, of repaired ones, if there are any, and of HiGHS's; None if it fails."""
+    system, found = program.system, program.vertex()
+    if found.status != "optimal":
+        return None
+    motions = [found.motion] if motion is None else [found.motion, program.mechanism(motion)]
+    if forces is not None and forces[-1] > found.multiplier:
+        found = program.solution("optimal", forces, np.zeros(system.freedoms), 0)
+    return replace(found, motion=min(motions, key=system.kinematic_multiplier))
 
 
-def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None) -> ForceSolution | None:
-    """Exact forces and an exact mechanism from approximate ones; None if one of them was not found.
+def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None) -> tuple[Array | None, Array | None]:
+    """Exact forces ``(n,)`` and an exact mechanism ``(m,)``, the program's unknowns and multipliers; None if not found.
 
     Resultants of which there is next to nothing are better left alone, if it can be done without them.
     """
@@ -208,9 +215,9 @@ def _repaired(program: InnerProgram, point: InteriorPoint, resting: Array | None
         motion = admissible(arguments, point)
         tried = [balanced(arguments, each, within) for each in (point, without)]
     forces = max((each for each in tried if each is not None), key=lambda each: float(each[-1]), default=None)
-    if forces is None or motion is None or program.system.live @ motion[: program.system.freedoms] <= 0:
-        return None
-    return program.solution("optimal", forces, motion, 0)
+    if motion is not None and program.system.live @ motion[: program.system.freedoms] <= 0:
+        motion = None
+    return forces, motion
 
 
 def _narrowed(system: Equilibrium, joints: Crushing, known: Resultants) -> tuple[InnerProgram, InteriorPoint, int]:

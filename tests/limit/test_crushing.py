@@ -315,6 +315,27 @@ def test_the_bracket_holds_what_fibres_carry(shear: float, strength: float, fric
     assert fibre_load(scene, 20) <= found * (1 + 1e-7)
 
 
+def test_a_course_that_crushes_on_all_of_its_bed_at_once() -> None:
+    """Under a growing weight, beside a tie that bears none of it: λ = f_m / (ρ g h) − 1, whoever proves which end."""
+    strength, height = 203504.49175942724, 2.655326128687889
+    size = {"block_width": 2 * height, "block_height": height, "thickness": 6.638}
+    dry = {"friction": 0.3, "cohesion": 13094.0, "tensile_strength": 43646.0}
+    tie = {"from": [14.8917, 1.93376], "to": [-15.932, 1.02681], "area": 0.017627, "young": 2e11, "yield": 1.43e7}
+    content = {
+        "title": "a course",
+        "wall": {**size, "courses": [[0.5, 0.5, 0.37, 0.8, 0.83]]},
+        "block": {"density": 2400.0},
+        "joint": {**dry, "compressive_strength": strength, "cap_shear": 9.0},
+        "support": {"kind": "base"},
+        "load": {"gravity": [0.0, -1.6], "live": {"kind": "lateral", "direction": [0.0, -1.0]}},
+        "tie": [tie],
+    }
+    outcome, exact = limit(scene_from_dict(content)), strength / (2400.0 * 1.6 * height) - 1
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.lower == pytest.approx(exact, rel=NARROW)
+    assert outcome.upper == pytest.approx(exact, rel=NARROW)
+
+
 def test_the_inner_polyhedron_grows_to_the_set() -> None:
     """Lower bounds rise with resultants known, and are never above the upper ones."""
     system = equilibrium(panel(joint__compressive_strength=3e4, wall__height=0.36)).with_crushing()
