@@ -1,6 +1,5 @@
 """``runningbond compare``."""
 
-import signal
 import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -70,7 +69,6 @@ def compare(
             kind, _, what = line.partition(": ")
             print(f"{kind}: {name}: {what}", file=sys.stderr)
     total = len(walls) * len(chosen)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
     try:
         with progress_bar("comparing", total) as advance:
             campaign = run_campaign(

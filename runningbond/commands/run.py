@@ -1,7 +1,6 @@
 """``runningbond run``."""
 
 import json as to_json
-import signal
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -117,7 +116,6 @@ def _draws(
     """Run a model on draws of a wall, and print and keep what came of them."""
     check_jobs(jobs)
     folder, drawing = None if out is None else out / DRAWS, Drawing(wall, model, number, scatter)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
     try:
         with progress_bar(f"{model.name}, draws", number) as advance:
             found = drawing.run(tolerance, folder, jobs, advance)

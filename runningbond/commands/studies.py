@@ -10,7 +10,7 @@ from runningbond.results import make_folder
 from runningbond.scene import SceneError
 from runningbond.scene.ranges import suggestion
 
-from .terminal import DONE, NO_ANSWER, STOPPED, Whole, print_table, progress_bar
+from .terminal import DONE, INTERRUPTIONS, NO_ANSWER, STOPPED, Whole, print_table, progress_bar
 
 if TYPE_CHECKING:
     from runningbond.studies import Row, Study
@@ -93,7 +93,7 @@ def _measured(
     def stop(number: int, frame: object) -> None:
         raise Stopped
 
-    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, stop) for number in INTERRUPTIONS}
     try:
         with progress_bar(description, sum(len(study.cases) for study in studies)) as advance:
             return [(study, run_study(study, out, jobs=jobs, progress=advance)) for study in studies]

@@ -35,6 +35,9 @@ PATIENCE, REFRESH = 2.0, 0.25
 INTERVAL = 30.0
 """Seconds between two lines of progress in a file."""
 
+INTERRUPTIONS = signal.SIGINT, signal.SIGTERM
+"""Signals that end a command: Ctrl-C, and a scheduler's."""
+
 UNDECIDED = ("undecided", "failed")
 """Statuses of outcomes that are no answer."""
 
@@ -184,17 +187,22 @@ def progress_line(name: str, told: Callable[[], str] | None) -> Iterator[None]:
 
 
 def interruptions(model: Model | None = None) -> list[int]:
-    """Interruptions by Ctrl-C from here on: a model that can be interrupted ends with what it has reached so far.
+    """Interruptions from here on: a model that can be interrupted ends with what it has reached so far.
 
-    The second one ends the program at once, as the first does where a model cannot be interrupted; while HiGHS is at
-    work neither is heard before its linear program is done.
+    They come by Ctrl-C, or by SIGTERM as a scheduler's time runs out. The second one ends the program at once, as the
+    first does where a model cannot be interrupted; while HiGHS is at work neither is heard before its linear program
+    is done.
     """
     signals: list[int] = []
 
     def stop(number: int, frame: object) -> None:
         signals.append(number)
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+        listen(signal.SIG_DFL)
         raise KeyboardInterrupt
 
-    signal.signal(signal.SIGINT, stop if model is None or model.interruptible else signal.SIG_DFL)
+    def listen(handler: Callable[[int, object], None] | signal.Handlers) -> None:
+        for number in INTERRUPTIONS:
+            signal.signal(number, handler)
+
+    listen(stop if model is None or model.interruptible else signal.SIG_DFL)
     return signals

@@ -1,7 +1,6 @@
 """``runningbond validate``."""
 
 import json as to_json
-import signal
 from pathlib import Path
 
 from runningbond.campaigns import Interrupted
@@ -48,7 +47,6 @@ def validate(
     walls = [wall for folder in ((data,) if data else SHIPPED) for wall in read_folder(folder)]
     scenes = scenes_of(walls, rungs)
     make_folder(out)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # end the workers too when a scheduler ends us
     total = len(walls) * len(rungs)
     try:
         with progress_bar("predicting", total) as advance:

@@ -11,9 +11,10 @@ it leaves a mix of all.
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from types import FrameType
 from typing import Any
 
 import clarabel
@@ -79,7 +80,7 @@ def interior_point(program: dict[str, Any], tolerance: float, *, unfinished: boo
     cones = [clarabel.ZeroConeT(n_free), clarabel.NonnegativeConeT(n + n_boxed - n_free)]
     nothing = csc_matrix((len(cost), len(cost)))
     solver = clarabel.DefaultSolver(nothing, cost, csc_matrix(rows), right, cones, _settings(tolerance, m))
-    with _ended_by_ctrl_c(solver) as interruptions:
+    with _ended_by_signals(solver) as interruptions:
         solution = solver.solve()
     if interruptions and not unfinished:
         raise KeyboardInterrupt
@@ -109,21 +110,30 @@ def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSo
 
 
 @contextmanager
-def _ended_by_ctrl_c(solver: Any) -> Iterator[list[int]]:
-    """Let Ctrl-C, from which it would not look up, end a solver after its iteration; who listens for it hears of it."""
-    listener, signals = signal.getsignal(signal.SIGINT), list[int]()
-    if threading.current_thread() is not threading.main_thread() or not callable(listener):
-        yield signals
+def _ended_by_signals(solver: Any) -> Iterator[list[int]]:
+    """Let Ctrl-C and SIGTERM, from which it would not look up, end a solver after its iteration.
+
+    Who listens for them hears of it.
+    """
+    received: list[int] = []
+    listeners: dict[int, Callable[[int, FrameType | None], Any]] = {}
+    for each in (signal.SIGINT, signal.SIGTERM):
+        if callable(listener := signal.getsignal(each)):
+            listeners[each] = listener
+    if threading.current_thread() is not threading.main_thread() or not listeners:
+        yield received
         return
-    solver.set_termination_callback(lambda _: bool(signals))
-    signal.signal(signal.SIGINT, lambda number, _: signals.append(number))
+    solver.set_termination_callback(lambda _: bool(received))
+    for number in listeners:
+        signal.signal(number, lambda number, _: received.append(number))
     try:
-        yield signals
+        yield received
     finally:
-        signal.signal(signal.SIGINT, listener)
-    if signals:
+        for number, listener in listeners.items():
+            signal.signal(number, listener)
+    if received:
         with suppress(KeyboardInterrupt):
-            listener(signals[0], None)
+            listeners[received[0]](received[0], None)
 
 
 def _settings(tolerance: float, equations: int) -> Any:

@@ -215,17 +215,19 @@ def test_json_is_pure_on_a_terminal_too(small: str) -> None:
     assert json.loads(done.stdout)["status"] == "collapse"
 
 
-def test_ctrl_c_in_limit_leaves_the_proved_bracket_under_no_fingerprint(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_of_limit_leaves_the_proved_bracket_under_no_fingerprint(
+    how: signal.Signals, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Exit code 130, one JSON object, and no comparison takes it for the answer."""
     scene, out = str(write_toml(content(**SIZE), tmp_path / "wall.toml")), tmp_path / "out"
-    interrupt_at(8, monkeypatch)
-    before = signal.getsignal(signal.SIGINT)
+    interrupt_at(8, monkeypatch, how=how)
+    before = {number: signal.getsignal(number) for number in terminal.INTERRUPTIONS}
     try:
         assert command(["run", scene, "--model", "limit", "--json", "--out", str(out)]) == 130
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
     said = json.loads(capsys.readouterr().out)
     assert said["status"] == "undecided"
     assert said["multiplier"] is None

@@ -175,15 +175,15 @@ def _listens_for_ctrl_c() -> Iterator[None]:
 
 
 class Interrupted:
-    """Clarabel with Ctrl-C at its `at`-th iteration."""
+    """Clarabel with a signal at its `at`-th iteration."""
 
-    def __init__(self, at: int, *program: Any) -> None:
-        self._at, self._solver = at, clarabel.DefaultSolver(*program)
+    def __init__(self, at: int, how: signal.Signals, *program: Any) -> None:
+        self._at, self._how, self._solver = at, how, clarabel.DefaultSolver(*program)
 
     def set_termination_callback(self, ended: Callable[[Any], bool]) -> None:
         def watched(now: Any) -> bool:
             if now.iterations == self._at:
-                signal.raise_signal(signal.SIGINT)
+                signal.raise_signal(self._how)
             return ended(now)
 
         self._solver.set_termination_callback(watched)
@@ -192,13 +192,15 @@ class Interrupted:
         return self._solver.solve()
 
 
-def interrupt_at(iteration: int, monkeypatch: pytest.MonkeyPatch, program: int = 1) -> None:
-    """Press Ctrl-C in a program: that of rest is number 0, that of collapse number 1."""
+def interrupt_at(
+    iteration: int, monkeypatch: pytest.MonkeyPatch, program: int = 1, how: signal.Signals = signal.SIGINT
+) -> None:
+    """Press Ctrl-C, or send another signal, in a program: that of rest is number 0, that of collapse number 1."""
     made = count()
     parts = {name: getattr(clarabel, name) for name in ("DefaultSettings", "ZeroConeT", "NonnegativeConeT")}
 
     def solver(number: int) -> Callable[..., Any]:
-        return partial(Interrupted, iteration) if number == program else clarabel.DefaultSolver
+        return partial(Interrupted, iteration, how) if number == program else clarabel.DefaultSolver
 
     changed = SimpleNamespace(**parts, DefaultSolver=lambda *given: solver(next(made))(*given))
     monkeypatch.setattr("runningbond.limit.interior_point.clarabel", changed)
