@@ -143,8 +143,22 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
         np.asarray(joints.cell_data["state"])[quads],
         float(blocks.field_data["multiplier"][0]),
         visible_scale(scene, displacement),
+        motion=_motion_of_supports(scene, blocks) if scene.settlement else np.zeros((0, 3)),
         crushed=crushed_ends(np.asarray(joints.point_data["state"])[corners[:, :2]]),
     )
+
+
+def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
+    """Motion ``(nb, 3)`` of the ground's blocks that a grid of `GridBuilder.blocks` holds; zero for all others."""
+    motion = np.zeros((len(scene.blocks), 3))
+    for cell in np.flatnonzero(~scene.wall[blocks.cell_data["block"]]):
+        block, at = blocks.cell_data["block"][cell], blocks.get_cell(cell).point_ids
+        arm = np.asarray(blocks.points)[at, :2] - scene.blocks.centroid[block]
+        moved = np.asarray(blocks.point_data[DISPLACEMENT])[at, :2]
+        one, nothing = np.ones(len(at)), np.zeros(len(at))
+        rigid = np.vstack([np.column_stack([one, nothing, -arm[:, 1]]), np.column_stack([nothing, one, arm[:, 0]])])
+        motion[block] = np.linalg.lstsq(rigid, moved.T.ravel(), rcond=None)[0]
+    return motion
 
 
 def _templates(blocks: Blocks) -> Indices:

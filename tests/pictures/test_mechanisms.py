@@ -12,7 +12,7 @@ from runningbond.limit import limit
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.models import run_model
 from runningbond.pictures.flat import figure_of
-from runningbond.pictures.frame import Discretisation
+from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import VISIBLE, JointState
 from runningbond.pictures.mechanism import mechanism_frame, mechanism_shape, mechanism_warning, outcome_check
@@ -20,8 +20,10 @@ from runningbond.pictures.style import CRUSHED
 from runningbond.pictures.vtk_grids import GridBuilder, shape_of_grids
 from runningbond.results import Outcome, check_mechanism
 from runningbond.results.mechanism import MAX_OVERLAP
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Scene, scene_from_dict
 from tests.walls import courses, panel
+
+from .scenes import turning_support
 
 POINT = {"kind": "point", "at": [0.2, 0.35], "force": [0.0, -1.0]}
 
@@ -137,6 +139,19 @@ def test_ends_that_crush_are_crosses_and_no_fault() -> None:
     assert read.crosses == pytest.approx(shape.crosses, abs=1e-6)
     seen = inline_mechanism(shape, shape.extent, "rest")
     assert seen.count(CRUSHED) == 1
+
+
+def test_a_moment_of_a_file_has_its_supports_where_they_have_moved_to() -> None:
+    """A support that slides and turns, to first order; its far corners are cut off in the file."""
+    scene = scene_from_dict(turning_support())
+    motion = scene.support_motion
+    assert np.count_nonzero(motion.any(axis=1)) == 1
+    discretisation = Discretisation.of_rigid_blocks(scene)
+    nothing = np.zeros(len(discretisation.points))
+    frame = Frame(1.0, motion, nothing, nothing, nothing, nothing, nothing.astype(np.int64))
+    grids = GridBuilder(discretisation)
+    read = shape_of_grids(scene, grids.blocks(frame), grids.joints(frame))
+    assert read.motion == pytest.approx(motion, rel=1e-5, abs=1e-8)
 
 
 def test_a_joint_with_associated_flow_slides_where_it_opens_by_its_dilatancy() -> None:
