@@ -22,6 +22,10 @@ RESERVED = ("block", "joint", "inner_joint", ANY, BEAM, GROUND)
 """Names that no further material may have."""
 
 
+TWICE = ("Cannot overwrite", "Cannot mutate")
+"""What TOML's reader says of a key that is given again."""
+
+
 def read_scene(path: str | Path) -> Scene:
     """Read a scene file, in TOML; drawings that it names are looked up beside it.
 
@@ -44,7 +48,8 @@ def read_description(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise SceneError(str(path), "is not a scene file: it is not UTF-8 text") from error
     except (RecursionError, ValueError) as error:
-        raise SceneError(str(path), f"is not valid TOML: {error}") from error
+        twice = "; a key is given twice" if str(error).startswith(TWICE) else ""
+        raise SceneError(str(path), f"is not valid TOML: {error}{twice}") from error
 
 
 def plain_stem(path: Path) -> str:

@@ -29,6 +29,7 @@ class Table:
         return f"{self.name}.{key}" if self.name else key
 
     def __contains__(self, key: str) -> bool:
+        self._ask(key)
         return key in self._left
 
     def value(self, key: str, default: Any = None) -> Any:
@@ -134,5 +135,6 @@ class Table:
         """Refuse keys that have no meaning."""
         for key, value in self._left.items():
             place = f"[{self.name}]" if self.name else "a scene file"
-            what = f"is not a key of {place}{suggestion(key, list(self._keys))}"
+            hint = suggestion(key, list(self._keys)) or f", which has {', '.join(self._keys)}"
+            what = f"is not a key of {place}{hint}"
             raise SceneError(self.key(key), what, "a table" if isinstance(value, dict) else value)

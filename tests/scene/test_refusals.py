@@ -91,7 +91,7 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
     [
         ({"wall__thicknes": 0.1}, 'wall.thicknes = 0.1: is not a key of [wall]; did you mean "thickness"?'),
         ({"color": "red"}, "color = 'red': is not a key of a scene file"),
-        ({"load__live__angle": 3}, "load.live.angle = 3: is not a key of [load.live]"),
+        ({"load__live__angle": 3}, "load.live.angle = 3: is not a key of [load.live], which has kind, direction"),
         ({"wall__thickness": None}, "wall.thickness: is missing; it must be a number above 0"),
         ({"block__density": None, "block__densty": 1}, "is block.densty a misspelling of it?"),
         ({"support": None}, "support: is missing"),
@@ -170,6 +170,8 @@ def test_a_scene_that_is_no_wall(
     ("text", "said"),
     [
         (b"this is no TOML", "is not valid TOML"),
+        (b"[wall]\nlength = 3\nlength = 4", "a key is given twice"),
+        (b"live = {by = [0, 1], by = [0, 2]}", "a key is given twice"),
         (b"", "wall: is missing"),
         (b"\xff\xfe\x00", "is not UTF-8 text"),
         (b"x = " + b"[" * 5000, "is not valid TOML"),
