@@ -12,6 +12,7 @@ from runningbond.scene import Array, Mask, Scene
 
 from .collapse import Criteria, Verdict, hold_load
 from .growth import NEARLY_AT_REST
+from .peaks import Peaks
 from .run import Observer, Run
 from .state import State
 
@@ -65,15 +66,17 @@ class Way:
     moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[WayRow] = field(default_factory=list)
     verdict: Verdict = "stable"
+    unseen: float = 0.0  # what means over windows may take from the largest force of a motion
 
     @property
     def curve(self) -> Array:
-        """Displacement [m] and force, ``(n, 2)``; of a motion each force is the middle one of three."""
-        curve = np.array([(row.moved, row.force) for row in self.rows])
-        if self.moves and len(curve) > 2:
-            force = curve[:, 1]
-            curve[1:-1, 1] = np.median([force[:-2], force[1:-1], force[2:]], axis=0)
-        return curve
+        """Displacement [m] and force, ``(n, 2)``."""
+        return np.array([(row.moved, row.force) for row in self.rows])
+
+    @property
+    def answer(self) -> float:
+        """The force at the end of a way from rest to rest, the largest one of a motion."""
+        return float(self.curve[:, 1].max() if self.moves else self.curve[-1, 1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,31 +165,48 @@ class Lead:
         return state
 
     def _drive(self, way: Way, state: State, speed: float) -> None:
-        run, at, most = self.run, 0.0, 0.0
+        run, at = self.run, 0.0
         self.note(way, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
         given, motions = run.given(state), [state.motion.copy()]
+        peaks = Peaks(way.best, self.longest / (ROWS * speed * run.dt))
         for goal in self.goals.tolist():
             if goal == at:
                 continue
             n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
             pace = _pace(n)
-            steps = max(1, round(abs(goal - at) / (speed * run.dt * pace.sum())))
+            steps = max(peaks.windows, round(abs(goal - at) / (speed * run.dt * pace.sum())))
             top = (goal - at) / (run.dt * steps * pace.sum())
+            lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows)
             for k, part in enumerate(pace.tolist()):
-                before = run.driven_speed(state)
-                force = run.drive(state, top * part, steps, given=given)
-                force -= (top * part - before) / (mobility * steps * run.dt)  # what the driven body's own inertia takes
-                moved = run.driven(state) - run.driven(self.start)
-                if force > most:
-                    most, way.best = force, state.copy()
-                self.note(way, state, moved, force)
-                motions.append(state.motion.copy())
+                for window, length in enumerate(lengths.tolist(), start=1):
+                    before = run.driven_speed(state)
+                    force = run.drive(state, top * part, length, given=given)
+                    force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
+                    peaks.see(force, length, state, len(way.rows) + (window > peaks.windows // 2))
+                    if window == peaks.windows // 2:
+                        middle = state.copy()
+                # What a row's forces are the mean of is there in its middle.
+                self.note(way, middle, self.moved(middle), peaks.mean(peaks.windows))
+                motions.append(middle.motion)
                 if (k + 1) % SEEN == 0:
-                    self.observe(run, state, force)
+                    self.observe(run, state, way.rows[-1].force)
             at = goal
+            self.note(way, state, self.moved(state), peaks.mean(1))
+            motions.append(state.motion.copy())
+        _calm(way.rows)
+        peak, between, way.unseen = peaks.resolved()
+        way.best = peak.state
+        if between:
+            self.note(way, peak.state, self.moved(peak.state), peak.force)
+            way.rows.insert(peak.row, way.rows.pop())
+            motions.insert(peak.row, peak.state.motion)
         row = failing(way.curve)
         way.motion = motions[row] - motions[max(0, row - SEEN)]
+
+    def moved(self, state: State) -> float:
+        """How far what is driven has gone since the rest under the dead load [m]."""
+        return self.run.driven(state) - self.run.driven(self.start)
 
     def _settle(self, way: Way, state: State, speed: float) -> None:
         run, given = self.run, self.run.given(state)
@@ -210,6 +230,13 @@ class Lead:
             self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)
+
+
+def _calm(rows: list[WayRow]) -> None:
+    """Take the middle one of three forces for each row of a motion but the first and the last, in place."""
+    force = np.array([row.force for row in rows])
+    for k in range(1, len(rows) - 1):
+        rows[k] = rows[k]._replace(force=float(np.median(force[k - 1 : k + 2])))
 
 
 def last_leg(curve: Array) -> Array:

@@ -51,7 +51,7 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
         and `upper` lie about the answer as far as the last halving of the speed has changed it.
     """
-    state, ways, answers = State.at_rest(run.system), list[Way](), list[float]()
+    state, ways = State.at_rest(run.system), list[Way]()
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
         verdict = settle(resting, state, 0.0, criteria, observe, sudden=True)
@@ -69,20 +69,19 @@ def collapse_of_led(
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
             if way.verdict == "undecided":
                 break
-            answers.append(float(way.curve[-1, 1] if lead.settles else way.curve[:, 1].max()))
-            if _spread(lead, answers) <= tolerance and not _rate(scene):
+            if _spread(lead, ways) <= tolerance and not _rate(scene):
                 break
     except KeyboardInterrupt:
         outcome = _path(outcome, scene, run, points, ways[-1]) if ways and ways[-1].rows else outcome
         return replace(outcome, message="interrupted: the way so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
-    # What a support hardly moves does hardly any work.
-    lost = run.unaccounted(last, LITTLE * run.system.carried.work)
+    # What a support hardly moves does hardly any work. The dead load came on at once, in a motion of no account.
+    lost = run.unaccounted(last, LITTLE * run.system.carried.work, since=state)
     outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
-    outcome = _judge(outcome, lead, way, answers, tolerance)
+    outcome = _judge(outcome, lead, ways, tolerance)
     if outcome.status == "undecided" and outcome.upper is None and is_self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
@@ -104,20 +103,20 @@ def _speeds(lead: Lead) -> list[float]:
     return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
 
 
-def _bracket(answers: list[float]) -> tuple[float, float]:
+def _bracket(ways: list[Way]) -> tuple[float, float]:
     """The answer as far on either side of the last one as that lies from the one at twice its speed.
 
-    What speed adds falls at least as fast as speed.
+    What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length.
     """
-    fast, slow = answers[-2:]
-    return slow - abs(fast - slow), slow + abs(fast - slow)
+    fast, slow = (way.answer for way in ways[-2:])
+    return slow - abs(fast - slow), slow + abs(fast - slow) + ways[-1].unseen
 
 
-def _spread(lead: Lead, answers: list[float]) -> float:
+def _spread(lead: Lead, ways: list[Way]) -> float:
     """Width of the bracket, relative to its larger end."""
-    if len(answers) < 2:
+    if len(ways) < 2:
         return np.inf
-    lower, upper = _bracket(answers)
+    lower, upper = _bracket(ways)
     return (upper - lower) / max(-lower, upper, LITTLE if lead.settles else 0.0) if upper > lower else 0.0
 
 
@@ -148,8 +147,9 @@ def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Wa
     return replace(outcome, curve=way.curve, path=path, path_columns=columns)
 
 
-def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], tolerance: float) -> Outcome:
+def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> Outcome:
     """Verdict on some ways, of which the last one is drawn."""
+    way = ways[-1]
     what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
     what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
     other = -float(outcome.curve[:, 1].min())
@@ -157,9 +157,9 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
         what += f"; the other way it takes {number(other)}"
     what += f"; {'small' if lead.run.system.contacts is None else 'finite'} displacements"
     at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"
-    if way.verdict == "undecided" or len(answers) < 2:
+    if way.verdict == "undecided" or len(ways) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
-    least, most = _bracket(answers)
+    least, most = _bracket(ways)
     fell = way.verdict == "collapse"
     supports = Supports(lead.scene, lead.points, lead.run.system.owner)
     if lead.settles and not fell and supports.have_come_free(way.rows[-1].carried, way.rows[-1].tie):
@@ -167,10 +167,10 @@ def _judge(outcome: Outcome, lead: Lead, way: Way, answers: list[float], toleran
     outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, settles=lead.settles):
         still = "the support still sheds load" if lead.settles else "the wall still hardens"
-        message = f"no answer: {still} at the displacement asked for, {at}: {number(answers[-1])}; {what}"
+        message = f"no answer: {still} at the displacement asked for, {at}: {number(way.answer)}; {what}"
         bounds = (None, most) if lead.settles else (least, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
-    if _spread(lead, answers) > tolerance and not _rate(lead.scene):
+    if _spread(lead, ways) > tolerance and not _rate(lead.scene):
         return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
     fall = f"; the wall falls beyond {at}, this is of its last rest" if fell else ""
-    return replace(outcome, status="collapse", multiplier=answers[-1], message=what + fall)
+    return replace(outcome, status="collapse", multiplier=way.answer, message=what + fall)

@@ -272,15 +272,21 @@ class Run:
         step, part = self._given_step, self._part
         return Run(system, local=local, viscous=self.viscous, dt=step, part=part, damping=damping)
 
-    def unaccounted(self, state: State, least: float = 0.0) -> float:
-        """Share of the work of the loads, or of a least one [J], that the energy ledger misses.
+    def unaccounted(self, state: State, least: float = 0.0, since: State | None = None) -> float:
+        """Share of the work of the loads, or of a least one [J], that the energy ledger misses, all or since a state.
 
         Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
         """
-        ledger = self.ledger(state)
-        dead = self.dead_work(state)
-        work = max(abs(dead) + abs(ledger.external - dead), least)
-        return abs(ledger.residual) / work if work else 0.0
+        residual, dead, live = self._works(state)
+        if since is not None:
+            residual, dead, live = np.subtract((residual, dead, live), self._works(since))
+        work = max(abs(dead) + abs(live), least)
+        return float(abs(residual) / work) if work else 0.0
+
+    def _works(self, state: State) -> tuple[float, float, float]:
+        """What the ledger misses, and works of the dead and of the live load [J]."""
+        ledger, dead = self.ledger(state), self.dead_work(state)
+        return ledger.residual, dead, ledger.external - dead
 
     def dead_work(self, state: State) -> float:
         """Work of the dead load [J]."""

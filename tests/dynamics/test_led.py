@@ -165,6 +165,59 @@ def test_a_pier_that_is_pushed_to_the_left_answers_as_one_pushed_to_the_right() 
     assert left.motion[0] == pytest.approx(right.motion[0] * [-1, 1, -1], abs=1e-6)
 
 
+SNAPS = {
+    "normal_stiffness": 1e10,
+    "shear_stiffness": 4e9,
+    "friction": 0.7,
+    "cohesion": 3e5,
+    "tensile_strength": 2e5,
+    "fracture_energy_1": 50.0,
+    "fracture_energy_2": 300.0,
+}
+
+
+@pytest.mark.parametrize("way", [1e-3, 2e-2, 0.3])
+def test_a_joint_that_snaps_bears_its_strength_however_long_the_way(way: float) -> None:
+    """c A of a joint without weight, whose force rises over 0.08 mm and falls over 2 mm; rows are up to 1.5 mm long."""
+    beam = {"height": 0.1, "mass": 100.0, "condition": "fixed-height", "drive": {"displacement": [way, 0], "at": 0.1}}
+    size = {"block_width": 0.5, "block_height": 0.1, "thickness": 0.2, "courses": [[1]]}
+    support = {"support__kind": "fixed-first-course", "load__gravity": 0.0, "load__live": None}
+    scene = panel(wall=size, joint=SNAPS, block__young=5e10, beam=beam, **support)
+    outcome = dem_dynamic(scene, 0.01)
+    brackets(outcome, 3e5 * 0.1, 0.011)
+    assert outcome.curve[:, 1].max() == pytest.approx(outcome.multiplier, rel=1e-12)
+    assert (np.diff(outcome.curve[:, 0]) >= 0).all()
+
+
+def test_a_block_rocks_along_its_exact_curve() -> None:
+    """V = W (b/2 cos θ − h/2 sin θ) / (h cos θ + b sin θ) at the displacement beside it, not half a row before."""
+    b, h = 0.5, 2.0
+    beam = {"height": h, "mass": 500.0, "condition": "free", "drive": {"displacement": [0.45, 0], "at": h + 0.1}}
+    size = {"block_width": b, "block_height": 0.1, "thickness": 0.3, "courses": [[1]]}
+    joint = {"normal_stiffness": 2e10, "shear_stiffness": 8e9, "friction": 2.0}
+    support = {"support__kind": "fixed-first-course", "load__live": None}
+    scene = panel(wall=size, joint=joint, block__young=5e10, beam=beam, **support)
+    outcome = dem_dynamic(scene, 0.02, displacements="finite")
+    angle = np.linspace(0.0, 0.5, 20001)
+    moved = b / 2 * (1 - np.cos(angle)) + h * np.sin(angle)
+    force = 500 * 9.81 * (b / 2 * np.cos(angle) - h / 2 * np.sin(angle)) / (b / 2 * np.sin(angle) + h * np.cos(angle))
+    u, found = outcome.curve.T
+    error = np.abs(found - np.interp(u, moved, force))[u > 0.1 * u.max()] / force.max()
+    assert error[:-11].max() < 1e-5
+    assert error.max() < 2e-3  # where it slows down
+
+
+@pytest.mark.parametrize("way", [5e-4, 1e-3])
+def test_how_the_dead_load_came_on_is_not_of_the_way(way: float) -> None:
+    """Half of what it works then is damped in a few steps, and not accounted for to what a short way takes."""
+    beam = {"height": 0.2, "mass": 50.0, "force": [0, -2e4], "drive": {"displacement": [way, 0]}}
+    size = {"block_width": 0.25, "block_height": 1.0, "thickness": 0.2, "courses": [[1]]}
+    joint = {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "friction": 0.6}
+    outcome = dem_dynamic(panel(wall=size, joint=joint, load__live=None, beam=beam), 0.01)
+    weight = 0.25 * 1.0 * 0.2 * 1800 * 9.81
+    brackets(outcome, (2e4 + 50 * 9.81) * 0.125 / 1.1 + weight * 0.125 / 1.1, 0.01)
+
+
 def test_a_thin_beam_does_not_say_how_far_a_collapse_is() -> None:
     thin, none = block(beam={"height": 0.01}), block()
     assert thin.lowest_block == none.lowest_block

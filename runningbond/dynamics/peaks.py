@@ -1,0 +1,81 @@
+"""The largest force of a drive, from means over windows of its way that are as short as the peak asks for.
+
+A force shakes, and is told by its mean over a part of the way. Such a mean takes from a peak the more the longer it is:
+of a wall that snaps after a hundredth of a row it leaves little. Means over ever shorter windows therefore stand side
+by side, and the longest are taken to which shorter ones add next to nothing.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .state import State
+
+STEPS = 50
+"""Steps of the shortest windows."""
+
+RESOLVED = 2.5e-3
+"""What windows half as long may add to a peak that is seen, relative to it."""
+
+
+@dataclass
+class Peak:
+    """The largest force by windows of one length, the middle one of three in a row, for single ones shake."""
+
+    state: State  # at the end of the window in the middle
+    force: float = 0.0
+    row: int = 1  # the row of the way before which it was met
+    _last: list[float] = field(default_factory=list)
+    _before: State | None = None
+
+    def see(self, force: float, state: State, row: int) -> None:
+        """Look at the mean force of the next window, and at the state at its end."""
+        self._last = [*self._last[-2:], force]
+        middle = sorted(self._last)[1] if len(self._last) == 3 else 0.0
+        if middle > self.force:
+            self.state = self._before or state.copy()
+            self.force, self.row = middle, row
+        self._before = state.copy() if force > self.force else None
+
+
+class Peaks:
+    """Peaks by windows of a whole row, of half of one, and so on.
+
+    Parameters
+    ----------
+    start
+        Where the way begins.
+    steps
+        Steps of a row.
+    """
+
+    def __init__(self, start: State, steps: float) -> None:
+        levels = max(1, int(np.log2(max(1.0, steps / STEPS))))
+        self.windows = 2**levels  # of the shortest kind in a row
+        self._peaks = [Peak(start) for _ in range(levels + 1)]
+        self._sums, self._ends = [0.0], [0]  # force times steps, and steps, up to the end of each window of the row
+
+    def see(self, force: float, steps: int, state: State, row: int) -> None:
+        """Look at the mean force of the next window, of so many steps, and at the state at its end, before a row."""
+        if len(self._sums) > self.windows:
+            self._sums, self._ends = [0.0], [0]
+        self._sums.append(self._sums[-1] + force * steps)
+        self._ends.append(self._ends[-1] + steps)
+        for level, peak in enumerate(self._peaks):
+            if (len(self._sums) - 1) % (some := self.windows >> level) == 0:
+                peak.see(self.mean(some), state, row)
+
+    def mean(self, windows: int) -> float:
+        """Mean force of the last windows of the row."""
+        return (self._sums[-1] - self._sums[-1 - windows]) / (self._ends[-1] - self._ends[-1 - windows])
+
+    def resolved(self) -> tuple[Peak, bool, float]:
+        """The peak, whether it is of windows shorter than a row, and what these may still miss of it.
+
+        What a mean takes from a peak falls as its length, so that the shortest windows miss as much as they add.
+        """
+        force = np.array([peak.force for peak in self._peaks])
+        more = np.diff(force)
+        seen = np.flatnonzero(more <= RESOLVED * force[1:])
+        level = int(seen[0]) if len(seen) else len(more) - 1
+        return self._peaks[level], level > 0, max(0.0, float(force[-1] - force[level] + more[-1]))
