@@ -66,7 +66,8 @@ def run(
         Number of runs: of the wall as it is, and of walls beside it that differ in nothing that is known. What is kept
         in --out is that of the first, and all of them in a folder of it, where the same command goes on.
     scatter
-        What differs between draws: bits, the last ones; or size=0.01,friction=0.05, relatively, or one of them.
+        What differs between draws: bits, the last ones; or size=0.01,friction=0.05, a relative tolerance of blocks and
+        the standard deviation of the logarithm of each joint's friction, or one of them.
     jobs
         Number of processes for draws; -1, the default, is one a core.
     """

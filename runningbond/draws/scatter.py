@@ -2,13 +2,12 @@
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, JointMaterial, Scene, SceneError
 from runningbond.scene.ranges import Range, suggestion
 
 SEED = 20
@@ -73,7 +72,7 @@ class Scatter:
         """
         random = np.random.default_rng([SEED, number])
         blocks = tuple(replace(each, density=each.density * _bit(random)) for each in scene.block_materials)
-        joints = tuple(replace(each, friction=each.friction * _bit(random)) for each in scene.joint_materials)
+        joints = tuple(_rougher(each, _bit(random)) for each in scene.joint_materials)
         drawn = replace(scene, block_materials=blocks, joint_materials=joints)
         shifts = np.exp(self.friction * random.standard_normal(len(scene.joints)))
         drawn = _resized(drawn, self.size, random) if self.size else drawn
@@ -85,10 +84,19 @@ def _bit(random: np.random.Generator) -> float:
     return 1.0 + BITS * float(random.uniform(-1.0, 1.0))
 
 
+def _rougher(material: JointMaterial, by: float) -> JointMaterial:
+    """A material of so many times the friction, whose tensile strength is at most what its cohesion leaves it."""
+    friction, tension = material.friction * by, material.tensile_strength
+    if tension is not None and friction > 0:
+        tension = min(tension, material.cohesion / friction)
+    return replace(material, friction=friction, tensile_strength=tension)
+
+
 def _with_friction(scene: Scene, factors: Array) -> Scene:
     """A wall each of whose joints has its own friction, times one of the factors ``(nj,)``."""
-    own: list[Any] = [scene.joint_materials[k] for k in scene.material_of_joint]
-    own = [replace(each, friction=each.friction * float(by)) for each, by in zip(own, factors, strict=True)]
+    own = [
+        _rougher(scene.joint_materials[k], by) for k, by in zip(scene.material_of_joint, factors.tolist(), strict=True)
+    ]
     number = len(scene.joint_materials) + np.arange(len(own))
     return replace(scene, joint_materials=(*scene.joint_materials, *own), material_of_joint=number)
 

@@ -18,7 +18,7 @@ from .settlement import largest_displacement, reaction_unit
 NOTHING = 1e-6
 """Share of the dead load that counts as none, and opening per displacement of a support that counts as no closing."""
 
-BRIDGED = "no settlement brings it down: it bridges the support, without which forces balance the dead load"
+BRIDGED = "it bridges the support, without which forces balance the dead load"
 
 JAMMED = "self-locking: the wall holds the support against any force that drives it"
 
@@ -43,10 +43,17 @@ def bridges_without_friction(system: Equilibrium) -> bool:
     return solve_forces(system, frozen_friction(dry, nothing), "zero").status == "optimal"
 
 
+def bridged_message(system: Equilibrium, otherwise: str) -> str:
+    """What is said of a wall that bridges its support: that nothing upsets it or, where friction helps, otherwise."""
+    if bridges_without_friction(system):
+        return f"no settlement brings it down: {BRIDGED}, by normal forces alone"
+    return f"{BRIDGED}, {otherwise}"
+
+
 def support_verdict(system: Equilibrium, share: float) -> tuple[Status, str]:
     """Status and message of an associated limit analysis, by the least share that the support can bear."""
     if is_bridged(system, share):
-        return "unbounded", BRIDGED
+        return "unbounded", bridged_message(system, "with associated joints; true friction may give way")
     message = "kinematic and static bound, associated joints; true friction may give way at a larger reaction"
     return "collapse", f"{message}; {reaction_note(system.scene, share)}"
 

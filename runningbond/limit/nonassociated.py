@@ -21,7 +21,7 @@ from .coarse import POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
 from .large import search_large, takes_one_start
-from .moving_support import BRIDGED, JAMMED, NOTHING, bridges_without_friction, is_bridged, may_leave, reaction_note
+from .moving_support import JAMMED, NOTHING, bridged_message, is_bridged, may_leave, reaction_note
 from .remarks import remarks
 from .search import STARTS, Observer, Search, search
 
@@ -234,8 +234,8 @@ def _stopped(result: Search) -> str:
 
 def _bridged(outcome: Outcome, system: Equilibrium) -> Outcome:
     """Outcome of a wall that bridges its moving support."""
-    proof = "by normal forces alone" if bridges_without_friction(system) else "with friction that may come to rest so"
-    return replace(outcome, status="unbounded", message=f"{BRIDGED}, {proof}")
+    message = bridged_message(system, "with friction that may come to rest so")
+    return replace(outcome, status="unbounded", message=message)
 
 
 def _uncertified(outcome: Outcome, result: Search, system: Equilibrium, bound: float | None) -> Outcome:

@@ -128,11 +128,20 @@ class Supports:
         return np.append(total.ravel(), tie)
 
     def have_come_free(self, force: Array, tie: Array) -> bool:
-        """Whether the supports that move bear nothing; forces of points and ties as of `reactions`."""
-        moving = np.asarray(self._scene.support_motion[self.block].any(axis=1))
-        of_points, of_ties = moving[self._body], moving[self._tied]
-        borne = np.append(np.hypot(*force[self._point[of_points]].T), tie[self._tie[of_ties]])
-        return bool(borne.max(initial=0.0) <= UNFELT * np.hypot(*force.T).max(initial=0.0))
+        """Whether the supports that move bear nothing; forces of points and ties as of `reactions`.
+
+        What is borne where they do not move, at the point about which they turn, is not in their way.
+        """
+        motion, centroid = self._scene.support_motion[self.block], self._scene.blocks.centroid[self.block]
+
+        def way(body: Indices, at: Array) -> Array:
+            arm, (u, v, turn) = at - centroid[body], motion[body].T
+            return np.asarray(np.hypot(u - turn * arm[:, 1], v + turn * arm[:, 0]))
+
+        ways = np.append(way(self._body, self._points.position), way(self._tied, self._tied_at))
+        borne = np.append(np.hypot(*force[self._point].T), tie[self._tie])
+        largest = float(np.hypot(*force.T).max(initial=0.0) * ways.max(initial=0.0))
+        return bool((borne * ways).max(initial=0.0) <= UNFELT * largest)
 
     def path(
         self,

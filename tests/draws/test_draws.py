@@ -81,6 +81,19 @@ def test_friction_scatters_joint_by_joint() -> None:
     assert logarithm.std() == pytest.approx(spread, abs=4 * error)
 
 
+def test_no_friction_leaves_more_tensile_strength_than_cohesion_has() -> None:
+    """f_t is what was given as long as it is at most c / tan φ, whatever scatters."""
+    given = {"friction": 0.6, "cohesion": 1e5, "tensile_strength": 1.6e5}
+    scene = panel(wall__length=0.96, wall__height=0.36, joint=given)
+    for scatter in ("friction=0.1", "bits"):
+        drawn = Scatter.read(scatter).draw(scene, 1).joint_materials
+        own = drawn[1:] if scatter != "bits" else drawn
+        assert [each.tension for each in own] == [min(1.6e5, 1e5 / each.friction) for each in own]
+    exact = replace(scene, joint_materials=(replace(scene.joint, tensile_strength=1e5 / 0.6),))
+    Scatter().draw(exact, 1)
+    Scatter().draw(exact, 2)
+
+
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
 def test_a_block_slides_at_the_friction_it_was_drawn_with(model: str) -> None:
     """Exact: λ = tan φ of each draw's one joint; and no last bit matters to a single block."""

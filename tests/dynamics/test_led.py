@@ -493,6 +493,15 @@ def test_a_wall_that_does_without_the_support_that_sinks_bridges_it(model: Any) 
 
 
 @pytest.mark.parametrize("model", [dem_static, *MODELS])
+def test_a_support_that_turns_from_under_a_wall_is_bridged_though_its_pivot_bears(model: Any) -> None:
+    """The block stands on what stays, and on the point about which the rest turns away, which does no work."""
+    live = {"kind": "settlement", "box": [[0.14, -1.0], [1.0, 0.0]], "rotation_angle": -0.5, "about": [0.14, 0.0]}
+    outcome = model(block(load__live=live))
+    assert outcome.status == "unbounded", outcome.message
+    assert "bridges the support" in outcome.message
+
+
+@pytest.mark.parametrize("model", [dem_static, *MODELS])
 @pytest.mark.parametrize("sinks", [1e-9, 1e-7])
 def test_a_support_that_still_sheds_load_elastically_is_no_answer(model: Any, sinks: float) -> None:
     """Half a panel's ground sinks by less than closes its joints: the share falls, hardly or by a tenth, to the end."""

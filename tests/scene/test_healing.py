@@ -74,6 +74,19 @@ def test_parallel_gaps_heal_to_the_exact_load(tmp_path: Path) -> None:
     assert multiplier(scene) == pytest.approx(exact, rel=3e-3)
 
 
+def test_a_reach_that_takes_a_short_side_away_is_refused(tmp_path: Path) -> None:
+    """The ground has a step of 3 mm, whose ends both are near a block's lower corner."""
+    stones: list[Outline] = [
+        [(0, -3), (400, -3), (400, 200), (0, 200)],
+        [(400, 0), (800, 0), (800, 200), (400, 200)],
+    ]
+    step: Outline = [(-1000, -200), (2000, -200), (2000, 0), (400, 0), (400, -3), (-1000, -3)]
+    path = dxf(tmp_path / "step.dxf", closed(stones), closed([step], layer="ground"), ground=False)
+    assert len(scene_of(path, heal=2e-3).joints) == 4
+    with pytest.raises(SceneError, match=r"joins two corners of block 2 at .*, 0.003 m apart, at \(0.4, 0\); choose"):
+        scene_of(path, heal=4e-3)
+
+
 def test_overlaps_are_healed_too(tmp_path: Path) -> None:
     outlines: list[Outline] = [
         [(0, -0.3), (200, -0.3), (200, 100.4), (0, 100.4)],

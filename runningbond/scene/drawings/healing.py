@@ -64,7 +64,8 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     Raises
     ------
     SceneError
-        For a reach above a tenth of the smallest block's smaller side, and where corners would have to move further.
+        For a reach above a tenth of the smallest block's smaller side, or that joins corners of one block, and where
+        corners would have to move further.
     """
     boxes = shapely.get_coordinates(shapely.oriented_envelope([shapely.Polygon(p) for p in polygons])).reshape(-1, 5, 2)
     least = float(np.hypot(*(boxes[:, 1:3] - boxes[:, :2]).T).min())
@@ -74,6 +75,7 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     blocks = Blocks.from_polygons(polygons)
     drawn = blocks.vertices
     touches, gap = _touches(blocks, reach)
+    _check_corners(blocks, touches, reach)
     number = np.bincount(touches.node)[:, None]
     nodes = np.column_stack([np.bincount(touches.node, x) for x in drawn.T]) / number
     size = float(np.ptp(drawn, axis=0).max())
@@ -95,6 +97,18 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     changed = int(np.sum(moved > blocks.tolerance / 100))
     note = f"heal: {changed} corners moved, by at most {moved[worst]:.2g} m"
     return healed, f"{note}, to close gaps and overlaps of up to {gap:.2g} m"
+
+
+def _check_corners(blocks: Blocks, touches: _Touches, reach: float) -> None:
+    """Refuse a reach that makes one corner of two of a block, which meet the same one of another block."""
+    pair = np.column_stack([blocks.owner, touches.node])
+    _, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
+    again = np.flatnonzero(first[number.ravel()] != np.arange(len(pair)))
+    if len(again):
+        one, other = blocks.vertices[[first[number.ravel()[again[0]]], again[0]]]
+        side = f"{np.hypot(*(other - one)):.2g} m apart, at ({one[0]:.4g}, {one[1]:.4g})"
+        what = f"joins two corners of {blocks.name(int(pair[again[0], 0]))}, {side}; choose a smaller one"
+        raise SceneError(KEY, what, reach)
 
 
 def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
