@@ -113,7 +113,12 @@ def collapse_by_steps(
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     if result.rests:
         outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
-    outcome = _judge(replace(outcome, steps=result.steps), scene, run, result, tolerance, point_order, is_self_locking)
+    outcome = replace(outcome, steps=result.steps)
+    if _gives_elastically(run, result, criteria) and is_self_locking():
+        message = "self-locking: it gives as far at rest as counts as collapse, and joint forces balance any multiple"
+        outcome = replace(outcome, status="unbounded", message=message)
+    else:
+        outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking)
     stiffness = _note_on_stiffness(scene, run, result, criteria)
     if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
@@ -146,6 +151,14 @@ def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Crit
     stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * area).max(initial=0.0)))
     smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
     return stiffness_note(overlap, float(np.min(criteria.collapse)), scene.block_size, stiffest, smallest)
+
+
+def _gives_elastically(run: Run, result: LoadSteps, criteria: Criteria) -> bool:
+    """Whether the largest load at rest has moved the wall as far as counts as collapse: no fall is told by that."""
+    if result.upper is None or result.borne is None:
+        return False
+    moved = result.borne.motion - result.rests[0][1].motion
+    return run.system.farthest(moved, criteria.collapse) > 1.0
 
 
 def _judge(

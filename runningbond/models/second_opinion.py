@@ -52,7 +52,8 @@ def beside_others(outcome: Outcome, rigid_blocks: Solver, finer_mesh: Solver) ->
     -------
     Outcome
         As it was where rigid blocks fall at a load that its bracket has as well; else the bracket takes in that of
-        the finer mesh, and the message has all three. Steps and seconds are those of all that were asked.
+        the finer mesh, its multiplier is the smaller of both, and the message has all three. Steps and seconds are
+        those of all that were asked.
     """
     if outcome.status != "collapse":
         return outcome
@@ -65,15 +66,13 @@ def beside_others(outcome: Outcome, rigid_blocks: Solver, finer_mesh: Solver) ->
     if share_loads(outcome, rigid):
         return asked
     finer = finer_mesh()
-    asked, brackets = _with_effort(asked, finer), [_bracket(outcome)]
-    told: str = finer.status
-    if finer.status == "collapse":
-        brackets.append(_bracket(finer))
-        told = _loads(finer)
-    lower, upper = min(low for low, _ in brackets), max(high for _, high in brackets)
+    found = [outcome, finer] if finer.status == "collapse" else [outcome]
+    asked, told = _with_effort(asked, finer), _loads(finer) if len(found) > 1 else finer.status
+    (lower, *_), (*_, upper) = (sorted(ends) for ends in zip(*map(_bracket, found), strict=True))
+    multiplier = min(each.multiplier for each in found if each.multiplier is not None)
     message = f"{outcome.message}; how blocks deform decides where this wall falls: as they are {_loads(outcome)}"
     message += f", on a mesh {FINER} times as fine {told}, without deforming {_loads(rigid)}"
-    return replace(asked, multiplier=(lower + upper) / 2, lower=lower, upper=upper, message=message)
+    return replace(asked, multiplier=multiplier, lower=lower, upper=upper, message=message)
 
 
 def share_loads(one: Outcome, other: Outcome) -> bool:

@@ -224,6 +224,35 @@ def test_a_history_that_fits_leaves_the_certified_loads_or_widens_them(
     assert step.model is None or step.finite
 
 
+def test_a_history_that_ends_higher_than_what_no_bound_holds_is_in_the_bracket() -> None:
+    found = known(1.0, (0.97, 0.99))
+    found.bound = None
+    found.answer = collapse(CERTIFICATE.name, 0.97, 0.98)
+    found.learn(HISTORY, collapse(HISTORY.name, 0.99, 1.0))
+    assert (found.evidence, bracket_of(found), found.contradicted) == ("certificate", (0.97, 1.0), False)
+
+
+def test_a_history_that_locks_leaves_certified_loads_without_an_upper_end() -> None:
+    """Other forces in the joints than the load brings about drive the wall from .97 on; none above."""
+    found = known(1.0, (0.97, 0.99))
+    found.learn(HISTORY, Outcome("", HISTORY.name, "unbounded"))
+    assert found.answer is not None
+    assert (found.answer.status, found.answer.multiplier) == ("undecided", None)
+    assert bracket_of(found) == (0.97, None)
+    assert "but a history locks" in found.meaning()
+
+
+def test_the_peak_of_a_block_at_finite_displacements_is_bracketed() -> None:
+    """λ = tan(α − θ) falls from b / h on; pushes that are not slow bear more, by their inertia."""
+    scene = courses([[1]], width=0.3, height=1.2, joint__normal_stiffness=1e10, joint__shear_stiffness=4e9)
+    found = advise(scene, 0.1, finite=True).outcome()
+    assert found.lower is not None
+    assert found.upper is not None
+    assert found.model.endswith("finite")
+    assert found.lower <= 0.25 <= found.upper
+    assert found.upper - found.lower <= 0.1 * found.upper
+
+
 def test_a_history_far_below_the_certified_loads_is_the_answer_and_calls_for_more() -> None:
     found = known(1.0, (0.97, 0.99), (0.8, 0.81))
     assert (found.evidence, bracket_of(found), found.lowest) == ("history", (0.8, 0.81), 0.81)

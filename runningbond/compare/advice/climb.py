@@ -22,7 +22,7 @@ from .knowledge import Knowledge, ladder
 from .steps import Step, after_refusal, next_step
 
 TOLERANCE = 0.05  # relative width of the bracket that is asked for where nothing else is
-SPEED, HALVINGS = 0.02, 3  # of the first push, in block sizes a second; how often it is halved until the peak settles
+SPEED, HALVINGS = 0.02, 5  # of the first push, in block sizes a second; how often it is halved until the peak settles
 FARTHER = 3.0  # displacement up to which to push, relative to that of the collapse at small displacements
 SMOOTH = 9  # rows of the curve over which λ is averaged
 
@@ -132,8 +132,9 @@ def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) 
 def finite_peak(known: Knowledge, step: Step) -> Outcome:
     """Peak of the pushover curve at finite displacements, pushed ever slower until it settles.
 
-    It is settled where half the speed changes it by less than the tolerance, which is its bracket, and is not one of
-    inertia, far above the load above which nothing stands at small displacements.
+    Inertia adds to it, and falls at least as fast as speed: it lies as far on either side of the slower push's peak as
+    that from the faster one's, at most. It is settled where that bracket is as narrow as the tolerance, and not far
+    above the load above which nothing stands at small displacements.
     """
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None
@@ -147,10 +148,11 @@ def finite_peak(known: Knowledge, step: Step) -> Outcome:
     for _ in range(HALVINGS):
         fast, speed = _peak(curve), speed / 2
         curve = model.pushover(scene, distance, speed=speed)
-        low, high = sorted((fast, _peak(curve)))
-        if high - low <= tolerance * high and (bound is None or low <= (1 + tolerance) * bound):
+        slow = _peak(curve)
+        low, high = slow - abs(fast - slow), slow + abs(fast - slow)
+        if high - low <= tolerance * high and (bound is None or low <= bound):
             message = "peaks of two pushes at finite displacements, one at half the speed of the other"
-            outcome = replace(outcome, status="collapse", multiplier=low, lower=low, upper=high, message=message)
+            outcome = replace(outcome, status="collapse", multiplier=slow, lower=low, upper=high, message=message)
             outcome = replace(outcome, curve=curve[:, [0, 2]])
             break
     return replace(outcome, seconds=time.perf_counter() - start)

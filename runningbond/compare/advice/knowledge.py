@@ -73,6 +73,9 @@ class Knowledge:
     def learn(self, model: Model, outcome: Outcome, *, finite: bool = False, draws: Sequence[Outcome] = ()) -> None:
         """Take in the outcome of a model, at `finite` displacements or at small ones, or what its draws come to."""
         self.outcomes.append(outcome)
+        if outcome.status == "unbounded" and model.kind == "history" and self.answer and self.evidence == "certificate":
+            # Forces that bring it down are certified, but the load alone did not bring them about.
+            self.answer = replace(self.answer, status="undecided", multiplier=None, upper=None)
         if outcome.status != "collapse" or outcome.lower is None or outcome.upper is None:
             return
         if model.kind == "bound":
@@ -110,7 +113,8 @@ class Knowledge:
             fall = min(fall, self.bound)
         if self.narrow and self.answer is not None and self.answer.lower is not None and not self._is_above(outcome):
             lower = self.answer.lower if fall >= self.answer.lower else outcome.lower
-            wider = replace(self.answer, lower=min(lower, self.answer.lower))
+            upper = max(self.answer.upper or 0.0, history.upper or 0.0)
+            wider = replace(self.answer, lower=min(lower, self.answer.lower), upper=upper)
             self.contradicted = not _within(wider, self.tolerance)
             if not self.contradicted:
                 self._answer("certificate", wider, fall)
@@ -168,6 +172,8 @@ class Knowledge:
             return self.answer.message + (above and f"{above} at small displacements")
         if self.evidence == "certificate":
             seen = ", and a history agrees" if self.draws else ""
+            if self.answer.upper is None:
+                seen = ", but a history locks: it takes other forces in joints than the load alone brings about"
             return f"{self._certified(self.answer)}{seen}; smaller ones are not excluded{above}"
         below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
         told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"

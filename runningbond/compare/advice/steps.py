@@ -103,7 +103,7 @@ def _after_history(known: Knowledge, step: Step, model: Model, outcome: Outcome)
     rigid = "" if deforms(model) else f"; {_compliance(known)}"
     if known.contradicted and step.draws == 1 and not deforms(model):
         model, why = _history(known)
-        return Step(model, f"the history ends below the certified loads: {why}", draws=DRAWS)
+        return Step(model, f"the history ends beside the certified loads: {why}", draws=DRAWS)
     histories_told = "one history" if known.draws == 1 else f"{known.draws} histories"
     return _enough(known, f"the collapse of {histories_told} is bracketed{rigid}")
 
