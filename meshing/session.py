@@ -1,5 +1,7 @@
 """A session of gmsh, opened quietly and closed whatever happens."""
 
+import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -24,8 +26,11 @@ def gmsh_session() -> Iterator[Any]:
         raise SceneError("gmsh", remedy) from error
     if gmsh.isInitialized():
         raise SceneError("gmsh", "has a session open; call gmsh.finalize() before meshing")
-    # Not interruptible: gmsh would otherwise take Ctrl-C from Python for good.
+    # Not interruptible: gmsh would otherwise take Ctrl-C from Python for good. It takes SIGTERM all the same.
+    listener = signal.getsignal(signal.SIGTERM)
     gmsh.initialize(["gmsh", "-v", "0"], readConfigFiles=False, interruptible=False)
+    if threading.current_thread() is threading.main_thread() and listener is not None:
+        signal.signal(signal.SIGTERM, listener)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.model.add("wall")

@@ -118,7 +118,8 @@ class Result:
             raise SceneError("what", f"must be mechanism: {self.model} has no curve here", what)
         axes.plot(*self.outcome.curve.T, marker=".")
         displacement, load = curve_quantities(self.wall.scene)
-        axes.set(xlabel=f"{displacement} [m]", ylabel=load, title=self.outcome.scene)
+        axes.set(xlabel=f"{displacement} [m]", ylabel=load)
+        axes.set_title(self.outcome.scene, parse_math=False)
         return axes
 
     def _mechanism(self) -> Array:

@@ -16,6 +16,7 @@ from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, write_atomically
 from runningbond.scene import read_scene
+from runningbond.scene.folder_lock import claim
 
 from .left_behind import RESPONSE_FILES, holds_results, remove_older
 from .terminal import DONE, NO_ANSWER, Json, SceneName, Together, progress_line, remarks
@@ -54,6 +55,7 @@ def respond(
         from runningbond.response.follow import AFTER
 
         make_folder(out)
+        claim(out, "--out")
         recorder = ResponseRecorder(wall, out)
         observers.append(recorder)
         settings["after"] = AFTER

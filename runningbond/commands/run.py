@@ -18,6 +18,7 @@ from runningbond.pictures.time_series import KINDS, MACRO
 from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
 from runningbond.results.store import ARRAY_FILES, RECORD
 from runningbond.scene import Scene, SceneError, read_scene
+from runningbond.scene.folder_lock import claim
 
 from .left_behind import CURVE_FILES, DRAWS, remove_older
 from .terminal import (
@@ -82,6 +83,7 @@ def run(
     chosen.check(wall)
     if out is not None:
         make_folder(out)
+        claim(out, "--out")
     stopped = interruptions(chosen)
     recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
     progress = _progress(chosen, wall)

@@ -15,6 +15,7 @@ from homog import homog
 from runningbond.limit import limit, limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
+from runningbond.scene.history import FACTOR
 from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
@@ -230,8 +231,8 @@ def check_response(
     if scene.history is None:
         raise SceneError("load.history", "is missing: the motion of the ground that the wall is to follow")
     model.check(scene)
-    if not (isinstance(scale, Real) and math.isfinite(scale) and scale != 0):
-        raise SceneError(scale_key, "must be a finite number, not zero", scale)
+    if not FACTOR.take(scale_key, scale):
+        raise SceneError(scale_key, "must not be zero", scale)
     return model.respond
 
 

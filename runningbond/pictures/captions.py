@@ -80,7 +80,7 @@ class Caption:
 def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -> None:
     """Text in the middle of the width of axes, so far above their bottom (0) or top (1)."""
     place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "annotation_clip": False}
-    axes.annotate(text, (0.5, level), (0.0, 72 * inches), ha="center", **place, **style)
+    axes.annotate(text, (0.5, level), (0.0, 72 * inches), ha="center", parse_math=False, **place, **style)
 
 
 def figure_with_room(extent: Extent, caption: Caption, enlarged: float = 1.0) -> "tuple[Figure, Axes]":

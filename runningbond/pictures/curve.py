@@ -66,7 +66,7 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
     displacement, load_axis = curve_quantities(scene)
     axes.set_xlabel(f"{displacement} [mm]", fontsize=TYPE + 1)
     axes.set_ylabel(load_axis, fontsize=TYPE + 1)
-    axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2)
+    axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2, parse_math=False)
     axes.tick_params(labelsize=TYPE)
     bare(axes)
     return figure

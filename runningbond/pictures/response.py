@@ -45,5 +45,5 @@ def response_figure(response: Response) -> "Figure":
     if len(fallen):
         drift.axvline(time[fallen[0]], color=CHART_COLOURS[3], lw=0.9, ls="--")
     title = f"{response.scene}: λ = {response.scale:g}, {response.message.split(';')[0]}"
-    figure.suptitle(title, fontsize=TYPE)
+    figure.suptitle(title, fontsize=TYPE, parse_math=False)
     return figure

@@ -1,10 +1,14 @@
 """One process at a time in a folder, without leaving anything in it where the system locks folders."""
 
+import atexit
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import gettempdir
 from typing import Any
+
+from .errors import SceneError
 
 fcntl: Any
 try:
@@ -13,6 +17,36 @@ except ImportError:  # Windows, where a folder cannot be opened, and a file in i
     fcntl = None
 
 LOCK = ".runningbond.lock"
+
+
+_claims: dict[Path, int] = {}
+
+
+def claim(folder: Path, key: str) -> None:
+    """Have a folder for this process alone until it ends, in which it writes again and again.
+
+    The lock is a file among the temporary ones, so that who reads the folder need not wait, and where there can be none
+    nobody is kept out.
+
+    Raises
+    ------
+    SceneError
+        Where another process of this machine has it; under a key, the name of an option.
+    """
+    at = folder.stat()
+    path = Path(gettempdir()) / f"runningbond-{at.st_dev:x}-{at.st_ino:x}.lock"
+    if fcntl is None or path in _claims:
+        return
+    with suppress(OSError):
+        handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(handle)
+            what = "is written by another process; wait for it, or name another folder"
+            raise SceneError(key, what, str(folder)) from None
+        _claims[path] = handle
+        atexit.register(path.unlink, missing_ok=True)
 
 
 @contextmanager

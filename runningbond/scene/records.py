@@ -61,6 +61,8 @@ def read_record(path: Path, key: str) -> Record:
         raise SceneError(key, f"cannot be read: {error.strerror or error}", path.name) from error
     except UnicodeDecodeError as error:
         raise SceneError(key, "is not a record: it is not UTF-8 text", path.name) from error
+    except ValueError as error:  # a name with a NUL
+        raise SceneError(key, f"cannot be read: {error}", path.name) from error
     return _peer(path, lines) if path.suffix.lower() in PEER else _columns(path, lines)
 
 

@@ -235,6 +235,28 @@ def test_an_interruption_of_limit_leaves_the_proved_bracket_under_no_fingerprint
     assert load_outcome(out)[1] == ""
 
 
+def test_a_folder_that_another_run_writes_is_refused(
+    small: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Until that ends; who runs twice in one process has the folder already."""
+    out = tmp_path / "out"
+    holds = "import sys; from pathlib import Path; from runningbond.scene.folder_lock import claim\n"
+    holds += "claim(Path(sys.argv[1]), '--out'); print('held', flush=True); sys.stdin.read()"
+    out.mkdir()
+    line = [sys.executable, "-c", holds, str(out)]
+    with subprocess.Popen(line, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as other:
+        assert other.stdout is not None
+        assert other.stdin is not None
+        assert other.stdout.readline() == "held\n"
+        assert command(["run", small, "--model", "limit", "--out", str(out)]) == 2
+        assert "is written by another process; wait for it" in capsys.readouterr().err
+        assert not list(out.iterdir())
+        other.stdin.close()
+        other.wait()
+    for _ in range(2):
+        assert command(["run", small, "--model", "limit", "--out", str(out)]) == 0
+
+
 def test_what_a_long_run_costs_is_told_on_a_terminal_only(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

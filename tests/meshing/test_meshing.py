@@ -349,6 +349,22 @@ def test_ctrl_c_stays_with_python() -> None:
         signal.signal(signal.SIGINT, before)
 
 
+def test_sigterm_stays_with_python() -> None:
+    """gmsh takes it at its start; the process would end where it meshes and ever after, with nothing kept."""
+    said = """
+import signal
+import subprocess
+import sys
+from meshing.session import gmsh_session
+signal.signal(signal.SIGTERM, lambda number, frame: print("heard"))
+with gmsh_session():
+    signal.raise_signal(signal.SIGTERM)
+signal.raise_signal(signal.SIGTERM)
+"""
+    done = subprocess.run([sys.executable, "-c", said], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "heard\nheard\n")
+
+
 def test_a_session_of_the_callers_own_is_not_ended() -> None:
     import gmsh
 

@@ -5,12 +5,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
+from dem.static import dem_static
 from runningbond.compare.published import published_scene
 from runningbond.joints import wall_points
 from runningbond.limit import limit
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.models import run_model
+from runningbond.pictures.captions import to_png
+from runningbond.pictures.curve import curve_figure
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.pictures.inline import inline_mechanism
@@ -21,6 +25,7 @@ from runningbond.pictures.vtk_grids import GridBuilder, shape_of_grids
 from runningbond.results import Outcome, check_mechanism
 from runningbond.results.mechanism import MAX_OVERLAP
 from runningbond.scene import Array, Scene, scene_from_dict
+from tests.fem_interface.walls import MORTAR
 from tests.walls import courses, panel
 
 from .scenes import turning_support
@@ -139,6 +144,17 @@ def test_ends_that_crush_are_crosses_and_no_fault() -> None:
     assert read.crosses == pytest.approx(shape.crosses, abs=1e-6)
     seen = inline_mechanism(shape, shape.extent, "rest")
     assert seen.count(CRUSHED) == 1
+
+
+@pytest.mark.parametrize("title", ["from $5 to $10 a brick", r"$\frac{a}{b$", "one $ alone", "a_b^c"])
+def test_a_title_is_no_formula(title: str) -> None:
+    """Dollars are what they are, in every picture with a title."""
+    scene = panel(wall__length=0.48, wall__height=0.12, joint__mortar=MORTAR, title=title)
+    outcome = dem_static(scene)
+    for figure in (figure_of(scene, outcome), curve_figure(scene, outcome)):
+        assert to_png(figure)
+        texts = [*figure.findobj(Text)]
+        assert [each for each in texts if title in each.get_text() and not each.get_parse_math()]
 
 
 def test_a_moment_of_a_file_has_its_supports_where_they_have_moved_to() -> None:
