@@ -114,7 +114,7 @@ def collapse_by_steps(
     if result.rests:
         outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
-    if _gives_elastically(run, result, criteria) and is_self_locking():
+    if result.upper is not None and _moved(run, result, criteria) > 1 and is_self_locking():
         message = "self-locking: it gives as far at rest as counts as collapse, and joint forces balance any multiple"
         outcome = replace(outcome, status="unbounded", message=message)
     else:
@@ -153,12 +153,11 @@ def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Crit
     return stiffness_note(overlap, float(np.min(criteria.collapse)), scene.block_size, stiffest, smallest)
 
 
-def _gives_elastically(run: Run, result: LoadSteps, criteria: Criteria) -> bool:
-    """Whether the largest load at rest has moved the wall as far as counts as collapse: no fall is told by that."""
-    if result.upper is None or result.borne is None:
-        return False
-    moved = result.borne.motion - result.rests[0][1].motion
-    return run.system.farthest(moved, criteria.collapse) > 1.0
+def _moved(run: Run, result: LoadSteps, criteria: Criteria) -> float:
+    """How far the wall has moved under the largest load at rest, in what counts as collapse [1]."""
+    if result.borne is None or not result.rests:
+        return 0.0
+    return run.system.farthest(result.borne.motion - result.rests[0][1].motion, criteria.collapse)
 
 
 def _judge(
