@@ -109,14 +109,15 @@ def _bracket(ways: list[Way]) -> tuple[float, float]:
     What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length.
     """
     fast, slow = (way.answer for way in ways[-2:])
-    return slow - abs(fast - slow), slow + abs(fast - slow) + ways[-1].unseen
+    return slow - abs(fast - slow), slow + abs(fast - slow) + ways[-1].unseen[1]
 
 
 def _spread(lead: Lead, ways: list[Way]) -> float:
-    """Width of the bracket, relative to its larger end."""
+    """Width of the bracket, relative to its larger end; without what may only be what shakes the force."""
     if len(ways) < 2:
         return np.inf
     lower, upper = _bracket(ways)
+    upper -= ways[-1].unseen[1] - ways[-1].unseen[0]
     return (upper - lower) / max(-lower, upper, LITTLE if lead.settles else 0.0) if upper > lower else 0.0
 
 
