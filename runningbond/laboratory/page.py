@@ -158,9 +158,7 @@ def _numbers(part: Any) -> Iterator[tuple[str, float]]:
 def _rig(wall: MeasuredWall, one: Prediction) -> str:
     """Size and loads in words."""
     beam = one.scene.beam
-    own = one.scene.wall.copy()
-    own[[] if beam is None else beam.block] = False
-    (left, bottom), (right, top) = one.scene.blocks.extent(own)
+    (left, bottom), (right, top) = one.scene.blocks.extent(one.scene.masonry)
     pressed = -beam.force[1] if beam else vertical_load(wall)
     where = "from a scene of its own" if wall.scene_file else f"from line {wall.row.line} of {wall.row.path.name}"
     kind = "pushed to and fro" if wall.is_cyclic else "pushed to one side"

@@ -52,7 +52,7 @@ def joint_colour(number: int) -> str:
 
 def used_block_materials(scene: Scene) -> list[int]:
     """Materials that blocks of the wall are of."""
-    return [int(k) for k in np.unique(scene.material_of_block[scene.part_of >= 0])]
+    return [int(k) for k in np.unique(scene.material_of_block[scene.masonry])]
 
 
 def used_joint_materials(scene: Scene) -> list[int]:
@@ -127,7 +127,7 @@ def _loads(scene: Scene) -> list[Any]:
     from matplotlib.lines import Line2D
 
     look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
-    path = scene.beam.drive.path if scene.beam and scene.beam.drive else ()
+    path = scene.drive_path
     moves = ", ".join(minus(1e3 * u) for u in path[:8]) + (", …" if len(path) > 8 else "")
     has_live = scene.settlement is None and not path
     kinds = {
