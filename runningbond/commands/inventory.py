@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from runningbond.joints import wall_points
-from runningbond.pictures.legend import CONDITIONS, is_bed, strength, used_block_materials, used_joint_materials
+from runningbond.pictures.legend import CONDITIONS, strength, used_block_materials, used_joint_materials
 from runningbond.pictures.quantities import counted, millimetres, minus, pair, readable
 from runningbond.scene import (
     ANCHOR,
@@ -53,7 +53,7 @@ def _mass(scene: Scene, mass: float) -> str:
 
 
 def _joints(scene: Scene) -> Iterator[Row]:
-    joints, bed = scene.joints, is_bed(scene)
+    joints, bed = scene.joints, scene.joints.is_bed
     cracks = int(joints.inner.sum())
     lengths = f", {joints.length.min():.4g} … {joints.length.max():.4g} m long" if len(joints) else ""
     inner = f", and {counted(cracks, 'potential crack')}" if cracks else ""
