@@ -167,6 +167,14 @@ class BlockSystem:
         return int(np.isfinite(self.mass).sum())
 
     @property
+    def mass_along(self) -> Array:
+        """Mass that each mode moves along x and along y, ``(2, nd)`` [kg]; none where it is held."""
+        along = np.zeros((2, len(self.mass)))
+        for axis, modes in enumerate(self.rigid[:, :2].T):
+            along[axis, modes] = np.where(np.isfinite(self.mass[modes]), self.mass[modes], 0.0)
+        return along
+
+    @property
     def weightless(self) -> bool:
         """Whether nothing loads it but the live load."""
         return not self.dead.any()
