@@ -8,13 +8,11 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from runningbond.compare.advice.experiment import FILE, write_errors
-from runningbond.pictures.captions import to_png
-from runningbond.pictures.charts import bare
 from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 from runningbond.results.outcome import two_digits
 from runningbond.scene import BlockMaterial, JointMaterial, table_of
-from runningbond.studies.page import Block, Picture, write_page
+from runningbond.studies.page import Block, Picture, write_page, write_picture
 
 from .cards import card, error_over_cost
 from .ladder import LADDER, Rung
@@ -66,14 +64,7 @@ def _rungs(predictions: Sequence[Prediction]) -> list[Rung]:
 def _chart(predictions: Sequence[Prediction], folder: Path) -> Picture:
     figure = Figure(figsize=(11, 5), layout="constrained")
     error_over_cost(figure, predictions)
-    return _picture(figure, folder / "error-over-cost.png", OVER_COST)
-
-
-def _picture(figure: Figure, path: Path, caption: str) -> Picture:
-    for axes in figure.axes:
-        bare(axes)
-    write_atomically(path, to_png(figure, 150))
-    return Picture(path, caption)
+    return write_picture(figure, folder / "error-over-cost.png", OVER_COST, dots=150)
 
 
 def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
@@ -127,7 +118,7 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
         caption += ", and the motion in which the dearest model sees it fail"
     if wall.cracks:
         caption += ", beside the cracks"
-    picture = _picture(card(own), folder / f"wall-{wall.name}.png", caption + ".")
+    picture = write_picture(card(own), folder / f"wall-{wall.name}.png", caption + ".", dots=150)
     told = [f"Published in {wall.reference}. {_rig(wall, own[0])}"]
     if not wall.is_scored:
         told.append("Shown, not scored: it took more than rocking or friction allow; its beam was not as free as said.")
