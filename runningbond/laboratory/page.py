@@ -80,36 +80,24 @@ def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
 
 def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
     """Every score, a row a wall and model."""
-    heads = (
-        "wall",
-        "model",
-        "status",
-        "V [kN]",
-        "measured",
-        "ΔV",
-        "stiffness",
-        "at peak",
-        "at 0.8",
-        "cycles",
-        "energy",
-    )
+    ratios_of = {
+        "stiffness": "stiffness_ratio",
+        "at peak": "peak_displacement_ratio",
+        "at 0.8": "drift_ratio",
+        "cycles": "cycle_ratio",
+        "energy": "energy_ratio",
+        "residual": "residual_ratio",
+    }
+    heads = ("wall", "model", "status", "V [kN]", "measured", "ΔV", *ratios_of, "mode (measured)", "CPU s")
     rows = []
     for row in (each.row() for each in predictions):
-        keys = (
-            "stiffness_ratio",
-            "peak_displacement_ratio",
-            "drift_ratio",
-            "cycle_ratio",
-            "energy_ratio",
-            "residual_ratio",
-        )
         forces = ["–" if row[key] is None else f"{row[key] / 1e3:.1f}" for key in ("V_max", "V_measured")]
-        ratios = ["–" if row[key] is None else f"{row[key]:.2f}" for key in keys]
+        ratios = ["–" if row[key] is None else f"{row[key]:.2f}" for key in ratios_of.values()]
         mode = f"{row['mode'] or '–'} ({row['mode_measured'] or '–'})"
         seconds = "–" if row["seconds"] is None else two_digits(row["seconds"])
         error = percent(row["dV"], "+") + ("" if row["scored"] else " (not scored)")
         rows.append([row["wall"], row["model"], row["status"], *forces, error, *ratios, mode, seconds])
-    return Sheet("Scores", (*heads, "residual", "mode (measured)", "CPU s"), rows)
+    return Sheet("Scores", heads, rows)
 
 
 def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[Block]:
