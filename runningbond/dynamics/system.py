@@ -33,11 +33,6 @@ class Restraint(NamedTuple):
     freedom: Indices  # (nr, 3) freedoms of each such body
     basis: Array  # (nr, 3, 3) motion of the body per coordinate, mass-orthogonal; columns that are not needed are zero
 
-    @classmethod
-    def none(cls) -> "Restraint":
-        """No body is restrained."""
-        return cls(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3)))
-
 
 def restrain(row: Array, restraint: Restraint) -> Array:
     """A row per motion of bodies ``(nd,)``, in place turned into one per restrained coordinates."""
