@@ -10,7 +10,8 @@ from pathlib import Path
 from meshing import wall_mesh, write_mesh
 from meshing.outline import outlines
 from meshing.shapes import shape_of_blocks, triangulate
-from runningbond.scene import BlockMaterial, Bond, JointMaterial, Load, build_scene, running_bond
+from runningbond.scene import BlockMaterial, Bond, JointMaterial, Load, build_scene
+from runningbond.scene.bond import bonded_rows, rectangles
 
 BOND = Bond(0.24, 0.06)
 
@@ -29,7 +30,7 @@ def main() -> None:
     """Print what it takes."""
     scene = build_scene(
         "48 m × 6 m",
-        running_bond(BOND, 48.0, 6.0),
+        rectangles(bonded_rows(BOND.width, 48.0, 100), BOND.width, BOND.levels(100)),
         thickness=0.12,
         block=BlockMaterial(density=1800.0),
         joint=JointMaterial(friction=0.6),

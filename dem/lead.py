@@ -57,7 +57,7 @@ class Lead:
     @cached_property
     def goals(self) -> Array:
         """Values that are led to one after the other."""
-        drive = self.scene.beam.drive if self.scene.beam else None
+        drive = self.scene.drive
         if self.scene.settlement is not None:
             return np.array(self.scene.settlement.path)
         return np.ones(1) if drive is None else drive.force[0] * np.array(drive.path) / self.metre

@@ -198,7 +198,7 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
 
 def _notes(lead: Lead, outcome: Outcome) -> str:
     """What there is to say of a cyclic drive, and of its rate."""
-    drive = lead.scene.beam.drive if lead.scene.beam else None
+    drive = lead.scene.drive
     if lead.settles or drive is None:
         return ""
     other = -float(outcome.curve[:, 1].min())

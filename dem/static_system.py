@@ -18,13 +18,13 @@ from scipy.sparse import block_diag, csc_array, csr_array, hstack, vstack
 
 from runningbond.joints import PointLaw, PointResponse, static_law, wall_stiffness
 from runningbond.limit.equilibrium import Equilibrium, equilibrium
-from runningbond.limit.kinematics import jump_operator, movable_freedoms, pin_operator
+from runningbond.limit.kinematics import jump_operator, movable_freedoms, pin_operator, tie_ends, tie_operator
 from runningbond.limit.settlement import reaction_unit
 from runningbond.scene import Array, Indices, Scene
 
 from .dissection import Dissection, dissection
 from .rows import Rows
-from .tied_law import TiedLaw, elongation, tie_ends
+from .tied_law import TiedLaw
 
 
 @dataclass(frozen=True)
@@ -273,15 +273,15 @@ def static_system(scene: Scene) -> StaticSystem:
     if len(ties):
         forces = ties.yield_force / system.force_unit, ties.preload / system.force_unit
         law = TiedLaw(joints, ties.stiffness * scale, *forces)
-        pull = _rows(system, elongation(scene))
-        opening, slip = csc_array(hstack([system.opening, pull])), csc_array(hstack([system.slip, 0.0 * pull]))
+        opening = csc_array(hstack([system.opening, system.tie]))
+        slip = csc_array(hstack([system.slip, 0.0 * system.tie]))
         system = replace(system, opening=opening, slip=slip)
     support_jump = None
     if scene.settlement is not None:
         reaction_unit(scene)  # refuses a wall that nothing moves
         system = replace(system, live=np.zeros(system.freedoms), live_unit=1.0)
         moved, jump = scene.support_motion.ravel() / length, jump_operator(system.points, scene.blocks.centroid)
-        opened, slid = np.append(jump.opening @ moved, elongation(scene) @ moved), jump.slip @ moved
+        opened, slid = np.append(jump.opening @ moved, tie_operator(scene) @ moved), jump.slip @ moved
         support_jump = np.array([opened, np.append(slid, np.zeros(len(ties)))])
     return StaticSystem(system, law, length, support_jump)
 

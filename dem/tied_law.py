@@ -10,11 +10,9 @@ so that it unloads elastically, and goes slack earlier once it has yielded.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_array, vstack
 
 from runningbond.joints import PointLaw, PointResponse
-from runningbond.limit.kinematics import point_operator
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,20 +57,3 @@ class TiedLaw:
             np.append(joints.plastic_slip, np.where(yields, longer, plastic[n:])),
             np.concatenate([joints.tangent, tangent]),
         )
-
-
-def tie_ends(scene: Scene) -> csr_array:
-    """Elongation of ties by their first ends alone, then by their second ones, ``(2 nt, 3 nb)``; zero of anchors."""
-    ties, centroid = scene.ties, scene.blocks.centroid
-    ends = []
-    for k, sense in enumerate((-1.0, 1.0)):
-        held = ties.block[:, k] >= 0
-        along = np.where(held[:, None], sense * ties.direction, 0.0)
-        ends.append(point_operator(np.where(held, ties.block[:, k], 0), ties.ends[:, k], along, centroid))
-    return csr_array(vstack(ends))
-
-
-def elongation(scene: Scene) -> csr_array:
-    """Elongation of each tie, ``(nt, 3 nb)``."""
-    ends = tie_ends(scene)
-    return csr_array(ends[: len(scene.ties)] + ends[len(scene.ties) :])

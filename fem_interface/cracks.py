@@ -142,7 +142,7 @@ def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
 
 def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     number = np.arange(len(scene.blocks))
-    whole = scene.fixed | (number == (scene.beam.block if scene.beam else -1))
+    whole = scene.fixed | scene.is_beam
     loose = ~whole[mesh.triangle_block]
     parts = np.where(whole, 1, np.bincount(mesh.triangle_block, minlength=len(number)))
     owner, first_piece = np.repeat(number, parts), np.cumsum(parts) - parts

@@ -41,9 +41,9 @@ from .node_outline import NodeOutline
 from .system import DAMPING, block_system
 
 
-def finite_system(blocks: NodeOutline, *, damping: float = DAMPING, mass_scaling: bool = True) -> BlockSystem:
-    """Set up the deformable blocks of a wall to move far; see `system_of` for the arguments."""
-    contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, damping, mass_scaling=mass_scaling)
+def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSystem:
+    """Set up the deformable blocks of a wall to move far; `mass_scaling` as `fem_interface.model.fem` has it."""
+    contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, DAMPING, mass_scaling=mass_scaling)
     interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
     rig = Rig.of(blocks.scene, blocks.wall.rigid)
     return replace(block_system(blocks.wall, scaled, interface), contacts=contacts, rig=rig)

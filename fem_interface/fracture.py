@@ -65,5 +65,4 @@ def _printed_length(scene: Scene) -> Array:
     """Length that the paper takes: of the block's side, b for a bed joint and a for a head joint."""
     if scene.bond is None:
         return scene.joints.length
-    run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
-    return np.where(run[:, 0] >= run[:, 1], scene.bond.width, scene.bond.height)
+    return np.where(scene.joints.is_bed, scene.bond.width, scene.bond.height)

@@ -87,9 +87,8 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     """
     check_finite(scene)
     ContactMaterials(scene)
-    beam = None if scene.beam is None else scene.beam.block
     for key, forces in (("load.live", scene.live_forces), ("load.dead", scene.dead_forces)):
-        if forces.moment.any() or (forces.block != beam).any():
+        if forces.moment.any() or not scene.is_beam[forces.block].all():
             raise SceneError(key, "finite displacements need loads on the blocks' mass, or on a beam")
     wall, outline = modal_wall(scene, cells, modes), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))

@@ -66,8 +66,7 @@ def _longer(wall: ModalWall, block: Indices) -> float:
 
     A beam that has no rate goes its way in a number of steps, the slower the longer they are.
     """
-    scene = wall.scene
-    drive = scene.beam.drive if scene.beam else None
+    scene, drive = wall.scene, wall.scene.drive
     if drive is None or not drive.path:
         return 1.0
     if drive.rate is None:

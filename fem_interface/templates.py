@@ -46,7 +46,7 @@ def templates(mesh: WallMesh, scene: Scene, count: ModeCount) -> list[Template]:
     alike: dict[tuple[int, int, bytes, int], list[int]] = {}
     order = scene.column_by_column
     carried: Mask = np.asarray(scene.support_motion.any(axis=1))
-    stiff = carried | (np.arange(len(scene.blocks)) == (scene.beam.block if scene.beam else -1))
+    stiff = carried | scene.is_beam
     for block in order[~scene.fixed[order] | carried[order]].tolist():
         # Congruent blocks of one material that are held alike; each stiff one by itself.
         held = held_displacements(mesh, scene, block).tobytes()

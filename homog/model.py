@@ -111,9 +111,8 @@ def _is_running_bond(scene: Scene, bond: Bond) -> bool:
     """Whether the head joints are those of running bond: one at every second half block, shifted course by course."""
     movable = ~scene.fixed
     low, high = scene.blocks.extent(movable)
-    ends = scene.joints.ends[movable[scene.joints.block].all(axis=1)]
-    rise = np.abs(ends[:, 1] - ends[:, 0])
-    middle = (ends[rise[:, 1] > rise[:, 0]].mean(axis=1) - low) / np.array([bond.width / 2, bond.height])
+    heads_inside = movable[scene.joints.block].all(axis=1) & ~scene.joints.is_bed
+    middle = (scene.joints.ends[heads_inside].mean(axis=1) - low) / np.array([bond.width / 2, bond.height])
     column, course = np.rint(middle[:, 0]).astype(int), np.floor(middle[:, 1]).astype(int)
     if not np.allclose(column, middle[:, 0], rtol=0, atol=1e-3):
         return False

@@ -1,13 +1,11 @@
 """Sweeps: one model on every combination of changes of a wall."""
 
 from collections.abc import Iterable, Mapping
-from contextlib import ExitStack
 from itertools import product
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
-from .campaigns import Campaign, ctrl_c_passed_on, run_campaign
+from .campaigns import ctrl_c_passed_on, run_campaign
 from .campaigns.fingerprint import fingerprint
 from .models import TOLERANCE, Model, find_model
 from .results import make_folder
@@ -71,19 +69,13 @@ def sweep(
         else:  # named after what it is computed from, an outcome is used again when keys or values are added
             names.append(fingerprint(scene, model, tolerance)[:16])
             scenes[names[-1]] = scene
-    campaign = _campaign(scenes, model, tolerance, folder, jobs)
+    kept_in = None if folder is None else Path(folder)
+    if kept_in is not None:
+        make_folder(kept_in)
+    with ctrl_c_passed_on():
+        campaign = run_campaign(scenes, [model], folder=kept_in, tolerance=tolerance, jobs=jobs)
     answers = {cell: outcome.summary() for cell, outcome in campaign.outcomes.items()}
     for cell, message in (refusals | campaign.inapplicable).items():
         answers[cell] = {"status": "refused", "message": message}
     rows = [{**answers[name, model.name], **case} for name, case in zip(names, cases, strict=True)]
     return table({key: [row.get(key) for row in rows] for key in (*changes, *ANSWER)})
-
-
-def _campaign(
-    scenes: dict[str, Scene], model: Model, tolerance: float, folder: str | Path | None, jobs: int
-) -> Campaign:
-    with ExitStack() as stack:
-        where = Path(folder if folder is not None else stack.enter_context(TemporaryDirectory()))
-        make_folder(where)
-        with ctrl_c_passed_on():
-            return run_campaign(scenes, [model], folder=where, tolerance=tolerance, jobs=jobs)

@@ -57,7 +57,7 @@ def run_campaign(
     scenes: Mapping[str, Scene],
     models: Sequence[str | Model] | None = None,
     *,
-    folder: Path,
+    folder: Path | None,
     tolerance: float = TOLERANCE,
     jobs: int = -1,
     cluster: str | None = None,
@@ -76,7 +76,7 @@ def run_campaign(
 def run_tasks(
     tasks: Sequence[Task],
     *,
-    folder: Path,
+    folder: Path | None,
     jobs: int = -1,
     cluster: str | None = None,
     fresh: bool = False,
@@ -88,7 +88,7 @@ def run_tasks(
     ----------
     folder
         Where outcomes are kept, as ``folder/scene/model/``. A whole one of the same scene, tolerance and code is
-        reused, unless all are asked for `fresh`.
+        reused, unless all are asked for `fresh`. None keeps nothing.
     jobs
         Number of processes; −1 is one a core.
     cluster
@@ -118,7 +118,7 @@ def run_tasks(
                     campaign.inapplicable[cell] = answer.reason
                 elif answer.reused:
                     campaign.reused.add(cell)
-                elif outcome.status != "failed":  # which is tried again the next time, perhaps by better code
+                elif folder is not None and outcome.status != "failed":  # which is tried again, perhaps by better code
                     save_outcome(outcome, folder.joinpath(*cell), answer.key, scenes[cell])
                 if outcome is not None:
                     campaign.outcomes[cell] = outcome
@@ -128,7 +128,7 @@ def run_tasks(
     except ClusterError as error:
         raise Interrupted(campaign, f"the cluster failed: {error}") from error
     except OSError as error:
-        raise Interrupted(campaign, f"{error.filename or folder}: {error.strerror or error}") from error
+        raise Interrupted(campaign, f"{error.filename or folder or 'campaign'}: {error.strerror or error}") from error
     return campaign
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from runningbond.joints import wall_points
-from runningbond.pictures.legend import CONDITIONS, is_bed, strength, used_block_materials, used_joint_materials
+from runningbond.pictures.legend import CONDITIONS, strength, used_block_materials, used_joint_materials
 from runningbond.pictures.quantities import counted, millimetres, minus, pair, readable
 from runningbond.scene import (
     ANCHOR,
@@ -33,11 +33,11 @@ def rows(scene: Scene) -> list[Row]:
 
 def _blocks(scene: Scene) -> Iterator[Row]:
     low, high = scene.blocks.extent(scene.wall)
-    pieces = scene.part_of[scene.wall & (scene.part_of >= 0)]
+    pieces = scene.part_of[scene.masonry]
     parts = "" if len(pieces) == len(set(pieces)) else f" in {len(pieces)} parts"
     yield "blocks", f"{len(set(pieces))}{parts}, of which {int((scene.wall & scene.fixed).sum())} held"
     for k in used_block_materials(scene):
-        own, material = (scene.material_of_block == k) & (scene.part_of >= 0), scene.block_materials[k]
+        own, material = (scene.material_of_block == k) & scene.masonry, scene.block_materials[k]
         mass = float(scene.mass[own].sum())
         count = counted(len(set(scene.part_of[own])), "block")
         yield f"  of {material.name}", f"{count} of {material.density:g} kg/m³, {_mass(scene, mass)}"
@@ -53,7 +53,7 @@ def _mass(scene: Scene, mass: float) -> str:
 
 
 def _joints(scene: Scene) -> Iterator[Row]:
-    joints, bed = scene.joints, is_bed(scene)
+    joints, bed = scene.joints, scene.joints.is_bed
     cracks = int(joints.inner.sum())
     lengths = f", {joints.length.min():.4g} … {joints.length.max():.4g} m long" if len(joints) else ""
     inner = f", and {counted(cracks, 'potential crack')}" if cracks else ""
@@ -139,9 +139,9 @@ def _kind(scene: Scene, load: Action) -> str:
     """What kind of load it is, in words."""
     match load:
         case BeamLoad():
-            path = scene.beam.drive.path if scene.beam and scene.beam.drive and load.key == "beam.drive" else ()
+            path = scene.drive_path if load.key == "beam.drive" else ()
             moves = ", ".join(minus(1e3 * x) for x in path[:8]) + (", …" if len(path) > 8 else "")
-            rate = scene.beam.drive.rate if path and scene.beam and scene.beam.drive else None
+            rate = scene.drive.rate if path and scene.drive else None
             speed = f" at {millimetres(rate)}/s" if rate else ""
             return f"moved to {moves} mm{speed}, the force that takes" if path else "on the beam"
         case LineLoad():

@@ -1,12 +1,10 @@
 """Draws: one model on walls that differ in nothing that is known, and what their answers have in common."""
 
 from collections.abc import Callable
-from contextlib import ExitStack
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Integral
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -160,15 +158,14 @@ class Drawing:
         scenes = {f"draw-{k:04d}": self.read.draw(self.scene, k) for k in range(self.number)}
         if folder is not None:
             make_folder(folder)
-        with ExitStack() as stack:
-            found = run_campaign(
-                scenes,
-                [self.model],
-                folder=folder or Path(stack.enter_context(TemporaryDirectory())),
-                tolerance=tolerance,
-                jobs=jobs,
-                progress=lambda cell: progress(cell[0]),
-            )
+        found = run_campaign(
+            scenes,
+            [self.model],
+            folder=folder,
+            tolerance=tolerance,
+            jobs=jobs,
+            progress=lambda cell: progress(cell[0]),
+        )
         for refusal in found.inapplicable.values():
             raise SceneError("--draws", refusal)
         return Draws(tuple(found.outcomes[name, self.model.name] for name in scenes), self.read)

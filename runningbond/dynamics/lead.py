@@ -98,7 +98,7 @@ class Lead:
     @property
     def goals(self) -> Array:
         """Displacements along the first move [m], or parts of the settlement, one after the other."""
-        drive = self.scene.beam.drive if self.scene.beam else None
+        drive = self.scene.drive
         if self.scene.settlement is not None:
             return np.array(self.scene.settlement.path)
         return np.ones(1) if drive is None else drive.force[0] * np.array(drive.path)
@@ -138,7 +138,7 @@ class Lead:
         """
         opening, *_, damage, crushed = self.run.at_joints(state)
         split = np.where(self._is_inner & (damage >= 1), np.maximum(opening, 0.0), 0.0)
-        drive = self.scene.beam.drive if self.scene.beam else None
+        drive = self.scene.drive
         right = drive is None or moved * drive.force[0] >= 0
         return float(np.maximum(crushed, split)[self._toes[int(right)]].max(initial=0.0))
 
@@ -150,9 +150,7 @@ class Lead:
     @cached_property
     def _toes(self) -> tuple[Mask, Mask]:
         """The points of the left and of the right toe."""
-        wall = self.scene.wall.copy()
-        wall[self.beam] = False
-        (left, bottom), (right, top) = self.scene.blocks.extent(wall)
+        (left, bottom), (right, top) = self.scene.blocks.extent(self.scene.masonry)
         x, y = self.points.position.T
         low = y <= (bottom + top) / 2
         return low & (x <= left + (right - left) / 4), low & (x >= right - (right - left) / 4)

@@ -89,7 +89,7 @@ def collapse_of_led(
 
 
 def _rate(scene: Scene) -> float | None:
-    return scene.beam.drive.rate if scene.beam and scene.beam.drive else None
+    return None if scene.drive is None else scene.drive.rate
 
 
 def _speeds(lead: Lead) -> list[float]:

@@ -30,7 +30,7 @@ class Rig(NamedTuple):
     def of(cls, scene: Scene, rigid: Indices) -> "Rig | None":
         """The rig of a scene whose beam is led, from where the rigid motions of its blocks stand ``(nb, 3)``."""
         beam = scene.beam
-        if beam is None or beam.block is None or not _is_driven(scene):
+        if beam is None or beam.block is None or not scene.drive_path:
             return None
         _, at, _ = scene.load.live[0].control(scene)
         force = np.array(beam.force) * (beam.force_line == "fixed")
@@ -59,7 +59,7 @@ def is_finite(displacements: str, model: str, scene: Scene) -> bool:
     """Whether displacements are finite; a `SceneError` for unknown ones, and for a scene that is not taken through."""
     key = f"model {model}: displacements"
     finite = one_of(key, displacements, get_args(Displacements)) == "finite"
-    if finite and not _is_driven(scene):
+    if finite and not scene.drive_path:
         what = 'must be "small" for this scene; finite ones are followed where beam.drive.displacement leads a wall'
         raise SceneError(key, what, displacements)
     return finite
@@ -68,12 +68,7 @@ def is_finite(displacements: str, model: str, scene: Scene) -> bool:
 def check_finite(scene: Scene) -> None:
     """Refuse, by a `SceneError`, what models do not know of at finite displacements."""
     for key in scene.extras:
-        if key != "load.history" and not ((scene.history or _is_driven(scene)) and key.startswith("beam")):
+        if key != "load.history" and not ((scene.history or scene.drive_path) and key.startswith("beam")):
             raise SceneError(key, "is not taken at finite displacements; leave it out")
-    beam = scene.beam.block if scene.beam else None
-    if (scene.pins.block != beam).any():
+    if not scene.is_beam[scene.pins.block].all():
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')
-
-
-def _is_driven(scene: Scene) -> bool:
-    return bool(scene.beam and scene.beam.drive and scene.beam.drive.path)

@@ -33,11 +33,6 @@ class Restraint(NamedTuple):
     freedom: Indices  # (nr, 3) freedoms of each such body
     basis: Array  # (nr, 3, 3) motion of the body per coordinate, mass-orthogonal; columns that are not needed are zero
 
-    @classmethod
-    def none(cls) -> "Restraint":
-        """No body is restrained."""
-        return cls(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3)))
-
 
 def restrain(row: Array, restraint: Restraint) -> Array:
     """A row per motion of bodies ``(nd,)``, in place turned into one per restrained coordinates."""
@@ -165,6 +160,14 @@ class BlockSystem:
     def freedoms(self) -> int:
         """Number of modes that move."""
         return int(np.isfinite(self.mass).sum())
+
+    @property
+    def mass_along(self) -> Array:
+        """Mass that each mode moves along x and along y, ``(2, nd)`` [kg]; none where it is held."""
+        along = np.zeros((2, len(self.mass)))
+        for axis, modes in enumerate(self.rigid[:, :2].T):
+            along[axis, modes] = np.where(np.isfinite(self.mass[modes]), self.mass[modes], 0.0)
+        return along
 
     @property
     def weightless(self) -> bool:

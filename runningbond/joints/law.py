@@ -122,11 +122,6 @@ class KernelLaw:
         """Rows of the history."""
         return len(self.law.history)
 
-    @property
-    def stored(self) -> Callable[["KernelLaw", Array, Array, Array], Array]:
-        """The law's stored energy."""
-        return self.law.stored
-
     def energy(self, opening: Array, normal: Array, tangential: Array, history: Array) -> Array:
         """Energy that points of some jumps and tractions would give back, ``(np,)`` [J/m²]."""
         return self.law.stored(self, opening + self.plastic_closure(history), normal, tangential)

@@ -13,7 +13,6 @@ import numpy as np
 
 from runningbond.dynamics.lead import TOE, failing
 from runningbond.joints import wall_points
-from runningbond.pictures.legend import is_bed
 from runningbond.results import Outcome
 from runningbond.results.mechanism import carried, rigid_jumps
 from runningbond.scene import Array, Scene
@@ -56,7 +55,7 @@ def predicted_mode(scene: Scene, outcome: Outcome) -> str | None:
 
 def bed_slips(scene: Scene, motion: Array) -> list[float]:
     """Mean slip of each bed joint over the wall's whole length [m], in a motion ``(nb, 3)``."""
-    points, bed = wall_points(scene), is_bed(scene)
+    points, bed = wall_points(scene), scene.joints.is_bed
     _, slip = rigid_jumps(scene.blocks, points, motion)
     level = np.round(points.position[:, 1] / scene.blocks.tolerance).astype(int)
     slips = []

@@ -8,13 +8,11 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from runningbond.compare.advice.experiment import FILE, write_errors
-from runningbond.pictures.captions import to_png
-from runningbond.pictures.charts import bare
 from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 from runningbond.results.outcome import two_digits
 from runningbond.scene import BlockMaterial, JointMaterial, table_of
-from runningbond.studies.page import Block, Picture, write_page
+from runningbond.studies.page import Block, Picture, write_page, write_picture
 
 from .cards import card, error_over_cost
 from .ladder import LADDER, Rung
@@ -66,14 +64,7 @@ def _rungs(predictions: Sequence[Prediction]) -> list[Rung]:
 def _chart(predictions: Sequence[Prediction], folder: Path) -> Picture:
     figure = Figure(figsize=(11, 5), layout="constrained")
     error_over_cost(figure, predictions)
-    return _picture(figure, folder / "error-over-cost.png", OVER_COST)
-
-
-def _picture(figure: Figure, path: Path, caption: str) -> Picture:
-    for axes in figure.axes:
-        bare(axes)
-    write_atomically(path, to_png(figure, 150))
-    return Picture(path, caption)
+    return write_picture(figure, folder / "error-over-cost.png", OVER_COST, dots=150)
 
 
 def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
@@ -89,36 +80,24 @@ def error_sheet(predictions: Sequence[Prediction]) -> Sheet:
 
 def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
     """Every score, a row a wall and model."""
-    heads = (
-        "wall",
-        "model",
-        "status",
-        "V [kN]",
-        "measured",
-        "ΔV",
-        "stiffness",
-        "at peak",
-        "at 0.8",
-        "cycles",
-        "energy",
-    )
+    ratios_of = {
+        "stiffness": "stiffness_ratio",
+        "at peak": "peak_displacement_ratio",
+        "at 0.8": "drift_ratio",
+        "cycles": "cycle_ratio",
+        "energy": "energy_ratio",
+        "residual": "residual_ratio",
+    }
+    heads = ("wall", "model", "status", "V [kN]", "measured", "ΔV", *ratios_of, "mode (measured)", "CPU s")
     rows = []
     for row in (each.row() for each in predictions):
-        keys = (
-            "stiffness_ratio",
-            "peak_displacement_ratio",
-            "drift_ratio",
-            "cycle_ratio",
-            "energy_ratio",
-            "residual_ratio",
-        )
         forces = ["–" if row[key] is None else f"{row[key] / 1e3:.1f}" for key in ("V_max", "V_measured")]
-        ratios = ["–" if row[key] is None else f"{row[key]:.2f}" for key in keys]
+        ratios = ["–" if row[key] is None else f"{row[key]:.2f}" for key in ratios_of.values()]
         mode = f"{row['mode'] or '–'} ({row['mode_measured'] or '–'})"
         seconds = "–" if row["seconds"] is None else two_digits(row["seconds"])
         error = percent(row["dV"], "+") + ("" if row["scored"] else " (not scored)")
         rows.append([row["wall"], row["model"], row["status"], *forces, error, *ratios, mode, seconds])
-    return Sheet("Scores", (*heads, "residual", "mode (measured)", "CPU s"), rows)
+    return Sheet("Scores", heads, rows)
 
 
 def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[Block]:
@@ -127,7 +106,7 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
         caption += ", and the motion in which the dearest model sees it fail"
     if wall.cracks:
         caption += ", beside the cracks"
-    picture = _picture(card(own), folder / f"wall-{wall.name}.png", caption + ".")
+    picture = write_picture(card(own), folder / f"wall-{wall.name}.png", caption + ".", dots=150)
     told = [f"Published in {wall.reference}. {_rig(wall, own[0])}"]
     if not wall.is_scored:
         told.append("Shown, not scored: it took more than rocking or friction allow; its beam was not as free as said.")
@@ -158,9 +137,7 @@ def _numbers(part: Any) -> Iterator[tuple[str, float]]:
 def _rig(wall: MeasuredWall, one: Prediction) -> str:
     """Size and loads in words."""
     beam = one.scene.beam
-    own = one.scene.wall.copy()
-    own[[] if beam is None else beam.block] = False
-    (left, bottom), (right, top) = one.scene.blocks.extent(own)
+    (left, bottom), (right, top) = one.scene.blocks.extent(one.scene.masonry)
     pressed = -beam.force[1] if beam else vertical_load(wall)
     where = "from a scene of its own" if wall.scene_file else f"from line {wall.row.line} of {wall.row.path.name}"
     kind = "pushed to and fro" if wall.is_cyclic else "pushed to one side"

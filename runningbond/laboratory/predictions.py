@@ -49,10 +49,10 @@ class Prediction:
 
     @property
     def _arrived(self) -> bool:
-        drive = self.scene.beam.drive if self.scene.beam else None
-        if self.outcome is None or drive is None or not drive.path or not len(self.outcome.curve):
+        path = self.scene.drive_path
+        if self.outcome is None or not path or not len(self.outcome.curve):
             return False
-        way = float(np.abs(np.diff((0.0, *drive.path))).sum())
+        way = float(np.abs(np.diff((0.0, *path))).sum())
         return float(np.abs(np.diff(self.outcome.curve[:, 0])).sum()) >= ARRIVED * way
 
     @property
@@ -63,7 +63,7 @@ class Prediction:
     @property
     def curve(self) -> Array:
         """Displacement [m] and force [N], positive as in the test."""
-        drive = self.scene.beam.drive if self.scene.beam else None
+        drive = self.scene.drive
         if self.outcome is None or drive is None or not drive.path:
             return np.zeros((0, 2))
         return np.asarray(self.outcome.curve * np.sign(drive.force[0]))

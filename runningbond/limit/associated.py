@@ -335,16 +335,17 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
     lower, upper = min(static, kinematic), max(static, kinematic)
     if upper - lower > tolerance * max(abs(lower), abs(upper), system.live_unit * ZERO):
         return replace(outcome, lower=lower, upper=upper, message="static and kinematic bound lie too far apart")
-    force = system.point_forces(forces.pressure, forces.tangential)
-    return replace(
-        outcome,
-        status="collapse",
-        multiplier=static,
-        lower=lower,
-        upper=upper,
-        motion=system.motion(forces.motion),
-        force=force,
-        pull=system.force_unit * forces.tie,
-        held=-system.force_unit * forces.reaction,
-        **collapse_state(system.scene, system.points, force, system.force_unit * forces.tie, static),
-    )
+    arrays = arrays_of(system, forces.motion, forces)
+    known = collapse_state(system.scene, system.points, arrays["force"], arrays["pull"], static)
+    return replace(outcome, status="collapse", multiplier=static, lower=lower, upper=upper, **arrays, **known)
+
+
+def arrays_of(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Any]:
+    """A mechanism ``(nd,)`` and forces that drive it, as an outcome has them."""
+    normal = system.strength.tension - forces.pressure
+    return {
+        "motion": system.motion(motion),
+        "force": system.force_unit * np.column_stack([normal, forces.tangential]),
+        "pull": system.force_unit * forces.tie,
+        "held": -system.force_unit * forces.reaction,
+    }

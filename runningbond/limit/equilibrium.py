@@ -96,10 +96,6 @@ class Equilibrium:
             motion += moved[-1] * unit_support_motion(self.scene)
         return fastest_corner_by_one(self.scene.blocks, motion.reshape(-1, 3))
 
-    def point_forces(self, pressure: Array, tangential: Array) -> Array:
-        """Normal and tangential force at each point ``(np, 2)`` [N] from scaled ones, tension positive."""
-        return self.force_unit * np.column_stack([self.strength.tension - pressure, tangential])
-
     @cached_property
     def _rates(self) -> tuple[csr_array, csr_array, csr_array]:
         """Opening and slip rates of points and elongation rates of ties per multiplier of an equation."""

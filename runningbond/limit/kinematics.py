@@ -7,7 +7,7 @@ its rotation [rad], counter-clockwise. A point x of the block moves by u + ω ×
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import coo_array, csr_array, vstack
 
 from runningbond.joints import JointPoints
 from runningbond.scene import ANCHOR, Array, Indices, Pins, Scene
@@ -52,16 +52,21 @@ def pin_operator(scene: Scene, pins: Pins | None = None) -> csr_array:
     return csr_array(at_points + turn)
 
 
-def tie_operator(scene: Scene) -> csr_array:
-    """Elongation of each tie, ``(nt, 3 nb)``; an anchor does not move."""
-    ties, shape = scene.ties, (len(scene.ties), 3 * len(scene.blocks))
-    elongation = csr_array(shape)
+def tie_ends(scene: Scene) -> csr_array:
+    """Elongation of ties by their first ends alone, then by their second ones, ``(2 nt, 3 nb)``; zero of anchors."""
+    ties, ends = scene.ties, []
     for end, sense in enumerate((-1.0, 1.0)):
         held = ties.block[:, end] != ANCHOR
         along = np.where(held[:, None], sense * ties.direction, 0.0)
         block = np.where(held, ties.block[:, end], 0)
-        elongation = elongation + point_operator(block, ties.ends[:, end], along, scene.blocks.centroid)
-    return csr_array(elongation)
+        ends.append(point_operator(block, ties.ends[:, end], along, scene.blocks.centroid))
+    return csr_array(vstack(ends))
+
+
+def tie_operator(scene: Scene) -> csr_array:
+    """Elongation of each tie, ``(nt, 3 nb)``; an anchor does not move."""
+    ends = tie_ends(scene)
+    return csr_array(ends[: len(scene.ties)] + ends[len(scene.ties) :])
 
 
 def mass_matrix_diagonal(scene: Scene) -> Array:

@@ -9,12 +9,11 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene, SceneError, table_of
 
-from .associated import LimitState, judge, limit_state, so_far, spends_cut_strength
+from .associated import LimitState, arrays_of, judge, limit_state, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify
 from .coarse import POINTS, CoarseSearch
@@ -127,7 +126,7 @@ def _collapse(
     message = _message(loads, result, tolerance, falling=cut.has_support)
     if cut.has_support:
         message = f"{message}; {reaction_note(cut.scene, multiplier)}"
-    force = cut.point_forces(least.pressure, least.tangential)
+    arrays = arrays_of(cut, lowest.motion, least)
     return replace(
         outcome,
         status="collapse",
@@ -135,9 +134,9 @@ def _collapse(
         lower=min(multiplier, far),
         upper=max(multiplier, far),
         message=message,
-        **_arrays(cut, lowest.motion, least),
-        **{f"far_{name}": array for name, array in _arrays(cut, highest.motion, highest.most).items()},
-        **collapse_state(cut.scene, cut.points, force, cut.force_unit * least.tie, multiplier),
+        **arrays,
+        **{f"far_{name}": array for name, array in arrays_of(cut, highest.motion, highest.most).items()},
+        **collapse_state(cut.scene, cut.points, arrays["force"], arrays["pull"], multiplier),
     )
 
 
@@ -159,16 +158,6 @@ def _look(
 
 def _associated(system: Equilibrium) -> ForceSolution:
     return solve_forces(system, coulomb(system.strength))
-
-
-def _arrays(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Any]:
-    """Mechanism and forces of a certificate, as an outcome has them."""
-    return {
-        "motion": system.motion(motion),
-        "force": system.point_forces(forces.pressure, forces.tangential),
-        "pull": system.force_unit * forces.tie,
-        "held": -system.force_unit * forces.reaction,
-    }
 
 
 def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: Search) -> list[Certificate]:

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Indices, Mask, Scene
@@ -142,6 +143,10 @@ class DeformedShape:
             return np.zeros((0, 2))
         faces = self.placed_faces
         return np.unique(((faces[:, :2] + faces[:, :1:-1]) / 2)[self.crushed], axis=0)
+
+    def drawn_at(self, at: Array, block: ArrayLike) -> Array:
+        """Where a point ``(2,)`` [m] of a block, or of some ``(n,)``, is drawn, ``(2,)`` [m]."""
+        return np.asarray(at + self.drawn_displacement(np.atleast_1d(np.asarray(block, dtype=np.int64)), at))
 
     def drawn_displacement(self, block: Indices, at: Array) -> Array:
         """How far a point ``(2,)`` [m] of some blocks ``(n,)`` is drawn to have moved, ``(2,)`` [m]."""

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from runningbond.scene import Array, JointMaterial, Mask, Scene
+from runningbond.scene import Array, JointMaterial, Scene
 
 from .captions import Caption, is_force, wall_title
 from .quantities import counted, minus, readable
@@ -52,18 +52,12 @@ def joint_colour(number: int) -> str:
 
 def used_block_materials(scene: Scene) -> list[int]:
     """Materials that blocks of the wall are of."""
-    return [int(k) for k in np.unique(scene.material_of_block[scene.part_of >= 0])]
+    return [int(k) for k in np.unique(scene.material_of_block[scene.masonry])]
 
 
 def used_joint_materials(scene: Scene) -> list[int]:
     """Materials that joints are of."""
     return [int(k) for k in np.unique(scene.material_of_joint)]
-
-
-def is_bed(scene: Scene) -> Mask:
-    """Whether each joint lies flatter than 45°, ``(nj,)``."""
-    run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
-    return np.asarray(run[:, 0] > run[:, 1], dtype=np.bool_)
 
 
 def strength(material: JointMaterial) -> str:
@@ -90,7 +84,7 @@ def _materials(scene: Scene) -> list[Any]:
             block, colour = scene.block_materials[k], BLOCK_COLOURS[k % len(BLOCK_COLOURS)]
             name = "blocks" if k == 0 else block.name
             handles.append(Patch(fc=colour, ec="0.5", lw=0.5, label=f"{name}: {block.density:g} kg/m³"))
-    bed, several = is_bed(scene), len(used_joint_materials(scene)) > 1
+    bed, several = scene.joints.is_bed, len(used_joint_materials(scene)) > 1
     for k in used_joint_materials(scene):
         own = scene.material_of_joint == k
         material = scene.joint_materials[k]
@@ -127,7 +121,7 @@ def _loads(scene: Scene) -> list[Any]:
     from matplotlib.lines import Line2D
 
     look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
-    path = scene.beam.drive.path if scene.beam and scene.beam.drive else ()
+    path = scene.drive_path
     moves = ", ".join(minus(1e3 * u) for u in path[:8]) + (", …" if len(path) > 8 else "")
     has_live = scene.settlement is None and not path
     kinds = {

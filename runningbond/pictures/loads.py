@@ -71,7 +71,9 @@ class LoadDrawing:
                 self._beam(action, live)
             case Moment():
                 at = np.array(action.at)
-                self._turn(self._moved(at, self.scene.blocks.containing(at)[:1]), action.moment, live, colour, name)
+                self._turn(
+                    self.shape.drawn_at(at, self.scene.blocks.containing(at)[:1]), action.moment, live, colour, name
+                )
             case Tilt():
                 draw_tilt(self.sketch, self.low, self.high, action.direction)
             case Lateral():
@@ -97,13 +99,13 @@ class LoadDrawing:
             if len(tips) <= MANY:
                 self._point(at, arrow.block, (float(force[0]), float(force[1])), live, colour, name)
                 continue
-            tip = self._moved(at, arrow.block)
+            tip = self.shape.drawn_at(at, arrow.block)
             self.sketch.arrow(name, [tip - 1.5 * self.a * arrow.direction, tip], colour)
             self.rows.append(np.sort([tip - 1.5 * self.a * arrow.direction, tip], axis=0))
         if len(tips) > MANY:
             arrow, at = tips[len(tips) // 2]
             total = f"Σ {readable(float(np.hypot(*forces.force.sum(axis=0))), 'N')}"
-            spot = Spot(self._moved(at, arrow.block) - 1.5 * self.a * arrow.direction, _side(-arrow.direction))
+            spot = Spot(self.shape.drawn_at(at, arrow.block) - 1.5 * self.a * arrow.direction, _side(-arrow.direction))
             self.sketch.label(times_lambda(total, live=live), [spot], colour)
         for arrow in arrows[len(tips) :]:
             self._on_mass(arrow.direction, "forces on mass", live)
@@ -113,12 +115,9 @@ class LoadDrawing:
             moment = float(forces.moment.sum() if said else forces.moment[block])
             self._turn(self.scene.blocks.centroid[block], moment, live, colour, name, said)
 
-    def _moved(self, at: Array, block: Indices) -> Array:
-        return np.asarray(at + self.shape.drawn_displacement(block, at))
-
     def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
         size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
-        self._force(self._moved(at, block), unit_vector(np.array(force)), size, colour, name)
+        self._force(self.shape.drawn_at(at, block), unit_vector(np.array(force)), size, colour, name)
 
     def _force(self, tip: Array, direction: Array, text: str, colour: str, name: str, *, both: bool = False) -> None:
         """An arrow to a point, or from it where it would else run through the wall, and its size beside it."""
@@ -155,12 +154,8 @@ class LoadDrawing:
         n = int(np.clip(np.hypot(*run) / (1.5 * a) + 1, 2, 60))
         places = np.linspace(0.0, 1.0, n)
         of = block[np.minimum(np.searchsorted(share[:, 1], places), len(block) - 1)]
-        tips = np.array(
-            [
-                self._moved(np.array(load.start) + place * run, np.array([one]))
-                for place, one in zip(places, of, strict=True)
-            ]
-        )
+        along_it = zip(np.array(load.start) + places[:, None] * run, of, strict=True)
+        tips = np.array([self.shape.drawn_at(*end) for end in along_it])
         text = times_lambda(readable(math.hypot(*load.force), "N/m"), live=live)
         middle = tips.mean(axis=0)
         is_shear = abs(along @ direction) > 0.97
@@ -201,8 +196,8 @@ class LoadDrawing:
         tip = middle - reach * direction
         if load.height is not None and abs(direction[0]) > 0.5:
             tip[1] = at[1]
-        edge = self._moved(np.clip(tip, low, high), number)
-        tip = self._moved(tip, number)
+        edge = self.shape.drawn_at(np.clip(tip, low, high), number)
+        tip = self.shape.drawn_at(tip, number)
         text, colour, name, both = self._drive_text(beam, load, live)
         if not low[1] <= at[1] <= high[1]:
             aside = np.array([-math.copysign(1.2 * self.a, direction[0]), 0.0])

@@ -36,7 +36,7 @@ class Moment(Protocol):
     def motion(self) -> Array: ...  # noqa: D102
 
 
-def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Moment], most: int = MOMENTS) -> Outcome:
+def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Moment]) -> Outcome:
     """The outcome with some of the states that it came by, in their order.
 
     They are evenly apart by how far the wall has gone, in time where its ground moves, and that of the largest load.
@@ -47,7 +47,7 @@ def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Moment], most:
     led = scene.is_led and len(outcome.curve) == len(states)
     loads = outcome.curve[:, 1] if led else np.array([state.multiplier for state in states])
     way = np.arange(float(len(states))) if scene.history else distances(scene, [state.motion for state in states])
-    even = [int(np.abs(way - x).argmin()) for x in np.linspace(way[0], way.max(), most)]
+    even = [int(np.abs(way - x).argmin()) for x in np.linspace(way[0], way.max(), MOMENTS)]
     chosen = np.unique([*even, int(loads.argmax())])
     kept = np.concatenate([states[i].motion for i in chosen])
     return replace(outcome, moments=kept, moment_loads=loads[chosen])

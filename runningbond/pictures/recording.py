@@ -116,8 +116,7 @@ class MotionRecorder(SeriesRecorder):
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Look at a run: keep the state if it is at rest, or else remember it for a while."""
-        if isinstance(run.system.source, ModalWall) and run.system.source is not self._wall:
-            self._observe(run.system.source)
+        self._turn_to(run.system.source)
         if multiplier != self._multiplier:
             self._next_load(multiplier)
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
@@ -130,8 +129,10 @@ class MotionRecorder(SeriesRecorder):
                 self._moments = self._moments[::2]
                 self._stride = 2 * (self._moments[1][0] - self._moments[0][0])
 
-    def _observe(self, wall: ModalWall) -> None:
-        """Turn to the mesh of a run; the pieces of blocks that may crack are blocks of their own there."""
+    def _turn_to(self, wall: object) -> None:
+        """Turn to the mesh of a run, if it has another; the pieces of blocks that may crack are blocks there."""
+        if not isinstance(wall, ModalWall) or wall is self._wall:
+            return
         self._wall = wall
         triangles = Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
         self._begin(Discretisation(wall.scene, wall.elements.points, triangles))
@@ -178,8 +179,7 @@ class ResponseRecorder(MotionRecorder):
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Remember a moment if it is time."""
-        if isinstance(run.system.source, ModalWall) and run.system.source is not self._wall:
-            self._observe(run.system.source)
+        self._turn_to(run.system.source)
         if multiplier != self._multiplier or state.time < self._now:  # another motion
             self._multiplier, self._moments, self._spacing = multiplier, [], self._duration / RESPONSE_FRAMES
             self._start = self._next = state.time

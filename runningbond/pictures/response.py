@@ -6,6 +6,7 @@ import numpy as np
 
 from runningbond.response import ENERGIES, Response
 
+from .charts import bare
 from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def response_figure(response: Response) -> "Figure":
     for axes in (ground, drift, shear, energy):
         axes.tick_params(labelsize=SMALL_TYPE)
         axes.yaxis.get_offset_text().set_fontsize(SMALL_TYPE)
-        axes.spines[["top", "right"]].set_visible(False)
+        bare(axes)
     fallen = np.flatnonzero(response.fallen)
     if len(fallen):
         drift.axvline(time[fallen[0]], color=CHART_COLOURS[3], lw=0.9, ls="--")

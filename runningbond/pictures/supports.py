@@ -32,7 +32,7 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
         if is_level:
             x0, x1 = outline[:, 0].min(), outline[:, 0].max()
             outline = np.array([(x0, low[1]), (x1, low[1])])
-        drawn = np.array([at + shape.drawn_displacement(np.array([block]), at) for at in outline])
+        drawn = np.array([shape.drawn_at(at, block) for at in outline])
         if is_level:
             _hatched(sketch, "support", drawn, 0.55 * a, colour)
         else:
@@ -41,8 +41,7 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
     pins = scene.pins
     for block in np.unique(pins.block[pins.direction.any(axis=1)]):
         own = (pins.block == block) & pins.direction.any(axis=1)
-        at = pins.point[own][0]
-        _draw_pin(sketch, at + shape.drawn_displacement(np.array([block]), at), roller=own.sum() == 1)
+        _draw_pin(sketch, shape.drawn_at(pins.point[own][0], block), roller=own.sum() == 1)
     if scene.settlement is not None:
         _draw_motion(sketch, shape, scene.settlement, moving)
 
@@ -101,8 +100,7 @@ def draw_beam(sketch: Sketch, shape: DeformedShape) -> None:
     scene, beam, a = shape.scene, shape.scene.beam, sketch.a
     if beam is None or beam.block is None:
         return
-    number = np.array([beam.block])
-    outline = np.array([at + shape.drawn_displacement(number, at) for at in scene.blocks.polygon(beam.block)])
+    outline = np.array([shape.drawn_at(at, beam.block) for at in scene.blocks.polygon(beam.block)])
     sketch.area("beam", outline, fc="none", ec=DARK, lw=1.4, zorder=3.5)
     if beam.condition == "free":
         return

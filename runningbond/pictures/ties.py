@@ -19,12 +19,7 @@ def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
     ties, a = shape.scene.ties, sketch.a
     kinds = tie_kinds(shape.scene)
     for k in range(len(ties)):
-        ends = np.array(
-            [
-                at + shape.drawn_displacement(np.array([block]), at)
-                for block, at in zip(ties.block[k], ties.ends[k], strict=True)
-            ]
-        )
+        ends = np.array([shape.drawn_at(*end) for end in zip(ties.ends[k], ties.block[k], strict=True)])
         along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
         across = np.array([-along[1], along[0]])
         sketch.line("tie", ends, color=TIE, lw=1.6)

@@ -27,12 +27,7 @@ class Ground:
         self.run, self.history, self.scale, self.start = run, history, scale, start
         self.velocity = np.zeros(2)  # that the wall has been given so far [m/s]
         self.load = run.system.dead  # (nd,) that is on [N]
-        # (2, nd) mass that each mode moves along x and along y [kg]; none where it is held
-        self.inertia = np.zeros((2, len(run.system.mass)))
-        for axis in (0, 1):
-            modes = run.system.rigid[:, axis]
-            mass = run.system.mass[modes]
-            self.inertia[axis, modes] = np.where(np.isfinite(mass), mass, 0.0)
+        self.inertia = run.system.mass_along
 
     def time(self, state: State) -> float:
         """Time since the record began [s]."""

@@ -39,12 +39,12 @@ class Resting:
     viscous: float = VISCOUS
 
     @classmethod
-    def of(cls, scene: Scene, model: str, system: BlockSystem, viscous: float = VISCOUS) -> "Resting":
+    def of(cls, scene: Scene, model: str, system: BlockSystem) -> "Resting":
         """Bring a wall to rest under its dead load."""
         state, sizes = State.at_rest(system), scene.block_sizes[system.owner]
         verdict = settle(Run(system, local=CALMING), state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True)
         state.velocity[:] = 0.0
-        return cls(scene, model, system, state, verdict, viscous)
+        return cls(scene, model, system, state, verdict)
 
     @property
     def trouble(self) -> tuple[Literal["infeasible", "undecided"], str] | None:

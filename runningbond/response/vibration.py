@@ -91,10 +91,7 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     square, vectors = square[held][:count], vectors[:, held][:, :count]
     modes = np.zeros((len(square), len(system.mass)))
     modes[:, moving] = (root[:, None] * vectors).T
-    ground = np.zeros((2, len(system.mass)))
-    for axis in (0, 1):
-        held_mass = system.mass[system.rigid[:, axis]]
-        ground[axis, system.rigid[:, axis]] = np.where(np.isfinite(held_mass), held_mass, 0.0)
+    ground = system.mass_along
     share = (modes @ ground.T) ** 2 / ground.sum(axis=1)
     shape = np.array([system.motion_of_blocks(mode) for mode in modes])
     return Vibration(np.sqrt(square) / (2 * np.pi), shape.reshape(len(square), -1, 3), share, loose)

@@ -4,7 +4,7 @@ from .actions import Action
 from .arrays import Array, Indices, Mask, Unsigned, frozen
 from .beam import Beam, BeamLoad, Drive
 from .blocks import Blocks
-from .bond import Bond, course_pattern, running_bond
+from .bond import Bond
 from .complement import complement
 from .errors import SceneError
 from .file import read_description, read_scene, scene_from_dict
@@ -59,13 +59,11 @@ __all__ = [
     "Unsigned",
     "build_scene",
     "complement",
-    "course_pattern",
     "find_joints",
     "free_motions",
     "frozen",
     "read_description",
     "read_scene",
-    "running_bond",
     "scene_from_dict",
     "table_of",
 ]

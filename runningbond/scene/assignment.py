@@ -175,8 +175,7 @@ def _chosen_joints(entry: Assignment, joints: Joints, material_names: Sequence[s
         first, second = (np.ones(of.shape, dtype=bool) if name == ANY else of == name for name in entry.between)
         chosen &= (first[:, 0] & second[:, 1]) | (first[:, 1] & second[:, 0])
     if entry.orientation is not None:
-        run = np.abs(joints.ends[:, 1] - joints.ends[:, 0])
-        chosen &= (run[:, 0] > run[:, 1]) == (entry.orientation == "bed")
+        chosen &= joints.is_bed == (entry.orientation == "bed")
     return _some(entry, chosen, "joint")
 
 

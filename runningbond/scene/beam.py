@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, cast, get_args
 import numpy as np
 
 from .actions import Action
-from .arrays import Array, Indices
+from .arrays import Array
 from .blocks import Blocks
 from .errors import SceneError
 from .forces import Forces
@@ -155,10 +155,6 @@ class BeamLoad(Action):
         base = scene.blocks.extent(scene.wall)[0][1]
         at = (x, y if self.height is None else base + self.height)
         return Forces.on(scene, block=[block], at=at, force=self.force)
-
-    def blocks(self, scene: "Scene") -> Indices:
-        """The beam."""
-        return self.forces(scene).block
 
 
 def read_beam(table: Table, joint_names: Sequence[str]) -> Beam:

@@ -41,34 +41,19 @@ class Bond:
         return np.asarray(self.height * np.arange(n_courses + 1))
 
 
-def running_bond(
-    bond: Bond, length: float, height: float, first_course: FirstCourse = "full", ends: Ends = "flush"
-) -> list[Array]:
-    """Blocks of a running-bond panel, course by course from the bottom, left to right.
+def bonded_rows(
+    width: float, length: float, n_courses: int, first_course: FirstCourse = "full", ends: Ends = "flush"
+) -> Rows:
+    """Blocks of a running-bond panel's courses, from their nominal width and the panel's length [m].
 
     Parameters
     ----------
-    length, height
-        Size of the panel [m]: whole half blocks long, whole blocks high.
     first_course
         Whether the first course starts with a full or a half block.
     ends
         ``"flush"``: half blocks close the courses; ``"toothed"``: courses that would start with a half
         block leave it out at both ends.
-
-    Returns
-    -------
-    list of (4, 2) float
-        Rectangles [m], counter-clockwise, with the panel's lower left corner at the origin.
     """
-    rows = bonded_rows(bond.width, length, bond.courses_in(height), first_course, ends)
-    return rectangles(rows, bond.width, bond.levels(len(rows)))
-
-
-def bonded_rows(
-    width: float, length: float, n_courses: int, first_course: FirstCourse = "full", ends: Ends = "flush"
-) -> Rows:
-    """Blocks of a running-bond panel's courses, from their nominal width [m]; see `running_bond`."""
     one_of("wall.first_course", first_course, get_args(FirstCourse))
     one_of("wall.ends", ends, get_args(Ends))
     n_half = _whole_number(length / (width / 2), "wall.length", length, f"half blocks of {width / 2:g}")
@@ -86,25 +71,11 @@ def bonded_rows(
     return courses
 
 
-def course_pattern(bond: Bond, courses: Sequence[Sequence[float]]) -> list[Array]:
-    """Blocks of a wall given course by course.
-
-    Parameters
-    ----------
-    courses
-        Bottom to top; each a list of widths in blocks, left to right from x = 0, negative for an opening.
-        Both sides of an opening lie on the half-block lattice.
-
-    Returns
-    -------
-    list of (4, 2) float
-        Rectangles [m], counter-clockwise, course by course, left to right.
-    """
-    return rectangles(pattern_rows(courses), bond.width, bond.levels(len(courses)))
-
-
 def pattern_rows(courses: Sequence[Sequence[float]]) -> Rows:
-    """Blocks of a wall's courses, from their widths in blocks; see `course_pattern`."""
+    """Blocks of a wall's courses, bottom to top; each a list of widths in blocks, left to right from x = 0.
+
+    A negative width is an opening, both sides of which lie on the half-block lattice.
+    """
     if sum(len(course) for course in courses) > BLOCK_LIMIT:
         raise SceneError("wall.courses", f"has more than {BLOCK_LIMIT} blocks; make the wall smaller")
     if not courses:
@@ -136,7 +107,10 @@ def pattern_rows(courses: Sequence[Sequence[float]]) -> Rows:
 
 
 def rectangles(rows: Rows, width: float, levels: Array) -> list[Array]:
-    """Blocks ``(4, 2)`` [m] of courses between levels ``(n + 1,)`` [m], on the lattice of half a width [m]."""
+    """Blocks ``(4, 2)`` [m] of courses between levels ``(n + 1,)`` [m], on the lattice of half a width [m].
+
+    They are counter-clockwise, course by course, left to right.
+    """
     blocks: list[Array] = []
     for (left, right), low, high in zip(rows, levels[:-1], levels[1:], strict=True):
         x0, x1 = left * (width / 2), right * (width / 2)

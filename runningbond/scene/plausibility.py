@@ -128,13 +128,13 @@ def _friction(key: str, friction: float) -> Iterator[str]:
 
 def _sizes(scene: Scene) -> Iterator[str]:
     """Sizes of the wall, gravity, and settlements."""
-    low, high = scene.blocks.extent(_own_blocks(scene))
+    low, high = scene.blocks.extent(scene.masonry)
     longest = float(max(high - low))
     side = "length" if longest == (high - low)[0] else "height"
     if scene.bond is None:
         side = f"drawing: {side}"
     yield from SIZE.doubts(f"wall.{side}", longest)
-    middling = float(np.median(np.sqrt(scene.blocks.area[_own_blocks(scene)])))
+    middling = float(np.median(np.sqrt(scene.blocks.area[scene.masonry])))
     least, most = (share * middling for share in THICKNESS)
     if not least <= scene.thickness <= most:
         what = f"is odd for blocks of about {middling:.3g} m"
@@ -167,11 +167,10 @@ def _beam(scene: Scene) -> Iterator[str]:
     """A beam, or its way, that is longer than the wall."""
     if scene.beam is None:
         return
-    low, high = scene.blocks.extent(_own_blocks(scene))
-    longest, drive = float(max(high - low)), scene.beam.drive
-    sizes = {"beam.height": scene.beam.height}
-    if drive is not None and drive.path:
-        sizes["beam.drive.displacement"] = max(map(abs, drive.path))
+    low, high = scene.blocks.extent(scene.masonry)
+    longest, sizes = float(max(high - low)), {"beam.height": scene.beam.height}
+    if scene.drive_path:
+        sizes["beam.drive.displacement"] = max(map(abs, scene.drive_path))
     for key, size in sizes.items():
         if size > longest:
             yield f"{key} = {size:g}: is more than the wall's size, {longest:.3g} m; are mm meant?"
@@ -185,17 +184,9 @@ def _shaking(scene: Scene) -> Iterator[str]:
             yield from SAMPLING.doubts("load.history, time step", float(np.median(np.diff(scene.history.time))))
 
 
-def _own_blocks(scene: Scene) -> Mask:
-    """Blocks of the wall but for a beam on top, ``(nb,)``."""
-    own = scene.wall.copy()
-    if scene.beam is not None:
-        own[scene.beam.block] = False
-    return own
-
-
 def _courses(scene: Scene) -> Iterator[str]:
     """Courses whose blocks are not on one level, and a course that ends short of those above and below it."""
-    own = _own_blocks(scene)
+    own = scene.masonry
     low, high = (corner[own] for corner in scene.blocks.boxes)
     size = high - low
     full = scene.blocks.area[own] >= (1 - 1e-6) * size.prod(axis=1)
@@ -241,7 +232,7 @@ def _short(reach: Array, half: float) -> Mask:
 
 def _head_joints(scene: Scene) -> Iterator[str]:
     """Blocks that stand side by side, and nowhere touch."""
-    ends, own = scene.joints.ends, _own_blocks(scene)
+    ends, own = scene.joints.ends, scene.masonry
     run = np.abs(ends[:, 1] - ends[:, 0])
     if (run[:, 1] > run[:, 0])[own[scene.joints.block].all(axis=1)].any():
         return

@@ -44,6 +44,12 @@ class Joints:
         run = self.ends[:, 1] - self.ends[:, 0]
         return np.hypot(run[:, 0], run[:, 1])
 
+    @cached_property
+    def is_bed(self) -> Mask:
+        """Whether each joint lies flatter than 45°, ``(nj,)``."""
+        run = np.abs(self.ends[:, 1] - self.ends[:, 0])
+        return np.asarray(run[:, 0] > run[:, 1], dtype=np.bool_)
+
 
 def find_joints(blocks: Blocks) -> Joints:
     """Find every segment along which two blocks touch.

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from .actions import Action
 from .arrays import Array, Indices, Mask, frozen
 from .assignment import BEAM, GROUND, Assignment, assign_blocks, assign_joints
-from .beam import Beam
+from .beam import Beam, Drive
 from .blocks import Blocks
 from .bond import Bond
 from .cracks import cut_in_half
@@ -101,9 +101,7 @@ class Scene:
 
     def __post_init__(self) -> None:
         if not len(self.part_of):
-            beam = -1 if self.beam is None or self.beam.block is None else self.beam.block
-            number = np.arange(len(self.blocks))
-            object.__setattr__(self, "part_of", np.where(self.wall & (number != beam), number, -1))
+            object.__setattr__(self, "part_of", np.where(self.masonry, np.arange(len(self.blocks)), -1))
         for name in ("material_of_block", "material_of_joint", "part_of"):
             object.__setattr__(self, name, frozen(getattr(self, name), np.int64))
         object.__setattr__(self, "fixed", frozen(self.fixed, np.bool_))
@@ -132,6 +130,29 @@ class Scene:
     def with_joint(self, **changes: Any) -> "Scene":
         """A copy whose default joint material differs in some fields."""
         return replace(self, joint_materials=(replace(self.joint, **changes), *self.joint_materials[1:]))
+
+    @cached_property
+    def is_beam(self) -> Mask:
+        """Whether each block is the beam, ``(nb,)``."""
+        is_beam = np.zeros(len(self.blocks), dtype=np.bool_)
+        if self.beam is not None and self.beam.block is not None:
+            is_beam[self.beam.block] = True
+        return is_beam
+
+    @property
+    def masonry(self) -> Mask:
+        """Blocks of the wall but for a beam on top, ``(nb,)``."""
+        return self.wall & ~self.is_beam
+
+    @property
+    def drive(self) -> Drive | None:
+        """How the beam is driven; None where it is not."""
+        return None if self.beam is None else self.beam.drive
+
+    @property
+    def drive_path(self) -> tuple[float, ...]:
+        """Horizontal displacements [m] that the beam is taken to, one after the other; none where a force drives it."""
+        return () if self.drive is None else self.drive.path
 
     @cached_property
     def density(self) -> Array:
@@ -170,7 +191,7 @@ class Scene:
     @property
     def is_led(self) -> bool:
         """Whether displacements are prescribed to it, not loads."""
-        return self.settlement is not None or any(key.startswith("beam.drive.displacement") for key in self.extras)
+        return self.settlement is not None or len(self.drive_path) > 0
 
     @cached_property
     def support_motion(self) -> Array:
@@ -185,13 +206,12 @@ class Scene:
     @property
     def extras(self) -> tuple[str, ...]:
         """Keys of what a model has to know of by name, or refuses."""
-        path = self.beam.drive.path if self.beam and self.beam.drive else ()
         given = {
             "tie": len(self.ties) > 0,
             "beam": self.beam is not None,
             "beam.condition fixed-height": len(self.late_pins) > 0,
-            "beam.drive.displacement": len(path) == 1,
-            "beam.drive.displacement, cyclic": len(path) > 1,
+            "beam.drive.displacement": len(self.drive_path) == 1,
+            "beam.drive.displacement, cyclic": len(self.drive_path) > 1,
             "load.live settlement": self.settlement is not None,
             "load.live settlement, along a path": self.settlement is not None and self.settlement.path != (1.0,),
             KEY: self.history is not None,
@@ -255,9 +275,9 @@ class Scene:
     def lowest_block(self) -> float:
         """Smallest height of a movable block [m]; of the beam only where nothing else moves."""
         low, high = self.blocks.boxes
-        movable = np.flatnonzero(~self.fixed)
-        masonry = movable[movable != self.beam.block] if self.beam else movable
-        return float((high - low)[masonry if len(masonry) else movable, 1].min())
+        movable = ~self.fixed
+        masonry = movable & ~self.is_beam
+        return float((high - low)[masonry if masonry.any() else movable, 1].min())
 
 
 def build_scene(

@@ -90,11 +90,16 @@ def draw_charts(study: Study, rows: Rows, folder: Path) -> list[Picture]:
         figure.suptitle(chart.caption, fontsize=11)
         with rc_context({"legend.frameon": False, "legend.fontsize": 8}):
             chart.draw(figure, rows)
-        for axes in figure.axes:
-            bare(axes)
-        pictures.append(Picture(folder / f"{chart.name or study.name}.png", chart.caption))
-        write_atomically(pictures[-1].path, to_png(figure, 160))
+        pictures.append(write_picture(figure, folder / f"{chart.name or study.name}.png", chart.caption, dots=160))
     return pictures
+
+
+def write_picture(figure: Figure, path: Path, caption: str, *, dots: int) -> Picture:
+    """Write a chart, with so many dots an inch and no frames round its axes."""
+    for axes in figure.axes:
+        bare(axes)
+    write_atomically(path, to_png(figure, dots))
+    return Picture(path, caption)
 
 
 def edges_sheet(edges: Sequence[Edge]) -> Sheet:

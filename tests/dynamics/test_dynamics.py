@@ -69,7 +69,7 @@ def oscillator(stiffness: float = 1.0, viscosity: float = 0.0) -> BlockSystem:
         force_unit=np.ones(1),
         rigid=np.zeros((1, 3), dtype=np.int64),
         owner=np.zeros(1, dtype=np.int64),
-        restraint=Restraint.none(),
+        restraint=Restraint(np.zeros((0, 3), dtype=np.int64), np.zeros((0, 3, 3))),
         interface=Interface(law, np.zeros(0), _no_jumps, _no_forces, Nothing(np.zeros(0)), stiffness),
     )
 

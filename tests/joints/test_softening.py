@@ -143,7 +143,7 @@ def test_work_done_on_a_point_and_not_stored_in_it_never_falls(
     path = np.concatenate([np.linspace(a, b, fine, endpoint=False) for a, b in pairwise(legs)] + [legs[-1:]])
     opening, slip = path.T.copy()
     normal, tangential, _ = follow(found, opening, slip)
-    stored = found.stored(found, opening, normal, tangential)
+    stored = found.law.stored(found, opening, normal, tangential)
     middle_n, middle_t = (normal[1:] + normal[:-1]) / 2, (tangential[1:] + tangential[:-1]) / 2
     done = middle_n * np.diff(opening) + middle_t * np.diff(slip)
     lost = np.concatenate([[0.0], np.cumsum(done) - stored[1:]])

@@ -6,7 +6,7 @@ import pickle
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import ezdxf
 import numpy as np
@@ -25,12 +25,11 @@ from runningbond.scene import (
     PointLoad,
     SceneError,
     Stiffness,
-    course_pattern,
     find_joints,
     read_scene,
-    running_bond,
     scene_from_dict,
 )
+from runningbond.scene.bond import bonded_rows, pattern_rows, rectangles
 from tests.walls import content, courses, panel, write_toml
 
 
@@ -132,7 +131,7 @@ def test_joints_are_the_shared_edges_whatever_the_pattern_and_rotation(
             column += span
     bed = sum(0.5 for (x, y) in cells if (x, y + 1) in cells)
     head = sum(1.0 for (x, y), block in cells.items() if cells.get((x + 1, y), block) != block)
-    polygons = course_pattern(Bond(1.0, 1.0), pattern)
+    polygons = rectangles(pattern_rows(pattern), 1.0, np.arange(len(pattern) + 1.0))
     joints = find_joints(Blocks.from_polygons([rotated(p, angle) for p in polygons]))
     assert joints.length.sum() == pytest.approx(bed + head, abs=1e-9)
 
@@ -193,9 +192,9 @@ def test_blocks_of_very_different_size_meet() -> None:
 )
 def test_flush_running_bond_fills_its_rectangle(n: int, courses: int, first: str, width: float) -> None:
     bond = Bond(width, 0.3 * width)
-    blocks = Blocks.from_polygons(
-        running_bond(bond, n * width / 2, courses * bond.height, "full" if first == "full" else "half")
-    )
+    starts: Literal["full", "half"] = "full" if first == "full" else "half"
+    rows = bonded_rows(width, n * width / 2, bond.courses_in(courses * bond.height), starts)
+    blocks = Blocks.from_polygons(rectangles(rows, width, bond.levels(courses)))
     assert blocks.area.sum() == pytest.approx(n * width / 2 * courses * bond.height)
     low, high = blocks.extent()
     assert high - low == pytest.approx([n * width / 2, courses * bond.height])
@@ -274,7 +273,7 @@ MATERIALS: list[tuple[Callable[[], Any], str]] = [
     (lambda: replace(panel().joint, friction=-1), "joint.friction = -1"),
     (lambda: replace(panel(), thickness=0), "wall.thickness = 0: must be a number above 0"),
     (lambda: Bond(0.24, -0.06), "wall.block_height = -0.06"),
-    (lambda: running_bond(Bond(0.24, 0.06), 1.44, 0.72, ends="open"), "wall.ends = 'open'"),  # type: ignore[arg-type]
+    (lambda: bonded_rows(0.24, 1.44, 12, ends="open"), "wall.ends = 'open'"),  # type: ignore[arg-type]
     (lambda: Lateral((math.nan, 0.0)), "load.live.direction = (nan, 0.0): must be a pair of finite numbers"),
     (lambda: PointLoad((0.0, 0.0), (0.0, 0.0)), "load.live.force = [0.0, 0.0]: must not be zero"),
 ]
