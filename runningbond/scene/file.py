@@ -82,6 +82,17 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     SceneError
         As `read_scene`.
     """
+    try:
+        return _scene(content, folder, default_title)
+    except SceneError as error:
+        from .schema import misspelt
+
+        # Where a key is misspelt, what is missing or does not fit is told for want of it.
+        found = misspelt(content) if Table.visits is None and isinstance(content, dict) else None
+        raise error if found is None else found from None
+
+
+def _scene(content: dict[str, Any], folder: Path, default_title: str) -> Scene:
     top = Table("", content)
     title = _title(top.text("title", default_title))
     wall, block, joint, support, load = (top.table(key) for key in ("wall", "block", "joint", "support", "load"))

@@ -7,15 +7,17 @@ import re
 from collections.abc import Iterable
 from contextlib import suppress
 from copy import deepcopy
+from functools import cache
 from typing import Any, TypeAlias
 
 from .errors import SceneError
 from .file import scene_from_dict
 from .loads import DEAD_KINDS, KINDS
-from .ranges import Range
+from .ranges import Range, suggestion
 from .table import Table
 
 Schema: TypeAlias = dict[str, Any]
+Tables: TypeAlias = dict[str, list[tuple[Schema, dict[str, Schema]]]]
 
 ROW = {"from": [0.0, 0.6], "to": [1.2, 0.6]}
 AT = {"at": [0.3, 0.6], "force": [0.0, -1.0]}
@@ -85,6 +87,9 @@ LED = {"height": 0.1, "joint": "lime", "condition": "level", "force": [0.0, -1.0
 ALIKE = {r"^materials\.[^.]+": "block", r"^joints\.[^.]+": "joint", r"^inner_joint": "joint"}
 """Tables with the keys of others."""
 
+NAMED = ("materials", "joints")
+"""Tables whose keys are names that anybody gives."""
+
 SCENES: tuple[Schema, ...] = (
     PLAIN,
     LISTED,
@@ -121,6 +126,12 @@ SCENES: tuple[Schema, ...] = (
 
 def scene_schema() -> Schema:
     """JSON schema, draft 7, of a scene file. No scene may be read in another thread meanwhile: its keys would count."""
+    tables = _read()
+    return {"$schema": "http://json-schema.org/draft-07/schema#", "title": "runningbond scene", **_table(tables, "")}
+
+
+def _read() -> Tables:
+    """Content of the tables of all scenes, and what is asked of their keys, by what they have in common."""
     Table.visits, visits = [], []
     try:
         for scene in SCENES:
@@ -128,11 +139,37 @@ def scene_schema() -> Schema:
                 scene_from_dict(deepcopy({**PLAIN, **scene}))
     finally:
         visits, Table.visits = Table.visits, None
-    tables: dict[str, list[tuple[Schema, dict[str, Schema]]]] = {}
+    tables: Tables = {}
     for name, content, asked in visits:
         if asked:
             tables.setdefault(_path(name), []).append((content, asked))
-    return {"$schema": "http://json-schema.org/draft-07/schema#", "title": "runningbond scene", **_table(tables, "")}
+    return tables
+
+
+@cache
+def _keys() -> dict[str, frozenset[str]]:
+    """All keys that a table may have, whatever its kind."""
+    return {path: frozenset(key for _, asked in visits for key in asked) for path, visits in _read().items()}
+
+
+def misspelt(content: dict[Any, Any], name: str = "") -> SceneError | None:
+    """The first key of a table, or of those in it, that none has but that is spelt much like one that is not there."""
+    path = _path(name)
+    known = frozenset() if path in NAMED else _keys().get(path, frozenset())
+    for key, value in content.items():
+        full, inner = f"{name}.{key}" if name else str(key), list[tuple[str, Any]]()
+        if known and key not in known:
+            if hint := suggestion(key, sorted(known)):
+                place, told = f"[{name}]" if name else "a scene file", "a table" if isinstance(value, dict) else value
+                return SceneError(full, f"is not a key of {place}{hint}", told)
+        elif isinstance(value, dict):
+            inner = [(full, value)]
+        elif isinstance(value, list):
+            inner = [(f"{full}[{k}]", one) for k, one in enumerate(value) if isinstance(one, dict)]
+        for found in (misspelt(table, place) for place, table in inner):
+            if found is not None:
+                return found
+    return None
 
 
 def _path(name: str) -> str:

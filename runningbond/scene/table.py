@@ -1,6 +1,5 @@
 """One table of a scene file: gives its values with their types and ranges checked, and refuses keys left over."""
 
-import difflib
 from collections.abc import Iterable
 from dataclasses import MISSING, fields
 from typing import Any, ClassVar
@@ -45,9 +44,7 @@ class Table:
         """Whatever the key holds; a file without it is refused."""
         self._ask(key, required=True)
         if key not in self._left:
-            likely = difflib.get_close_matches(key, [k for k in self._left if k not in self._keys], n=1)
-            hint = f"; is {self.key(likely[0])} a misspelling of it?" if likely else ""
-            raise SceneError(self.key(key), f"is missing; it must be {wanted}{hint}")
+            raise SceneError(self.key(key), f"is missing; it must be {wanted}")
         return self._left.pop(key)
 
     def _ask(self, key: str, **what: Any) -> None:

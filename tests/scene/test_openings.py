@@ -220,7 +220,10 @@ GOOD = opening(1.0, 0.0, 2.0, 1.2)
         ({**HEIGHTS, "wall__course_heights": [0.2, 0]}, "wall.course_heights[1] = 0: must be a number above 0"),
         ({**HEIGHTS, "wall__course_heights": [0.2, "low"]}, "wall.course_heights[1] = 'low': must be a number"),
         ({**HEIGHTS, "wall__course_heights": [[0.2]]}, "wall.course_heights[0] = [0.2]: must be a number above 0"),
-        ({**HEIGHTS, "wall__course_height": [0.2]}, "wall.block_height: is missing"),
+        (
+            {**HEIGHTS, "wall__course_height": [0.2]},
+            'wall.course_height = [0.2]: is not a key of [wall]; did you mean "course_heights"?',
+        ),
         (
             {"wall__block_height": None, "wall__course_heights": [0.2, 0.3]},
             "wall.height = 2.0: must be left out, or be the sum of wall.course_heights, 0.5",

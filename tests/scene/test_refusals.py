@@ -1,5 +1,6 @@
 """Bad input: one clear line on standard error, exit code 2, nothing written, nothing on standard output."""
 
+import copy
 import subprocess
 import sys
 from pathlib import Path
@@ -8,7 +9,8 @@ from typing import Any
 import pytest
 
 from runningbond.commands.command_line import command
-from runningbond.scene import SceneError
+from runningbond.scene import SceneError, scene_from_dict
+from runningbond.scene.schema import LISTED, PLAIN
 from tests.walls import content, panel, write_toml
 
 from .test_scene import drawing
@@ -93,7 +95,7 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
         ({"color": "red"}, "color = 'red': is not a key of a scene file"),
         ({"load__live__angle": 3}, "load.live.angle = 3: is not a key of [load.live], which has kind, direction"),
         ({"wall__thickness": None}, "wall.thickness: is missing; it must be a number above 0"),
-        ({"block__density": None, "block__densty": 1}, "is block.densty a misspelling of it?"),
+        ({"block__density": None, "block__densty": 1}, "block.densty = 1: is not a key of [block]; did you mean"),
         ({"support": None}, "support: is missing"),
         ({"support": 3}, "support = 3: must be a table"),
         ({"joint__friction": -0.6}, "joint.friction = -0.6: must be a number at least 0"),
@@ -164,6 +166,36 @@ def test_a_scene_that_is_no_wall(
         assert said in printed.err
         assert printed.err.count("\n") == 1
         assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "misspelt"),
+    [
+        ((), "load", "laod"),
+        (("load",), "live", "lvie"),
+        (("load", "live", 0), "kind", "knid"),
+        (("wall",), "courses", "coursse"),
+        (("joints", "glue"), "cohesion", "cohesoin"),
+        (("joints", "glue"), "compressive_strength", "compressive_strenght"),
+        (("inner_joint", "closure"), "growth", "grwoth"),
+        (("beam",), "force", "forec"),
+        (("beam", "drive"), "force", "froce"),
+        (("assign", 0), "block", "blokc"),
+        (("assign", 1), "box", "bxo"),
+        (("assign", 2), "between", "betwene"),
+        (("tie", 1), "yield", "yeild"),
+    ],
+)
+def test_a_misspelt_key_is_told_and_not_what_is_missing_for_want_of_it(
+    table: tuple[str | int, ...], key: str, misspelt: str
+) -> None:
+    tables: dict[str, Any] = copy.deepcopy({**PLAIN, **LISTED})
+    inner: Any = tables
+    for part in table:
+        inner = inner[part]
+    inner[misspelt] = inner.pop(key)
+    with pytest.raises(SceneError, match=rf'{misspelt} = .* is not a key of .*; did you mean "{key}"\?'):
+        scene_from_dict(tables)
 
 
 @pytest.mark.parametrize(
