@@ -2,6 +2,7 @@
 
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
+from warnings import warn
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from .pictures.flat import draw_mechanism, figure_of
 from .results import Outcome, Status
 from .results.mechanism import rigid_jumps
 from .results.outcome import number
-from .scene import Array, SceneError
+from .scene import Array, SceneError, plausibility
 from .tables import Table, table
 from .wall import Wall, new_axes
 
@@ -141,6 +142,8 @@ class Result:
 def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, parameters: dict[str, Any]) -> Result:
     """Run a model on a wall, as `Wall.run` says."""
     model = find_model(model)
+    for line in plausibility.warnings(wall.scene):
+        warn(line, stacklevel=3)
     recorder = model.observer(wall.scene, None) if states and model.observer else None
     outcome = run_model(model, wall.scene, tolerance, recorder, **parameters)
     if recorder is None:

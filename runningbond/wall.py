@@ -73,7 +73,14 @@ class Wall:
 
     @classmethod
     def running_bond(
-        cls, *, length: float, height: float, block_width: float, block_height: float, thickness: float, **keys: Any
+        cls,
+        *,
+        length: float,
+        height: float | None = None,
+        block_width: float,
+        block_height: float | None = None,
+        thickness: float,
+        **keys: Any,
     ) -> "Wall":
         """A panel of running bond.
 
@@ -85,7 +92,8 @@ class Wall:
             Size of a block [m].
         keys
             The other keys of a scene file: those of ``[block]``, ``[joint]`` and ``[load]`` by their names
-            (``density=1800.0, friction=0.6``), ``first_course`` and ``ends``, whole tables and what stands at the
+            (``density=1800.0, friction=0.6``), ``first_course``, ``ends`` and, in place of `height` and
+            `block_height`, ``course_heights``, those of ``[wall]``, whole tables and what stands at the
             file's top level (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that needs no
             more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load
             lateral unless given.
@@ -108,7 +116,7 @@ class Wall:
         courses: Sequence[Sequence[float]],
         *,
         block_width: float,
-        block_height: float,
+        block_height: float | None = None,
         thickness: float,
         **keys: Any,
     ) -> "Wall":
@@ -126,7 +134,7 @@ class Wall:
 
     @classmethod
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
-        table_of = TABLE_OF | dict.fromkeys(("first_course", "ends"), "wall")
+        table_of = TABLE_OF | dict.fromkeys(("first_course", "ends", "course_heights"), "wall")
         tables: list[dict[str, Any]] = []
         for key, value in keys.items():
             if isinstance(value, (int, float)) and key not in table_of:
@@ -134,8 +142,10 @@ class Wall:
                 hint = f'; did you mean "{likely[0]}"?' if likely else ""
                 raise SceneError(key, f"is not a key of a wall{hint}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
+            named = list(value) if key == "course_heights" and isinstance(value, (tuple, np.ndarray)) else named
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
-        description = _changed({"title": title, "wall": wall, **DEFAULTS}, tables)
+        given = {key: value for key, value in wall.items() if value is not None}
+        description = _changed({"title": title, "wall": given, **DEFAULTS}, tables)
         if ("drive" in keys.get("beam", {}) or "history" in keys) and "live" not in keys:
             description = _merged(description, {"load": {"live": None}})
         return cls(description)

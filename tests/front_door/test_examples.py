@@ -57,6 +57,7 @@ def test_water_presses_with_its_weight_at_a_third_of_its_depth() -> None:
         assert np.average(forces.at[:, 1], weights=forces.force[:, 0]) == pytest.approx(level / 3)
 
 
+@pytest.mark.filterwarnings("ignore:joint.cohesion = 10")
 def test_a_wall_in_one_block_is_never_weaker_than_one_of_many() -> None:
     """The block's motion is a mechanism of the wall, so limit analysis finds no larger load."""
     model = example("own_model")["MONOLITH"]

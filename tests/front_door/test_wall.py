@@ -113,6 +113,27 @@ def test_what_a_file_may_not_say_python_may_not_say(keys: dict[str, Any], said: 
     assert "\n" not in str(refusal.value)
 
 
+def test_courses_of_different_heights_are_given_in_place_of_a_height() -> None:
+    """As `wall.course_heights` of a file."""
+    size = {"block_width": 0.4, "thickness": 0.2, "density": 1800.0, "friction": 0.6}
+    heights = [0.2, 0.1, 0.3]
+    wall = rb.Wall.running_bond(length=1.6, course_heights=heights, **size)
+    assert wall.description["wall"]["course_heights"] == heights
+    assert np.unique(wall.scene.blocks.extent(wall.scene.wall)[1][1]) == pytest.approx(0.6)
+    by_rows = rb.Wall.courses([[1] * 4, [0.5, 1, 1, 1, 0.5], [1] * 4], course_heights=tuple(heights), **size)
+    assert by_rows.scene.blocks.vertices == pytest.approx(wall.scene.blocks.vertices)
+    with pytest.raises(SceneError, match=r"wall.course_heights.*does not go with wall.block_height"):
+        rb.Wall.running_bond(length=1.6, course_heights=heights, block_height=0.2, **size)
+
+
+def test_what_looks_like_a_slip_is_a_warning_where_the_wall_is_run() -> None:
+    """With the words that the command line has for a file."""
+    wall = rb.Wall.running_bond(**PANEL).with_({"block.density": 1.8})
+    with pytest.warns(UserWarning, match=r"block.density = 1.8: is not within .* kg/m³") as told:
+        wall.run("limit")
+    assert [Path(each.filename).name for each in told] == [Path(__file__).name]
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [

@@ -155,7 +155,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (beam(drive={"amplitudes": [0.01], "cycles": 2.5}), "beam.drive.cycles = 2.5: must be a whole number"),
         (beam(drive={"amplitudes": [0.01], "cycles": [2]}), "beam.drive.cycles = [2]: must be a number at least 1"),
         (beam(drive={"amplitudes": [0.01], "rate": -1}), "beam.drive.rate = -1: must be a number above 0"),
-        (beam(drive={"amplitude": [0.01]}), "beam.drive.amplitude = [0.01]: is not a key of [beam.drive]; did you mean \"amplitudes\"?"),
+        (beam(drive={"amplitude": [0.01]}), 'is not a key of [beam.drive]; did you mean "amplitudes"?'),
         (beam(drive={"force": [0, 0]}), "beam.drive.force = [0.0, 0.0]: must not be zero"),
         (beam(drive={"force": [1, 0], "rate": 1e-3}), "beam.drive.rate = 0.001: is not a key"),
         (beam(drive={"displacement": [0.01, 0.01]}), "must be horizontal"),
