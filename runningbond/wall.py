@@ -92,8 +92,8 @@ class Wall:
             Size of a block [m].
         keys
             The other keys of a scene file: those of ``[block]``, ``[joint]`` and ``[load]`` by their names
-            (``density=1800.0, friction=0.6``), ``first_course``, ``ends`` and, in place of `height` and
-            `block_height`, ``course_heights``, those of ``[wall]``, whole tables and what stands at the
+            (``density=1800.0, friction=0.6``); of ``[wall]`` ``first_course``, ``ends`` and, in place of `height` and
+            `block_height`, ``course_heights``; whole tables and what stands at the
             file's top level (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that needs no
             more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load
             lateral unless given.
@@ -142,7 +142,6 @@ class Wall:
                 hint = f'; did you mean "{likely[0]}"?' if likely else ""
                 raise SceneError(key, f"is not a key of a wall{hint}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
-            named = list(value) if key == "course_heights" and isinstance(value, (tuple, np.ndarray)) else named
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
         given = {key: value for key, value in wall.items() if value is not None}
         description = _changed({"title": title, "wall": given, **DEFAULTS}, tables)
@@ -242,7 +241,7 @@ class Wall:
             How many runs; the first is of the wall as it is.
         scatter
             ``"bits"``, the last ones of densities and frictions; or ``"size=0.01,friction=0.05"``, or one of them: the
-            blocks' sizes within a relative tolerance, each joint's friction with a relative standard deviation.
+            blocks' sizes within a relative tolerance, each joint's friction by the standard deviation of its logarithm.
         folder
             Where outcomes are kept and found again; None keeps nothing.
         jobs

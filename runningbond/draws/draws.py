@@ -115,7 +115,7 @@ class Drawing:
         How many draws.
     scatter
         What differs: ``bits``, the last ones of densities and frictions; or ``size=0.01,friction=0.05``, the blocks'
-        sizes within a relative tolerance, each joint's friction with a relative standard deviation.
+        sizes within a relative tolerance, each joint's friction by the standard deviation of its logarithm.
 
     Raises
     ------

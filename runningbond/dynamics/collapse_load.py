@@ -114,11 +114,7 @@ def collapse_by_steps(
     if result.rests:
         outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
-    if result.upper is not None and _moved(run, result, criteria) > 1 and is_self_locking():
-        message = "self-locking: it gives as far at rest as counts as collapse, and joint forces balance any multiple"
-        outcome = replace(outcome, status="unbounded", message=message)
-    else:
-        outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking)
+    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria)
     stiffness = _note_on_stiffness(scene, run, result, criteria)
     if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
@@ -168,6 +164,7 @@ def _judge(
     tolerance: float,
     point_order: Indices,
     is_self_locking: Callable[[], bool],
+    criteria: Criteria,
 ) -> Outcome:
     """Outcome of a search."""
     if result.borne is None:
@@ -186,6 +183,9 @@ def _judge(
     lost = run.unaccounted(result.fallen)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
+    if _moved(run, result, criteria) > 1 and is_self_locking():
+        message = "self-locking: it gives as far at rest as counts as collapse, and joint forces balance any multiple"
+        return replace(outcome, status="unbounded", lower=None, upper=None, motion=np.zeros((0, 3)), message=message)
     if result.verdict == "undecided":
         return replace(outcome, message="the budget ran out inside this bracket: the wall neither rested nor fell")
     wide = ""

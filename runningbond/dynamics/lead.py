@@ -66,7 +66,7 @@ class Way:
     moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[WayRow] = field(default_factory=list)
     verdict: Verdict = "stable"
-    unseen: tuple[float, float] = (0.0, 0.0)  # what means over windows take from the largest force, and may at most
+    unseen: tuple[float, float] = (0.0, 0.0)  # what means take from the largest force, and what they may at most
 
     @property
     def curve(self) -> Array:
@@ -77,6 +77,12 @@ class Way:
     def answer(self) -> float:
         """The force at the end of a way from rest to rest, the largest one of a motion."""
         return float(self.curve[:, 1].max() if self.moves else self.curve[-1, 1])
+
+    def calm(self) -> None:
+        """Take the middle one of three forces for each row of a motion but the first and the last, in place."""
+        force = np.array([row.force for row in self.rows])
+        for k in range(1, len(force) - 1) if self.moves else ():
+            self.rows[k] = self.rows[k]._replace(force=float(np.median(force[k - 1 : k + 2])))
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,9 +196,9 @@ class Lead:
                 if (k + 1) % SEEN == 0:
                     self.observe(run, state, way.rows[-1].force)
             at = goal
-            self.note(way, state, self.moved(state), peaks.mean(1))
+            self.note(way, state, self.moved(state), way.rows[-1].force)
             motions.append(state.motion.copy())
-        _calm(way.rows)
+        way.calm()
         peak, between, way.unseen = peaks.resolved()
         way.best = peak.state
         if between:
@@ -228,13 +234,6 @@ class Lead:
             self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)
-
-
-def _calm(rows: list[WayRow]) -> None:
-    """Take the middle one of three forces for each row of a motion but the first and the last, in place."""
-    force = np.array([row.force for row in rows])
-    for k in range(1, len(rows) - 1):
-        rows[k] = rows[k]._replace(force=float(np.median(force[k - 1 : k + 2])))
 
 
 def last_leg(curve: Array) -> Array:

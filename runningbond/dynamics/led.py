@@ -72,6 +72,8 @@ def collapse_of_led(
             if _spread(lead, ways) <= tolerance and not _rate(scene):
                 break
     except KeyboardInterrupt:
+        if ways:
+            ways[-1].calm()
         outcome = _path(outcome, scene, run, points, ways[-1]) if ways and ways[-1].rows else outcome
         return replace(outcome, message="interrupted: the way so far")
     except Unstable as error:
@@ -113,12 +115,12 @@ def _bracket(ways: list[Way]) -> tuple[float, float]:
 
 
 def _spread(lead: Lead, ways: list[Way]) -> float:
-    """Width of the bracket, relative to its larger end; without what may only be what shakes the force."""
+    """Width of the bracket without what may be nothing but shaking, or that shaking, relative to the larger end."""
     if len(ways) < 2:
         return np.inf
-    lower, upper = _bracket(ways)
-    upper -= ways[-1].unseen[1] - ways[-1].unseen[0]
-    return (upper - lower) / max(-lower, upper, LITTLE if lead.settles else 0.0) if upper > lower else 0.0
+    (lower, upper), (adds, shakes) = _bracket(ways), ways[-1].unseen
+    width = max(upper - lower - shakes + adds, shakes)
+    return width / max(-lower, upper, LITTLE if lead.settles else 0.0) if width > 0 else 0.0
 
 
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:

@@ -12,7 +12,7 @@ import numpy as np
 from .state import State
 
 STEPS = 50
-"""Steps of the shortest windows."""
+"""Least steps of windows shorter than a row."""
 
 RESOLVED = 2.5e-3
 """What windows half as long may add to a peak that is seen, relative to it."""
@@ -62,7 +62,9 @@ class Peaks:
         self._sums.append(self._sums[-1] + force * steps)
         self._ends.append(self._ends[-1] + steps)
         for level, peak in enumerate(self._peaks):
-            if (len(self._sums) - 1) % (some := self.windows >> level) == 0:
+            some = self.windows >> level
+            whole = (len(self._sums) - 1) % some == 0
+            if whole and (level == 0 or self._ends[-1] - self._ends[-1 - some] >= STEPS):
                 peak.see(self.mean(some), state, row)
 
     def mean(self, windows: int) -> float:
@@ -70,7 +72,7 @@ class Peaks:
         return (self._sums[-1] - self._sums[-1 - windows]) / (self._ends[-1] - self._ends[-1 - windows])
 
     def resolved(self) -> tuple[Peak, bool, tuple[float, float]]:
-        """The peak, whether it is of windows shorter than a row, and what they miss of it.
+        """The peak, whether it is of windows shorter than a row, and what its windows miss.
 
         That is what windows half as long add, and what ever shorter ones may, shaking included: the shortest miss as
         much as they add, for what a mean takes from a peak falls as its length.

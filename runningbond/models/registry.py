@@ -198,26 +198,25 @@ def run_model(
         parameters["observe"] = observe
     try:
         outcome = model.solve(scene, tolerance, **parameters)
-        gives = _gives(model, scene, outcome)
     except SceneError:
         raise
     except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
-    notes = [outcome.message, gives, _left_out(model, scene)]
+    notes = [outcome.message, _gives(model, scene, outcome, parameters.get("collapse")), _left_out(model, scene)]
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
     return replace(outcome, model=model.name, message="; ".join(filter(None, notes)))
 
 
-def _gives(model: Model, scene: Scene, outcome: Outcome) -> str:
-    """What is to be said where joints give so much that elastic motion may count as collapse."""
+def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
+    """What is to be said where joints give so much that elastic motion may count as `collapse` [heights of a block]."""
     if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.lower:
         return ""
     from dem.static import U_CRIT
     from dem.stiffness_update import elastic_displacement
 
     moved = (elastic_displacement(scene, outcome.lower) or 0.0) * scene.block_size / scene.lowest_block
-    if moved <= U_CRIT:
+    if moved <= (U_CRIT if collapse is None else collapse):
         return ""
     share = f"{100 * moved:.2g} % of a block's height"
     return f"joints are too soft: the wall gives by {share} elastically, which may pass for collapse"

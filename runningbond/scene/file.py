@@ -84,12 +84,14 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     """
     try:
         return _scene(content, folder, default_title)
-    except SceneError as error:
+    except SceneError:
         from .schema import misspelt
 
         # Where a key is misspelt, what is missing or does not fit is told for want of it.
         found = misspelt(content) if Table.visits is None and isinstance(content, dict) else None
-        raise error if found is None else found from None
+        if found is not None:
+            raise found from None
+        raise
 
 
 def _scene(content: dict[str, Any], folder: Path, default_title: str) -> Scene:

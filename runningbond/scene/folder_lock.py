@@ -38,15 +38,30 @@ def claim(folder: Path, key: str) -> None:
     if fcntl is None or path in _claims:
         return
     with suppress(OSError):
-        handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        handle = _locked_now(path, key, folder)
+        while os.fstat(handle).st_nlink == 0:  # who had it before has just taken the file away
             os.close(handle)
-            what = "is written by another process; wait for it, or name another folder"
-            raise SceneError(key, what, str(folder)) from None
+            handle = _locked_now(path, key, folder)
         _claims[path] = handle
-        atexit.register(path.unlink, missing_ok=True)
+        atexit.register(_give_back, path, os.getpid())
+
+
+def _locked_now(path: Path, key: str, folder: Path) -> int:
+    """A file, locked by this process; refused where another one has it."""
+    handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        what = "is written by another process; wait for it, or name another folder"
+        raise SceneError(key, what, str(folder)) from None
+    return handle
+
+
+def _give_back(path: Path, owner: int) -> None:
+    """Take a lock's file away, if this is the process that made it and no child of it."""
+    if os.getpid() == owner:
+        path.unlink(missing_ok=True)
 
 
 @contextmanager

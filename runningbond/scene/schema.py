@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 from copy import deepcopy
 from functools import cache
+from threading import Lock
 from typing import Any, TypeAlias
 
 from .errors import SceneError
@@ -124,6 +125,9 @@ SCENES: tuple[Schema, ...] = (
 """What is read: tables in place of those of `PLAIN`."""
 
 
+_reading = Lock()
+
+
 def scene_schema() -> Schema:
     """JSON schema, draft 7, of a scene file. No scene may be read in another thread meanwhile: its keys would count."""
     tables = _read()
@@ -132,13 +136,14 @@ def scene_schema() -> Schema:
 
 def _read() -> Tables:
     """Content of the tables of all scenes, and what is asked of their keys, by what they have in common."""
-    Table.visits, visits = [], []
-    try:
-        for scene in SCENES:
-            with suppress(SceneError):  # of files that are not there; what was asked until then counts
-                scene_from_dict(deepcopy({**PLAIN, **scene}))
-    finally:
-        visits, Table.visits = Table.visits, None
+    with _reading:
+        Table.visits, visits = [], []
+        try:
+            for scene in SCENES:
+                with suppress(SceneError):  # of files that are not there; what was asked until then counts
+                    scene_from_dict(deepcopy({**PLAIN, **scene}))
+        finally:
+            visits, Table.visits = Table.visits, None
     tables: Tables = {}
     for name, content, asked in visits:
         if asked:
@@ -153,12 +158,14 @@ def _keys() -> dict[str, frozenset[str]]:
 
 
 def misspelt(content: dict[Any, Any], name: str = "") -> SceneError | None:
-    """The first key of a table, or of those in it, that none has but that is spelt much like one that is not there."""
+    """The first key of a table, or of those in it, that no such table has, but that is spelt much like one of its."""
     path = _path(name)
-    known = frozenset() if path in NAMED else _keys().get(path, frozenset())
+    known = _keys().get(path, frozenset())
+    if not known and path not in NAMED:
+        return None
     for key, value in content.items():
         full, inner = f"{name}.{key}" if name else str(key), list[tuple[str, Any]]()
-        if known and key not in known:
+        if path not in NAMED and key not in known:
             if hint := suggestion(key, sorted(known)):
                 place, told = f"[{name}]" if name else "a scene file", "a table" if isinstance(value, dict) else value
                 return SceneError(full, f"is not a key of {place}{hint}", told)

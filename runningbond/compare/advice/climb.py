@@ -133,8 +133,8 @@ def finite_peak(known: Knowledge, step: Step) -> Outcome:
     """Peak of the pushover curve at finite displacements, pushed ever slower until it settles.
 
     Inertia adds to it, and falls at least as fast as speed: it lies as far on either side of the slower push's peak as
-    that from the faster one's, at most. It is settled where that bracket is as narrow as the tolerance, and not far
-    above the load above which nothing stands at small displacements.
+    that from the faster one's, at most. It is settled where that bracket is as narrow as the tolerance, and reaches
+    down to the load above which nothing stands at small displacements.
     """
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None

@@ -56,7 +56,7 @@ class Knowledge:
     answer: Outcome | None = None  # the outcome whose bracket it is
     lowest: float | None = None  # smallest load at which a proof, a certificate or a model brings the wall down
     draws: int = 0  # histories that the last model followed to a collapse
-    contradicted: bool = False  # whether one ended below certified loads that lay within the tolerance
+    contradicted: bool = False  # whether one ended beside certified loads that lay within the tolerance
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)

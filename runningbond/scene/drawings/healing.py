@@ -100,7 +100,7 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
 
 
 def _check_corners(blocks: Blocks, touches: _Touches, reach: float) -> None:
-    """Refuse a reach that makes one corner of two of a block, which meet the same one of another block."""
+    """Refuse a reach that joins two corners of one block to each other."""
     pair = np.column_stack([blocks.owner, touches.node])
     _, first, number = np.unique(pair, axis=0, return_index=True, return_inverse=True)
     again = np.flatnonzero(first[number.ravel()] != np.arange(len(pair)))
