@@ -118,10 +118,10 @@ def _draws(
 ) -> int:
     """Run a model on draws of a wall, and print and keep what came of them."""
     check_jobs(jobs)
+    folder, drawing = None if out is None else out / DRAWS, Drawing(wall, model, number, scatter)
     if out is not None:
         make_folder(out)
         claim(out, "--out")
-    folder, drawing = None if out is None else out / DRAWS, Drawing(wall, model, number, scatter)
     try:
         with progress_bar(f"{model.name}, draws", number) as advance:
             found = drawing.run(tolerance, folder, jobs, advance)

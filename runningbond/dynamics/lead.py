@@ -66,7 +66,7 @@ class Way:
     moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[WayRow] = field(default_factory=list)
     verdict: Verdict = "stable"
-    unseen: tuple[float, float] = (0.0, 0.0)  # what means take from the largest force, and what they may at most
+    unseen: float = 0.0  # what means over windows may take from the largest force of a motion
 
     @property
     def curve(self) -> Array:

@@ -111,16 +111,15 @@ def _bracket(ways: list[Way]) -> tuple[float, float]:
     What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length.
     """
     fast, slow = (way.answer for way in ways[-2:])
-    return slow - abs(fast - slow), slow + abs(fast - slow) + ways[-1].unseen[1]
+    return slow - abs(fast - slow), slow + abs(fast - slow) + ways[-1].unseen
 
 
 def _spread(lead: Lead, ways: list[Way]) -> float:
-    """Width of the bracket without what may be nothing but shaking, or that shaking, relative to the larger end."""
+    """Width of the bracket, relative to its larger end."""
     if len(ways) < 2:
         return np.inf
-    (lower, upper), (adds, shakes) = _bracket(ways), ways[-1].unseen
-    width = max(upper - lower - shakes + adds, shakes)
-    return width / max(-lower, upper, LITTLE if lead.settles else 0.0) if width > 0 else 0.0
+    lower, upper = _bracket(ways)
+    return (upper - lower) / max(-lower, upper, LITTLE if lead.settles else 0.0) if upper > lower else 0.0
 
 
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:

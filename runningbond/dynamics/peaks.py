@@ -71,15 +71,13 @@ class Peaks:
         """Mean force of the last windows of the row."""
         return (self._sums[-1] - self._sums[-1 - windows]) / (self._ends[-1] - self._ends[-1 - windows])
 
-    def resolved(self) -> tuple[Peak, bool, tuple[float, float]]:
-        """The peak, whether it is of windows shorter than a row, and what its windows miss.
+    def resolved(self) -> tuple[Peak, bool, float]:
+        """The peak, whether it is of windows shorter than a row, and what its windows may miss, shaking included.
 
-        That is what windows half as long add, and what ever shorter ones may, shaking included: the shortest miss as
-        much as they add, for what a mean takes from a peak falls as its length.
+        The shortest miss as much as they add, for what a mean takes from a peak falls as its length.
         """
         force = np.array([peak.force for peak in self._peaks])
         more = np.diff(force)
         seen = np.flatnonzero(more <= RESOLVED * force[1:])
         level = int(seen[0]) if len(seen) else len(more) - 1
-        next_ones, all_ones = more[level], force[-1] - force[level] + more[-1]
-        return self._peaks[level], level > 0, (max(0.0, float(next_ones)), max(0.0, float(next_ones), float(all_ones)))
+        return self._peaks[level], level > 0, max(0.0, float(more[level]), float(force[-1] - force[level] + more[-1]))
