@@ -198,6 +198,18 @@ def test_a_misspelt_key_is_told_and_not_what_is_missing_for_want_of_it(
         scene_from_dict(tables)
 
 
+def test_what_is_no_table_is_not_looked_into_for_misspelt_keys() -> None:
+    """However deep it is; and what a refusal came of stays known where no key is misspelt."""
+    deep: Any = 1.0
+    for _ in range(700):
+        deep = {"a": deep}
+    with pytest.raises(SceneError, match=r"block\.density = .*must be a number above 0"):
+        scene_from_dict(content(block__density=deep))
+    with pytest.raises(SceneError, match="cannot be read") as refused:
+        scene_from_dict(content(load__live=None, load__history={"file": "no.csv", "quantity": "g"}))
+    assert isinstance(refused.value.__cause__, FileNotFoundError)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
