@@ -1,7 +1,6 @@
 """A wall in Python: the tables of a scene file, checked like one, changed by copies, run and drawn."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from difflib import get_close_matches
 from functools import cached_property
 from os.path import relpath
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .scene import Scene, SceneError, read_description, scene_from_dict
+from .scene.ranges import suggestion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -138,9 +138,7 @@ class Wall:
         tables: list[dict[str, Any]] = []
         for key, value in keys.items():
             if isinstance(value, (int, float)) and key not in table_of:
-                likely = get_close_matches(key, table_of, n=1)
-                hint = f'; did you mean "{likely[0]}"?' if likely else ""
-                raise SceneError(key, f"is not a key of a wall{hint}", value)
+                raise SceneError(key, f"is not a key of a wall{suggestion(key, list(table_of))}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
         given = {key: value for key, value in wall.items() if value is not None}

@@ -215,6 +215,8 @@ def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
     from dem.static import U_CRIT
     from dem.stiffness_update import elastic_displacement
 
+    if "block.young" not in model.reads:
+        scene = scene.with_block(young=None)
     moved = (elastic_displacement(scene, outcome.lower) or 0.0) * scene.block_size / scene.lowest_block
     if moved <= (U_CRIT if collapse is None else collapse):
         return ""

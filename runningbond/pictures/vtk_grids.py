@@ -149,16 +149,12 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
 
 
 def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
-    """Motion ``(nb, 3)`` of the ground's blocks that a grid of `GridBuilder.blocks` holds; zero for all others."""
-    motion = np.zeros((len(scene.blocks), 3))
-    for cell in np.flatnonzero(~scene.wall[blocks.cell_data["block"]]):
-        block, at = blocks.cell_data["block"][cell], blocks.get_cell(cell).point_ids
-        arm = np.asarray(blocks.points)[at, :2] - scene.blocks.centroid[block]
-        moved = np.asarray(blocks.point_data[DISPLACEMENT])[at, :2]
-        one, nothing = np.ones(len(at)), np.zeros(len(at))
-        rigid = np.vstack([np.column_stack([one, nothing, -arm[:, 1]]), np.column_stack([nothing, one, arm[:, 0]])])
-        motion[block] = np.linalg.lstsq(rigid, moved.T.ravel(), rcond=None)[0]
-    return motion
+    """Motion ``(nb, 3)`` of the supports in a grid of `GridBuilder.blocks`: the scene's, as far as it has come."""
+    corner, count = np.asarray(blocks.cell_connectivity), np.diff(blocks.cell_offsets)
+    block, points = np.repeat(blocks.cell_data["block"], count), np.asarray(blocks.points)[corner, :2]
+    whole = carried(scene.blocks, block, points, scene.support_motion)
+    moved = np.asarray(blocks.point_data[DISPLACEMENT])[corner, :2]
+    return np.asarray((whole * moved).sum() / (whole**2).sum() * scene.support_motion)
 
 
 def _templates(blocks: Blocks) -> Indices:

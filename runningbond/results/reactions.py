@@ -16,6 +16,8 @@ import numpy as np
 from runningbond.joints import JointPoints
 from runningbond.scene import Array, Forces, Indices, Scene
 
+from .mechanism import carried
+
 WORKS = ("work of the dead load [J]", "work of the live load [J]")
 AT_REST = "at rest"
 
@@ -132,13 +134,9 @@ class Supports:
 
         What is borne where they do not move, at the point about which they turn, is not in their way.
         """
-        motion, centroid = self._scene.support_motion[self.block], self._scene.blocks.centroid[self.block]
-
-        def way(body: Indices, at: Array) -> Array:
-            arm, (u, v, turn) = at - centroid[body], motion[body].T
-            return np.asarray(np.hypot(u - turn * arm[:, 1], v + turn * arm[:, 0]))
-
-        ways = np.append(way(self._body, self._points.position), way(self._tied, self._tied_at))
+        block = self.block[np.append(self._body, self._tied)]
+        at = np.concatenate([self._points.position, self._tied_at])
+        ways = np.hypot(*carried(self._scene.blocks, block, at, self._scene.support_motion).T)
         borne = np.append(np.hypot(*force[self._point].T), tie[self._tie])
         largest = float(np.hypot(*force.T).max(initial=0.0) * ways.max(initial=0.0))
         return bool((borne * ways).max(initial=0.0) <= UNFELT * largest)

@@ -130,8 +130,7 @@ _reading = Lock()
 
 def scene_schema() -> Schema:
     """JSON schema, draft 7, of a scene file. No scene may be read in another thread meanwhile: its keys would count."""
-    tables = _read()
-    return {"$schema": "http://json-schema.org/draft-07/schema#", "title": "runningbond scene", **_table(tables, "")}
+    return {"$schema": "http://json-schema.org/draft-07/schema#", "title": "runningbond scene", **_table(_read(), "")}
 
 
 def _read() -> Tables:

@@ -5,7 +5,7 @@ from dataclasses import MISSING, fields
 from typing import Any, ClassVar
 
 from .errors import SceneError
-from .ranges import Range, one_of, ranges_of, suggestion, vector
+from .ranges import Range, one_of, ranges_of, vector
 
 
 class Table:
@@ -132,6 +132,5 @@ class Table:
         """Refuse keys that have no meaning."""
         for key, value in self._left.items():
             place = f"[{self.name}]" if self.name else "a scene file"
-            hint = suggestion(key, list(self._keys)) or f", which has {', '.join(self._keys)}"
-            what = f"is not a key of {place}{hint}"
+            what = f"is not a key of {place}, which has {', '.join(self._keys)}"
             raise SceneError(self.key(key), what, "a table" if isinstance(value, dict) else value)
