@@ -1,6 +1,7 @@
 """Figures of the laboratory: a card a wall, and the chart of error against experiment over cost."""
 
 from collections.abc import Sequence
+from math import inf
 from statistics import median
 from typing import Any
 
@@ -31,9 +32,9 @@ SEEN = 1.6
 
 
 def card(predictions: Sequence[Prediction]) -> Figure:
-    """One wall: measured and predicted curves, and the motion of its predicted end beside the drawn cracks."""
+    """One wall: curves, and the motion of its end by the model nearest to the test beside the cracks drawn there."""
     wall = predictions[0].wall
-    drawn = next((each for each in reversed(predictions) if each.mode and not each.rung.is_by_hand), None)
+    drawn = min((each for each in predictions if each.mode and not each.rung.is_by_hand), key=_distance, default=None)
     panels = 1 + (drawn is not None) + (wall.cracks is not None)
     figure = Figure(figsize=(5.6 + 3.6 * (panels - 1), 4.3), layout="constrained")
     axes = list(figure.subplots(1, panels, width_ratios=[1.6] + [1.0] * (panels - 1), squeeze=False)[0])
@@ -45,7 +46,13 @@ def card(predictions: Sequence[Prediction]) -> Figure:
         axes[0].imshow(imread(wall.cracks)[:, :: -1 if mirrored else 1])
         axes[0].set_title("cracks, as drawn after the test" + (", mirrored" if mirrored else ""), fontsize=9)
         axes[0].axis("off")
+    figure.draw_without_rendering()  # a first layout, from which that of the drawing knows how tall the wall's axes get
     return figure
+
+
+def _distance(prediction: Prediction) -> tuple[bool, float]:
+    """How far a model is from the test; those that were not led along the test's path come last."""
+    return not len(prediction.curve), inf if prediction.error is None else abs(prediction.error)
 
 
 def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
