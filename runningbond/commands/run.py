@@ -2,6 +2,8 @@
 
 import json as to_json
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -40,6 +42,9 @@ from .terminal import (
     tell_cost,
     told_interruption,
 )
+
+OPTIONS = {"number": "--draws", "scatter": "--scatter"}
+"""What draws are asked for with on the command line, by their names in Python."""
 
 
 def run(
@@ -113,17 +118,31 @@ def _progress(model: Model, wall: Scene) -> Progress | None:
     return ResponseProgress()
 
 
+@contextmanager
+def _as_options() -> Iterator[None]:
+    """Name what draws refuse after the options that it was given by."""
+    try:
+        yield
+    except SceneError as error:
+        name, *rest = error.key.split(" ")
+        if name not in OPTIONS:
+            raise
+        raise SceneError(" ".join([OPTIONS[name], *rest]), error.remedy, error.value) from None
+
+
 def _draws(
     wall: Scene, model: Model, number: int, scatter: str, tolerance: float, jobs: int, out: Path | None, json: bool
 ) -> int:
     """Run a model on draws of a wall, and print and keep what came of them."""
     check_jobs(jobs)
-    folder, drawing = None if out is None else out / DRAWS, Drawing(wall, model, number, scatter)
+    folder = None if out is None else out / DRAWS
+    with _as_options():
+        drawing = Drawing(wall, model, number, scatter)
     if out is not None:
         make_folder(out)
         claim(out, "--out")
     try:
-        with progress_bar(f"{model.name}, draws", number) as advance:
+        with progress_bar(f"{model.name}, draws", number) as advance, _as_options():
             found = drawing.run(tolerance, folder, jobs, advance)
     except Interrupted as stopped:
         kept = "nothing is kept without --out" if folder is None else f"{stopped.campaign.kept} of {number} draws are "

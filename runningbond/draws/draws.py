@@ -130,11 +130,11 @@ class Drawing:
 
     def __post_init__(self) -> None:
         if isinstance(self.number, bool) or not isinstance(self.number, Integral):
-            raise SceneError("--draws", f"must be a whole {str(NUMBER).removeprefix('a ')}", self.number)
-        NUMBER.take("--draws", self.number)
+            raise SceneError("number", f"must be a whole {str(NUMBER).removeprefix('a ')}", self.number)
+        NUMBER.take("number", self.number)
         if self.model.kind != "history":
             raise SceneError(
-                "--draws", f"is for models that follow a path, which {self.model.name} does not", self.number
+                "number", f"is for models that follow a path, which {self.model.name} does not", self.number
             )
         self.model.check(self.scene)
         self.read.draw(self.scene, 1)
@@ -167,5 +167,5 @@ class Drawing:
             progress=lambda cell: progress(cell[0]),
         )
         for refusal in found.inapplicable.values():
-            raise SceneError("--draws", refusal)
+            raise SceneError("number", refusal)
         return Draws(tuple(found.outcomes[name, self.model.name] for name in scenes), self.read)

@@ -16,7 +16,7 @@ SEED = 20
 BITS = 1e-12
 """Relative change of densities and frictions that changes nothing but their last bits."""
 
-KEY = "--scatter"
+KEY = "scatter"
 RANGES = {"size": Range(above=0.0, most=0.1), "friction": Range(above=0.0, most=0.5)}
 
 

@@ -282,5 +282,18 @@ def test_blocks_of_an_arch_keep_their_sizes(capsys: pytest.CaptureFixture[str]) 
 
 @pytest.mark.parametrize("draws", [2.0, True, None, "3"])
 def test_a_number_of_draws_is_whole_in_python_too(draws: Any) -> None:
-    with pytest.raises(SceneError, match="--draws"):
+    with pytest.raises(SceneError, match="^number"):
         Drawing(block(), MODELS["dem-static"], draws)
+
+
+def test_refusals_in_python_name_no_option_of_the_command_line() -> None:
+    wall = rb.Wall.running_bond(
+        length=0.8, height=0.4, block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0, friction=0.6
+    )
+    for number, scatter, key in (
+        (1, "bits", "number = 1:"),
+        (2, "sise=0.1", "scatter = "),
+        (2, "size=9", "scatter size"),
+    ):
+        with pytest.raises(SceneError, match=f"^{key}"):
+            wall.draws("dem-static", number, scatter=scatter)
