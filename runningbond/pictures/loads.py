@@ -1,6 +1,7 @@
 """Arrows of loads, with their sizes: live ones dark and times λ, dead ones blue."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,9 @@ from .style import DARK, DEAD, MOTION
 
 EARTH = (0.0, -9.81)
 
+SHORTEST = 0.4
+"""Length of arrows of next to no load along a line, beside those of the largest; others are in between."""
+
 MANY = 4
 """Forces of one load from which on each has an arrow, but not a size of its own."""
 
@@ -46,6 +50,8 @@ class LoadDrawing:
         self.rows: list[Array] = []
         self.alone: list[Array] = []
         self.pushes: dict[tuple[bool, float, float], list[str]] = {}
+        load = shape.scene.load
+        self.largest = {live: _largest(loads) for live, loads in ((False, load.dead), (True, load.live))}
 
     def draw(self) -> None:
         """Draw all loads: along lines first, then at points, and on the whole wall last."""
@@ -148,12 +154,13 @@ class LoadDrawing:
     def _line(self, load: LineLoad, live: bool, colour: str, name: str) -> None:
         """A row of arrows under a bar; outside the wall moved outwards until no other row is in its way."""
         a, direction = self.a, unit_vector(np.array(load.force))
-        block, share = load.parts(self.scene)
+        block, parts = load.parts(self.scene)
         run = np.subtract(load.end, load.start)
         along = run / np.hypot(*run)
+        share = SHORTEST + (1 - SHORTEST) * math.hypot(*load.force) / self.largest[live]
         n = int(np.clip(np.hypot(*run) / (1.5 * a) + 1, 2, 60))
         places = np.linspace(0.0, 1.0, n)
-        of = block[np.minimum(np.searchsorted(share[:, 1], places), len(block) - 1)]
+        of = block[np.minimum(np.searchsorted(parts[:, 1], places), len(block) - 1)]
         along_it = zip(np.array(load.start) + places[:, None] * run, of, strict=True)
         tips = np.array([self.shape.drawn_at(*end) for end in along_it])
         text = times_lambda(readable(math.hypot(*load.force), "N/m"), live=live)
@@ -167,10 +174,13 @@ class LoadDrawing:
         if is_shear and not within:
             tips = tips + 0.6 * a * away
         elif not is_shear and away @ direction > 0:  # it pulls
-            tips = tips + 1.5 * a * direction
-        both = np.concatenate([tips - (0.9 if is_shear else 1.5) * a * direction, tips])
+            tips = tips + 1.5 * share * a * direction
+        both = np.concatenate([tips - (0.9 if is_shear else 1.5) * share * a * direction, tips])
         air = 0.35 * a * away if is_shear else np.zeros(2)
-        while not within and any(_meet(np.concatenate([both - air, both + air]), box) for box in self.rows):
+        inner = 1e-3 * (np.mean(both @ along) - both @ along)[:, None] * along  # rows may go on where others end
+        while not within and any(
+            _meet(np.concatenate([both - air, both + air]) + np.tile(inner, (2, 1)), box) for box in self.rows
+        ):
             both = both + 0.5 * a * away
         tails, tips = both[:n], both[n:]
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
@@ -273,6 +283,11 @@ class LoadDrawing:
 def _look(live: bool) -> tuple[str, str]:
     """Colour and name of live or dead loads."""
     return (DARK, "live load") if live else (DEAD, "dead load")
+
+
+def _largest(loads: Sequence[Action]) -> float:
+    """The largest size of loads along lines [N/m]; 0 without one."""
+    return max((math.hypot(*each.force) for each in loads if isinstance(each, LineLoad)), default=0.0)
 
 
 def _side(direction: Array) -> tuple[float, float]:

@@ -215,6 +215,23 @@ def test_arrows_point_where_the_load_does_and_stand_outside(load: dict[str, Any]
         assert not (0 < x < 2 and 0 < y < 1)
 
 
+def test_pressures_beside_one_another_are_drawn_in_proportion_and_at_the_wall() -> None:
+    """Earth beside a wall, in steps: each row of arrows ends at the wall where the next one begins."""
+    steps = {0.0: 900.0, 0.25: 600.0, 0.5: 300.0}
+    dead = [{"kind": "line", "from": [0, y], "to": [0, y + 0.25], "force": [q, 0]} for y, q in steps.items()]
+    load = {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": dead}
+    figure = figure_of(scene_from_dict(wall(1.0, 1.0) | {"load": load}))
+    runs = [arrow._path_original.vertices for arrow in named(figure, "dead load", FancyArrowPatch)]
+    assert len(runs) == len({tuple(run[0]) for run in runs})
+    lengths: dict[float, set[float]] = {}
+    for tail, tip in runs:
+        assert tip[0] == pytest.approx(0.0, abs=1e-9)
+        lengths.setdefault(round(float(tip[0] - tail[0]), 6), set()).add(float(tip[1]))
+    least, middle, most = sorted(lengths)
+    assert most - middle == pytest.approx(middle - least, abs=1e-5)
+    assert max(lengths[most]) == pytest.approx(min(lengths[middle]))
+
+
 def faces(figure: Figure) -> Array:
     """Colours of the blocks, ``(nw, 3)``."""
     (blocks,) = [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
