@@ -93,7 +93,7 @@ class RigidContacts:
         """As of `ContactSearch`, at `contact_points`."""
         at = position_of(self.points(contacts)[0], self._key_of_point)
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
-        return np.where(at >= 0, values[:, at], lost[:, None])
+        return np.column_stack([values, lost])[:, at]  # -1, of those that are none, is the last
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`."""

@@ -161,7 +161,7 @@ class DeformableContacts:
         at = position_of(contacts.key, key)
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])
         part = np.where(np.arange(6)[:, None] // 2 == 1, share, 1.0)
-        return np.where(at >= 0, values[:, at] * part, lost[:, None])
+        return np.column_stack([values, lost])[:, at] * part  # -1, of those that are none, is the last
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`."""

@@ -79,7 +79,9 @@ def collapse_of_led(
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     # What a support hardly moves does hardly any work. The dead load came on at once, in a motion of no account.
-    lost = run.unaccounted(last, LITTLE * run.system.carried.work, since=state)
+    # Where the way comes back, works nearly cancel: what counts is how far they went.
+    gone = float(np.ptp([row.works for row in way.rows], axis=0).sum()) if way.rows else 0.0
+    lost = run.unaccounted(last, max(gone, LITTLE * run.system.carried.work), since=state)
     outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -155,7 +157,7 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
     what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
     what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
     other = -float(outcome.curve[:, 1].min())
-    if len(lead.goals) > 1 and other > 0:
+    if len(lead.goals) > 1 and other > 0 and not lead.settles:
         what += f"; the other way it takes {number(other)}"
     what += f"; {'small' if lead.run.system.contacts is None else 'finite'} displacements"
     at = f"{np.abs(outcome.curve[:, 0]).max():.4g} m"

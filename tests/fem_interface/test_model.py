@@ -48,7 +48,7 @@ def test_stiff_blocks_fall_at_the_load_of_rigid_ones(changes: dict[str, Any]) ->
 @pytest.mark.parametrize(
     "name",
     [
-        *(pytest.param(f"panel-{k:02d}", marks=pytest.mark.long) for k in (1, 2, 3, 4, 5, 6, 8, 9, 10, 12)),
+        *(pytest.param(f"panel-{k:02d}", marks=pytest.mark.long) for k in (1, 2, 3, 4, 5, 6, 8, 9, 10)),
         *(pytest.param(f"point-load-{k}", marks=pytest.mark.long) for k in (4, 2, 1, "quarter")),
     ],
 )
@@ -56,7 +56,7 @@ def test_panels_of_stiff_blocks_fall_at_the_load_of_rigid_ones(name: str) -> Non
     """The paper's panels, E = 1000 GPa: λ within 1 % of `dem-dynamic` where both have the same joint points.
 
     And not above the associated bound. But for panels 7 and 11, of the smallest blocks, whose histories turn on the
-    last bit of a number.
+    last bit of a number, and panel-12, below.
     """
     scene = published_scene(name)
     assert scene.block.young == 1e12
@@ -68,9 +68,23 @@ def test_panels_of_stiff_blocks_fall_at_the_load_of_rigid_ones(name: str) -> Non
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number", [1, 2, 3, 4, 5, 6, 8, 9, 12])
+def test_panel_12_takes_either_of_two_branches_whose_collapse_is_certified() -> None:
+    """Rigid blocks, and those with their joint points, fall 7 % apart at this pace (docs/fem-study.md)."""
+    scene = published_scene("panel-12")
+    (low, high), digit = (0.0748536, 0.0985747), 1e-6  # `limit_nonassociated`: collapse at every load between them
+    for outcome in (fem(scene, 0.005, points="joints"), dem_dynamic(scene, 0.005)):
+        assert outcome.lower is not None
+        assert outcome.upper is not None
+        assert low - digit <= outcome.lower <= outcome.upper <= high + digit
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("number", [1, 2, 3, 4, 5, 6, 8, 9])
 def test_a_finer_mesh_leaves_the_load_where_it_is(number: int) -> None:
-    """Two cells in half a block along the course and in its height, joint points of rigid blocks: within 1 %."""
+    """Two cells in half a block along the course and in its height, joint points of rigid blocks: within 1 %.
+
+    But for panel-12, which takes its other branch (docs/fem-study.md).
+    """
     beside_rigid_blocks(published_scene(f"panel-{number:02d}"), 0.01, cells=2, points="joints")
 
 

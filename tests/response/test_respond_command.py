@@ -86,3 +86,15 @@ def test_a_response_is_not_rendered_and_says_where_it_is(
     ask("respond", tmp_path / "out", **SHAKEN)
     assert command(["render", str(tmp_path / "out")]) == 2
     assert "holds a response, which is in response.csv and response.png; open_run.py shows" in capsys.readouterr().err
+
+
+def test_a_wall_that_leaves_its_ground_is_filmed(ask: Any, tmp_path: Path) -> None:
+    """Ground that falls faster than the wall touches nothing: there are no contacts to ask for joints' values."""
+    record = tmp_path / "hop.txt"
+    rows = [f"{k / 1000:.3f} 0.0 {-15.0 if k < 100 else 0.0}" for k in range(500)]
+    record.write_text("\n".join(rows) + "\n")
+    history = {"file": str(record), "quantity": "acceleration"}
+    out = tmp_path / "out"
+    response = json.loads(ask("respond", out, "--json", load__live=None, load__history=history))
+    assert response["verdict"] == "stands"
+    assert (out / "blocks.pvd").exists()
