@@ -4,7 +4,7 @@ from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
 from .controls import Drive, drive, pushover_curve, ramp, settled_drive
 from .highest_frequency import with_highest_frequency
-from .inertia import CALMER, inertia_factors, inertia_note, largest_scaling
+from .inertia import CALMER, beam_note, inertia_factors, inertia_note, largest_scaling
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
@@ -34,6 +34,7 @@ __all__ = [
     "Run",
     "State",
     "Unstable",
+    "beam_note",
     "block_frequency_squared",
     "collapse_by_steps",
     "drive",

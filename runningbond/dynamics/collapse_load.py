@@ -12,6 +12,7 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
+from .inertia import beam_note
 from .led import UNACCOUNTED, collapse_of_led
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
@@ -91,7 +92,7 @@ def collapse_by_steps(
     criteria = Criteria(collapse=collapse * sizes, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
-    note = "; ".join(filter(None, (note, _note_on_beam(scene))))
+    note = "; ".join(filter(None, (note, beam_note(scene))))
     try:
         # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):
@@ -124,15 +125,6 @@ def collapse_by_steps(
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
     parts = (outcome.message, note, long if run.dt > run.safe_step else "", stiffness)
     return replace(outcome, message="; ".join(part for part in parts if part))
-
-
-def _note_on_beam(scene: Scene) -> str:
-    """What there is to say of a beam that is too light to move as it is."""
-    beam = None if scene.beam is None else scene.beam.block
-    if beam is None or np.isclose(scene.density[beam], scene.inertial_density[beam]):
-        return ""
-    inertia = scene.inertial_density[beam] * scene.thickness * scene.blocks.area[beam]
-    return f"the beam of {scene.mass[beam]:.4g} kg moves with the inertia of {inertia:.4g} kg"
 
 
 def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Criteria) -> str:

@@ -54,3 +54,12 @@ def largest_scaling(mass: Array, of_blocks: Array) -> float:
 def inertia_note(factor: float) -> str:
     """What a message says of blocks that move with more inertia than they have."""
     return f"inertia of blocks scaled up to {factor:.3g} times" if factor > 1.005 else ""
+
+
+def beam_note(scene: Scene) -> str:
+    """What there is to say of a beam that is too light to move as it is."""
+    beam = None if scene.beam is None else scene.beam.block
+    if beam is None or np.isclose(scene.density[beam], scene.inertial_density[beam]):
+        return ""
+    inertia = scene.inertial_density[beam] * scene.thickness * scene.blocks.area[beam]
+    return f"the beam of {scene.mass[beam]:.4g} kg moves with the inertia of {inertia:.4g} kg"

@@ -263,5 +263,8 @@ def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: An
         As of `check_response`.
     """
     follow = check_response(model, scene, scale)
+    from runningbond.dynamics import beam_note
+
     response = follow(scene, scale, **settings)
-    return replace(response, message="; ".join(filter(None, [response.message, _left_out(find_model(model), scene)])))
+    parts = response.message, beam_note(scene), _left_out(find_model(model), scene)
+    return replace(response, message="; ".join(filter(None, parts)))

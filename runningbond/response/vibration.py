@@ -9,14 +9,14 @@ Of a joint that closes the more it is pressed, k_n is the tangent under its pres
 The weight closes the joints; of what it does besides, the moment of a block that leans, nothing is in K.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
-from runningbond.dynamics import U_CRIT, Criteria, Run, State, settle
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.ties import YIELD
 from runningbond.dynamics.vibrations import stiffness_matrix
 from runningbond.scene import Array, Scene, SceneError
@@ -61,7 +61,14 @@ def vibration_at_rest(scene: Scene, run: Run, count: int = 10) -> Vibration:
     state, sizes = State.at_rest(run.system), scene.block_sizes[run.system.owner]
     if settle(run, state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True) != "stable":
         raise SceneError(scene.title, "does not come to rest under its dead load")
-    return vibration(run, state, count)
+    return vibration(Run(_with_true_beam(scene, run.system)), state, count)
+
+
+def _with_true_beam(scene: Scene, system: BlockSystem) -> BlockSystem:
+    """A system whose beam has the mass with which it vibrates."""
+    mass, density = system.mass.copy(), scene.density_in_motion / scene.inertial_density
+    mass[system.rigid] *= density[system.owner][:, None]
+    return replace(system, mass=mass)
 
 
 def vibration(run: Run, state: State, count: int = 10) -> Vibration:

@@ -30,6 +30,9 @@ from .ties import NO_TIES, Tie, Ties, place_ties
 
 Material = TypeVar("Material", BlockMaterial, JointMaterial)
 
+LIGHTEST = 1e-3
+"""Least mass, beside that of the blocks, that a beam has where the ground moves: lighter ones ask for shorter steps."""
+
 SAME_COLUMN = 1e-9
 """Difference, in sizes of the wall, below which blocks stand in one column: far below the contact tolerance."""
 
@@ -167,10 +170,22 @@ class Scene:
         """Density with which each block resists acceleration, ``(nb,)`` [kg/m³]: a beam's is at least the default one.
 
         One of hardly any mass would ask models of motion for hardly any time step; at rest it makes no difference.
+        Where the ground moves it does: `density_in_motion`.
         """
+        return self.density_in_motion if self.history else self._with_beam_of(self.block.density)
+
+    @cached_property
+    def density_in_motion(self) -> Array:
+        """Density of each block as it vibrates, ``(nb,)`` [kg/m³]: its own, a beam's such that it has some mass."""
+        mass = float(self.density[self.masonry] @ self.blocks.area[self.masonry])
+        beam = 0.0 if self.beam is None else float(self.blocks.area[self.beam.block].sum())
+        return self._with_beam_of(LIGHTEST * mass / beam if beam else 0.0)
+
+    def _with_beam_of(self, least: float) -> Array:
+        """Densities, that of the beam a least one or its own."""
         density = self.density.copy()
         if self.beam is not None:
-            density[self.beam.block] = np.maximum(density[self.beam.block], self.block.density)
+            density[self.beam.block] = np.maximum(density[self.beam.block], least)
         return density
 
     @cached_property

@@ -109,3 +109,25 @@ def test_a_taut_tie_is_a_spring_and_a_slack_one_is_none(others: int) -> None:
     slowest = swaying(dem_vibration(stack(1, width, height, 1e11, shear, tie=ties), 3))[0]
     mass, spring = DENSITY * width * height * THICKNESS, shear * width * THICKNESS + rod
     assert slowest == pytest.approx(math.sqrt(spring / mass) / (2 * math.pi), rel=1e-3)
+
+
+def test_a_beam_vibrates_with_its_own_mass() -> None:
+    """As a course does that is as heavy: it had the mass of masonry of its size, whatever it weighs."""
+    beam = {"height": 0.05, "mass": 2.0}
+    under = dem_vibration(stack(2, 0.4, 0.2, 1e9, 4e8, beam=beam), 9)
+    heights = {"wall__block_height": None, "wall__course_heights": [0.2, 0.2, 0.05]}
+    light = {
+        "materials": {"light": {"density": 2.0 / (THICKNESS * 0.4 * 0.05)}},
+        "assign": [{"block": "light", "blocks": [2]}],
+    }
+    over = scene_from_dict(
+        content(
+            wall__length=None,
+            wall__height=None,
+            wall__courses=[[1]] * 3,
+            wall__block_width=0.4,
+            **heights,
+            **light,
+        )
+    ).with_joint(elasticity=Stiffness(1e9, 4e8))
+    assert under.frequency == pytest.approx(dem_vibration(over, 9).frequency, rel=1e-6)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import runningbond as rb
 from dem.finite_system import finite_system
 from runningbond.compare.published import published_scene
 from runningbond.joints.wall_law import with_impacts
@@ -214,3 +215,37 @@ def test_points_that_drift_is_no_share_of_are_refused(points: Any) -> None:
     scene = wall(shaken("half-sine", 8.0, 0.3))
     with pytest.raises(SceneError, match="points"):
         respond("dem-dynamic", scene, points=points)
+
+
+def under_a_beam(mass: float, period: float = 1.0, **more: Any) -> rb.Wall:
+    """A cube of 2 t with a beam of a mass [kg] on it, over ground that moves at 0.3 g for half a period [s]."""
+    return rb.Wall.running_bond(
+        length=1.0,
+        height=1.0,
+        block_width=1.0,
+        block_height=1.0,
+        thickness=1.0,
+        density=2000.0,
+        friction=0.6,
+        normal_stiffness=1e9,
+        shear_stiffness=4e8,
+        beam={"height": 0.1, "mass": mass, **more},
+        history={"pulse": {"kind": "half-sine", "amplitude": 0.3, "period": period}, "quantity": "g"},
+    )
+
+
+def test_a_light_beam_has_no_more_inertia_than_it_weighs() -> None:
+    """It stays where friction bears its own inertia, 0.6 > 0.3, whatever it weighs: it was as stone, and slid off."""
+    light, massless = (under_a_beam(mass).respond("dem-dynamic") for mass in (4.0, 0.0))
+    assert light.verdict == "stands"
+    assert abs(light.displacement).max() < 1e-3
+    assert "inertia" not in light.message
+    assert "the beam of 0 kg moves with the inertia of 2 kg" in massless.message
+
+
+@pytest.mark.parametrize("mass", [0.0, 50.0])
+def test_ground_that_moves_slowly_bears_the_inertia_of_the_mass_there_is(mass: float) -> None:
+    response = under_a_beam(mass, 4.0, force=[0.0, -5e3]).respond("dem-dynamic")
+    middle = int(np.searchsorted(response.time, 1.0))
+    borne = response.reaction[middle, 0] / response.ground[middle, 0]
+    assert borne == pytest.approx(2000.0 + (mass or 2.0), rel=2e-3)
