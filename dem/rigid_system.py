@@ -17,7 +17,7 @@ from runningbond.dynamics import (
     rigid_frequency_squared,
     tie_rows,
 )
-from runningbond.dynamics.rig import Rig
+from runningbond.dynamics.rig import Rig, TurningLoads
 from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.joints.along import gather_along, scatter_along
 from runningbond.joints.law import KernelLaw
@@ -108,6 +108,7 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
         carried=carried,
         contacts=contacts,
         rig=None if contacts is None else Rig.of(scene, rigid),
+        turning=None if contacts is None else TurningLoads.of(scene, rigid),
     )
 
 

@@ -17,7 +17,7 @@ from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
 from .kernel_calls import advance, gather, reframe, respond, scatter
-from .rig import turn_rig
+from .rig import turn_loads, turn_rig, work_of_turned
 from .ties import pull
 from .update import Modes, StateArrays
 
@@ -159,7 +159,7 @@ def _at_constant_loads(
 ) -> tuple[int, bool, float, float]:
     """The steps of `step` in which loads stay as they are."""
     dt, local, joint_viscosity = scales
-    addresses, geometry, parameters, modes, restraint, ties, rig, memory, state, work, frames = arrays
+    addresses, geometry, parameters, modes, restraint, ties, rig, turning, memory, state, work, frames = arrays
     _, _, mobility = modes
     motion, velocity, history, _, force = state
     freedom, basis = restraint
@@ -167,6 +167,7 @@ def _at_constant_loads(
     already, given, most = watch
     at_gather, at_reframe, at_law, at_scatter, at_update = addresses
     driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[4].size > 0, rig[0].size > 0
+    turns = turning[0].size > 0
     response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if driven:
         for i in range(live.size):
@@ -196,6 +197,8 @@ def _at_constant_loads(
             response = 0.0
             for k in range(3):
                 response += live[rig[0][k]] ** 2 * mobility[rig[0][k]]
+        if turns:
+            turn_loads(turning, motion, force)
         if carried:
             pressed = _carry(live, speed, velocity, force)
             total += pressed
@@ -212,6 +215,8 @@ def _at_constant_loads(
             turned = moment * dt * velocity[rig[0][2]]
             worked += turned
             rig[3][0] += turned
+        if turns:
+            worked += work_of_turned(turning, velocity, dt)
         due = (already + taken + 1) % LOOK == 0 and given < np.inf
         if due and not _is_stable(given + worked, load, modes, state, most):
             return taken + 1, False, total, worked
@@ -232,8 +237,9 @@ def step(
         speed [1/s] times `live`.
     arrays
         `Addresses` of the kernels; what they are called with: the interface's geometry, the law's parameters, modes;
-        restraint, ties, rig; the update's memory, `StateArrays`, `Work` and `Frames`. With a rig, whose freedoms say
-        that there is one, the live load turns with the beam (`rig`), is written to, and acts on nothing else.
+        restraint, ties, rig, turning loads; the update's memory, `StateArrays`, `Work` and `Frames`. With a rig, whose
+        freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and acts on nothing
+        else.
     watch
         The energy is looked at every `LOOK` steps of the state's life; where it does not add up, the steps end.
 
@@ -244,7 +250,7 @@ def step(
         what presses on the carried modes per unit of their motion; the work of all but the constant load.
     """
     rises = speed != 0.0 and control == HELD
-    state, work, _ = arrays[8:]
+    state, work, _ = arrays[9:]
     motion, loaded = state[0], work[1]
     already, given, most = watch
     copy_into(loaded, load)

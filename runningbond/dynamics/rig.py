@@ -3,6 +3,9 @@
 The point driven is at p from the beam's centroid. With the beam's rotation θ it goes by
 u_x + p_x (cos θ − 1) − p_y sin θ, and pushes with a moment −(p_x sin θ + p_y cos θ) per unit of horizontal force.
 A dead force F whose line is fixed turns the beam about its centroid, which has gone by u, with −(u_x F_y − u_y F_x).
+
+Dead forces at points of blocks go along with these. At rest, at r from the centroid, they have the moment M = Σ r × F
+and the virial V = Σ r · F; where the block has turned by θ the moment is M cos θ − V sin θ.
 """
 
 import math
@@ -44,6 +47,54 @@ class Rig(NamedTuple):
 
 
 NO_RIG = Rig(np.zeros(0, dtype=np.uint64), np.zeros(2), np.zeros(2), np.zeros(1))
+
+
+class TurningLoads(NamedTuple):
+    """Dead forces at points of blocks that turn."""
+
+    spin: Unsigned  # (k,) where in the motion the blocks' rotations stand
+    moment: Array  # (k,) about the centroid at rest [N m]
+    virial: Array  # (k,) [N m]
+    more: Array  # (k,) written by the steps: what the moment now is more than at rest [N m]
+    work: Array  # (1,) and the work of that [J]
+
+    @classmethod
+    def of(cls, scene: Scene, rigid: Indices) -> "TurningLoads | None":
+        """Those of a scene, from where the rigid motions of its blocks stand ``(nb, 3)``."""
+        dead = scene.dead_forces
+        arm = dead.at - scene.blocks.centroid[dead.block]
+        moment, virial = np.zeros((2, len(scene.blocks)))
+        np.add.at(moment, dead.block, arm[:, 0] * dead.force[:, 1] - arm[:, 1] * dead.force[:, 0])
+        np.add.at(virial, dead.block, (arm * dead.force).sum(axis=1))
+        turn = np.flatnonzero(((moment != 0) | (virial != 0)) & ~scene.fixed)
+        if not len(turn):
+            return None
+        spin = rigid[turn, 2].astype(np.uint64)
+        return cls(spin, moment[turn], virial[turn], np.zeros(len(turn)), np.zeros(1))
+
+
+NO_TURNING_LOADS = TurningLoads(np.zeros(0, dtype=np.uint64), np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(1))
+
+
+@kernel
+def turn_loads(loads: tuple[Unsigned, Array, Array, Array, Array], motion: Array, force: Array) -> None:
+    """Add to forces ``(nd,)`` what the moments of turning loads now are more than at rest, and keep it."""
+    spin, moment, virial, more, _ = loads
+    for k in range(spin.size):
+        angle = motion[spin[k]]
+        more[k] = moment[k] * (math.cos(angle) - 1.0) - virial[k] * math.sin(angle)
+        force[spin[k]] += more[k]
+
+
+@kernel
+def work_of_turned(loads: tuple[Unsigned, Array, Array, Array, Array], velocity: Array, dt: float) -> float:
+    """Work of what was kept [J] in a step at a velocity ``(nd,)``."""
+    spin, _, _, more, work = loads
+    done = 0.0
+    for k in range(spin.size):
+        done += more[k] * dt * velocity[spin[k]]
+    work[0] += done
+    return done
 
 
 @kernel

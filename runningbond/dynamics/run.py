@@ -15,7 +15,7 @@ from runningbond.scene import Array
 from .central_differences import CONTROLS, Control, Watch, step
 from .contact_update import ContactUpdate, contacts_of
 from .kernel_calls import Addresses, addresses
-from .rig import NO_RIG, turn_rig
+from .rig import NO_RIG, NO_TURNING_LOADS, turn_loads, turn_rig
 from .state import PLASTIC_SLIP, State
 from .system import BlockSystem, Interface
 from .ties import YIELD
@@ -104,6 +104,7 @@ class Run:
         self._advance_modes, self._memory = update_of(system, damping)
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
+        self._turning = tuple(system.turning or NO_TURNING_LOADS)
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -232,11 +233,13 @@ class Run:
         scales = (self.dt, self.local, self._viscosity)
         ties = (*self.system.ties, state.stretch)
         frames = (state.bears, self._plastic)
-        every = (self._addresses, *self._arrays, ties, self._rig, self._memory, arrays, self._work, frames)
+        loads = (self._rig, self._turning)
+        every = (self._addresses, *self._arrays, ties, *loads, self._memory, arrays, self._work, frames)
         found: tuple[int, bool, float, float] = step(number, steps, scales, load, live, speed, every, watch)
-        if self.system.rig is not None:
-            state.turned += float(self._rig[3][0])
-            self._rig[3][0] = 0.0
+        for moments in (self.system.rig, self.system.turning):
+            if moments is not None:
+                state.turned += float(moments.work[0])
+                moments.work[0] = 0.0
         return found
 
     def _ahead(self, state: State, load: Array) -> State:
@@ -344,7 +347,9 @@ class Run:
         if search is None or system.rig is None:
             raise TypeError("resultants are those of a rig at finite displacements")
         moment = turn_rig(self._rig, state.motion, live)
-        total = (system.dead + multiplier * live)[system.rigid]
+        loads = system.dead + multiplier * live
+        turn_loads(self._turning, state.motion, loads)
+        total = loads[system.rigid]
         total[system.rigid[:, 0] == system.rig.freedom[0], 2] += moment
         at = search.outline.blocks.centroid + state.motion[system.rigid][:, :2]
         total[:, 2] += at[:, 0] * total[:, 1] - at[:, 1] * total[:, 0]

@@ -21,7 +21,7 @@ from runningbond.joints.law import KernelLaw
 from runningbond.scene import Array, Indices, Scene
 
 from .clusters import NO_CLUSTERS, Clusters
-from .rig import Rig
+from .rig import Rig, TurningLoads
 from .ties import NO_TIE_ROWS, TieRows
 
 Kernel: TypeAlias = Callable[..., Any]
@@ -149,6 +149,7 @@ class BlockSystem:
     carried: Carried = NOTHING_CARRIED  # supports that move
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
     rig: Rig | None = None  # what drives its beam at finite displacements
+    turning: TurningLoads | None = None  # dead loads that turn with its bodies there
     coupling: Coupling = NOT_COUPLED  # inertia that modes have in common; only where a load alone acts on them
     inertia_scaling: float = 1.0  # largest factor by which bodies have more inertia than they have (`inertia`)
     clusters: Clusters = NO_CLUSTERS  # bodies with more inertia against one another; without live load on them

@@ -76,6 +76,34 @@ def test_a_rocking_block_takes_what_its_force_allows(line: str, at: float) -> No
         )
 
 
+def test_dead_loads_at_points_and_lines_turn_with_their_block() -> None:
+    """A block that rocks about its toe under a beam, a load at its side and one along a part of its top.
+
+    By virtual work, exact at any rotation: what the dead forces lose as the corner rises, over the driven point's way.
+    """
+    b, h, drive, beam, side, line = 0.25, 1.0, 0.95, 2e4, 5e3, 1.5e4
+    scene = rig(
+        length=2 * b,
+        height=h,
+        beam__force=[0, -beam],
+        beam__drive={"displacement": [0.2, 0], "at": drive},
+        load__dead=[
+            {"kind": "point", "at": [0.0, 0.9], "force": [0, -side]},
+            {"kind": "line", "from": [0.1, h], "to": [0.3, h], "force": [0, -line]},
+        ],
+    )
+    outcome = finite(scene)
+    for d in (0.05, 0.1, 0.2):
+        theta = brentq(lambda x, d=d: drive * math.sin(x) + b * (1 - math.cos(x)) - d, 0.0, 0.5)
+        # a point at (−x, y) from the toe lies y cos θ + x sin θ above it
+        moment = sum(
+            force * (x * math.cos(theta) - y * math.sin(theta))
+            for force, x, y in ((beam, b, h + 0.05), (side, 2 * b, 0.9), (line * 0.2, 2 * b - 0.2, h))
+        )
+        exact = moment / (drive * math.cos(theta) + b * math.sin(theta))
+        assert force_at(outcome, d) == pytest.approx(exact, rel=2e-3)
+
+
 def test_a_block_between_level_plates_takes_twice_as_much() -> None:
     """Its force goes from corner to corner: V = N x / y with their distances x = l cos θ − h sin θ and y."""
     length, height, n = 0.3, 0.6, 2e4

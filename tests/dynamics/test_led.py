@@ -424,6 +424,11 @@ def test_finite_displacements_refuse_what_they_do_not_know(pushover: Any, extra:
         pushover(block(**extra), 0.01)
 
 
+def test_a_pushover_of_rigid_blocks_takes_no_live_load_at_a_point() -> None:
+    with pytest.raises(SceneError, match="load.live: finite displacements need live loads on the blocks' mass"):
+        finite_pushover(block(load__live={"kind": "point", "at": [0.0, 0.03], "force": [1, 0]}), 0.01)
+
+
 @pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
 def test_finite_displacements_refuse_joints_of_several_insets(pushover: Any) -> None:
     joints = {"lime": {"friction": 0.7, "mortar": MORTAR, "inset": 0.01}}

@@ -1,6 +1,7 @@
 """A block that rocks beside Housner's, and one that slides beside Newmark's."""
 
 import math
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 
@@ -13,7 +14,7 @@ from runningbond.dynamics import Run, State
 from runningbond.joints.wall_law import with_impacts
 from runningbond.response import Resting, follow
 from runningbond.response.resting import VISCOUS
-from runningbond.scene import Array
+from runningbond.scene import Array, PointLoad
 
 from .housner import GRAVITY, HousnerBlock
 from .walls import block, resting, shaken, still
@@ -62,6 +63,39 @@ def test_free_rocking_has_housners_period(share: float) -> None:
     found, _ = rocking(share)
     assert found[0] == pytest.approx(quarter(share), rel=1e-3)
     assert found[0] == pytest.approx(math.acosh(1 / (1 - share)) / BLOCK.p, rel=0.01)
+
+
+def test_a_dead_load_at_its_top_sways_with_a_block_that_rocks() -> None:
+    """A quarter period from the energy, I θ'² / 2 = W (height of the middle) + P (height of where P is), to 1e-3.
+
+    Let go about the right corner at half of the angle at which its weight W alone would fall, with P = W / 4 above
+    that corner and W / 2 above the other one, which presses back for longer.
+    """
+    b, h, start = BLOCK.b, BLOCK.h, -BLOCK.alpha / 2
+    bare = block(b, h, still())
+    weight = float(bare.mass[0]) * GRAVITY
+    loads = tuple(PointLoad((x, 2 * h), (0.0, -share * weight)) for x, share in ((0.0, 0.5), (2 * b, 0.25)))
+    scene = with_impacts(replace(bare, load=replace(bare.load, dead=loads)))
+    system = finite_system(scene)
+    motion, arm = np.zeros(len(system.mass)), np.array([-b, h])
+    turn = np.array([[math.cos(start), -math.sin(start)], [math.sin(start), math.cos(start)]])
+    motion[:3] = *(turn @ arm - arm), start
+    run, state = Run(system, local=0.0, viscous=VISCOUS), State.at_rest(system, motion)
+    while state.motion[2] < 0:
+        run.bear(state, system.dead, 10)
+    after = state.motion[2] / (state.velocity[2])
+
+    def height(theta: float) -> float:  # of the loads, in weights: points at (-x, y) from the corner
+        points = ((1.0, b, h), (0.5, 2 * b, 2 * h), (0.25, 0.0, 2 * h))
+        return sum(share * (y * math.cos(theta) + x * math.sin(theta)) for share, x, y in points)
+
+    def rate(u: float) -> float:  # θ = θ0 (1 − u²) takes the root out of the turning point
+        theta = -start * (1 - u * u)
+        inertia = 4 / 3 * (b * b + h * h)
+        return -start * 2 * u / math.sqrt(2 * GRAVITY * (height(-start) - height(theta)) / inertia)
+
+    assert state.time - after == pytest.approx(float(quad(rate, 0, 1)[0]), rel=1e-3)
+    assert run.unaccounted(state, weight * 0.01) < 0.01
 
 
 @pytest.mark.parametrize("share", [0.2, 0.5, 0.9])
