@@ -3,6 +3,7 @@
 from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
 from .controls import Drive, drive, pushover_curve, ramp, settled_drive
+from .dead_load import put_on_dead_load
 from .highest_frequency import with_highest_frequency
 from .inertia import CALMER, beam_note, inertia_factors, inertia_note, largest_scaling
 from .load_stepping import LoadSteps, load_steps
@@ -47,6 +48,7 @@ __all__ = [
     "mass_factor",
     "no_observer",
     "pushover_curve",
+    "put_on_dead_load",
     "ramp",
     "restrain",
     "rigid_frequency_squared",

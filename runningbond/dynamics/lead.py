@@ -67,6 +67,7 @@ class Way:
     rows: list[WayRow] = field(default_factory=list)
     verdict: Verdict = "stable"
     unseen: float = 0.0  # what means over windows may take from the largest force of a motion
+    inertia: float = 0.0  # what may be in it of bodies that speed up
 
     @property
     def curve(self) -> Array:
@@ -178,16 +179,17 @@ class Lead:
             if goal == at:
                 continue
             n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
-            pace = _pace(n)
-            steps = max(peaks.windows, round(abs(goal - at) / (speed * run.dt * pace.sum())))
-            top = (goal - at) / (run.dt * steps * pace.sum())
+            pace = _pace(n, peaks.windows)
+            steps = max(peaks.windows, round(abs(goal - at) / (speed * run.dt * pace.mean(axis=1).sum())))
             lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows)
-            for k, part in enumerate(pace.tolist()):
-                for window, length in enumerate(lengths.tolist(), start=1):
-                    before = run.driven_speed(state)
+            top = (goal - at) / (run.dt * float((pace @ lengths).sum()))
+            for k, parts in enumerate(pace.tolist()):
+                for window, (part, length) in enumerate(zip(parts, lengths.tolist(), strict=True), start=1):
+                    before, gathered = run.driven_speed(state), self._gathered(state)
                     force = run.drive(state, top * part, length, given=given)
                     force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
-                    peaks.see(force, length, state, len(way.rows) + (window > peaks.windows // 2))
+                    inertia = (self._gathered(state) - gathered) / (length * run.dt) if k < SOFT else 0.0
+                    peaks.see(force, inertia, length, state, len(way.rows) + (window > peaks.windows // 2))
                     if window == peaks.windows // 2:
                         middle = state.copy()
                 # What a row's forces are the mean of is there in its middle.
@@ -200,13 +202,20 @@ class Lead:
             motions.append(state.motion.copy())
         way.calm()
         peak, between, way.unseen = peaks.resolved()
-        way.best = peak.state
+        way.best, way.inertia = peak.state, peak.inertia
         if between:
             self.note(way, peak.state, self.moved(peak.state), peak.force)
             way.rows.insert(peak.row, way.rows.pop())
             motions.insert(peak.row, peak.state.motion)
         row = failing(way.curve)
         way.motion = motions[row] - motions[max(0, row - SEEN)]
+
+    def _gathered(self, state: State) -> float:
+        """Momentum along the drive of all bodies but the one driven, and what damping takes as they gather it [N s]."""
+        system = self.run.system
+        along = system.rigid[system.owner != self.beam, 0]
+        along = along[np.isfinite(system.mass[along])]
+        return float(system.mass[along] @ state.velocity[along]) / (1 - self.run.local)
 
     def moved(self, state: State) -> float:
         """How far what is driven has gone since the rest under the dead load [m]."""
@@ -216,7 +225,7 @@ class Lead:
         run, given = self.run, self.run.given(state)
         motion, far, _ = run.system.carried
         self.note(way, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
-        pace = _pace(2 * SOFT)
+        pace = _pace(2 * SOFT)[:, 0]
         steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
         # Small at first on each leg, where reactions change most.
         shares, legs = np.linspace(0.0, 1.0, STAGES + 1) ** 2, pairwise([0.0, *self.goals.tolist()])
@@ -277,7 +286,7 @@ def failing(curve: Array) -> int:
     return int(fallen[0]) if len(fallen) else int(moved.argmax())
 
 
-def _pace(rows: int) -> Array:
-    """Part of the top speed in each row of a leg, which starts and ends softly."""
-    k = np.arange(rows)
-    return np.asarray(np.minimum(1.0, (np.minimum(k, rows - 1 - k) + 0.5) / SOFT))
+def _pace(rows: int, windows: int = 1) -> Array:
+    """Part of the top speed in each window of each row ``(rows, windows)`` of a leg, which starts and ends softly."""
+    k = (np.arange(rows * windows) + 0.5) / windows
+    return np.asarray(np.minimum(1.0, np.minimum(k, rows - k) / SOFT)).reshape(rows, windows)

@@ -18,10 +18,10 @@ from runningbond.results.outcome import number
 from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
 
-from .collapse import Criteria, settle
+from .collapse import Criteria
+from .dead_load import put_on_dead_load
 from .lead import BEAM, LITTLE, Lead, Way, formed
 from .run import CALMING, Observer, Run, Unstable
-from .state import State
 
 STEPS, UNHURRIED, FAR = 20_000, 20, 2
 """Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
@@ -51,11 +51,12 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
         and `upper` lie about the answer as far as the last halving of the speed has changed it.
     """
-    state, ways = State.at_rest(run.system), list[Way]()
+    ways = list[Way]()
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
-        verdict = settle(resting, state, 0.0, criteria, observe, sudden=True)
-        outcome = replace(outcome, steps=state.steps)
+        loaded = put_on_dead_load(resting, criteria, observe)
+        state, verdict = loaded.state, loaded.verdict
+        outcome = replace(outcome, steps=loaded.steps)
         if verdict == "collapse":
             return replace(outcome, status="infeasible", message="collapses under its dead load")
         if verdict == "undecided":
@@ -63,7 +64,7 @@ def collapse_of_led(
         run = run.held_late(state)
         run.led = True
         lead = Lead(scene, run, state, criteria, observe, points)
-        for speed in _speeds(lead):
+        for speed in _speeds(lead, loaded.rest):
             ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
             last = lead.go(way, speed)
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
@@ -96,13 +97,13 @@ def _rate(scene: Scene) -> float | None:
     return None if scene.drive is None else scene.drive.rate
 
 
-def _speeds(lead: Lead) -> list[float]:
+def _speeds(lead: Lead, rest: int) -> list[float]:
     """Speeds to go at one after the other: twice the rate and the rate, or ever slower ones that the budget allows."""
     if rate := _rate(lead.scene):
         return [2 * rate, rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
     unhurried = UNHURRIED if lead.run.system.contacts is None else FAR
-    steps = max(STEPS, unhurried * lead.start.steps)
+    steps = max(STEPS, unhurried * rest)
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
 
@@ -110,10 +111,11 @@ def _speeds(lead: Lead) -> list[float]:
 def _bracket(ways: list[Way]) -> tuple[float, float]:
     """The answer as far on either side of the last one as that lies from the one at twice its speed.
 
-    What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length.
+    What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length. A
+    force that sets the wall in motion is no less, in the end, than without what does.
     """
     fast, slow = (way.answer for way in ways[-2:])
-    return slow - abs(fast - slow), slow + abs(fast - slow) + ways[-1].unseen
+    return slow - max(abs(fast - slow), ways[-1].inertia), slow + abs(fast - slow) + ways[-1].unseen
 
 
 def _spread(lead: Lead, ways: list[Way]) -> float:

@@ -7,6 +7,7 @@ import numpy as np
 from runningbond.scene import Array
 
 from .collapse import CALM, Criteria, Verdict, hold_load, settle
+from .dead_load import put_on_dead_load
 from .growth import FAR, Growth
 from .run import Observer, Run, no_observer
 from .state import State
@@ -167,9 +168,9 @@ class _Search:
 
     def go(self) -> None:
         """Fill in the result."""
-        result, system, state = self.result, self.run.system, State.at_rest(self.run.system)
-        result.verdict = settle(self.run, state, 0.0, self.criteria, self.observe, sudden=True)
-        result.steps = state.steps
+        result, system = self.result, self.run.system
+        loaded = put_on_dead_load(self.run, self.criteria, self.observe)
+        state, result.verdict, result.steps = loaded.state, loaded.verdict, loaded.steps
         if result.verdict != "stable":
             result.fallen = state
             return

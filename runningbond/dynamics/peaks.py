@@ -24,17 +24,19 @@ class Peak:
 
     state: State  # at the end of the window in the middle
     force: float = 0.0
+    inertia: float = 0.0  # the largest of the three
     row: int = 1  # the row of the way before which it was met
-    _last: list[float] = field(default_factory=list)
+    _last: list[tuple[float, float]] = field(default_factory=list)
     _before: State | None = None
 
-    def see(self, force: float, state: State, row: int) -> None:
-        """Look at the mean force of the next window, and at the state at its end."""
-        self._last = [*self._last[-2:], force]
-        middle = sorted(self._last)[1] if len(self._last) == 3 else 0.0
+    def see(self, force: float, inertia: float, state: State, row: int) -> None:
+        """Look at the mean force of the next window, at what speeds up meanwhile, and at the state at its end."""
+        self._last = [*self._last[-2:], (force, abs(inertia))]
+        middle = sorted(self._last)[1][0] if len(self._last) == 3 else 0.0
         if middle > self.force:
             self.state = self._before or state.copy()
             self.force, self.row = middle, row
+            self.inertia = max(inertia for _, inertia in self._last)
         self._before = state.copy() if force > self.force else None
 
 
@@ -53,23 +55,30 @@ class Peaks:
         levels = max(1, int(np.log2(max(1.0, steps / STEPS))))
         self.windows = 2**levels  # of the shortest kind in a row
         self._peaks = [Peak(start) for _ in range(levels + 1)]
-        self._sums, self._ends = [0.0], [0]  # force times steps, and steps, up to the end of each window of the row
+        # Force and inertia times steps, and steps, up to the end of each window of the row.
+        self._sums, self._ends = [np.zeros(2)], [0]
 
-    def see(self, force: float, steps: int, state: State, row: int) -> None:
-        """Look at the mean force of the next window, of so many steps, and at the state at its end, before a row."""
+    def see(self, force: float, inertia: float, steps: int, state: State, row: int) -> None:
+        """Look at means over the next window, of so many steps, and at the state at its end, before a row."""
         if len(self._sums) > self.windows:
-            self._sums, self._ends = [0.0], [0]
-        self._sums.append(self._sums[-1] + force * steps)
+            self._sums, self._ends = [np.zeros(2)], [0]
+        self._sums.append(self._sums[-1] + steps * np.array([force, inertia]))
         self._ends.append(self._ends[-1] + steps)
         for level, peak in enumerate(self._peaks):
             some = self.windows >> level
             whole = (len(self._sums) - 1) % some == 0
             if whole and (level == 0 or self._ends[-1] - self._ends[-1 - some] >= STEPS):
-                peak.see(self.mean(some), state, row)
+                peak.see(*self._means(some), state, row)
 
     def mean(self, windows: int) -> float:
         """Mean force of the last windows of the row."""
-        return (self._sums[-1] - self._sums[-1 - windows]) / (self._ends[-1] - self._ends[-1 - windows])
+        return self._means(windows)[0]
+
+    def _means(self, windows: int) -> tuple[float, float]:
+        """Mean force and inertia of the last windows of the row."""
+        steps = self._ends[-1] - self._ends[-1 - windows]
+        force, inertia = ((self._sums[-1] - self._sums[-1 - windows]) / steps).tolist()
+        return force, inertia
 
     def resolved(self) -> tuple[Peak, bool, float]:
         """The peak, whether it is of windows shorter than a row, and what its windows may miss, shaking included.

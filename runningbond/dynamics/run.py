@@ -261,7 +261,7 @@ class Run:
         # What is held from now on has been damped; the ledger counts the damping of what moves.
         state.absorbed += float(state.damped[late].sum())
         state.damped[late] = 0.0
-        return self._of(system, self.local, self._damping)
+        return self.of_system(system)
 
     @cached_property
     def drifting(self) -> "Run":
@@ -270,6 +270,10 @@ class Run:
         It drags on what drifts and shakes, the less the less there is of it.
         """
         return self._of(self.system, min(self.local, MOVING), "combined")
+
+    def of_system(self, system: BlockSystem) -> "Run":
+        """The same run of another system of the same bodies."""
+        return self._of(system, self.local, self._damping)
 
     def _of(self, system: BlockSystem, local: float, damping: Damping) -> "Run":
         step, part = self._given_step, self._part

@@ -28,7 +28,8 @@ class State:
     contacts: Contacts | None = None
     bears: Mask = field(default_factory=lambda: np.zeros(0, dtype=bool))  # (nc,) the contacts' frames (`joints.frames`)
     external: float = 0.0  # work of the loads [J]
-    turned: float = 0.0  # part of it: work of moments that dead loads do not have at rest [J] (`rig`)
+    # part of it: what dead loads do beyond the work that they would do constant, as they act at rest [J] (`rig`)
+    turned: float = 0.0
     steps: int = 0  # steps taken
     time: float = 0.0  # time since the start [s]
     # (1,) largest energy that was supplied at any look at it [J]

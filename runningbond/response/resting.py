@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, put_on_dead_load
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.run import CALMING
 from runningbond.scene import Array, History, Scene, SceneError
@@ -41,10 +41,10 @@ class Resting:
     @classmethod
     def of(cls, scene: Scene, model: str, system: BlockSystem) -> "Resting":
         """Bring a wall to rest under its dead load."""
-        state, sizes = State.at_rest(system), scene.block_sizes[system.owner]
-        verdict = settle(Run(system, local=CALMING), state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True)
-        state.velocity[:] = 0.0
-        return cls(scene, model, system, state, verdict)
+        criteria = Criteria(collapse=U_CRIT * scene.block_sizes[system.owner])
+        loaded = put_on_dead_load(Run(system, local=CALMING), criteria)
+        loaded.state.velocity[:] = 0.0
+        return cls(scene, model, system, loaded.state, loaded.verdict)
 
     @property
     def trouble(self) -> tuple[Literal["infeasible", "undecided"], str] | None:

@@ -16,7 +16,7 @@ from scipy.linalg import eigh
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
-from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, settle
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, put_on_dead_load
 from runningbond.dynamics.ties import YIELD
 from runningbond.dynamics.vibrations import stiffness_matrix
 from runningbond.scene import Array, Scene, SceneError
@@ -58,10 +58,10 @@ def vibration_at_rest(scene: Scene, run: Run, count: int = 10) -> Vibration:
     SceneError
         For a wall that does not come to rest, or is not pressed together.
     """
-    state, sizes = State.at_rest(run.system), scene.block_sizes[run.system.owner]
-    if settle(run, state, 0.0, Criteria(collapse=U_CRIT * sizes), sudden=True) != "stable":
+    loaded = put_on_dead_load(run, Criteria(collapse=U_CRIT * scene.block_sizes[run.system.owner]))
+    if loaded.verdict != "stable":
         raise SceneError(scene.title, "does not come to rest under its dead load")
-    return vibration(Run(_with_true_beam(scene, run.system)), state, count)
+    return vibration(Run(_with_true_beam(scene, run.system)), loaded.state, count)
 
 
 def _with_true_beam(scene: Scene, system: BlockSystem) -> BlockSystem:

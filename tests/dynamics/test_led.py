@@ -32,6 +32,7 @@ from runningbond.scene import (
     SceneError,
     Settlement,
     build_scene,
+    scene_from_dict,
 )
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
@@ -188,6 +189,32 @@ def test_a_joint_that_snaps_bears_its_strength_however_long_the_way(way: float) 
     brackets(outcome, 3e5 * 0.1, 0.011)
     assert outcome.curve[:, 1].max() == pytest.approx(outcome.multiplier, rel=1e-12)
     assert (np.diff(outcome.curve[:, 0]) >= 0).all()
+
+
+def test_what_sets_a_wall_in_motion_is_not_its_strength() -> None:
+    """Two blocks turn between their base and a level beam at F h = W b / 2 + N b, under its N.
+
+    The beam's joint bears more than three times as much, and so it did while the beam set blocks in motion.
+    """
+    joint = {"cohesion": 3e4, "tensile_strength": 0.0, "normal_stiffness": 1e12, "shear_stiffness": 4e11}
+    scene = scene_from_dict(
+        {
+            "wall": {"length": 0.4, "height": 0.8, "block_width": 0.4, "block_height": 0.4, "thickness": 0.2},
+            "block": {"density": 2400.0},
+            "joint": {"friction": 0.7, **joint},
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81},
+            "beam": {
+                "mass": 20,
+                "height": 0.1,
+                "condition": "level",
+                "force": [0, -300],
+                "drive": {"displacement": [0.01, 0]},
+            },
+        }
+    )
+    weight, above = 9.81 * 2400.0 * 0.4 * 0.8 * 0.2, 20 * 9.81 + 300
+    brackets(dem_dynamic(scene, 0.03), (weight * 0.2 + above * 0.4) / 0.8, 0.03)
 
 
 def test_a_block_rocks_along_its_exact_curve() -> None:

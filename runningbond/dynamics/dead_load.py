@@ -1,0 +1,68 @@
+"""The dead load put on a wall: at once, and slowly where that breaks joints that the load itself would not break."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from runningbond.joints.law import PLASTIC_CLOSURE
+
+from .collapse import CALM, Criteria, Verdict, settle
+from .controls import ramp
+from .run import Observer, Run, no_observer
+from .state import State
+
+ELASTIC = 1 / 4
+"""Part of the dead load that is put on at once where all of it is too much: it overshoots to half."""
+
+GROWTH_TIMES = 4
+"""Times in which the rest of it grows, in times that the wall takes to rest under that part."""
+
+
+@dataclass(frozen=True, eq=False)
+class UnderDeadLoad:
+    """A wall under its dead load."""
+
+    state: State
+    verdict: Verdict
+    rest: int  # steps that it took to rest under a load that was put on at once
+    steps: int  # steps taken, on every path
+
+
+def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observer) -> UnderDeadLoad:
+    """Bring a wall to rest under its dead load.
+
+    A load that is put on at once overshoots to twice itself, which matters to joints alone that keep what it does:
+    where any is damaged, or crushed, the wall is loaded again, slowly.
+
+    Raises
+    ------
+    Unstable
+        As of `hold_load`.
+    """
+    law, state = run.interface.law.law, State.at_rest(run.system)
+    breaks = law.damage is not None or PLASTIC_CLOSURE in law.history
+    verdict = settle(run, state, 0.0, criteria, no_observer if breaks else observe, sudden=True)
+    if _is_broken(run, state):
+        return _slowly(run, criteria, observe, state.steps)
+    for _ in range(CALM if breaks else 0):  # observers take a wall to be at rest that is so at as many looks
+        observe(run, state, 0.0)
+    return UnderDeadLoad(state, verdict, state.steps, state.steps)
+
+
+def _is_broken(run: Run, state: State) -> bool:
+    law = run.interface.law
+    return bool(law.damage(state.history).any() or law.plastic_closure(state.history).any())
+
+
+def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int) -> UnderDeadLoad:
+    """Put on a part of the dead load at once, and the rest evenly."""
+    state, system = State.at_rest(run.system), run.system
+    growing = run.of_system(replace(system, dead=np.zeros_like(system.dead), live=system.dead, rig=None))
+    verdict = settle(growing, state, ELASTIC, criteria, sudden=True)
+    rest = state.steps
+    if verdict == "stable":
+        ramp(growing, state, ELASTIC, 1.0, GROWTH_TIMES * rest)
+        # The ledger has the dead load do its whole work.
+        state.turned += state.external - float(system.dead @ state.motion)
+        verdict = settle(run, state, 0.0, criteria, observe)
+    return UnderDeadLoad(state, verdict, rest, before + state.steps)

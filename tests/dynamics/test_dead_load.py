@@ -1,0 +1,92 @@
+"""Dead loads near the strength of joints that soften or crush."""
+
+from typing import Any
+
+import pytest
+
+from dem.dynamic import dem_dynamic, quasi_static_run
+from fem_interface.model import fem
+from runningbond.dynamics import Criteria, put_on_dead_load
+from runningbond.results import Outcome
+from runningbond.scene import Scene, scene_from_dict
+
+GRAVITY, DENSITY, HEIGHT = 9.81, 2000.0, 0.2
+STRESS = DENSITY * GRAVITY * HEIGHT
+MODELS = (dem_dynamic, fem)
+
+
+def block(gravity: tuple[float, float], height: float = HEIGHT, **joint: float) -> Scene:
+    """A block as wide as 0.2 m that its weight [m/s²] and its live load draw the same way."""
+    size = {"block_width": 0.2, "block_height": height, "thickness": 0.1, "courses": [[1]]}
+    live = {"kind": "body", "acceleration": list(gravity)}
+    tables: dict[str, Any] = {
+        "wall": size,
+        "block": {"density": STRESS / GRAVITY / height, "young": 1e12},
+        "joint": {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8, **joint},
+        "support": {"kind": "base"},
+        "load": {"gravity": list(gravity), "live": live},
+    }
+    return scene_from_dict(tables)
+
+
+def hanging(share: float) -> Scene:
+    strength = STRESS / share
+    energies = {"fracture_energy_1": 1e-4, "fracture_energy_2": 1e-4}
+    return block((0.0, GRAVITY), cohesion=strength, tensile_strength=strength, **energies)
+
+
+def sheared(share: float) -> Scene:
+    """Weight along the joint, as in a wall laid on its side: the edge tears before all of the joint slides."""
+    strength = STRESS / share
+    energies = {"fracture_energy_1": 1e-4, "fracture_energy_2": 1e-4}
+    return block((GRAVITY, 0.0), 0.02, cohesion=strength, tensile_strength=strength, **energies)
+
+
+def crushed(share: float) -> Scene:
+    crushing = {"compressive_strength": STRESS / share, "compressive_fracture_energy": 0.05}
+    return block((0.0, -GRAVITY), **crushing | {"normal_stiffness": 1e8, "shear_stiffness": 4e7})
+
+
+def is_bracketed(outcome: Outcome, exact: float) -> bool:
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    return outcome.lower <= exact * (1 + 1e-6) and exact * (1 - 1e-6) <= outcome.upper
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("wall", [hanging, crushed])
+@pytest.mark.parametrize("share", [0.6, 0.8, 0.97])
+def test_what_the_weight_leaves_of_a_strength_is_borne(model: Any, wall: Any, share: float) -> None:
+    """A joint that bears its dead load at a share of its strength bears λ = 1 / share − 1 times as much more."""
+    assert is_bracketed(model(wall(share)), 1 / share - 1)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("wall", [hanging, crushed])
+def test_a_weight_beyond_the_strength_is_not_borne(model: Any, wall: Any) -> None:
+    assert model(wall(1.02)).status == "infeasible"
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_weight_and_live_load_count_alike(model: Any) -> None:
+    """A joint that tears from its edge on bears one load in all, however much of it is weight, to the brackets."""
+    first, *more = (
+        [(1 + bound) * share for bound in (outcome.lower, outcome.upper)]
+        for share in (0.3, 0.6, 0.8)
+        for outcome in [model(sheared(share), 0.002)]
+    )
+    for lower, upper in more:
+        assert lower <= first[1] * 1.002
+        assert first[0] <= upper * 1.002
+
+
+def test_a_load_that_grows_does_half_of_its_work() -> None:
+    """On springs, and a quarter that comes at once a sixteenth of all; the ledger closes."""
+    scene = hanging(0.9)
+    run = quasi_static_run(scene)
+    state = put_on_dead_load(run, Criteria(collapse=0.05 * scene.block_size)).state
+    whole = float(run.system.dead @ state.motion)
+    assert state.external == pytest.approx(whole * (1 + 1 / 16) / 2, rel=1e-2)
+    assert run.dead_work(state) == pytest.approx(state.external, rel=1e-9)
+    assert run.unaccounted(state) < 1e-3
