@@ -217,7 +217,9 @@ def tensile_strength(material: Any) -> float:
 
 
 class Traction:
-    """Tractions σ and τ that a joint which crushes may carry at a point, times its area: cone, cut-off and ellipse.
+    """Tractions σ and τ that a joint which crushes may carry at a point, times its area: cone, cut-off and cap.
+
+    The cap is an ellipse under pressure and goes on straight in tension.
 
     A joint carries the resultants of all fields of them: the normal force at each end, and the shear force.
     """
@@ -228,22 +230,21 @@ class Traction:
         self.tension = tensile_strength(material) * area
         reach, cross_ = 1 + self.shear * self.slope**2, self.shear * self.slope * self.cohesion
         root = math.sqrt(max(0.0, self.cap**2 * reach - self.shear * self.cohesion**2))
-        corners = [(sigma, self.cohesion - self.slope * sigma) for sigma in (self.tension, self.cap)]
-        corners += [
-            (sigma, self.cohesion - self.slope * sigma) for sigma in ((cross_ - root) / reach, (cross_ + root) / reach)
-        ]
-        if self.shear and self.tension < self.cap:
-            corners.append((self.tension, math.sqrt((self.cap**2 - self.tension**2) / self.shear)))
+        corners = [(sigma, self.cohesion - self.slope * sigma) for sigma in (self.tension, (cross_ - root) / reach)]
+        if self.shear:
+            most = self.cap / math.sqrt(self.shear)
+            meeting = (self.cohesion - most) / self.slope if self.slope else 0.0
+            corners += [(sigma, most) for sigma in (self.tension, meeting, 0.0)]
         self.corners = np.array([corner for corner in corners if self.holds(*np.array(corner)[:, None])[0]])
         graded = np.outer([-1, 1], np.outer(10.0 ** np.arange(-4, 8), [1, 2, 5])).ravel()
-        on_arc = self.corners[self.corners[:, 1] * self.shear > 0]
+        on_arc = self.corners[(self.corners[:, 1] * self.shear > 0) & (self.corners[:, 0] <= 0)]
         self.ratios = np.concatenate([[0.0, self.slope], graded, on_arc[:, 0] / (on_arc[:, 1] * (self.shear or 1.0))])
 
     def holds(self, sigma: np.ndarray, tau: np.ndarray) -> np.ndarray:
         """Which tractions, τ ≥ 0, may be."""
         near = 1e-9 * self.cap
         inside = (sigma <= self.tension + near) & (tau >= -near) & (tau <= self.cohesion - self.slope * sigma + near)
-        return np.asarray(inside & (np.hypot(sigma, math.sqrt(self.shear) * tau) <= self.cap + near))
+        return np.asarray(inside & (np.hypot(np.minimum(sigma, 0.0), math.sqrt(self.shear) * tau) <= self.cap + near))
 
     def best(self, opening: np.ndarray, slip: float) -> tuple[np.ndarray, np.ndarray]:
         """Tractions that spend most where a joint opens by so much and slips by so much, not less than nothing."""

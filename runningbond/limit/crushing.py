@@ -1,17 +1,18 @@
 """Resultants of joints of finite compressive strength: the support function of their set, and points on its boundary.
 
-At each point of such a joint the tractions lie in K: |τ| ≤ c − σ tan φ, σ ≤ f_t and the cap σ² + C_ss τ² ≤ f_m², an
-ellipse that holds in tension too. A joint carries the resultants of all fields of tractions in K along it, a convex
-set. Where its ends open by α₁ and α₂ and it slips by β, α running linearly between, that set's support function is
+At each point of such a joint the tractions lie in K: |τ| ≤ c − σ tan φ, σ ≤ f_t and the cap p² + C_ss τ² ≤ f_m² on the
+pressure p = max(0, −σ), an ellipse that goes on straight in tension. A joint carries the resultants of all fields of
+tractions in K along it, a convex set. Where its ends open by α₁ and α₂ and it slips by β, α running linearly between,
+that set's support function is
 
     H(α₁, α₂, β) = A ∫₀¹ h(α₁ + (α₂ − α₁) ξ, β) dξ,    h(α, β) = max {α σ + β τ : (σ, τ) ∈ K},
 
 the power that the joint dissipates at most; its gradient are the forces N₁ = A ∫ σ (1 − ξ), N₂ = A ∫ σ ξ at the ends
 and V = A ∫ τ of the field that does so. The boundary of K is, for τ ≥ 0 and by the ratio α / β of its normals, falling,
 
-    T, the corner of the cut-off;  an arc;  B₁ and B₂, the ends of the cone's edge;  the other arc,
+    T, the corner of the cut-off;  B, where the cone meets the cap, if it does;  the arc.
 
-some of them missing; corners have constant tractions, and arcs σ = f_m tanh u with sinh u = √C_ss α / β.
+Corners have constant tractions, and the arc σ = f_m tanh u with sinh u = √C_ss α / β, from where α / β < 0 on.
 """
 
 from dataclasses import dataclass
@@ -44,10 +45,10 @@ class Crushing:
         Which joints they are; the points of joint j are 2j and 2j + 1.
     strength, cap_shear : (nc,) float
         Largest pressure f_m A, and C_ss.
-    ratio : (4, nc) float
+    ratio : (2, nc) float
         Ratios α / β at which one piece of the boundary of K gives way to the next, falling.
-    sigma, tau : (3, nc) float
-        Corners T, B₁ and B₂, times the joint's area.
+    sigma, tau : (2, nc) float
+        Corners T and B, times the joint's area.
     """
 
     joint: Indices
@@ -72,16 +73,11 @@ class Crushing:
         low, beta = np.minimum(first, second), np.maximum(np.abs(slip), TINY * scale)
         high = low + np.maximum(np.abs(second - first), TINY * scale)
         span = high - low
-        edges = [high, *np.clip(beta * self.ratio, low, high), low]
-        total = np.zeros((3, len(self)))
-        corners = iter(zip(self.sigma, self.tau, strict=True))
-        for piece, (end, start) in enumerate(pairwise(edges)):
+        edges = [high, *np.clip(beta * self.ratio, low, high)]
+        total = self._arc(low, (edges[-1] - low) / span, np.zeros(len(self)), span, beta)
+        for (end, start), sigma, tau in zip(pairwise(edges), self.sigma, self.tau, strict=True):
             width, middle = (end - start) / span, ((end + start) / 2 - low) / span
-            if piece in (1, 4):
-                total += self._arc(start, width, (start - low) / span, span, beta)
-            else:
-                sigma, tau = next(corners)
-                total += np.array([sigma * width, sigma * width * middle, tau * width])
+            total += np.array([sigma * width, sigma * width * middle, tau * width])
         normal, moment, shear = total
         ends = np.where(second >= first, [normal - moment, moment], [moment, normal - moment])
         return np.array([*ends, np.sign(slip) * shear])
@@ -116,10 +112,10 @@ class Crushing:
         found = []
         for side in (1, -1):
             for sense in (0.0, 1.0, -1.0):
-                here = -self.strength if sense == 0.0 else self.sigma[2]
+                here = -self.strength if sense == 0.0 else self.sigma[1]
                 rise = (here - self.sigma[0])[:, None]
                 ends = [rise * end + self.sigma[0, :, None] / 2, rise * other + self.sigma[0, :, None] / 2][::side]
-                shear = sense * (share * (self.tau[2] - self.tau[0])[:, None] + self.tau[0, :, None])
+                shear = sense * (share * (self.tau[1] - self.tau[0])[:, None] + self.tau[0, :, None])
                 found.append([*ends, shear])
         return np.moveaxis(np.array(found), 0, 2).reshape(3, -1)
 
@@ -145,29 +141,17 @@ def crushing(scene: Scene, force_unit: float, strongest: float = STRONGEST) -> C
 
 
 def _boundary(slope: Array, tension: Array, held: Array, strength: Array, shear: Array) -> tuple[Array, Array, Array]:
-    """Ratios and corners of `Crushing` from tan φ, f_t, τ at f_t, f_m and C_ss: ``(4, n)``, ``(3, n)``, ``(3, n)``."""
-    cohesion, tension = held + slope * tension, np.minimum(tension, strength)
+    """Ratios and corners of `Crushing` from tan φ, f_t, τ at f_t, f_m and C_ss, ``(2, n)`` each."""
+    cohesion = held + slope * tension
+    most = strength / np.sqrt(np.where(shear > 0, shear, np.nan))  # of the shear
+    most = np.where(shear > 0, most, np.inf)
     stretch, crossing = 1 + shear * slope**2, shear * slope * cohesion
-    inside = strength**2 * stretch - shear * cohesion**2
-    root = np.sqrt(inside.clip(min=0.0))
-    ends = np.array([crossing + root, crossing - root]) / stretch  # of the cone's edge on the ellipse
-    cone = cohesion - slope * tension
-    within = tension**2 + shear * cone**2 <= strength**2
-    edge = within | ((inside > 0) & (ends[0] < tension))
-    top = np.sqrt((strength**2 - tension**2) / np.where(shear > 0, shear, 1.0))
-    sigma = np.where(edge, [tension, np.where(within, tension, ends[0]), ends[1]], tension)
-    tau = np.where(edge, np.array([cohesion - slope * each for each in sigma]), top).clip(min=0.0)
-    tau[0] = np.where(within, cone, top)
+    root = np.sqrt((strength**2 * stretch - shear * cohesion**2).clip(min=0.0))
+    # Where the cone reaches the cap: under pressure, in tension, or nowhere, being beyond it.
+    pressed, pulled = cohesion < most, (cohesion >= most) & (held < most)
     with np.errstate(divide="ignore", invalid="ignore"):
-        slopes = sigma / (shear * tau)
-    first = np.where(np.isnan(slopes[0]), np.inf, slopes[0])
-    last = np.where((shear * tau[2] > 0), slopes[2], -np.inf)
-    ratio = np.array(
-        [
-            np.where(within, slope, first),
-            np.where(within, slope, np.where(edge, slopes[1], -np.inf)),
-            np.where(edge, slope, -np.inf),
-            np.where(edge, last, -np.inf),
-        ]
-    )
-    return ratio, sigma, tau
+        sigma = np.where(pressed, (crossing - root) / stretch, np.where(pulled, (cohesion - most) / slope, 0.0))
+        tau = np.where(pressed, (cohesion - slope * sigma).clip(min=0.0), most)
+        last = np.where(shear * tau > 0, sigma / (shear * tau), -np.inf)
+    ratio = np.array([np.where(pressed | pulled, slope, 0.0), np.where(pressed, last, 0.0)])
+    return ratio, np.array([tension, sigma]), np.array([np.minimum(held, most), tau])

@@ -124,7 +124,7 @@ class JointMaterial:
     softening
         The branch along which these are spent.
     compressive_strength, cap_shear
-        f_m [Pa] and C_ss of the cap on pressures, ``σ² + cap_shear τ² ≤ compressive_strength²`` (Lourenço & Rots 1997,
+        f_m [Pa] and C_ss of the cap on pressures, ``p² + cap_shear τ² ≤ compressive_strength²`` (Lourenço & Rots 1997,
         eq. 19, with C_nn = 1, C_n = 0); None is a joint that never crushes.
     compressive_fracture_energy
         Energy of crushing, all that is not elastic [J/m²]; None is perfectly plastic.
