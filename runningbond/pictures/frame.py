@@ -57,6 +57,8 @@ class Frame:
         σ_x, σ_y, τ_xy of those triangles [Pa]; empty without them.
     time
         Since the motion of the ground began [s]; None where there is none.
+    finite
+        Whether blocks turn by their rotation, and not to first order.
     """
 
     multiplier: float
@@ -71,6 +73,7 @@ class Frame:
     displacement: Array = field(default_factory=lambda: np.zeros((0, 2)))
     stress: Array = field(default_factory=lambda: np.zeros((0, 3)))
     time: float | None = None
+    finite: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "state", frozen(self.state, np.int64))

@@ -161,7 +161,8 @@ class MotionRecorder(SeriesRecorder):
         kinds = states_under_load(wall.scene, wall.points, opening, normal, tangential, damage, closure)
         # Where blocks may crack, the motion of whole blocks is one thing; here each piece is a block.
         motion, velocity = run.system.motion_of_bodies(state.motion), run.system.motion_of_bodies(state.velocity)
-        frame = Frame(multiplier, motion, opening, slip, normal, tangential, kinds, velocity, damage)
+        finite = run.system.contacts is not None
+        frame = Frame(multiplier, motion, opening, slip, normal, tangential, kinds, velocity, damage, finite=finite)
         if self._wall is None:
             return frame
         displacement = self._wall.displacement(state.motion)

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from runningbond.results.mechanism import carried
+from runningbond.results.mechanism import carried, turned
 from runningbond.scene import Array, Blocks, Indices, Scene
 
 from .deformed_shape import DeformedShape, course_numbers, crushed_ends, outer_edges, visible_scale
@@ -48,15 +48,20 @@ class GridBuilder:
         if triangles is None:
             block, owner = np.arange(len(blocks)), blocks.owner
             points = self._near(blocks.vertices, owner)
-            displacement = carried(blocks, owner, points, frame.motion)
+            displacement = _moved(blocks, owner, points, frame)
             grid = _grid(points, [(POLYGON, np.arange(len(points)), np.diff(blocks.first))])
         else:
             block, displacement = triangles.block, frame.displacement
             owner = np.empty(len(triangles.points), dtype=np.int64)
             owner[triangles.corners.ravel()] = np.repeat(block, 3)
             points = self._near(triangles.points, owner)
+            if frame.finite:
+                displacement = _turned_with_blocks(blocks, owner, triangles.points, frame)
             grid = _grid(points, [(TRIANGLE, triangles.corners.ravel(), np.full(len(block), 3))])
         velocity = carried(blocks, owner, points, frame.velocity)
+        if frame.finite:  # the arms are those of where blocks are
+            spin, from_centre = frame.velocity[owner, 2:], displacement - frame.motion[owner, :2]
+            velocity += spin * np.column_stack([-from_centre[:, 1], from_centre[:, 0]])
         _add(grid.point_data, {DISPLACEMENT: _in_space(displacement), "velocity [m/s]": _in_space(velocity)})
         course, template, held = self._courses[block], self._templates[block], self._scene.fixed[block]
         _add(grid.cell_data, {"block": block, "template": template, "course": course, "held": held.astype(np.uint8)})
@@ -87,12 +92,13 @@ class GridBuilder:
             for along, across in ((frame.opening, frame.slip), (frame.normal, frame.tangential))
         )
         # Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
-        a, b = (carried(self._scene.blocks, side, points.position, frame.motion) for side in points.block.T)
+        a, b = (_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T)
+        apart = b - a if frame.finite else jump
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
         _add(
             grid.point_data,
             {
-                DISPLACEMENT: _in_space(((a + b - jump) / 2)[at] + share[:, None] * jump[at]),
+                DISPLACEMENT: _in_space(((a + b - apart) / 2)[at] + share[:, None] * apart[at]),
                 "normal": _in_space(points.normal[at]),
                 "jump [m]": _in_space(jump[at]),
                 "opening [m]": frame.opening[at],
@@ -155,6 +161,19 @@ def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
     whole = carried(scene.blocks, block, points, scene.support_motion)
     moved = np.asarray(blocks.point_data[DISPLACEMENT])[corner, :2]
     return np.asarray((whole * moved).sum() / (whole**2).sum() * scene.support_motion)
+
+
+def _moved(blocks: Blocks, block: Indices, at: Array, frame: Frame) -> Array:
+    """Displacements ``(n, 2)`` [m] of points of rigid blocks."""
+    return (turned if frame.finite else carried)(blocks, block, at, frame.motion)
+
+
+def _turned_with_blocks(blocks: Blocks, block: Indices, at: Array, frame: Frame) -> Array:
+    """Displacements ``(n, 2)`` [m] of nodes, whose own one turns with their blocks."""
+    own = frame.displacement - carried(blocks, block, at, frame.motion)
+    cosine, sine = np.cos(frame.motion[block, 2]), np.sin(frame.motion[block, 2])
+    own = np.column_stack([cosine * own[:, 0] - sine * own[:, 1], sine * own[:, 0] + cosine * own[:, 1]])
+    return np.asarray(turned(blocks, block, at, frame.motion) + own)
 
 
 def _templates(blocks: Blocks) -> Indices:

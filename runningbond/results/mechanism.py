@@ -27,6 +27,14 @@ def carried(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:
     return np.column_stack([u - spin * arm[:, 1], v + spin * arm[:, 0]])
 
 
+def turned(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:
+    """Displacements ``(n, 2)`` [m] of points ``(n, 2)`` of blocks ``(n,)`` that move by ``(nb, 3)``, however far."""
+    arm = at - blocks.centroid[block]
+    u, v, spin = motion[block].T
+    less, sine = np.cos(spin) - 1, np.sin(spin)
+    return np.column_stack([u + less * arm[:, 0] - sine * arm[:, 1], v + sine * arm[:, 0] + less * arm[:, 1]])
+
+
 def rigid_jumps(blocks: Blocks, points: JointPoints, motion: Array) -> tuple[Array, Array]:
     """Opening and slip [m] of joint points between rigid blocks that move by ``(nb, 3)``, two ``(np,)``."""
     a, b = (carried(blocks, side, points.position, motion) for side in points.block.T)

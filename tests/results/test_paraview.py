@@ -17,10 +17,11 @@ from runningbond.limit import limit
 from runningbond.models import respond, run_model
 from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.mechanism import mechanism_shape
-from runningbond.pictures.recording import motion_recorder, record_mechanism
+from runningbond.pictures.recording import ResponseRecorder, motion_recorder, record_mechanism
 from runningbond.pictures.style import DRAWN
 from runningbond.pictures.time_series import MACRO, frame_files, times_shown
 from runningbond.pictures.vtk_grids import DISPLACEMENT, GridBuilder
+from runningbond.results import Outcome
 from runningbond.scene import Scene, scene_from_dict
 from tests.walls import courses, panel
 
@@ -50,7 +51,7 @@ def tower() -> Scene:
         {
             "title": "tower",
             "wall": size,
-            "block": {"density": 2000.0},
+            "block": {"density": 2000.0, "young": 1e11},
             "joint": STIFF,
             "support": {"kind": "base"},
             "load": {"gravity": 9.81, "history": pulse},
@@ -81,6 +82,27 @@ def test_the_fall_of_a_critical_scale_is_kept_in_seconds_and_its_shape_is_drawn(
     assert outcome.motion[0, 2] > 0.5
     toe = np.hypot(*shape.displacement.T)[(shape.points == 0.0).all(axis=1)]
     assert toe == pytest.approx(0.0, abs=0.05)
+
+
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+def test_blocks_that_topple_keep_their_shape(model: str) -> None:
+    """Sides are as long as at rest where blocks have turned, and the top is where the response says that it is."""
+    scene = tower()
+    recorder = ResponseRecorder(scene, None)
+    response = respond(model, scene, 2.0, observe=recorder, rows=2000, after=0.3)
+    recorder.finish(Outcome(scene.title, model, "undecided", upper=2.0))
+    frame = recorder.frames[-1]
+    assert frame.time is not None
+    assert np.abs(frame.motion[:, 2]).min(initial=1.0, where=~scene.fixed) > 0.3
+    grid = GridBuilder(recorder.discretisation).blocks(frame)
+    rest, moved = (np.asarray(values)[:, :2] for values in (grid.points, grid.point_data[DISPLACEMENT]))
+    for cell in np.flatnonzero(np.asarray(grid.cell_data["held"]) == 0):
+        corner = grid.get_cell(cell).point_ids
+        before, after = (np.hypot(*(at[corner] - at[np.roll(corner, 1)]).T) for at in (rest, rest + moved))
+        assert after == pytest.approx(before, rel=1e-4)
+    for point, way in zip(response.points, response.displacement.transpose(1, 2, 0), strict=True):
+        here = moved[np.hypot(*(rest - point).T) < 1e-9]
+        assert here[0] == pytest.approx([np.interp(frame.time, response.time, each) for each in way], abs=2e-3)
 
 
 def test_the_shape_of_a_fall_is_one_that_can_be_seen() -> None:
