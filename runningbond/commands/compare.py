@@ -115,19 +115,21 @@ def _read_all(scenes: Sequence[str]) -> tuple[dict[str, Scene], dict[str, Publis
 
 
 def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
-    from runningbond.compare.figures import charts_of, draw_figures
-    from runningbond.compare.plates import draw_plates
+    from runningbond.compare import figures, plates
     from runningbond.compare.report import report_html
 
-    campaign = comparison.campaign
+    campaign, is_used = comparison.campaign, (out / "table.csv").exists()
     sheets = [*multiplier_sheets(comparison), *cost_sheets(comparison)]
     write_atomically(out / "table.csv", csv_text(comparison).encode())
     write_atomically(out / "table.md", "\n".join(sheet.markdown() for sheet in sheets).encode())
     for sheet in sheets:
         print_table(sheet)
     print(f"{len(campaign)} cases, {len(campaign.reused)} of them already in {out}")
-    charts = charts_of(comparison.only_published())
-    pictures = draw_figures(charts, out) + draw_plates(comparison, out)
+    charts = figures.charts_of(comparison.only_published())
+    pictures = figures.draw_figures(charts, out) + plates.draw_plates(comparison, out)
+    if is_used:  # an earlier comparison's, of walls that are not in this one
+        for older in {out / name for name in (*figures.FILES, *plates.FILES)}.difference(pictures):
+            older.unlink(missing_ok=True)
     write_atomically(out / "report.html", report_html(comparison, charts, tolerance).encode())
     tables = [out / name for name in ("table.csv", "table.md", "report.html")]
     print(f"written: {', '.join(map(str, [*tables, *pictures]))}")

@@ -31,6 +31,9 @@ TITLES = {
 }
 BORNE, BETWEEN = 0.25, 40  # share of its peak from which a curve is drawn, and points between two of its own
 MULTIPLIERS = (0, 0.66)  # range of the axis of λ of the twelve panels
+CURVES = {"figure-7": BARALDI, "figure-11": CONCENTRATED, "curves-ferris": FERRIS}
+FILES = ("figure-6.csv", *(f"{name}.png" for name in ("figure-6", "table-2", *CURVES)))
+"""Files of all charts."""
 
 
 def figure_6_data() -> tuple[Array, Array]:
@@ -48,7 +51,7 @@ def charts_of(comparison: Comparison) -> dict[str, Figure]:
         charts["figure-6"] = _figure_6(comparison, *figure_6_data())
     if all(present):
         charts["table-2"] = table_2(comparison)
-    for name, source in (("figure-7", BARALDI), ("figure-11", CONCENTRATED), ("curves-ferris", FERRIS)):
+    for name, source in CURVES.items():
         models = [x for x in comparison.models if any(len(_curve(comparison, case, x)) for case in cases_of(source))]
         if models:
             charts[name] = _curves(comparison, source, models)
@@ -139,8 +142,10 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
     starts = [float(curve[0, 0]) for curve in curves.values() if len(curve)]
     shown = min(starts) / 1.2, 1.4 * max(float(curve[-1, 0]) for curve in curves.values() if len(curve))
     estimates = [model for model in comparison.models if panels and model.kind == "estimate"]
+    drawn, names = {name for (name, _), curve in curves.items() if len(curve)}, [case.name for case in cases_of(source)]
     if panels:
-        figure, columns = panel_figure(title, xlim=shown, **labels)
+        here = [k for k in range(len(SLENDERNESS)) if drawn & set(names[4 * k : 4 * k + 4])]
+        figure, columns = panel_figure(title, here, xlim=shown, **labels)
     else:
         figure = Figure(figsize=(6.4, 4.4), layout="constrained")
         figure.suptitle(title, fontsize=11)
@@ -163,7 +168,11 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
     walls = [f"b/a = {label}" for label, _ in TEXTURES]
     if source == FERRIS:
         walls = [case.name.removeprefix("wall-").upper() for case in cases_of(source)]
-    handles = [Line2D([], [], color=colour, label=wall) for wall, colour in zip(walls, CHART_COLOURS, strict=False)]
+    handles = [
+        Line2D([], [], color=colour, label=wall)
+        for k, (wall, colour) in enumerate(zip(walls, CHART_COLOURS, strict=False))
+        if drawn & set(names[k :: len(walls)])
+    ]
     widths = [(model, 0.8 if model.kind == "estimate" else 1.4) for model in (*estimates, *models)]
     handles += [Line2D([], [], color="0.3", ls=model.line, lw=width, label=model.name) for model, width in widths]
     figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
@@ -206,15 +215,16 @@ def _sampled(curve: Array) -> Array:
 
 
 def panel_figure(
-    title: str, *, xlabel: str, ylabel: str, xlim: tuple[float, float]
+    title: str, shown: Sequence[int] = (0, 1, 2), *, xlabel: str, ylabel: str, xlim: tuple[float, float]
 ) -> tuple[Figure, list[tuple[Axes, tuple[PublishedCase, ...]]]]:
-    """A figure of the twelve panels: axes for each slenderness, and the four panels that stand there."""
-    figure, panels = Figure(figsize=(11, 4.5), layout="constrained"), cases_of(BARALDI)
+    """A figure of the twelve panels: axes for each slenderness that is shown, and the four panels that stand there."""
+    width = (6.4, 8.5, 11.0)[len(shown) - 1]
+    figure, panels = Figure(figsize=(width, 4.5), layout="constrained"), cases_of(BARALDI)
     figure.suptitle(title, fontsize=11)
     columns = []
-    for column, (label, _) in enumerate(SLENDERNESS):
-        axes = figure.add_subplot(1, 3, column + 1)
-        axes.set(title=f"H/L = {label}", xlabel=xlabel, ylabel="" if column else ylabel, xlim=xlim, ylim=MULTIPLIERS)
+    for column, k in enumerate(shown):
+        axes, named = figure.add_subplot(1, len(shown), column + 1), "" if column else ylabel
+        axes.set(title=f"H/L = {SLENDERNESS[k][0]}", xlabel=xlabel, ylabel=named, xlim=xlim, ylim=MULTIPLIERS)
         bare(axes)
-        columns.append((axes, panels[4 * column : 4 * column + 4]))
+        columns.append((axes, panels[4 * k : 4 * k + 4]))
     return figure, columns

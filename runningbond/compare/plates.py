@@ -17,6 +17,8 @@ from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
 from .table import Comparison
 
 OWN_WALLS = 12  # largest number of walls on the plate of one's own
+FILES = tuple(f"{name}.png" for name in (*(f"figure-{k}" for k in (8, 9, 10, 12)), "mechanisms-ferris", "mechanisms"))
+"""Files of all plates."""
 
 
 @dataclass(frozen=True)

@@ -109,6 +109,9 @@ def _history(table: Table, folder: Path, *, driven: bool) -> History | None:
 
 def _read_actions(key: str, content: Any, kinds: list[str]) -> tuple[Action, ...]:
     if isinstance(content, (list, tuple)):
+        for k, one in enumerate(content):
+            if isinstance(one, (list, tuple)) and not one:
+                raise SceneError(f"{key}[{k}]", "must be a load, or some", one)
         return tuple(action for k, one in enumerate(content) for action in _read_actions(f"{key}[{k}]", one, kinds))
     if isinstance(content, Action):
         return (content,)

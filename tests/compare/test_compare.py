@@ -336,6 +336,16 @@ def test_walls_with_openings_are_known_by_name_and_stand_in_their_table(
     assert "Ferris & Tin-Loi (2001)" in (tmp_path / "table.md").read_text()
 
 
+def test_pictures_of_an_earlier_comparison_do_not_stay(tmp_path: Path) -> None:
+    """Nor does anything else go; a comparison of other walls has other plates."""
+    line = ["compare", "--models", "dem-static", "--tolerance", "0.05", "--out", str(tmp_path), "--jobs", "1"]
+    own = tmp_path / "mine.png"
+    own.touch()
+    for wall, plate in (("panel-01", "figure-8"), ("panel-09", "figure-10")):
+        assert command([*line, wall]) == 0
+        assert {path.stem for path in tmp_path.glob("*.png")} == {"mine", "figure-6", "figure-7", plate}
+
+
 def test_published_walls_are_the_sixteen_panels_and_three_walls() -> None:
     assert len(PUBLISHED) == 19
     assert len({case.name for case in PUBLISHED}) == 19

@@ -148,6 +148,7 @@ class Moments(Action):
         ([DOWN, {"kind": "point", "at": [9, 9], "force": [0, -1]}], "load.live[1].at = [9.0, 9.0]: touches no block"),
         ([DOWN, {"kind": "point", "at": [0, 0], "force": [0, 0]}], "load.live[1].force = [0.0, 0.0]: must not be zero"),
         ([], "load.live = []: must be a load, or some"),
+        ([DOWN, []], "load.live[1] = []: must be a load, or some"),
         ("lateral", "load.live = 'lateral': must be a table"),
         ({"kind": "latteral"}, 'did you mean "lateral"?'),
         ({"kind": "lateral", "direction": "up"}, 'load.live.direction = \'up\': must be one of "right", "left"'),
