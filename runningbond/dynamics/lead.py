@@ -28,6 +28,9 @@ SEEN = 10
 STAGES = 20
 """Rests on the way of a settlement."""
 
+WINDOW = 25
+"""Least steps between two changes of the speed of supports: each is a knock, and knocks shake friction loose."""
+
 
 LOSS = 0.8
 """Share of the largest force to which it falls where the wall has failed, and its mechanism is drawn."""
@@ -66,8 +69,8 @@ class Way:
     moves: bool  # whether forces are means of a motion, and not of rests
     rows: list[WayRow] = field(default_factory=list)
     verdict: Verdict = "stable"
-    unseen: float = 0.0  # what means over windows may take from the largest force of a motion
-    inertia: float = 0.0  # what may be in it of bodies that speed up
+    unseen: float = 0.0  # what the answer may be larger, for means over windows take from peaks
+    inertia: float = 0.0  # and smaller, for bodies that speed up; or either, where motion takes from friction
 
     @property
     def curve(self) -> Array:
@@ -225,14 +228,17 @@ class Lead:
         run, given = self.run, self.run.given(state)
         motion, far, _ = run.system.carried
         self.note(way, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
-        pace = _pace(2 * SOFT)[:, 0]
-        steps = max(1, round(1 / (STAGES * speed * run.dt * pace.sum())))
+        rows = 2 * SOFT
+        stage = rows / (STAGES * speed * run.dt * _pace(rows).sum())
+        windows = max(1, int(stage / (rows * WINDOW)))
+        pace = _pace(rows, windows).ravel()
+        steps = max(1, round(stage / len(pace)))
         # Small at first on each leg, where reactions change most.
         shares, legs = np.linspace(0.0, 1.0, STAGES + 1) ** 2, pairwise([0.0, *self.goals.tolist()])
         stages = [0.0, *(at + (goal - at) * share for at, goal in legs if goal != at for share in shares.tolist()[1:])]
         for number, (before, settled) in enumerate(pairwise(stages), start=2):
-            for part in pace.tolist():
-                self.share(state, (settled - before) * part / (run.dt * steps * pace.sum()), steps, given)
+            top = (settled - before) / (run.dt * steps * pace.sum())
+            moving = [self.share(state, top * part, steps, given) for part in pace.tolist()]
             state.velocity[motion != 0] = 0.0
             rest = self.criteria.rest if number == len(stages) else NEARLY_AT_REST
             way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
@@ -240,6 +246,8 @@ class Lead:
             if way.verdict != "stable":
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
+            # In the end supports hardly move. What changes as they stop is friction that motion has shaken loose.
+            way.unseen = way.inertia = abs(bears - float(np.mean(moving[-windows:])))
             self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)

@@ -58,9 +58,9 @@ def brackets(outcome: Outcome, exact: float, width: float) -> None:
     assert outcome.status == "collapse", outcome.message
     assert outcome.lower is not None
     assert outcome.upper is not None
-    assert outcome.lower <= exact * (1 + 1e-6)
-    assert outcome.upper >= exact * (1 - 1e-6)
-    assert outcome.upper - outcome.lower <= width * outcome.upper
+    assert outcome.lower <= exact + 1e-6 * abs(exact)
+    assert outcome.upper >= exact - 1e-6 * abs(exact)
+    assert outcome.upper - outcome.lower <= width * max(outcome.upper, -outcome.lower)
 
 
 # --- ties ----------------------------------------------------------------------------------------------------
@@ -383,6 +383,25 @@ def test_a_lintel_turns_on_the_settling_pier_and_loads_it_by_its_lever(
     turn = 1e-3 / 0.8
     moved = outcome.motion[2] / np.abs(outcome.motion[2, 2]) * turn
     assert moved[1:] == pytest.approx([-turn * 0.3, -turn], rel=1e-2)
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("angle", [-1, -3])
+def test_what_stops_does_not_shake_friction_loose(model: Any, angle: float) -> None:
+    """A lintel slides on its left pier, held by the right one, which turns about its toe with the ground.
+
+    Statics has the share where friction is all taken up; of supports that stop with a knock it was up to 4.5 % less.
+    """
+    tables: dict[str, Any] = {
+        "wall": {"thickness": 0.3, "block_width": 0.4, "block_height": 0.4, "courses": [[1, -4, 1], [1, -4, 1], [6]]},
+        "block": {"density": 2000.0, "young": 2e10, "poisson": 0.2},
+        "joint": {"friction": 0.6, "normal_stiffness": 1e11, "shear_stiffness": 4e10},
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81},
+    }
+    tables["load"]["live"] = {"kind": "settlement", "box": [[1.9, -1], [2.6, 0.1]], "rotation_angle": angle}
+    scene = scene_from_dict(tables)
+    brackets(model(scene), dem_static(scene).multiplier or 0.0, 0.011)
 
 
 @pytest.mark.parametrize(
