@@ -97,12 +97,17 @@ def turning_points(moved: Array) -> list[float]:
 
 
 def growing(turns: list[float]) -> tuple[float, ...]:
-    """The first of several cycles of one size: turns that go farther than any before, and the one after each."""
-    kept, farthest, owed = list[float](), 0.0, False
+    """The first of several cycles of one size: turns that go farther than any before, and the one after each.
+
+    Where those between two to one side were left out, the second one takes the first one's place.
+    """
+    kept, last, farthest, owed = list[float](), -1, 0.0, False
     for k, turn in enumerate(turns):
         grows = abs(turn) > LARGER * farthest
-        if (grows or owed) and (not kept or kept[-1] * turn < 0):
+        if grows or owed:
+            if kept and (k - last) % 2 == 0:
+                kept.pop()
             kept.append(turn)
-            owed = grows and k + 1 < len(turns)
+            last, owed = k, grows
             farthest = max(farthest, abs(turn))
     return tuple(kept)

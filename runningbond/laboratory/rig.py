@@ -168,7 +168,9 @@ def with_inner_stiffness(scene: Scene, times: float) -> Scene:
 
 def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
     """Number of courses: of the actuator's height for walls drawn as high as that, else of the table's height."""
-    column = "H0" if stone.is_square else "H"
+    # As high as the actuator is no more than a course above what the table has.
+    at, tall = wall.row.number("H0"), wall.row.number("H")
+    column = "H0" if stone.is_square and abs(at - tall) < 1.02 * height else "H"
     tall = wall.row.number(column)
     courses = round(tall / height)
     if courses < 1 or abs(courses * height - tall) > 0.02 * height:
@@ -181,14 +183,15 @@ def _courses(wall: MeasuredWall, stone: Stone, height: float) -> int:
 
 
 def vertical_load(wall: MeasuredWall) -> float:
-    """The load on the beam [N]: the number in the wall's name, or Ntot less the weight of the wall.
+    """The load on the beam [N]: the number in the wall's name, Ntot less the weight of the wall, or σ0 L t.
 
     A number that is far from that, as of the third wall, is no load.
     """
     row, name = wall.row, LOAD_IN_NAME.match(wall.name)
-    named = 1e3 * float(name[1]) if name else 0.0
-    if named and row.optional("Ntot") is None:
-        return named
+    named, stress = 1e3 * float(name[1]) if name else 0.0, row.optional("σ0,pc")
+    if row.optional("Ntot") is None and (named or stress):
+        load = named if stress is None else stress * row.number("L") * row.number("t")
+        return named if named / UNALIKE < load < named * UNALIKE else load
     load = row.number("Ntot") - UNIT_WEIGHT * row.number("L") * row.number("t") * row.number("H")
     if named / UNALIKE < load < named * UNALIKE:
         return named

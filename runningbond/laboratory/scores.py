@@ -14,10 +14,13 @@ import numpy as np
 from runningbond.dynamics.lead import LOSS
 from runningbond.scene import Array
 
-from .measured import LARGER, SWING
+from .measured import LARGER, SWING, turning_points
 
 SECANT = 0.3
 """Share of the strength at which the stiffness is read."""
+
+UNLOADED = 0.01
+"""Share of the largest displacement by which a record to one side goes back where it was unloaded, and is no noise."""
 
 ROUNDING = 1e-9
 """Share of the work done to and fro below which the sum of it is rounding."""
@@ -60,9 +63,11 @@ class Loop(NamedTuple):
 def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
     """What there is to read off a curve; None without one, or without a force along the way."""
     known = curve[~np.isnan(curve).any(axis=1)]
+    if cyclic and _starts_left(known):
+        curve, known = -curve, -known
     if len(known) < 2 or known[:, 1].max() <= 0:
         return None
-    sides = [backbone(known), backbone(-known)] if cyclic else [_from_rest(known)]
+    sides = [backbone(known), backbone(-known)] if cyclic else [_onward(_from_rest(known))]
     peaks = [float(side[:, 1].max()) for side in sides]
     strength = float(np.mean([peak for peak in peaks if peak > 0]))
     force = SECANT * strength
@@ -81,6 +86,17 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
 def _from_rest(curve: Array) -> Array:
     """A curve to one side, which starts at rest even where its record does not."""
     return np.concatenate([np.zeros((1, 2)), curve]) if curve[0, 0] > 0 and curve[0, 1] > 0 else curve
+
+
+def _onward(curve: Array) -> Array:
+    """A curve to one side without what it did while it was unloaded and loaded again."""
+    moved = curve[:, 0]
+    return np.asarray(curve[moved >= np.maximum.accumulate(moved) - UNLOADED * moved.max()])
+
+
+def _starts_left(curve: Array) -> bool:
+    """Whether a record first turns round on the negative side."""
+    return bool(len(curve)) and turning_points(curve[:, 0])[0] < 0
 
 
 def backbone(curve: Array) -> Array:

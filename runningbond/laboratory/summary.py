@@ -181,9 +181,11 @@ def verdicts(sums: Sequence[Total]) -> list[str]:
         own = [each for each in sums if each.kind == kind and each.median is not None]
         models = [each for each in own if not each.is_by_hand]
         if models:
-            least = min(models, key=lambda each: each.median or 0.0)
+            most = max(each.answers for each in models)
+            least = min((each for each in models if each.answers == most), key=lambda each: each.median or 0.0)
             lines.append(
-                f"Walls with {kind} joints: median |ΔV| {percent(least.median)} by `{least.model}` at best, "
+                f"Walls with {kind} joints: median |ΔV| {percent(least.median)} by `{least.model}` at best, of those "
+                f"that answer on {most} of {least.walls}; "
                 f"{percent(least.worst)} at worst; {percent(least.modes)} of its modes are right."
             )
         lines += [

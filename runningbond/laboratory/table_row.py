@@ -10,7 +10,7 @@ from runningbond.scene import SceneError
 
 UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "N": 1.0, "kN": 1e3, "Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "%": 1e-2}
 USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "ntot": "kN"}
-USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa"}
+USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa", "σ0,pc": "MPa"}
 """Units of columns that do not say theirs."""
 
 HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,8 +27,9 @@ from runningbond.laboratory.scores import (
     swing,
 )
 from runningbond.laboratory.summary import cheapest, totals
+from runningbond.limit import limit
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene import Array, Scene, SceneError, scene_from_dict
 from runningbond.scene.beam import Condition
 
 WALLS = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
@@ -53,6 +55,46 @@ def test_secant_is_between_two_points_of_the_curve_at_three_tenths() -> None:
     assert marks is not None
     assert marks.stiffness == pytest.approx(30 / 9, rel=1e-6)
     assert marks.at_loss is None
+
+
+def test_a_record_to_the_left_first_is_read_as_its_mirror_image() -> None:
+    points = [(0, 0), (1, 6), (2, 9), (0, -1), (-2, -7), (0, 1), (5, 12), (0, -2), (-5, -9), (0, 2), (10, 13.5)]
+    record = curve(*points, (0, -3), (-10, -10), (0, 0))
+    right, left = (marks_of(sign * record, cyclic=True) for sign in (1, -1))
+    assert right is not None
+    assert right == left
+    assert right.at_peak == 10
+
+
+def test_a_wall_that_was_unloaded_on_the_way_is_read_along_its_envelope() -> None:
+    """Where it has lost a fifth is between the last two points: 30 + 15 (12.5 - 10.4) / 3."""
+    marks = marks_of(
+        curve((0, 0), (2, 7), (1.2, 0), (2, 7), (8, 12), (20, 13), (18, 5), (20, 12.9), (30, 12.5), (45, 9.5)),
+        cyclic=False,
+    )
+    assert marks is not None
+    assert (marks.at_peak, marks.at_loss) == (20, pytest.approx(40.5))
+
+
+def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed() -> None:
+    """A beam's own weight, a load along the wall and a bed of another joint, against limit analysis."""
+    tables: dict[str, Any] = {
+        "wall": {"length": 1.6, "height": 1.2, "block_width": 0.4, "block_height": 0.2, "thickness": 0.15},
+        "block": {"density": 1e-3},
+        "joint": {"friction": 0.6},
+        "joints": {"weak": {"friction": 0.2}},
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81, "dead": {"kind": "line", "from": [0, 1.2], "to": [1.6, 1.2], "force": [0, -1e4]}},
+        "beam": {"height": 0.1, "mass": 3000.0, "force": [0, -2e4], "drive": {"displacement": [0.03, 0], "at": 1.25}},
+    }
+    pressed = 3000 * 9.81 + 1e4 * 1.6 + 2e4
+    assert by_hand(scene_from_dict(tables)) == pytest.approx(
+        {"rocking": pressed * 1.6 / (2 * 1.25), "sliding": 0.6 * pressed}, rel=1e-6
+    )
+    tables["assign"] = [{"joint": "weak", "box": [[-1, 0.35], [9, 0.45]]}]
+    scene = scene_from_dict(tables)
+    assert by_hand(scene)["sliding"] == pytest.approx(0.2 * pressed, rel=1e-6)
+    assert limit(scene).multiplier == pytest.approx(0.2 * pressed, rel=1e-5)
 
 
 def test_curve_that_pushes_nowhere_has_no_marks() -> None:

@@ -117,6 +117,24 @@ def test_unnamed_load_is_what_is_left_of_ntot(tmp_path: Path) -> None:
     assert vertical_load(one(tmp_path, GRANITE.replace("WS.175", "wall"))) == pytest.approx(175e3)
 
 
+def test_a_name_that_is_far_from_the_stress_tells_no_load(tmp_path: Path) -> None:
+    """0.875 MPa on 1 m × 0.2 m are 175 kN, of a wall called 175 as of the third one."""
+    for name in ("WS.175", "Wall-3"):
+        row = f"{GRANITE.replace('WS.175', name).replace('179.8', '')},0.875"
+        wall = read_folder(write_folder(tmp_path / name, row, heads=f'{HEADS},"σ0,pc [MPa]"'))[0]
+        assert vertical_load(wall) == pytest.approx(175e3)
+
+
+def test_sandstone_is_as_high_as_the_actuator_where_that_is_a_course_more(tmp_path: Path) -> None:
+    for height, courses in (("1000", 10), ("1200", 9)):
+        row = SANDSTONE.replace(",1000,100,", f",{height},100,")
+        assert row != SANDSTONE or height == "1000"
+        scene = scene_of(one(tmp_path / height, row), Features(driven=False))
+        assert scene.beam is not None
+        own = scene.wall & (np.arange(len(scene.blocks)) != scene.beam.block)
+        assert len(np.unique(np.round(scene.blocks.centroid[own, 1], 6))) == courses
+
+
 @pytest.mark.parametrize("name", ["WS.175", "WS2.175", "WS-175", "WS 175", "WS.175.3"])
 def test_load_is_read_from_names_with_and_without_numbers_beside_it(tmp_path: Path, name: str) -> None:
     assert vertical_load(one(tmp_path, GRANITE.replace("WS.175", name).replace("179.8", ""))) == 175e3
@@ -186,6 +204,13 @@ def test_turning_points_of_a_noisy_record_are_those_of_its_cycles() -> None:
 
 def test_repeated_cycles_are_left_out_and_sides_alternate() -> None:
     assert growing([1, -1, 1, -1, 2, -2, 2.05, -2.05, 3, -2.9]) == (1, -1, 2, -2, 3, -2.9)
+    assert growing([2.2, -1.5, 2.3, -3.5, 4.7, -3.4, 4.9, -5.6]) == (2.2, -3.5, 4.7, -5.6)
+
+
+def test_one_that_is_pushed_again_to_the_same_side_goes_there() -> None:
+    """To one side and back a little, ever farther; and once before it is pushed to the other side as well."""
+    assert growing([2, 0.2, 5, 1, 10, 2, 25, 4]) == (2, 0.2, 5, 1, 10, 2, 25, 4)
+    assert growing([2, 0, 5, -5, 10, -10]) == (2, 0, 5, -5, 10, -10)
 
 
 def test_cyclic_walls_are_pushed_to_both_sides_and_ever_farther() -> None:
