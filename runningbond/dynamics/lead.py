@@ -174,6 +174,8 @@ class Lead:
 
     def _drive(self, way: Way, state: State, speed: float) -> None:
         run, at = self.run, 0.0
+        # At finite displacements blocks knock at one another all along, which means over rows leave out.
+        knock = run.system.contacts is not None
         self.note(way, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
         given, motions = run.given(state), [state.motion.copy()]
@@ -191,7 +193,7 @@ class Lead:
                     before, gathered = run.driven_speed(state), self._gathered(state)
                     force = run.drive(state, top * part, length, given=given)
                     force -= (top * part - before) / (mobility * length * run.dt)  # the driven body's own inertia
-                    inertia = (self._gathered(state) - gathered) / (length * run.dt) if k < SOFT else 0.0
+                    inertia = 0.0 if knock and k >= SOFT else (self._gathered(state) - gathered) / (length * run.dt)
                     peaks.see(force, inertia, length, state, len(way.rows) + (window > peaks.windows // 2))
                     if window == peaks.windows // 2:
                         middle = state.copy()
@@ -247,7 +249,7 @@ class Lead:
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)
             # In the end supports hardly move. What changes as they stop is friction that motion has shaken loose.
-            way.unseen = way.inertia = abs(bears - float(np.mean(moving[-windows:])))
+            way.unseen = way.inertia = abs(bears - float(np.mean(moving[-max(1, windows // 4) :])))
             self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)

@@ -3,12 +3,13 @@
 A block has fallen once it is lower by half its smaller side, or turned by more than `TURNED`, than under its weight.
 A wall of which more energy is missing than its loads have supplied is not followed on, and has no verdict.
 The wall stands once no more kinetic energy is in it, for as long as it takes to rock to and fro, than would lift it by
-`RISE` of a block.
+`RISE` of a block, and none is gathered any more. One that gathers energy to the end slides away: it collapses as well.
 """
 
 import math
 import time
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -39,6 +40,13 @@ SHAPE = 0.1
 
 AFTER = 0.5
 """Time [s] for which a wall that falls is filmed."""
+
+GATHERS = 1e-3
+"""Part of the energy that still counts as calm from which on what gains any does not rest: it slides ever faster."""
+
+PARTS, FASTER = 4, 1.1
+"""Parts of the time after which a wall would be left undecided, and by how much it has more energy in each than before
+if it slides away: under a force that stays on by a third to a half."""
 
 PATIENCE = 30
 """Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided.
@@ -98,8 +106,10 @@ class _Log:
         return not abs(supplied(energy[None])[0] - energy[2:].sum()) <= self._gone + self._calm
 
     def is_calm(self, since: float) -> bool:
-        """Whether hardly any energy was in motion from a time on [s]."""
-        return all(row[5][2] <= self._calm for row in self.rows if row[0] >= since)
+        """Whether hardly any energy was in motion from a time on [s], and no more of it later than before."""
+        energy = np.array([row[5][2] for row in self.rows if row[0] >= since])
+        before, late = energy[: len(energy) // 2].max(initial=0.0), energy[len(energy) // 2 :].max(initial=0.0)
+        return bool(max(before, late) <= self._calm and late <= max(before, GATHERS * self._calm))
 
     def swaying(self, since: float) -> Array | None:
         """Least and largest drift ``(2,)`` of late of a wall that from a time on [s] has only swayed, and ever less."""
@@ -109,6 +119,12 @@ class _Log:
         spent, damped = energy[-1, 4:] - energy[0, 4:]
         within = before.min() < late.min() <= late.max() < before.max()
         return np.array([late.min(), late.max()]) if within and spent <= SPENT * damped else None
+
+    def runs_away(self, since: float) -> bool:
+        """Whether a wall has gathered energy ever since a time [s], as one that slides under a load that stays on."""
+        energy = np.array([row[5][2] for row in self.rows if row[0] >= since])
+        parts = [float(part.mean()) for part in np.array_split(energy, PARTS)]
+        return all(later > FASTER * before for before, later in pairwise(parts)) and parts[0] > GATHERS * self._calm
 
     def _where(self, state: State) -> Array:
         return self._outline.points(self._block, self.points, state.motion[self._run.system.rigid].ravel())
@@ -212,7 +228,9 @@ def _followed(
     sway = None
     if verdict == "undecided" and now >= end and not log.first:
         sway = log.swaying(end - PATIENCE / 2 * swing)
-        verdict = verdict if sway is None else "stands"
+        verdict = "stands" if sway is not None else verdict
+        if log.runs_away(end - PATIENCE / 2 * swing):
+            verdict = "collapse"
     return _response(rest, scale, log, run, state, (verdict, fell, sway), time.perf_counter() - begin)
 
 
@@ -244,7 +262,9 @@ def _response(
     undecided = "neither rests nor falls within" if not log.is_lost else "more energy is missing than was supplied at"
     message = {
         "stands": f"stands, {left}",
-        "collapse": f"falls: {names} at {fell:.3g} s" + (" first" if len(log.first) > 3 else ""),
+        "collapse": f"falls: {names} at {fell:.3g} s" + (" first" if len(log.first) > 3 else "")
+        if log.first
+        else f"slides ever faster until {times[-1]:.3g} s",
         "undecided": f"{undecided} {times[-1]:.3g} s",
     }[verdict]
     lost = unaccounted(energy)

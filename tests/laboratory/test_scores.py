@@ -73,7 +73,7 @@ def test_a_wall_that_was_unloaded_on_the_way_is_read_along_its_envelope() -> Non
         cyclic=False,
     )
     assert marks is not None
-    assert (marks.at_peak, marks.at_loss) == (20, pytest.approx(40.5))
+    assert [marks.at_peak, marks.at_loss] == pytest.approx([20, 40.5])
 
 
 def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed() -> None:

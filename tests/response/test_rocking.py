@@ -14,7 +14,8 @@ from runningbond.dynamics import Run, State
 from runningbond.joints.wall_law import with_impacts
 from runningbond.response import Resting, follow
 from runningbond.response.resting import VISCOUS
-from runningbond.scene import Array, PointLoad
+from runningbond.scene import Array, History, PointLoad
+from runningbond.scene.history import pulse
 
 from .housner import GRAVITY, HousnerBlock
 from .walls import block, resting, shaken, still
@@ -166,3 +167,14 @@ def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None
     assert np.median(response.reaction[(response.time > 0.1) & (response.time < 0.2), 0]) == pytest.approx(
         most, rel=0.01
     )
+
+
+@pytest.mark.parametrize("period", [0.5, 5.0])
+def test_a_force_that_stays_on_slides_a_block_away(period: float) -> None:
+    """At μ g and not later, though just above it takes half a minute: what still gathers energy does not stand."""
+    friction = 0.15
+    history = History(*pulse("ramp", 1.0, period), holds=True, interval=period / 200)
+    rest = resting(block(0.25, 1.0, history, friction, stiffness=1e9))
+    for factor, verdict in ((0.998, "stands"), (1.005, "collapse")):
+        response = follow(rest, factor * friction * GRAVITY, rows=50)
+        assert response.verdict == verdict, response.message
