@@ -611,6 +611,6 @@ def test_works_to_and_fro_are_no_small_sum_to_miss_a_share_of() -> None:
     moved, still = (wall.run(model) for model in ("dem-dynamic", "dem-static"))
     assert moved.status == still.status == "undecided"
     assert still.upper == pytest.approx(-0.4, rel=1e-6)
-    assert moved.curve[-1, 1] == pytest.approx(-0.4, rel=1e-6)
+    assert moved.outcome.curve[-1, 1] == pytest.approx(-0.4, rel=1e-6)
     assert moved.upper == pytest.approx(-0.4, rel=0.01)
     assert "the other way" not in moved.message
