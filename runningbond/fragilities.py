@@ -11,6 +11,7 @@ from scipy.special import ndtr
 from scipy.stats import CensoredData, lognorm
 
 from .models import TOLERANCE, Model
+from .models.settings import whole
 from .scene import Array, Mask, SceneError
 from .scene.history import STANDARD_GRAVITY
 from .sweeps import sweep
@@ -93,7 +94,9 @@ def fragility(
     """
     if wall.scene.history is None or "file" not in wall.description["load"]["history"]:
         raise SceneError("load.history.file", "is missing: the record that others are to take the place of")
-    if isinstance(records, (str, bytes)):
+    whole("draws", draws)
+    whole("seed", seed, least=0)
+    if isinstance(records, (str, bytes)) or not isinstance(records, Iterable):
         raise SceneError("records", "must be a list of files", records)
     names = [str(record) for record in records]
     runs = sweep(wall, {"load.history.file": names}, model, tolerance=tolerance, folder=folder, jobs=jobs)

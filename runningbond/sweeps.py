@@ -50,6 +50,8 @@ def sweep(
         describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
     """
     model = find_model(model)
+    if not isinstance(wall, Wall):
+        raise SceneError("wall", "must be a Wall, as rb.read gives one", wall)
     if not isinstance(changes, Mapping):
         remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
         raise SceneError("changes", remedy, changes)

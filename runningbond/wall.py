@@ -33,6 +33,22 @@ TABLES = {
 TABLE_OF = {key: table for table, keys in TABLES.items() for key in keys}
 """The table of each of them."""
 
+WHOLE = (
+    "title",
+    "wall",
+    "block",
+    "joint",
+    "inner_joint",
+    "support",
+    "load",
+    "beam",
+    "materials",
+    "joints",
+    "assign",
+    "tie",
+)
+"""What a scene file has at its top, which is given as a whole."""
+
 DEFAULTS: dict[str, Any] = {
     "block": {},
     "joint": {},
@@ -137,13 +153,15 @@ class Wall:
         table_of = TABLE_OF | dict.fromkeys(("first_course", "ends", "course_heights"), "wall")
         tables: list[dict[str, Any]] = []
         for key, value in keys.items():
-            if isinstance(value, (int, float)) and key not in table_of:
-                raise SceneError(key, f"is not a key of a wall{suggestion(key, list(table_of))}", value)
+            if key not in table_of and key not in WHOLE:
+                raise SceneError(key, f"is not a key of a wall{suggestion(key, [*table_of, *WHOLE])}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
         given = {key: value for key, value in wall.items() if value is not None}
         description = _changed({"title": title, "wall": given, **DEFAULTS}, tables)
-        if ("drive" in keys.get("beam", {}) or "history" in keys) and "live" not in keys:
+        beam, load = (description.get(name) for name in ("beam", "load"))
+        is_moved = (isinstance(beam, Mapping) and "drive" in beam) or (isinstance(load, Mapping) and "history" in load)
+        if is_moved and not any("live" in named for table in tables if isinstance(named := table.get("load"), Mapping)):
             description = _merged(description, {"load": {"live": None}})
         return cls(description)
 

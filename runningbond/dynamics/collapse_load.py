@@ -123,7 +123,9 @@ def collapse_by_steps(
     elif outcome.status == result.verdict == "undecided" and not result.interrupted:
         note = "; ".join(part for part in (note, f"each load was followed for at most {budget * run.dt:.2g} s") if part)
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
-    parts = (outcome.message, note, long if run.dt > run.safe_step else "", stiffness)
+    state = result.fallen or result.borne
+    crushed = "" if state is None else run.crushing_note(state)
+    parts = (outcome.message, note, long if run.dt > run.safe_step else "", stiffness, crushed)
     return replace(outcome, message="; ".join(part for part in parts if part))
 
 
@@ -194,12 +196,14 @@ def _judge(
 
 def _never_fallen(outcome: Outcome, result: LoadSteps, is_self_locking: Callable[[], bool]) -> Outcome:
     """Outcome of a wall that no load brought down."""
-    if is_self_locking():
+    locks = is_self_locking()
+    if locks and result.verdict == "stable":
         message = "self-locking: it bore every load up to the largest, and joint forces balance any multiple of it"
         return replace(outcome, status="unbounded", message=message)
-    message = "the budget ran out: the wall neither rested nor fell"
-    if result.verdict == "stable":
-        message = f"it bore every load tried, the largest of them {result.lower:.3g}"
+    message = f"it bore every load tried, the largest of them {result.lower:.3g}"
+    if result.verdict != "stable":
+        message = "the budget ran out: the wall neither rested nor fell"
+        message += ", though joint forces balance any multiple of the load" if locks else ""
     return replace(outcome, lower=result.lower, message=message)
 
 
@@ -225,7 +229,7 @@ def _curve(run: Run, result: LoadSteps) -> Array:
 def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dict[str, Any]:
     """Reactions and works of the same states."""
     states = _states(result)
-    dead = np.array([run.system.dead @ state.motion for _, state in states])
+    dead = np.array([run.dead_work(state) for _, state in states])
     works = np.column_stack([dead, [state.external for _, state in states] - dead])
     forces = [np.column_stack(run.forces(state)) for _, state in states]
     ties = [run.system.ties.force(state.motion, state.stretch) for _, state in states]

@@ -87,6 +87,7 @@ def collapse_of_led(
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, ways, tolerance)
+    outcome = replace(outcome, message="; ".join(filter(None, (outcome.message, run.crushing_note(way.best)))))
     if outcome.status == "undecided" and outcome.upper is None and is_self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)

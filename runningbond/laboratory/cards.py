@@ -34,7 +34,7 @@ SEEN = 1.6
 def card(predictions: Sequence[Prediction]) -> Figure:
     """One wall: curves, and the motion of its end by the model nearest to the test beside the cracks drawn there."""
     wall = predictions[0].wall
-    drawn = min((each for each in predictions if each.mode and not each.rung.is_by_hand), key=_distance, default=None)
+    drawn = drawn_by(predictions)
     panels = 1 + (drawn is not None) + (wall.cracks is not None)
     figure = Figure(figsize=(5.6 + 3.6 * (panels - 1), 4.3), layout="constrained")
     axes = list(figure.subplots(1, panels, width_ratios=[1.6] + [1.0] * (panels - 1), squeeze=False)[0])
@@ -48,6 +48,11 @@ def card(predictions: Sequence[Prediction]) -> Figure:
         axes[0].axis("off")
     figure.draw_without_rendering()  # a first layout, from which that of the drawing knows how tall the wall's axes get
     return figure
+
+
+def drawn_by(predictions: Sequence[Prediction]) -> Prediction | None:
+    """The prediction of one wall whose motion is drawn; None where none has one."""
+    return min((each for each in predictions if each.mode and not each.rung.is_by_hand), key=_distance, default=None)
 
 
 def _distance(prediction: Prediction) -> tuple[bool, float]:

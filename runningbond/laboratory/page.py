@@ -14,7 +14,7 @@ from runningbond.results.outcome import two_digits
 from runningbond.scene import BlockMaterial, JointMaterial, table_of
 from runningbond.studies.page import Block, Picture, write_page, write_picture
 
-from .cards import card, error_over_cost
+from .cards import card, drawn_by, error_over_cost
 from .ladder import LADDER, Rung
 from .measured import MeasuredWall
 from .predictions import Prediction
@@ -102,8 +102,8 @@ def score_sheet(predictions: Sequence[Prediction]) -> Sheet:
 
 def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[Block]:
     caption = "Measured and predicted curves"
-    if any(each.mode and not each.rung.is_by_hand for each in own):
-        caption += ", and the motion in which the dearest model sees it fail"
+    if drawn := drawn_by(own):
+        caption += f", and the motion in which {drawn.rung.name} sees it fail"
     if wall.cracks:
         caption += ", beside the cracks"
     picture = write_picture(card(own), folder / f"wall-{wall.name}.png", caption + ".", dots=150)
@@ -112,11 +112,12 @@ def _wall(wall: MeasuredWall, own: Sequence[Prediction], folder: Path) -> list[B
         told.append("Shown, not scored: it took more than rocking or friction allow; its beam was not as free as said.")
     said = [[each.rung.name, each.row()["message"]] for each in own]
     messages = Sheet("What the models say", ("model", "message"), said)
-    return [f"## {wall.name}", *told, picture, _parameters(own[-1]), messages]
+    richest = max(own, key=lambda each: list(LADDER).index(each.rung.name))
+    return [f"## {wall.name}", *told, picture, _parameters(richest), messages]
 
 
 def _parameters(one: Prediction) -> Sheet:
-    """All that the dearest model is handed of materials, under the names of the scene file."""
+    """All that a model is handed of materials, under the names of the scene file."""
     materials: list[BlockMaterial | JointMaterial] = [*one.scene.block_materials, *one.scene.joint_materials]
     rows = [
         [f"{table_of(material)}.{key}", f"{value:.5g}"] for material in materials for key, value in _numbers(material)

@@ -283,7 +283,7 @@ def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
     at = system.points.position[joints.ends[0, most]] + (first[most] / (first - second)[most])[:, None] * run
     places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in at)
     hinges = f"; turning about points inside them: {len(turns)}, foremost about {places}" if len(most) else ""
-    return f"joints with a compressive strength: {len(joints)}, plastic within σ² + C_ss τ² ≤ f_m²{hinges}"
+    return f"joints with a compressive strength: {len(joints)}, plastic within p² + C_ss τ² ≤ f_m²{hinges}"
 
 
 def beyond_note(system: Equilibrium) -> str:

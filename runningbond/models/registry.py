@@ -16,16 +16,18 @@ from runningbond.limit import limit, limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.history import FACTOR
+from runningbond.scene.mass_loads import Tilt
 from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
 from .second_opinion import FINER, asks_others, beside_others
+from .settings import check_response_settings, check_settings
 
 if TYPE_CHECKING:
     from runningbond.response import Response  # which needs a compiler
 
 DRY = frozenset({"block.density", "joint.friction"})
-STRENGTH = DRY | {"joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
+STRENGTH = DRY | {"joint.law", "joint.cohesion", "joint.tensile_strength", "joint.inset", "inner_joint"}
 CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2", "joint.softening"}
@@ -38,6 +40,7 @@ FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follo
 KERNELS = 0.3  # seconds until the kernels of blocks in motion are loaded
 TOLERANCE = 0.01  # relative width of the bracket where none is asked for
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
+OF_RESPONSES = ("points", "after", "rows", "observe")  # settings of every response
 OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # of deformable blocks
 
 
@@ -149,7 +152,7 @@ def find_model(model: str | Model, key: str = "model") -> Model:
     """The model of a name, or else a `SceneError` under the key, an option perhaps; a model is given back as it is."""
     if isinstance(model, Model):
         return model
-    if model not in MODELS:
+    if not isinstance(model, str) or model not in MODELS:
         raise SceneError(key, f"must be one of {', '.join(MODELS)}{suggestion(model, list(MODELS))}", model)
     return MODELS[model]
 
@@ -194,6 +197,8 @@ def run_model(
             own = ", ".join(model.parameters) or "none"
             raise SceneError(f"model {model.name}: {name}", f"is not a parameter of it; it has {own}", value)
     model.check(scene)
+    if model in _EVERY_MODEL:
+        check_settings(model.name, scene, parameters)
     if observe is not None and (model.observer or model.progress):
         parameters["observe"] = observe
     try:
@@ -202,9 +207,12 @@ def run_model(
         raise
     except Exception as error:  # a defect of ours must not lose a campaign, nor end in a traceback
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
+    if not isinstance(outcome, Outcome):
+        raise SceneError(f"model {model.name}", "must return an Outcome", outcome)
     notes = [outcome.message, _gives(model, scene, outcome, parameters.get("collapse")), _left_out(model, scene)]
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
+        notes += [_tilted_with_the_ground(scene)]
     return replace(outcome, model=model.name, message="; ".join(filter(None, notes)))
 
 
@@ -222,6 +230,14 @@ def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
         return ""
     share = f"{100 * moved:.2g} % of a block's height"
     return f"joints are too soft: the wall gives by {share} elastically, which may pass for collapse"
+
+
+def _tilted_with_the_ground(scene: Scene) -> str:
+    """What is to be said of dead loads that are no weights, where the ground turns."""
+    tilts = any(isinstance(load, Tilt) for load in scene.load.live)
+    if not tilts or not len(scene.dead_forces.force):
+        return ""
+    return "dead loads at points and along lines turn with the ground, as jacks do and weights do not"
 
 
 def _left_out(model: Model, scene: Scene) -> str:
@@ -263,6 +279,8 @@ def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: An
         As of `check_response`.
     """
     follow = check_response(model, scene, scale)
+    own = OF_RESPONSES if find_model(model) is not MODELS["fem"] else (*OF_RESPONSES, "cells", "modes")
+    check_response_settings(settings, own)
     from runningbond.dynamics import beam_note
 
     response = follow(scene, scale, **settings)

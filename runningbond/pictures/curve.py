@@ -30,6 +30,8 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
     axes = figure.add_subplot()
     moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
     rests = outcome.curve_columns().get(AT_REST, np.ones(len(load))) == 1
+    is_led = not rests.any()  # in motion all the way
+    rests |= is_led
     if outcome.lower is not None and outcome.upper is not None:
         axes.axhspan(outcome.lower, outcome.upper, color=BAND, lw=0, alpha=0.6)
     if outcome.multiplier is not None:
@@ -47,7 +49,7 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
         color=DARK,
     )
     held = "stands" if scene.history else "at rest"
-    axes.plot(moved[rests], load[rests], ".-", color=CURVE, lw=1.2, ms=4, label=held)
+    axes.plot(moved[rests], load[rests], "-" if is_led else ".-", color=CURVE, lw=1.2, ms=4, label=held)
     if not rests.all():
         last = np.flatnonzero(~rests)[0]
         axes.plot(moved[last - 1 :], load[last - 1 :], ":", color=FALL, lw=1.0)

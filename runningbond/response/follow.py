@@ -158,8 +158,8 @@ def follow(
     after
         Time for which it is followed once a block has fallen [s].
     points : (k, 2) float, optional
-        Points to follow [m], on the blocks with the nearest corners and within a block's size of the wall; without any
-        the wall's upper corners.
+        Points to follow [m], on the blocks that hold them, or have the nearest corners, and within a block's size of
+        the wall; without any the wall's upper corners.
     rows
         Rows in a second, and at least in the record.
     observe

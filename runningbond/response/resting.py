@@ -87,7 +87,10 @@ class Resting:
         return np.asarray(highest[[highest[:, 0].argmin(), highest[:, 0].argmax()]])
 
     def block_at(self, point: Array) -> int:
-        """Block of the wall with the corner nearest a point ``(2,)`` [m]."""
-        blocks = self.scene.blocks
-        corners = np.flatnonzero(~self.scene.fixed[blocks.owner])
+        """Block of the wall that holds a point ``(2,)`` [m]; of several, or none, that with the nearest corner."""
+        blocks, can_move = self.scene.blocks, ~self.scene.fixed
+        holding = blocks.containing(point)
+        if can_move[holding].any():
+            can_move &= np.isin(np.arange(len(blocks)), holding)
+        corners = np.flatnonzero(can_move[blocks.owner])
         return int(blocks.owner[corners[np.hypot(*(blocks.vertices[corners] - point).T).argmin()]])

@@ -93,7 +93,7 @@ def save_outcome(outcome: Outcome, folder: Path, key: str = "", scene: Scene | N
     np.savez_compressed(buffer, allow_pickle=False, **columns, **(scene_to_arrays(scene) if scene else {}))
     content = buffer.getvalue()
     arrays = f"arrays-{hashlib.sha256(content).hexdigest()[:16]}.npz"
-    scalars = {"key": key, "arrays": arrays, **outcome.summary()}
+    scalars = {"key": key, "arrays": arrays, **outcome.summary(), "fall": outcome.fall}
     record = {**scalars, "sha256": _seal(scalars, content)}
     make_folder(folder)
     with locked(folder):  # or another writer would take these arrays for stale ones

@@ -236,3 +236,25 @@ def test_a_curve_that_is_not_there_is_not_drawn() -> None:
     result = rb.read("wall-w1").run("limit")
     with pytest.raises(SceneError, match="what = 'curve': must be mechanism: limit has no curve here"):
         result.plot("curve")
+
+
+def test_a_live_load_that_is_given_stays_whichever_way_it_is_given() -> None:
+    """Beside a beam's drive or in place of the default; a default one gives way to what moves the wall."""
+    beam = {"height": 0.2, "mass": 50.0, "drive": {"force": [1, 0]}}
+    live = {"kind": "lateral", "direction": "left"}
+    one, other = (
+        rb.Wall.running_bond(**PANEL, beam=beam, **given) for given in ({"live": live}, {"load": {"live": live}})
+    )
+    assert one.description == other.description
+    assert one.description["load"]["live"] == live
+    assert "live" not in rb.Wall.running_bond(**PANEL, beam=beam).description["load"]
+    history = {"pulse": {"kind": "sine", "amplitude": 0.1, "period": 0.5}, "quantity": "g"}
+    for given in ({"history": history}, {"load": {"history": history}}):
+        assert set(rb.Wall.running_bond(**PANEL, **given).description["load"]) == {"gravity", "history"}
+    plain = rb.Wall.running_bond(**PANEL)
+    assert rb.Wall.running_bond(**PANEL, beam=None).description == plain.description
+    assert rb.Wall.running_bond(**PANEL, history=None).description == plain.description
+    with pytest.raises(SceneError, match="title = 3: must be a string"):
+        rb.Wall.running_bond(**PANEL, title=3)
+    with pytest.raises(SceneError, match='is not a key of a wall; did you mean "friction"'):
+        rb.Wall.running_bond(**{**PANEL, "frictoin": np.float32(0.4)})

@@ -321,7 +321,9 @@ def test_scene_of_its_own_without_a_drive_is_refused(tmp_path: Path) -> None:
         scene_of(read_folder(folder)[0], Features())
 
 
-@pytest.mark.parametrize(("name", "load"), [("WS.175", 175e3), ("Wall 3", 185.2e3), ("WS-1.250", 185.2e3)])
+@pytest.mark.parametrize(
+    ("name", "load"), [("WS.175", 175e3), ("Wall 3", 185.2e3), ("WS-1.250", 185.2e3), ("A-150", 185.2e3)]
+)
 def test_a_number_in_a_name_is_a_load_where_the_table_agrees(tmp_path: Path, name: str, load: float) -> None:
     """Else it is what Ntot leaves of the weight, 20 kN/m³ of 0.24 m³."""
     row = GRANITE.replace("WS.175", name).replace("179.8", "190")

@@ -249,3 +249,12 @@ def test_ground_that_moves_slowly_bears_the_inertia_of_the_mass_there_is(mass: f
     middle = int(np.searchsorted(response.time, 1.0))
     borne = response.reaction[middle, 0] / response.ground[middle, 0]
     assert borne == pytest.approx(2000.0 + (mass or 2.0), rel=2e-3)
+
+
+def test_points_are_followed_on_the_blocks_that_hold_them() -> None:
+    """Centroids go where their blocks do, of walls in bond, where corners of others are nearer."""
+    scene = wall(History(*pulse("sine", 0.9 * GRAVITY, 0.6), interval=0.003), joint__friction=0.3)
+    own = np.flatnonzero(scene.wall)
+    response = respond("dem-dynamic", scene, points=scene.blocks.centroid[own], rows=100)
+    assert response.displacement[-1] == pytest.approx(response.motion[own, :2], abs=1e-12)
+    assert np.ptp(response.motion[own, 0]) > 1e-3

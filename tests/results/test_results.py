@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runningbond.results import Outcome, StoreError, load_outcome, save_outcome, write_atomically
+from runningbond.scene import Array
 
 numbers = st.floats(0, 1e6)
 
@@ -36,6 +38,18 @@ def test_an_outcome_comes_back_from_disk_as_it_went(
     assert back.summary() == outcome.summary()
     assert np.array_equal(back.motion, motion)
     assert np.array_equal(back.force, motion[:, :2])
+
+
+def test_every_field_of_an_outcome_is_kept(tmp_path: Path) -> None:
+    given: dict[str, Any] = {"multiplier": 0.5, "lower": 0.4, "upper": 0.6, "dofs": 6, "steps": 7, "fall": 0.02}
+    given |= {each.name: np.full((2, 3), 0.1) for each in fields(Outcome) if each.type is Array}
+    given["curve"] = np.full((2, 2), 0.1)
+    outcome = Outcome("wall", "limit", "collapse", message="told", path_columns=("a", "b", "c"), **given)
+    assert len(given) > 15
+    save_outcome(outcome, tmp_path, "key")
+    back, _ = load_outcome(tmp_path)
+    for each in fields(Outcome):
+        assert np.array_equal(getattr(back, each.name), getattr(outcome, each.name)), each.name
 
 
 @pytest.mark.parametrize(

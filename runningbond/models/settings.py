@@ -1,0 +1,87 @@
+"""What settings of the package's own models may be, checked before a model runs."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from numbers import Integral
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from runningbond.joints.points import Rule
+from runningbond.scene import Scene, SceneError
+from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO, one_of
+
+Check: TypeAlias = Callable[[str, object], object]
+"""Refuses a value under a key."""
+
+
+def whole(key: str, value: object, *, least: int = 1) -> None:
+    """Refuse what is no whole number, or less than one."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
+        raise SceneError(key, f"must be a whole number, at least {least}", value)
+
+
+def _true_or_false(key: str, value: object) -> None:
+    if not isinstance(value, (bool, np.bool_)):
+        raise SceneError(key, "must be True or False", value)
+
+
+def _word(*words: str) -> Check:
+    return lambda key, value: one_of(key, value, words)
+
+
+def _modes(key: str, value: object) -> None:
+    if value != "all":
+        whole(key, value, least=3)
+
+
+def _rule(key: str, value: object) -> None:
+    if not isinstance(value, Rule):
+        raise SceneError(key, "must be a Rule of runningbond.joints.points, of nodes and weights", value)
+
+
+CHECKS: Mapping[str, Check] = {
+    "collapse": ABOVE_ZERO.take,
+    "first_step": ABOVE_ZERO.take,
+    "budget": whole,
+    "past": partial(whole, least=0),
+    "starts": whole,
+    "workers": whole,
+    "programs": whole,
+    "points": _word("elements", "joints"),
+    "cracks": _word("joints", "blocks"),
+    "loads": _word("consistent", "inner"),
+    "energies": _word("given", "corrected", "printed"),
+    "mass_scaling": _true_or_false,
+    "modes": _modes,
+    "rule": _rule,
+}
+"""Checks of settings, by their names; others are checked where they are used."""
+
+OPTIONAL = ("programs", "modes", "rule")
+"""Settings that may be None as well."""
+
+NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements")
+"""Settings that mean nothing where the ground moves."""
+
+OF_MOTIONS: Mapping[str, Check] = {"rows": whole, "after": AT_LEAST_ZERO.take}
+"""Checks of settings of a response."""
+
+
+def check_settings(model: str, scene: Scene, settings: Mapping[str, Any]) -> None:
+    """Refuse settings of a model of the package that are out of range, or that a scene gives no meaning."""
+    for name, value in settings.items():
+        key = f"model {model}: {name}"
+        if scene.history and name in NOT_IN_MOTION:
+            raise SceneError(key, "is not taken where the ground moves; leave it out", value)
+        if name in CHECKS and not (value is None and name in OPTIONAL):
+            CHECKS[name](key, value)
+
+
+def check_response_settings(settings: Mapping[str, Any], known: tuple[str, ...]) -> None:
+    """Refuse settings of a response that it has not, or that are out of range."""
+    for name, value in settings.items():
+        if name not in known:
+            raise SceneError(name, f"is not a setting of a response; it has {', '.join(known)}", value)
+        if name in OF_MOTIONS:
+            OF_MOTIONS[name](name, value)
