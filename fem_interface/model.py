@@ -27,7 +27,7 @@ from runningbond.dynamics import (
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import CALMING, MOVING
-from runningbond.joints import Rule
+from runningbond.joints import JointPoints, Rule, listed_points, wall_points
 from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
@@ -101,8 +101,8 @@ def fem(
     Returns
     -------
     Outcome
-        As of `collapse_by_steps`. `force` lists the points joint element by joint element, those inside blocks last;
-        `motion` is the blocks' rigid part.
+        As of `collapse_by_steps`. `force` lists the points joint by joint or, where the mesh has others than a joint's
+        own, the forces at its ends that have the same resultants; `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
     finite = bool(scene.history) or is_finite(displacements, "fem", scene)
@@ -137,7 +137,28 @@ def fem(
         budget=budget,
         observe=observe,
     )
+    if len(outcome.force) and not listed_points(scene, len(outcome.force)):
+        elements = wall.elements
+        outcome = replace(outcome, force=at_ends(scene, elements.points.part(elements.listing), outcome.force))
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def at_ends(scene: Scene, points: JointPoints, force: Array) -> Array:
+    """Forces ``(2 nj, 2)`` [N] at the ends of a scene's joints that have the resultants of those at points ``(np, 2)``.
+
+    Points that are on no joint of the scene, between triangles of a block, are left out.
+    """
+    ends = wall_points(scene)
+    order = np.lexsort(((ends.position * ends.tangent).sum(axis=1), ends.joint)).reshape(-1, 2)
+    inside = points.joint < len(scene.joints)
+    joint, force = points.joint[inside], force[inside]
+    low, high = ends.position[order].transpose(1, 0, 2)
+    run = high - low
+    share = ((points.position[inside] - low[joint]) * run[joint]).sum(axis=1) / (run**2).sum(axis=1)[joint]
+    found = np.zeros((len(ends), 2))
+    np.add.at(found, order[joint, 0], (1 - share)[:, None] * force)
+    np.add.at(found, order[joint, 1], share[:, None] * force)
+    return found
 
 
 def run_of_longer_steps(wall: ModalWall, system: BlockSystem) -> Run:

@@ -94,7 +94,7 @@ class Result:
 
         ``joint``, blocks ``a`` and ``b``, ``x``, ``y`` [m], ``area`` [m²], ``normal_force`` and ``shear_force`` [N],
         tension positive, and ``opening`` and ``slip`` [m] of the mechanism. Not a number is what the model does not
-        say: forces on other points than these, of finer meshes, are in ``outcome.force``.
+        say.
         """
         scene = self.wall.scene
         force = self.outcome.force

@@ -37,6 +37,27 @@ def test_scalars_are_the_outcomes() -> None:
         result.mutliplier  # noqa: B018 - refused where it is read
 
 
+@pytest.mark.parametrize(
+    ("model", "rest"), [("limit", 1e-9), ("dem-static", 1e-6), ("dem-dynamic", 1e-4), ("fem", 1e-4)]
+)
+def test_every_block_rests_under_the_forces_of_its_joints(model: str, rest: float) -> None:
+    """Forces and moments, in weights of the heaviest; of soft blocks as well, whose meshes have other points."""
+    result = WALL.run(model)
+    scene, table = result.wall.scene, result.joints
+    at = np.column_stack([table["x"], table["y"]])
+    ends = scene.joints.ends[np.asarray(table["joint"])]
+    tangent = (ends[:, 1] - ends[:, 0]) / scene.joints.length[np.asarray(table["joint"])][:, None]
+    normal = np.column_stack([tangent[:, 1], -tangent[:, 0]])
+    force = np.asarray(table["normal_force"])[:, None] * normal + np.asarray(table["shear_force"])[:, None] * tangent
+    left = np.zeros((len(scene.blocks), 3))
+    left[:, :2] = scene.mass[:, None] * 9.81 * (result.lower, -1.0)
+    for block, sense in ((np.asarray(table["a"]), 1.0), (np.asarray(table["b"]), -1.0)):
+        arm = at - scene.blocks.centroid[block]
+        moment = arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0]
+        np.add.at(left, block, sense * np.column_stack([force, moment]))
+    assert np.abs(left[~scene.fixed]).max() < rest * scene.mass[~scene.fixed].max() * 9.81
+
+
 def test_forces_on_the_ground_bear_weight_and_push() -> None:
     """Vertical forces of the joints with the ground add up to the weight, shear forces to λ times it."""
     result = WALL.run("limit")
