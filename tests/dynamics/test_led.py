@@ -405,8 +405,7 @@ def test_a_lintel_turns_on_the_settling_pier_and_loads_it_by_its_lever(
 
 
 @pytest.mark.parametrize("model", MODELS)
-@pytest.mark.parametrize("angle", [-1, -3])
-def test_what_stops_does_not_shake_friction_loose(model: Any, angle: float) -> None:
+def test_what_stops_does_not_shake_friction_loose(model: Any) -> None:
     """A lintel slides on its left pier, held by the right one, which turns about its toe with the ground.
 
     Statics has the share where friction is all taken up; of supports that stop with a knock it was up to 4.5 % less.
@@ -418,7 +417,7 @@ def test_what_stops_does_not_shake_friction_loose(model: Any, angle: float) -> N
         "support": {"kind": "base"},
         "load": {"gravity": 9.81},
     }
-    tables["load"]["live"] = {"kind": "settlement", "box": [[1.9, -1], [2.6, 0.1]], "rotation_angle": angle}
+    tables["load"]["live"] = {"kind": "settlement", "box": [[1.9, -1], [2.6, 0.1]], "rotation_angle": -3}
     scene = scene_from_dict(tables)
     brackets(model(scene), dem_static(scene).multiplier or 0.0, 0.011)
 
