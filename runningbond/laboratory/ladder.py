@@ -127,7 +127,7 @@ def _rung(
     solve = partial(_run, base=base, settings=settings)
     looks: dict[str, Any] = {"colour": colour, "marker": marker, "line": line}
     model = replace(MODELS[base], name=name, title=title, solve=solve, parameters=(), **looks)
-    return Rung(model, features, base, settings == FINITE)
+    return Rung(model, features, base, settings.get("displacements") == "finite")
 
 
 FINITE: dict[str, Any] = {"displacements": "finite"}
