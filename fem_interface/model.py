@@ -7,7 +7,7 @@ lost and stiff deformations can be slowed down one by one.
 
 import time
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -33,6 +33,7 @@ from runningbond.limit import is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene.ranges import one_of
 
 from .coupled_masses import with_coupled_masses
 from .cracks import Cracks, added_compliance
@@ -105,6 +106,9 @@ def fem(
         own, the forces at its ends that have the same resultants; `motion` is the blocks' rigid part.
     """
     start = time.perf_counter()
+    words = (("points", points, PointsOn), ("cracks", cracks, Cracks), ("loads", loads, Loads))
+    for setting, word, known in (*words, ("energies", energies, Energies)):
+        one_of(f"model fem: {setting}", word, get_args(known))
     finite = bool(scene.history) or is_finite(displacements, "fem", scene)
     if finite:
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))

@@ -1,11 +1,11 @@
 """The mesh of a wall: blocks in triangles, joints as elements without thickness between nodes of their own."""
 
 from dataclasses import dataclass
-from numbers import Integral
 
 import numpy as np
 
 from runningbond.scene import Array, Indices, Scene, SceneError, frozen
+from runningbond.scene.ranges import whole
 
 from .outline import Outlines, outlines
 from .shapes import shape_of_blocks, triangulate
@@ -77,8 +77,7 @@ def wall_mesh(scene: Scene, cells: int = 1) -> WallMesh:
     SceneError
         For a number of cells that is none or too large, and where gmsh cannot be loaded.
     """
-    if isinstance(cells, bool) or not isinstance(cells, Integral) or cells < 1:
-        raise SceneError("cells", "must be a whole number, at least 1", cells)
+    whole("cells", cells)
     if 8 * cells**2 * len(scene.blocks) > MOST_TRIANGLES:
         raise SceneError("cells", f"gives more than {MOST_TRIANGLES} triangles; take fewer cells", cells)
     outline = outlines(scene, cells)

@@ -11,9 +11,9 @@ from scipy.special import ndtr
 from scipy.stats import CensoredData, lognorm
 
 from .models import TOLERANCE, Model
-from .models.settings import whole
 from .scene import Array, Mask, SceneError
 from .scene.history import STANDARD_GRAVITY
+from .scene.ranges import whole
 from .sweeps import sweep
 from .tables import Table
 from .wall import Wall

@@ -17,8 +17,6 @@ from .published import BARALDI, CONCENTRATED, FERRIS, cases_of
 from .table import Comparison
 
 OWN_WALLS = 12  # largest number of walls on the plate of one's own
-FILES = tuple(f"{name}.png" for name in (*(f"figure-{k}" for k in (8, 9, 10, 12)), "mechanisms-ferris", "mechanisms"))
-"""Files of all plates."""
 
 
 @dataclass(frozen=True)
@@ -30,11 +28,10 @@ class Plate:
     walls: dict[str, str]  # and what each is called
 
 
-def plates(comparison: Comparison) -> list[Plate]:
-    """Plates that a comparison has anything for: the paper's, and one of walls that are in no figure of it."""
+def _published_plates() -> list[Plate]:
+    """The papers' plates, whole."""
     textures = [f"b/a = {label}" for label, _ in TEXTURES]
     panels, loaded, ferris = ([case.name for case in cases_of(x)] for x in (BARALDI, CONCENTRATED, FERRIS))
-    own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
     paper = []
     for k, (label, _) in enumerate(SLENDERNESS):
         title = f"Mechanisms under self-weight and lateral load, H/L = {label} (cf. Baraldi et al., Fig. {8 + k})"
@@ -42,9 +39,19 @@ def plates(comparison: Comparison) -> list[Plate]:
     title = "Mechanisms under a concentrated load (cf. Baraldi et al., Fig. 12)"
     paper.append(Plate("figure-12", title, dict(zip(loaded, textures, strict=True))))
     names = {name: name.removeprefix("wall-").upper() for name in ferris}
-    paper.append(Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", names))
-    present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in paper]
-    present.append(Plate("mechanisms", "Mechanisms", {name: name for name in own}))
+    return [*paper, Plate("mechanisms-ferris", "Mechanisms of Ferris & Tin-Loi's walls", names)]
+
+
+PAPER, OWN = _published_plates(), Plate("mechanisms", "Mechanisms", {})
+FILES = tuple(f"{plate.name}.png" for plate in (*PAPER, OWN))
+"""Files of all plates."""
+
+
+def plates(comparison: Comparison) -> list[Plate]:
+    """Plates that a comparison has anything for: the paper's, and one of walls that are in no figure of it."""
+    own = [name for name in comparison.scenes if name not in comparison.published][:OWN_WALLS]
+    present = [replace(p, walls={n: w for n, w in p.walls.items() if n in comparison.published}) for p in PAPER]
+    present.append(replace(OWN, walls={name: name for name in own}))
     return [plate for plate in present if _models(comparison, plate)]
 
 

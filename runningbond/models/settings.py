@@ -2,32 +2,21 @@
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from numbers import Integral
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from runningbond.joints.points import Rule
 from runningbond.scene import Scene, SceneError
-from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO, one_of
+from runningbond.scene.ranges import ABOVE_ZERO, AT_LEAST_ZERO, whole
 
 Check: TypeAlias = Callable[[str, object], object]
 """Refuses a value under a key."""
 
 
-def whole(key: str, value: object, *, least: int = 1) -> None:
-    """Refuse what is no whole number, or less than one."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
-        raise SceneError(key, f"must be a whole number, at least {least}", value)
-
-
 def _true_or_false(key: str, value: object) -> None:
     if not isinstance(value, (bool, np.bool_)):
         raise SceneError(key, "must be True or False", value)
-
-
-def _word(*words: str) -> Check:
-    return lambda key, value: one_of(key, value, words)
 
 
 def _modes(key: str, value: object) -> None:
@@ -48,10 +37,6 @@ CHECKS: Mapping[str, Check] = {
     "starts": whole,
     "workers": whole,
     "programs": whole,
-    "points": _word("elements", "joints"),
-    "cracks": _word("joints", "blocks"),
-    "loads": _word("consistent", "inner"),
-    "energies": _word("given", "corrected", "printed"),
     "mass_scaling": _true_or_false,
     "modes": _modes,
     "rule": _rule,

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from numbers import Real
+from numbers import Integral, Real
 from typing import Annotated, Any, TypeAlias, get_args, get_type_hints
 
 import numpy as np
@@ -67,6 +67,12 @@ def vector(key: str, value: Any) -> tuple[float, float]:
     if len(numbers) != 2 or numbers[0] is None or numbers[1] is None:
         raise SceneError(key, "must be a pair of finite numbers [x, y]", value)
     return numbers[0], numbers[1]
+
+
+def whole(key: str, value: object, *, least: int = 1) -> None:
+    """Refuse what is no whole number, or less than one."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
+        raise SceneError(key, f"must be a whole number, at least {least}", value)
 
 
 def one_of(key: str, value: object, options: Iterable[str]) -> str:

@@ -11,6 +11,8 @@ import runningbond as rb
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.compare.published import PUBLISHED, published_scene
 from runningbond.scene import Scene, SceneError
+from runningbond.scene.schema import scene_schema
+from runningbond.wall import WHOLE
 
 PANEL: dict[str, Any] = {
     "length": 1.44,
@@ -258,3 +260,7 @@ def test_a_live_load_that_is_given_stays_whichever_way_it_is_given() -> None:
         rb.Wall.running_bond(**PANEL, title=3)
     with pytest.raises(SceneError, match='is not a key of a wall; did you mean "friction"'):
         rb.Wall.running_bond(**{**PANEL, "frictoin": np.float32(0.4)})
+
+
+def test_what_a_scene_file_has_at_its_top_is_known() -> None:
+    assert set(WHOLE) == set(scene_schema()["properties"])

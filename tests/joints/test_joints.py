@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runningbond.joints import gauss, joint_points, joint_stiffness, lobatto, point_strength
+from runningbond.joints import gauss, joint_points, joint_stiffness, lobatto, point_strength, wall_rule
 from runningbond.scene import JointMaterial, Joints, Mortar, SceneError, Stiffness
 from tests.walls import panel
 
@@ -104,3 +104,17 @@ def test_no_admissible_force_does_more_work_than_the_dissipation(
     tangential = share * (strength.shear + friction * pressure)
     work = normal * opening + tangential * slip
     assert (work <= strength.dissipation(np.array([opening]), np.array([slip])) + 1e-9 * (1 + abs(work))).all()
+
+
+@pytest.mark.parametrize(("parts", "within"), [(1, 0.03), (2, 0.05), (3, 0.05), (4, 0.055)])
+def test_crushed_points_bear_bending_as_nearly_as_messages_say(parts: int, within: float) -> None:
+    """Filled with a share s of the strength from one end, against s (1 - s) / 2 of a line (`Run.crushing_note`)."""
+    rule = wall_rule(panel(joint__compressive_strength=1e7), parts)
+    at = np.concatenate([(k + (1 + np.asarray(rule.nodes)) / 2) / parts for k in range(parts)])
+    order = np.argsort(at, kind="stable")
+    weight = np.tile(np.asarray(rule.weights) / np.sum(rule.weights) / parts, parts)[order]
+    filled, errors = np.cumsum(weight) - weight, []
+    for share in np.linspace(0.05, 0.6, 200):
+        borne = np.clip(share - filled, 0.0, weight)
+        errors.append((share / 2 - float(borne @ at[order])) / (share * (1 - share) / 2) - 1)
+    assert 0.5 * within < np.abs(errors).max() < within
