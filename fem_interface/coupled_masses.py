@@ -24,7 +24,7 @@ from runningbond.dynamics.run import CALMING, VISCOUS
 from runningbond.dynamics.system import Coupling
 from runningbond.scene import Array
 
-from .frequency_shift import GROUND, elastic_stiffness, lowest_frequencies
+from .frequency_shift import GROUND, lowest_frequencies, modal_stiffness
 from .mass_scaling import modal_viscosity, undeformed_frequency_squared
 from .modal_wall import ModalWall
 from .system import DAMPING
@@ -63,7 +63,7 @@ def with_coupled_masses(wall: ModalWall, system: BlockSystem) -> BlockSystem:
     rigid = (wall.stiffness == 0)[moving]
     if more or (~scene.fixed).sum() > LARGEST or rigid.all() or not rigid.any():
         return system
-    stiffness, mass = elastic_stiffness(wall, closed=True), wall.mass[moving]
+    stiffness, mass = modal_stiffness(wall, closed=True), wall.mass[moving]
     of_rigid, square = undeformed_frequency_squared(wall), system.interface.frequency_squared
     slow, slow_rigid = _lowest(stiffness, mass, square), _lowest(stiffness[rigid][:, rigid], mass[rigid], square)
     # Steps of a period, squared, but for a factor that is the same for both.

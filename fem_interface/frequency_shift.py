@@ -21,7 +21,7 @@ DENSE = 400
 """Coordinates of a body up to which its matrices are taken as full ones."""
 
 
-def elastic_stiffness(wall: ModalWall, *, closed: bool = False) -> csr_array:
+def modal_stiffness(wall: ModalWall, *, closed: bool = False) -> csr_array:
     """Stiffness of a wall none of whose joints is open, in the coordinates that move, ``(n, n)`` [N/m].
 
     Joints that close under pressure are as stiff as without any, or, where they are `closed`, as they ever get.
@@ -62,7 +62,7 @@ def frequency_shift(wall: ModalWall, count: int, highest: float) -> Callable[[Ar
         Takes modal masses ``(nd,)`` [kg].
     """
     moving = np.isfinite(wall.mass)
-    stiffness = csc_array(elastic_stiffness(wall) + diags_array(GROUND * highest * wall.mass[moving]))
+    stiffness = csc_array(modal_stiffness(wall) + diags_array(GROUND * highest * wall.mass[moving]))
     bodies, body = connected_components(stiffness, directed=False)
     rows = [np.flatnonzero(body == k) for k in range(bodies)]
     lowest_of = [(own, lowest_frequencies(csc_array(stiffness[own][:, own]), count)) for own in rows]

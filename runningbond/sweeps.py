@@ -10,6 +10,7 @@ from .campaigns.fingerprint import fingerprint
 from .models import TOLERANCE, Model, find_model
 from .results import make_folder
 from .scene import Scene, SceneError
+from .scene.ranges import path_of
 from .tables import Table, table
 from .wall import Wall
 
@@ -71,7 +72,7 @@ def sweep(
         else:  # named after what it is computed from, an outcome is used again when keys or values are added
             names.append(fingerprint(scene, model, tolerance)[:16])
             scenes[names[-1]] = scene
-    kept_in = None if folder is None else Path(folder)
+    kept_in = None if folder is None else path_of("folder", folder)
     if kept_in is not None:
         make_folder(kept_in)
     with ctrl_c_passed_on():

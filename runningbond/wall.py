@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .scene import Scene, SceneError, read_description, scene_from_dict
-from .scene.ranges import suggestion
+from .scene.ranges import path_of, suggestion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -79,7 +79,7 @@ class Wall:
         if not isinstance(description, Mapping):
             raise SceneError("description", "must be a mapping of the tables of a scene file", description)
         self._description: dict[str, Any] = _as_in_a_file(description)
-        self.folder = Path(folder)
+        self.folder = path_of("folder", folder)
         self.scene  # noqa: B018 - built at once, so that what is wrong is said where it is written
 
     @classmethod
@@ -274,7 +274,7 @@ class Wall:
 
         drawing = Drawing(self.scene, find_model(model), number, scatter)
         with ctrl_c_passed_on():
-            return drawing.run(tolerance, None if folder is None else Path(folder), jobs)
+            return drawing.run(tolerance, None if folder is None else path_of("folder", folder), jobs)
 
     def respond(self, model: "str | Model", scale: float = 1.0, **settings: Any) -> "DrawnResponse":
         """Follow the wall through the motion of its ground, ``load.history``.
@@ -313,7 +313,7 @@ class Wall:
         from .results import write_atomically
         from .scene_writer import toml
 
-        description, path = self.description, Path(path)
+        description, path = self.description, path_of("path", path)
         if "drawing" in description["wall"]:
             drawing = relpath(self.folder / description["wall"]["drawing"], path.parent)
             description["wall"]["drawing"] = Path(drawing).as_posix()
@@ -349,7 +349,7 @@ def read(wall: str | Path) -> Wall:
     """
     from .compare.published import find_scene
 
-    path = find_scene(str(wall))
+    path = find_scene(str(path_of("wall", wall)))
     return Wall({"title": path.stem, **read_description(path)}, path.parent)
 
 

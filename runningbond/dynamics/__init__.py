@@ -2,7 +2,7 @@
 
 from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
-from .controls import Drive, drive, pushover_curve, ramp, settled_drive
+from .controls import Pushover, drive, pushover_curve, ramp, settled_drive
 from .dead_load import put_on_dead_load
 from .highest_frequency import with_highest_frequency
 from .inertia import CALMER, beam_note, inertia_factors, inertia_note, largest_scaling
@@ -27,10 +27,10 @@ __all__ = [
     "Carried",
     "ContactSearch",
     "Criteria",
-    "Drive",
     "Interface",
     "LoadSteps",
     "Observer",
+    "Pushover",
     "Restraint",
     "Run",
     "State",

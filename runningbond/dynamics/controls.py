@@ -22,7 +22,7 @@ def ramp(run: Run, state: State, start: float, stop: float, steps: int) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class Drive:
+class Pushover:
     """A wall pushed at a prescribed speed."""
 
     curve: Array  # (n, 2) displacement of the control point [m] and mean multiplier, piece by piece
@@ -31,7 +31,7 @@ class Drive:
     state: State  # the wall at the end
 
 
-def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Drive:
+def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200) -> Pushover:
     """Push a wall until its control point has moved a distance [m], from a copy of a state.
 
     The work-conjugate displacement, live load times motion, grows at a constant rate after a soft start; the
@@ -42,12 +42,12 @@ def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200
     soft = max(1, pieces // 20)
     pace = (pieces, soft, steps // pieces)
     curve = _push(run, state, distance, power, pace, lambda motion: (float(system.control @ motion),))
-    return Drive(curve, float(curve[soft:, 1].max(initial=curve[0, 1])), float("inf"), state)
+    return Pushover(curve, float(curve[soft:, 1].max(initial=curve[0, 1])), float("inf"), state)
 
 
 def settled_drive(
     run: Run, start: State, distance: float, tolerance: float, steps: int = 20_000, halvings: int = 8
-) -> Drive:
+) -> Pushover:
     """Halve the speed until the peak of the curve changes by less than a relative tolerance."""
     slow = drive(run, start, distance, steps)
     for _ in range(halvings):

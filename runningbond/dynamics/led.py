@@ -23,7 +23,7 @@ from .dead_load import put_on_dead_load
 from .lead import BEAM, LITTLE, Lead, Way, formed
 from .run import CALMING, Observer, Run, Unstable
 
-STEPS, UNHURRIED, FAR = 20_000, 20, 2
+LEAST_STEPS, UNHURRIED, UNHURRIED_FAR = 20_000, 20, 2
 """Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
 at small displacements, and at finite ones, whose ways are longer.
 """
@@ -103,8 +103,8 @@ def _speeds(lead: Lead, rest: int) -> list[float]:
     if rate := _rate(lead.scene):
         return [2 * rate, rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
-    unhurried = UNHURRIED if lead.run.system.contacts is None else FAR
-    steps = max(STEPS, unhurried * rest)
+    unhurried = UNHURRIED if lead.run.system.contacts is None else UNHURRIED_FAR
+    steps = max(LEAST_STEPS, unhurried * rest)
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
     return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
 

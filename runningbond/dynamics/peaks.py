@@ -11,10 +11,10 @@ import numpy as np
 
 from .state import State
 
-STEPS = 50
+WINDOW_STEPS = 50
 """Least steps of windows shorter than a row."""
 
-RESOLVED = 2.5e-3
+SEEN = 2.5e-3
 """What windows half as long may add to a peak that is seen, relative to it."""
 
 
@@ -52,7 +52,7 @@ class Peaks:
     """
 
     def __init__(self, start: State, steps: float) -> None:
-        levels = max(1, int(np.log2(max(1.0, steps / STEPS))))
+        levels = max(1, int(np.log2(max(1.0, steps / WINDOW_STEPS))))
         self.windows = 2**levels  # of the shortest kind in a row
         self._peaks = [Peak(start) for _ in range(levels + 1)]
         # Force and inertia times steps, and steps, up to the end of each window of the row.
@@ -67,7 +67,7 @@ class Peaks:
         for level, peak in enumerate(self._peaks):
             some = self.windows >> level
             whole = (len(self._sums) - 1) % some == 0
-            if whole and (level == 0 or self._ends[-1] - self._ends[-1 - some] >= STEPS):
+            if whole and (level == 0 or self._ends[-1] - self._ends[-1 - some] >= WINDOW_STEPS):
                 peak.see(*self._means(some), state, row)
 
     def mean(self, windows: int) -> float:
@@ -87,6 +87,6 @@ class Peaks:
         """
         force = np.array([peak.force for peak in self._peaks])
         more = np.diff(force)
-        seen = np.flatnonzero(more <= RESOLVED * force[1:])
+        seen = np.flatnonzero(more <= SEEN * force[1:])
         level = int(seen[0]) if len(seen) else len(more) - 1
         return self._peaks[level], level > 0, max(0.0, float(more[level]), float(force[-1] - force[level] + more[-1]))

@@ -19,7 +19,7 @@ from runningbond.results.mechanism import carried
 from runningbond.scene import Array, SceneError
 
 from .ground import Ground
-from .response import ENERGIES, MISSED, Response, Verdict, supplied, unaccounted
+from .response import ENERGIES, MISSED, Response, ResponseVerdict, supplied, unaccounted
 from .resting import Resting
 
 TURNED = math.radians(60)
@@ -207,7 +207,7 @@ def _followed(
     run.led, state = True, rest.state.copy()
     ground = Ground(run, history, scale, state.time)
     log = _Log(rest, ground, state, points)
-    verdict: Verdict = "undecided"
+    verdict: ResponseVerdict = "undecided"
     fell, now, swing = math.inf, 0.0, rest.swing
     end = history.duration + PATIENCE * swing
     observe(run, state, scale)
@@ -234,7 +234,7 @@ def _followed(
     return _response(rest, scale, log, run, state, (verdict, fell, sway), time.perf_counter() - begin)
 
 
-def _not_shaken(rest: Resting, scale: float, points: Array, verdict: Verdict, message: str) -> Response:
+def _not_shaken(rest: Resting, scale: float, points: Array, verdict: ResponseVerdict, message: str) -> Response:
     """The response of a wall that does not rest."""
     none, nowhere = np.zeros((0, 2)), np.zeros((len(rest.scene.blocks), 3))
     return Response(
@@ -250,7 +250,7 @@ def _response(
     log: _Log,
     run: Run,
     state: State,
-    end: tuple[Verdict, float, Array | None],
+    end: tuple[ResponseVerdict, float, Array | None],
     seconds: float,
 ) -> Response:
     times, ground, places, drift, reaction, energy, fallen = map(np.array, zip(*log.rows, strict=True))

@@ -8,7 +8,7 @@ import numpy as np
 
 from runningbond.scene import Array, Indices
 
-Verdict: TypeAlias = Literal["stands", "collapse", "undecided", "infeasible"]
+ResponseVerdict: TypeAlias = Literal["stands", "collapse", "undecided", "infeasible"]
 """Whether a wall has come to rest, a block of it has fallen, or neither within the time that was followed; or whether
 it falls under its dead load, so that there is nothing to shake."""
 
@@ -64,7 +64,7 @@ class Response:
     scene: str
     model: str
     scale: float
-    verdict: Verdict
+    verdict: ResponseVerdict
     message: str
     points: Array
     time: Array

@@ -12,7 +12,7 @@ from .errors import SceneError, keys_of
 from .loads import read_load
 from .materials import BlockMaterial, Closure, JointMaterial, Mortar, Softening, Stiffness, check_friction
 from .outlines import read_outlines
-from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, Range
+from .ranges import ABOVE_ZERO, AT_LEAST_ZERO, Range, path_of
 from .supports import SUPPORT_KINDS, SupportKind
 from .table import Table
 from .ties import read_tie
@@ -35,7 +35,7 @@ def read_scene(path: str | Path) -> Scene:
         For a file that is missing, is no TOML or describes no wall: one line that names the key,
         the value and what would be right.
     """
-    path = Path(path)
+    path = path_of("path", path)
     return scene_from_dict(read_description(path), folder=path.parent, default_title=plain_stem(path))
 
 

@@ -2,10 +2,12 @@
 
 import difflib
 import math
+import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from numbers import Integral, Real
+from pathlib import Path
 from typing import Annotated, Any, TypeAlias, get_args, get_type_hints
 
 import numpy as np
@@ -73,6 +75,13 @@ def whole(key: str, value: object, *, least: int = 1) -> None:
     """Refuse what is no whole number, or less than one."""
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         raise SceneError(key, f"must be a whole number, at least {least}", value)
+
+
+def path_of(key: str, value: object) -> Path:
+    """A path; what is none is refused under its key."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise SceneError(key, "must be a path", value)
+    return Path(value)
 
 
 def one_of(key: str, value: object, options: Iterable[str]) -> str:

@@ -8,7 +8,7 @@ from scipy.linalg import eigh
 from scipy.sparse.linalg import spsolve
 
 from fem_interface.coupled_masses import with_coupled_masses
-from fem_interface.frequency_shift import elastic_stiffness
+from fem_interface.frequency_shift import modal_stiffness
 from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
 from fem_interface.system import system_of
@@ -45,7 +45,7 @@ def test_coupled_masses_bound_the_frequency_and_a_period_takes_few_steps(name: s
     """From above, by the eigenvalues of the whole wall; far fewer steps than with masses scaled one by one."""
     scene = {"wall": wall(), "patch": patch(), "wall-w1": published_scene("wall-w1")}[name].with_block(young=young)
     found, system = coupled(scene)
-    K, (_, M) = elastic_stiffness(found).toarray(), masses(system)
+    K, (_, M) = modal_stiffness(found).toarray(), masses(system)
     last = len(K) - 1
     slowest, fastest = (eigh(K, M, eigvals_only=True, subset_by_index=(k, k))[0] for k in (0, last))
     assert 0.7 * system.interface.frequency_squared < fastest <= system.interface.frequency_squared
@@ -61,7 +61,7 @@ def test_coupled_masses_bound_joints_that_have_closed() -> None:
     """The step is that of joints as stiff as they ever get, a hundred times as stiff as before they were pressed."""
     scene = wall(5e8).with_joint(closure=Closure(growth=1e5, stiffest=1e12), elasticity=Stiffness(1e10, 4e9))
     found, system = coupled(scene)
-    K, (_, M) = elastic_stiffness(found, closed=True).toarray(), masses(system)
+    K, (_, M) = modal_stiffness(found, closed=True).toarray(), masses(system)
     fastest = eigh(K, M, eigvals_only=True, subset_by_index=(len(K) - 1, len(K) - 1))[0]
     assert fastest <= system.interface.frequency_squared
 
@@ -73,7 +73,7 @@ def test_statics_do_not_feel_coupled_masses(young: float) -> None:
     run, state = Run(system, local=CALMING), State.at_rest(system)
     assert settle(run, state, 0.7, Criteria(collapse=1.0, rest=1e-9)) == "stable"
     moving, _ = masses(system)
-    exact = spsolve(elastic_stiffness(found).tocsc(), (system.dead + 0.7 * system.live)[moving])
+    exact = spsolve(modal_stiffness(found).tocsc(), (system.dead + 0.7 * system.live)[moving])
     assert np.abs(state.motion[moving] - exact).max() < 1e-6 * np.abs(exact).max()
 
 
@@ -83,7 +83,7 @@ def test_a_coupled_step_is_that_of_dense_matrices(local: float) -> None:
     found, system = coupled(wall(1e9, joint={**GLUE}))
     run, state = Run(system, local=local, viscous=0.0), State.at_rest(system)
     moving, M = masses(system)
-    K, load = elastic_stiffness(found).toarray(), (system.dead + 0.7 * system.live)[moving]
+    K, load = modal_stiffness(found).toarray(), (system.dead + 0.7 * system.live)[moving]
     joined, own = np.isin(moving, system.coupling.freedom), system.mass[moving]
     q: Any = np.zeros(len(K))
     v: Any = q

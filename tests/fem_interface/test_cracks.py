@@ -10,7 +10,7 @@ from scipy.sparse.linalg import spsolve
 
 from fem_interface.cracks import Cracks, added_compliance, pieces
 from fem_interface.fracture import fractured
-from fem_interface.frequency_shift import elastic_stiffness
+from fem_interface.frequency_shift import modal_stiffness
 from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
 from fem_interface.operators import nodal_jump
@@ -87,7 +87,7 @@ def elastic_displacement(found: ModalWall) -> float:
     """Displacement of the control point under dead and live load, all joints elastic [m]."""
     system = system_of(found)
     moving = np.flatnonzero(np.isfinite(system.mass))
-    K = elastic_stiffness(found)
+    K = modal_stiffness(found)
     return float(system.control[moving] @ spsolve(K.tocsc(), (system.dead + system.live)[moving]))
 
 

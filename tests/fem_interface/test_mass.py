@@ -12,7 +12,7 @@ from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import eigsh, spsolve
 
 from fem_interface.cracks import Cracks
-from fem_interface.frequency_shift import elastic_stiffness, frequency_shift
+from fem_interface.frequency_shift import frequency_shift, modal_stiffness
 from fem_interface.loads import inner_mass
 from fem_interface.mass_scaling import scaled_modes
 from fem_interface.modal_wall import modal_wall
@@ -21,7 +21,7 @@ from fem_interface.system import system_of
 from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.controls import ramp
-from runningbond.dynamics.vibrations import elastic_stiffness as of_modes
+from runningbond.dynamics.vibrations import elastic_stiffness
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError
 from tests.limit.test_limit import rectangle
@@ -56,7 +56,7 @@ def _lowest_frequencies(K: csr_array, mass: Array) -> Array:
 
 def _dense_frequencies(system: BlockSystem, count: int) -> Array:
     """The lowest ones [1/s], as `vibrations` has them, without their shapes."""
-    stiffness, mass = of_modes(system)
+    stiffness, mass = elastic_stiffness(system)
     root = 1 / np.sqrt(mass)
     square = eigh(stiffness * root[:, None] * root, eigvals_only=True, subset_by_index=[0, count - 1])
     return np.asarray(np.sqrt(square))
@@ -155,15 +155,15 @@ def test_the_stiffness_that_frequencies_are_of_is_that_of_a_step(make: Any, crac
     if cracks == "blocks":
         scene = replace(scene, joint_materials=(scene.joint, replace(scene.joint, name="inner_joint")))
     found = modal_wall(scene, cracks=cracks)
-    of_steps, _ = of_modes(system_of(found))
-    assert np.abs(elastic_stiffness(found).toarray() - of_steps).max() < 1e-12 * np.abs(of_steps).max()
+    of_steps, _ = elastic_stiffness(system_of(found))
+    assert np.abs(modal_stiffness(found).toarray() - of_steps).max() < 1e-12 * np.abs(of_steps).max()
 
 
 def _largest_slowing(scene: Scene, modes: ModeCount | None = None) -> float:
     """Largest part by which mass scaling lowers one of the first twenty frequencies; it raises none."""
     found = modal_wall(scene, modes=modes)
     scaled = scaled_modes(found, 0.05)
-    K = elastic_stiffness(found)
+    K = modal_stiffness(found)
     exact, slowed = (_lowest_frequencies(K, mass[np.isfinite(mass)]) for mass in (found.mass, scaled.mass))
     assert (slowed <= exact * (1 + 1e-9)).all()
     return float((1 - slowed / exact).max())

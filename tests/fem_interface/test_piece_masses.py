@@ -8,7 +8,7 @@ import pytest
 from scipy.linalg import eigh
 from scipy.sparse.linalg import spsolve
 
-from fem_interface.frequency_shift import elastic_stiffness
+from fem_interface.frequency_shift import modal_stiffness
 from fem_interface.modal_wall import ModalWall, modal_wall
 from fem_interface.model import fem
 from fem_interface.piece_masses import LONGER, with_heavier_pieces
@@ -68,7 +68,7 @@ def masses(found: ModalWall, system: BlockSystem) -> Array:
 def test_heavier_pieces_bound_the_frequency(cells: int, changes: dict[str, Any]) -> None:
     """From above, by the eigenvalues of the whole wall; steps are more than six times as long."""
     found, plain, system = heavier(pressed(**changes), cells)
-    K, M = elastic_stiffness(found).toarray(), masses(found, system)
+    K, M = modal_stiffness(found).toarray(), masses(found, system)
     last = len(K) - 1
     highest = eigh(K, M, eigvals_only=True, subset_by_index=(last, last))[0]
     assert 0.4 * system.interface.frequency_squared < highest <= system.interface.frequency_squared
@@ -100,7 +100,7 @@ def test_a_step_is_that_of_dense_matrices(local: float) -> None:
     found, _, system = heavier(pressed(joint__friction=1e6, joint__cohesion=1e12))
     run, state = Run(system, local=local, viscous=0.0), State.at_rest(system)
     moving, M = np.isfinite(system.mass), masses(found, system)
-    K, m = elastic_stiffness(found).toarray(), system.mass[moving]
+    K, m = modal_stiffness(found).toarray(), system.mass[moving]
     P = np.zeros_like(K)
     number = np.cumsum(moving) - 1
     for cluster in range(system.clusters.number):
@@ -153,7 +153,7 @@ def test_statics_do_not_feel_heavier_pieces() -> None:
     run, state = Run(system), State.at_rest(system)
     assert settle(run, state, 0.0, Criteria(collapse=1.0, rest=1e-9)) == "stable"
     moving = np.isfinite(system.mass)
-    exact = spsolve(elastic_stiffness(found).tocsc(), system.dead[moving])
+    exact = spsolve(modal_stiffness(found).tocsc(), system.dead[moving])
     assert np.abs(state.motion[moving] - exact).max() < 1e-6 * np.abs(exact).max()
 
 

@@ -210,6 +210,11 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
         (lambda wall: wall.run("fem", cells=1.5), "cells = 1.5: must be a whole number, at least 1"),
         (lambda wall: wall.run("fem", cells=True), "cells = True: must be a whole number, at least 1"),
         (lambda wall: wall.run("fem", cells="2"), "cells = '2': must be a whole number, at least 1"),
+        (lambda wall: rb.sweep(wall, {"joint.friction": [0.4]}, "limit", folder=3), "folder = 3: must be a path"),  # type: ignore[arg-type]
+        (lambda wall: rb.Wall.from_dict(wall.description, 3), "folder = 3: must be a path"),  # type: ignore[arg-type]
+        (lambda wall: wall.draws("dem-static", 2, folder=3), "folder = 3: must be a path"),
+        (lambda wall: wall.to_toml(3), "path = 3: must be a path"),
+        (lambda _: rb.read(3), "wall = 3: must be a path"),  # type: ignore[arg-type]
     ],
 )
 def test_arguments_of_another_kind_are_refused_by_name(ask: Any, said: str) -> None:

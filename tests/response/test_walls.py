@@ -15,7 +15,7 @@ from runningbond.joints.wall_law import with_impacts
 from runningbond.models import respond, run_model
 from runningbond.response import critical_scale, follow
 from runningbond.response.critical import RATIO, Search
-from runningbond.response.response import Verdict
+from runningbond.response.response import ResponseVerdict
 from runningbond.scene import History, Lateral, Load, Scene, SceneError, Stiffness
 from runningbond.scene.history import pulse
 from tests.walls import panel
@@ -113,7 +113,7 @@ def test_scales_at_which_a_wall_neither_rests_nor_falls_lie_between_the_bounds(m
     known = follow(resting(scene), 0.01)
 
     def told(rest: Any, scale: float, **settings: Any) -> Any:
-        verdict: Verdict = "stands" if scale < 1 else "undecided" if scale < 2 else "collapse"
+        verdict: ResponseVerdict = "stands" if scale < 1 else "undecided" if scale < 2 else "collapse"
         return replace(known, scale=scale, verdict=verdict)
 
     monkeypatch.setattr(import_module("runningbond.response.critical"), "follow", told)

@@ -14,7 +14,7 @@ from fem_interface.modes import ModeCount
 from fem_interface.periodic_cell import deformable_cell, rigid_cell
 from fem_interface.system import system_of
 from homog import rigid_moduli
-from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Drive, Run, State, drive, settle
+from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Pushover, Run, State, drive, settle
 from runningbond.models import MODELS, TOLERANCE
 from runningbond.scene import Scene, SceneError, Stiffness
 
@@ -56,7 +56,7 @@ def _collapse(model: str, scene: Scene, tolerance: float = TOLERANCE, **settings
     return Answer(said.status, said.multiplier, said.lower, said.upper, said.dofs, said.steps, said.message)
 
 
-def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Drive:
+def _drive(system: BlockSystem, scene: Scene, distance: float, steps: int) -> Pushover:
     run, state = Run(system), State.at_rest(system)
     settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
     return drive(run, state, distance, steps)
