@@ -24,7 +24,6 @@ from scipy.sparse.linalg import splu
 
 from runningbond.joints import ResultantLaw, gauss, joint_points, wall_stiffness, wall_strength
 from runningbond.joints.resultant_law import DETACHED
-from runningbond.joints.stiffness import block_compliance
 from runningbond.limit.kinematics import (
     control_row,
     dead_load,
@@ -119,21 +118,6 @@ def resultant_wall(scene: Scene, arm: float = 0.5) -> ResultantWall:
         dead_load(scene)[free],
         live_load(scene)[free],
     )
-
-
-def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
-    """Largest displacement of a block under the live load alone, in block sizes, while joints neither open nor slip.
-
-    A lower bound of that at collapse, soft blocks counted in; None without a stiffness, or on pins that leave such a
-    wall loose.
-    """
-    if scene.joint.elasticity is None:
-        return None
-    wall = resultant_wall(scene)
-    moved = wall.move(np.ones(wall.law.stiffness.shape, dtype=np.bool_), multiplier * wall.live)
-    if moved is None:
-        return None
-    return float(np.abs(moved.reshape(-1, 3)[:, :2]).max() / (1 - block_compliance(scene)) / scene.block_size)
 
 
 def stiffness_update(scene: Scene, increment: float, most: float, arm: float = 0.5) -> StiffnessUpdate:

@@ -29,7 +29,7 @@ from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import CALMING, MOVING
 from runningbond.joints import JointPoints, Rule, listed_points, wall_points
 from runningbond.joints.wall_law import with_impacts
-from runningbond.limit import is_self_locking, proved_bound
+from runningbond.limit import elastic_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
@@ -135,6 +135,7 @@ def fem(
         point_order=wall.elements.listing,
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: proved_bound(scene),
+        gives=lambda multiplier: elastic_displacement(scene, multiplier),
         note=note,
         collapse=collapse,
         first_step=first_step,

@@ -1,6 +1,8 @@
 """The collapse of a wall by steps of constant load, each held until the wall rests or falls."""
 
+import math
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -12,6 +14,7 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
+from .dead_load import can_break
 from .inertia import beam_note
 from .led import UNACCOUNTED, collapse_of_led
 from .load_stepping import LoadSteps, load_steps
@@ -25,6 +28,12 @@ LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 """Multiplier, in first steps, and displacement, in block sizes, beyond which no collapse is looked for.
 
 So far small displacements are none, and what is elastic between two loads is more than counts as collapse.
+"""
+
+GIVES, LARGEST_ELASTIC = 2.0, 20.0
+"""Least displacement that counts as collapse, in those of the whole wall's springs under a load that is proved too
+large: put on at once, it moves a wall so far that has not begun to fall. And displacement, in those, beyond which no
+collapse is looked for.
 """
 
 DRAWN_OVERLAP = 0.02
@@ -44,6 +53,7 @@ def collapse_by_steps(
     point_order: Indices,
     is_self_locking: Callable[[], bool],
     bound: Callable[[], float | None] = lambda: None,
+    gives: Callable[[float], float | None] = lambda _: None,
     note: str = "",
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
@@ -70,12 +80,17 @@ def collapse_by_steps(
         Whether joint forces balance any multiple of the live load; asked where no load brought the wall down.
     bound
         Multiplier that is proved too large, if there is one.
+    gives
+        Largest displacement of a block [m] under the live load times a multiplier while joints neither open nor slip,
+        if it is known.
     note
         What the message is to say about the run besides.
     collapse
-        Displacement at which a wall that does not slow down is in collapse, in block sizes.
+        Displacement at which a wall that does not slow down is in collapse, in block sizes; at least `GIVES` times
+        what the wall gives elastically under the `bound`.
     first_step
-        First load step; steps grow while they are borne and are bisected once one is not.
+        First load step; steps grow while they are borne and are bisected once one is not. One beyond the `bound` is
+        halved until it is not.
     budget
         Time steps after which a load is left undecided.
     observe
@@ -101,22 +116,18 @@ def collapse_by_steps(
                     outcome, scene, run, tolerance, points, point_order, is_self_locking, criteria, observe
                 )
                 return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
-            most, farthest = LARGEST_LOAD * first, LARGEST_DISPLACEMENT * sizes
-            try:
+            result, above = LoadSteps(interrupted=True), None
+            with suppress(KeyboardInterrupt):
                 above = bound()
-            except KeyboardInterrupt:
-                result = LoadSteps(interrupted=True)
-            else:
-                result = load_steps(
-                    run, first, tolerance, criteria, most=most, farthest=farthest, bound=above, observe=observe
-                )
+                elastic = (gives(above) if above else None) or 0.0
+                result = _search(scene, run, first, tolerance, criteria, above, elastic, observe)
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     if result.rests:
         outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
-    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria)
-    stiffness = _note_on_stiffness(scene, run, result, criteria)
+    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, above)
+    stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
         outcome = replace(outcome, status="undecided", message=message)
@@ -129,7 +140,34 @@ def collapse_by_steps(
     return replace(outcome, message="; ".join(part for part in parts if part))
 
 
-def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Criteria) -> str:
+def _search(
+    scene: Scene,
+    run: Run,
+    first: float,
+    tolerance: float,
+    criteria: Criteria,
+    bound: float | None,
+    elastic: float,
+    observe: Observer,
+) -> LoadSteps:
+    """Bring the load up, and count as a collapse nothing that an `elastic` displacement [m] at a bound may be."""
+    sizes = scene.block_sizes[run.system.owner]
+    criteria = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic))
+    if bound and bound < first:
+        first *= 2.0 ** math.floor(math.log2(bound / first))
+    return load_steps(
+        run,
+        first,
+        tolerance,
+        criteria,
+        most=LARGEST_LOAD * first,
+        farthest=np.maximum(LARGEST_DISPLACEMENT * sizes, LARGEST_ELASTIC * elastic),
+        bound=bound,
+        observe=observe,
+    )
+
+
+def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, collapse: float) -> str:
     """What there is to say of the stiffness of joints: at rest, or in a fall, under the dead load."""
     state, law, area = result.rests[0][1] if result.rests else result.fallen, run.interface.law, run.interface.area
     if state is None:
@@ -140,7 +178,7 @@ def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, criteria: Crit
     overlap = float(np.minimum(-opening, -normal / law.normal_stiffness).max(initial=0.0))
     stiffest = float(max(springs.max(initial=0.0), (law.shear_stiffness * area).max(initial=0.0)))
     smallest = float(run.system.force_unit[run.system.rigid[:, :2]].min())
-    return stiffness_note(overlap, float(np.min(criteria.collapse)), scene.block_size, stiffest, smallest)
+    return stiffness_note(overlap, collapse, scene.block_size, stiffest, smallest)
 
 
 def _moved(run: Run, result: LoadSteps, criteria: Criteria) -> float:
@@ -159,9 +197,13 @@ def _judge(
     point_order: Indices,
     is_self_locking: Callable[[], bool],
     criteria: Criteria,
+    above: float | None,
 ) -> Outcome:
     """Outcome of a search."""
     if result.borne is None:
+        if result.verdict == "collapse" and above and not can_break(run):
+            message = "collapses under its dead load as it was put on, though forces exist that balance it"
+            return replace(outcome, message=message)
         if result.verdict == "collapse":
             return replace(outcome, status="infeasible", message="collapses under its dead load")
         why = "interrupted" if result.interrupted else "the budget ran out"

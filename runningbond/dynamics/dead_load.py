@@ -39,14 +39,19 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
     Unstable
         As of `hold_load`.
     """
-    law, state = run.interface.law.law, State.at_rest(run.system)
-    breaks = law.damage is not None or PLASTIC_CLOSURE in law.history
+    state, breaks = State.at_rest(run.system), can_break(run)
     verdict = settle(run, state, 0.0, criteria, no_observer if breaks else observe, sudden=True)
     if _is_broken(run, state):
         return _slowly(run, criteria, observe, state.steps)
     for _ in range(CALM if breaks else 0):  # observers take a wall to be at rest that is so at as many looks
         observe(run, state, 0.0)
     return UnderDeadLoad(state, verdict, state.steps, state.steps)
+
+
+def can_break(run: Run) -> bool:
+    """Whether joints lose strength or are crushed, so that forces that balance a load need not be there for it."""
+    law = run.interface.law.law
+    return law.damage is not None or PLASTIC_CLOSURE in law.history
 
 
 def _is_broken(run: Run, state: State) -> bool:

@@ -74,7 +74,7 @@ def stiffness_note(overlap: float, collapse: float, size: float, stiffness: floa
     if overlap > SOFT * collapse:
         return (
             f"joints are too soft: blocks overlap by {float(f'{100 * overlap / size:.2g}'):g} % of their size, "
-            f"and above {100 * SOFT * collapse / size:.2g} % elastic motion may pass for collapse"
+            f"which is beyond small displacements above {100 * SOFT * collapse / size:.2g} %"
         )
     rounding = EPSILON * collapse * stiffness / force_unit
     if rounding > STIFF:

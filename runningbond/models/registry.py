@@ -12,7 +12,7 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 from homog import homog
-from runningbond.limit import limit, limit_nonassociated
+from runningbond.limit import elastic_displacement, limit, limit_nonassociated
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.history import FACTOR
@@ -217,19 +217,18 @@ def run_model(
 
 
 def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
-    """What is to be said where joints give so much that elastic motion may count as `collapse` [heights of a block]."""
-    if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.lower:
+    """What is to be said where joints give more than what counts as `collapse` [heights of a block]."""
+    if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.upper:
         return ""
     from dem.static import U_CRIT
-    from dem.stiffness_update import elastic_displacement
 
     if "block.young" not in model.reads:
         scene = scene.with_block(young=None)
-    moved = (elastic_displacement(scene, outcome.lower) or 0.0) * scene.block_size / scene.lowest_block
+    moved = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
     if moved <= (U_CRIT if collapse is None else collapse):
         return ""
     share = f"{100 * moved:.2g} % of a block's height"
-    return f"joints are too soft: the wall gives by {share} elastically, which may pass for collapse"
+    return f"joints are too soft: the wall gives by {share} elastically, beyond small displacements"
 
 
 def _tilted_with_the_ground(scene: Scene) -> str:

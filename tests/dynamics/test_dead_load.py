@@ -51,7 +51,8 @@ def is_bracketed(outcome: Outcome, exact: float) -> bool:
     assert outcome.status == "collapse", outcome.message
     assert outcome.lower is not None
     assert outcome.upper is not None
-    return outcome.lower <= exact * (1 + 1e-6) and exact * (1 - 1e-6) <= outcome.upper
+    # A joint that shakes by what counts as rest, 1e-4 of the weight, may tear by so much too early.
+    return outcome.lower <= exact * (1 + 1e-6) and exact - 1e-4 <= outcome.upper
 
 
 @pytest.mark.parametrize("model", MODELS)

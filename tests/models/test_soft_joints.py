@@ -1,8 +1,12 @@
-"""Joints that give so much that a fall is told by elastic motion: models that follow a wall say so."""
+"""Joints that give much: models that follow a wall say so, and do not take a sway for a fall."""
 
+import numpy as np
 import pytest
 
+import runningbond as rb
+from dem.stiffness_update import resultant_wall
 from runningbond.compare import published_scene
+from runningbond.limit import elastic_displacement
 from runningbond.models import run_model
 from tests.walls import panel
 
@@ -20,3 +24,38 @@ def test_joints_soft_in_shear_are_told(model: str, stiffness: float, said: bool)
 def test_what_slips_far_at_rest_is_not_soft() -> None:
     """A wall without weight slips by a block's height as the load grows, on joints that give by a hundredth of it."""
     assert "too soft" not in run_model("dem-static", published_scene("point-load-4"), 0.05).message
+
+
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+@pytest.mark.parametrize(("count", "height", "stiffness"), [(20, 1.0, 1e9), (40, 0.25, 1e9), (40, 1.0, 1.04e11)])
+def test_a_slender_stack_falls_when_it_overturns_and_not_as_it_sways(
+    model: str, count: int, height: float, stiffness: float
+) -> None:
+    """λ = b / (n h) is exact of small displacements, though the stack sways by up to a block's height on the way."""
+    stack = rb.Wall.courses(
+        [[1]] * count,
+        block_width=0.5,
+        block_height=height,
+        thickness=0.3,
+        density=2000.0,
+        friction=0.6,
+        normal_stiffness=stiffness,
+        shear_stiffness=0.4 * stiffness,
+        young=1e12,
+    )
+    result, exact = stack.run(model), 0.5 / (count * height)
+    assert result.status == "collapse"
+    assert result.lower is not None
+    assert result.upper is not None
+    assert result.lower <= exact * (1 + 1e-9) < result.upper <= 1.01 * result.lower
+
+
+@pytest.mark.parametrize("name", ["panel-04", "panel-10", "point-load-2", "wall-w4"])
+def test_what_a_wall_gives_is_the_motion_of_its_joints_resultants(name: str) -> None:
+    """Independent routes: springs at Gauss points here, the joints' resultants in the published static solver."""
+    scene = published_scene(name).with_block(young=None)
+    wall = resultant_wall(scene)
+    motion = wall.move(np.ones(wall.law.stiffness.shape, dtype=np.bool_), 0.3 * wall.live)
+    assert motion is not None
+    farthest = np.abs(motion.reshape(-1, 3)[:, :2]).max()
+    assert elastic_displacement(scene, 0.3) == pytest.approx(farthest, rel=1e-9)

@@ -6,8 +6,8 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from dem.stiffness_update import elastic_displacement
 from runningbond.joints.stiffness import block_compliance
+from runningbond.limit import elastic_displacement
 from runningbond.limit.dilatancy import sliding_dilates
 from runningbond.models import MODELS, Kind, Model
 from runningbond.results import Outcome
@@ -151,7 +151,8 @@ class Knowledge:
         if self.answer is None or self.answer.lower is None:
             return None
         if not len(self.answer.curve):
-            return elastic_displacement(self.scene, self.answer.lower)
+            moved = elastic_displacement(self.scene, self.answer.lower)
+            return None if moved is None else moved / self.scene.block_size
         displacement, multiplier = self.answer.curve.T
         last = int(np.argmin(np.abs(multiplier - self.answer.lower)))
         return float(abs(displacement[last] - displacement[0]) / self.scene.block_size)

@@ -121,7 +121,7 @@ STUDY = Study(
     "Joint stiffness",
     trusted="overlaps at rest stay far below the displacement that counts as collapse, and the budget of time steps "
     "lasts; neither λ nor the conditioning of the static equations depends on the stiffness there",
-    beyond="softer: a message that joints are too soft, in the end `undecided`; stiffer: `undecided`, for the budget "
+    beyond="softer: a message that joints are too soft; stiffer: `undecided`, for the budget "
     "runs out, with the time for which each load was followed",
     parts={REST: Part((K_N,), [*zip(NORMAL)], at_rest), COLLAPSES: Part((K_N, "model"), CASES, collapse)},
     charts=[
