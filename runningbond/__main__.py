@@ -1,7 +1,11 @@
 """The console command, from its first moment: while the suite is loading, Ctrl-C ends it without a traceback."""
 
+import atexit
+import os
 import signal
+import sys
 import warnings
+from contextlib import suppress
 
 
 def main() -> None:
@@ -10,8 +14,23 @@ def main() -> None:
     # joblib says at its import where processes cannot share a lock; a campaign says so when it matters.
     warnings.filterwarnings("ignore", ".*joblib will operate in serial mode", UserWarning)
     from runningbond.commands.command_line import main as run
+    from runningbond.commands.terminal import STOPPED
 
-    run()
+    try:
+        run()
+    except SystemExit as end:
+        if end.code == STOPPED:
+            _leave_at_once(STOPPED)
+        raise
+
+
+def _leave_at_once(code: int) -> None:
+    """Leave past the ends of libraries, where threads that HiGHS was interrupted in abort the process."""
+    atexit._run_exitfuncs()  # joblib's workers and folders go
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError):
+            stream.flush()
+    os._exit(code)
 
 
 if __name__ == "__main__":

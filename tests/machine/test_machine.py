@@ -232,6 +232,21 @@ def test_ctrl_c_while_the_suite_is_loading_is_no_traceback() -> None:
     assert process.returncode == -signal.SIGINT
 
 
+@pytest.mark.parametrize("seconds", [2.0, 2.2, 2.4])
+def test_ctrl_c_within_linear_programs_ends_with_the_exit_code_of_interruptions(seconds: float, tmp_path: Path) -> None:
+    """HiGHS leaves threads behind that abort a process which ends as usual."""
+    scene = find_scene("point-load-2").read_text().replace('"corners"', '"pinned-corners"')
+    (tmp_path / "wall.toml").write_text(scene)
+    line = [sys.executable, "-m", "runningbond", "run", "wall.toml", "--model", "limit-nonassociated"]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=tmp_path)
+    while not any("highs" in part.path for part in psutil.Process(process.pid).memory_maps()):
+        time.sleep(0.02)
+    time.sleep(seconds)
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=60)
+    assert process.returncode == 130, told
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("tried", COMMANDS, ids=lambda tried: str(tried.name))
 def test_nothing_is_lost_whatever_happens_to_whichever_command(tried: Command, tmp_path: Path) -> None:
