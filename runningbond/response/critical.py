@@ -146,7 +146,10 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
     if stopped:
         return replace(outcome, message="interrupted: the bracket so far")
     if upper is None:
-        return replace(outcome, message=f"stands at every scale tried, up to {number(runs[-1].scale)}")
+        most = number(runs[-1].scale)
+        stands = all(run.verdict == "stands" for run in runs)
+        told = f"stands at every scale tried, up to {most}" if stands else f"falls at no scale tried, up to {most}"
+        return replace(outcome, message=told if standing else f"{told}, and rests at none")
     outcome = replace(outcome, motion=fastest_corner_by_one(rest.scene.blocks, upper.shape))
     doubtful = max((run for run in (lower, upper) if run), key=lambda run: run.unaccounted)
     if doubtful.unaccounted > MISSED:

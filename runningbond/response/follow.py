@@ -3,7 +3,7 @@
 A block has fallen once it is lower by half its smaller side, or turned by more than `TURNED`, than under its weight.
 A wall of which more energy is missing than its loads have supplied is not followed on, and has no verdict.
 The wall stands once no more kinetic energy is in it, for as long as it takes to rock to and fro, than would lift it by
-`RISE` of a block, and none is gathered any more. One that gathers energy to the end slides away: it collapses as well.
+`RISE` of a block, none is gathered any more, and it stays where it is (`STILL`). One that gathers energy to the end slides away: it collapses as well.
 """
 
 import math
@@ -27,6 +27,10 @@ TURNED = math.radians(60)
 
 RISE = 1e-4
 """Height, in sizes of a block, to which the kinetic energy of a wall that stands would lift it."""
+
+STILL = 0.02
+"""Farthest that a point of a wall that stands comes meanwhile, in sizes of a block: one near its balance may turn round
+so slowly that it has hardly any energy, and fall."""
 
 ROWS = 200
 """Rows of a response in a second, and in a record that is shorter, one a time step at most; `follow` may be asked for
@@ -69,7 +73,10 @@ class _Log:
         self.ground, self._run, self.points = ground, ground.run, points
         self._outline, self._block = system.contacts.outline, np.array([rest.block_at(point) for point in points])
         self._size, self._movable = rest.scene.block_sizes[system.owner], ~rest.scene.fixed[system.owner]
-        self._calm = RISE * rest.gravity * float(ground.inertia[0].sum()) * rest.scene.block_size
+        low, high = rest.scene.blocks.boxes
+        smaller = float(np.median((high - low).min(axis=1)[~rest.scene.fixed]))
+        size = min(rest.scene.block_size, smaller)  # a slender block falls over its width
+        self._still, self._calm = STILL * size, RISE * rest.gravity * float(ground.inertia[0].sum()) * size
         self._dead = ground.dead()
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
         self._blocks, self._far = rest.scene.blocks, SHAPE * rest.scene.size
@@ -106,10 +113,13 @@ class _Log:
         return not abs(supplied(energy[None])[0] - energy[2:].sum()) <= self._gone + self._calm
 
     def is_calm(self, since: float) -> bool:
-        """Whether hardly any energy was in motion from a time on [s], and no more of it later than before."""
-        energy = np.array([row[5][2] for row in self.rows if row[0] >= since])
+        """Whether hardly any energy was in motion from a time on [s], no more of it later, and nothing came far."""
+        rows = [row for row in self.rows if row[0] >= since]
+        energy = np.array([row[5][2] for row in rows])
         before, late = energy[: len(energy) // 2].max(initial=0.0), energy[len(energy) // 2 :].max(initial=0.0)
-        return bool(max(before, late) <= self._calm and late <= max(before, GATHERS * self._calm))
+        if max(before, late) > self._calm or late > max(before, GATHERS * self._calm):
+            return False
+        return bool(np.ptp([row[2] for row in rows], axis=0).max() <= self._still)
 
     def swaying(self, since: float) -> Array | None:
         """Least and largest drift ``(2,)`` of late of a wall that from a time on [s] has only swayed, and ever less."""

@@ -41,8 +41,7 @@ class Ground:
         """Bring a state forward to a time of the record [s], to within half a time step."""
         run, history = self.run, self.history
         while (left := until - (now := self.time(state))) > run.dt / 2:
-            span = min(left, max(history.resolution, run.dt)) if now < history.duration else left
-            steps = max(1, round(span / run.dt))
+            steps = max(1, round(min(left, self._span(now)) / run.dt))
             aim = self.scale * history.velocity(now + steps * run.dt)
             acceleration = (aim - self.velocity) / (steps * run.dt)
             load, before = run.system.dead - acceleration @ self.inertia, state.time
@@ -52,6 +51,13 @@ class Ground:
             run.bear(state, load, steps)
             # New contacts may have changed the step; what is missing is made up for in the next ones.
             self.velocity += acceleration * (state.time - before)
+
+    def _span(self, now: float) -> float:
+        """Time [s] from now on over which the ground's acceleration may stand for its mean: a step where it jumps."""
+        step, to_the_end = self.run.dt, self.history.duration - now
+        if self.history.has_jumps and min(now, abs(to_the_end)) <= step / 2:
+            return step
+        return np.inf if to_the_end <= 0 else min(max(self.history.resolution, step), max(to_the_end, step))
 
     def momentum(self, state: State) -> Array:
         """Momentum of the wall in space ``(2,)`` [kg m/s]."""

@@ -62,7 +62,7 @@ class History(Action):
     holds
         Whether the last acceleration stays on.
     interval
-        Time [s] over which an acceleration may stand for its mean; where none is given half the middling step.
+        Time [s] over which an acceleration may stand for its mean; where none is given half the shortest step.
     """
 
     time: Array
@@ -94,7 +94,7 @@ class History(Action):
     @property
     def resolution(self) -> float:
         """As `interval`."""
-        return self.interval or float(np.median(np.diff(self.time)) / 2)
+        return self.interval or float(np.diff(self.time).min() / 2)
 
     @cached_property
     def _velocity(self) -> Any:
@@ -110,12 +110,23 @@ class History(Action):
     def _acceleration(self) -> Any:
         return self._velocity.derivative()
 
+    @property
+    def has_jumps(self) -> bool:
+        """Whether the ground's velocity jumps as the record begins or ends."""
+        return self.quantity in ("velocity", "displacement")
+
     def velocity(self, time: Array | float) -> Array:
-        """Velocity of the ground ``(…, 2)`` at some times [s], less that at the start [m/s]."""
+        """Velocity of the ground ``(…, 2)`` at some times [s], which is at rest before the record [m/s].
+
+        Afterwards it keeps its last velocity, or of displacements the last of these, and is at rest.
+        """
         time = np.asarray(time, dtype=float)
-        start, now = self._velocity(0.0), self._velocity(np.clip(time, 0.0, self.duration))
+        begun, over = (time > 0)[..., None], (time > self.duration)[..., None]
+        now = np.where(begun, self._velocity(np.clip(time, 0.0, self.duration)), 0.0)
+        if self.quantity == "displacement":
+            return np.where(over, 0.0, now)
         beyond = np.maximum(0.0, time - self.duration)[..., None] * self._acceleration(self.duration)
-        return np.asarray(now - start + (beyond if self.holds else 0.0))
+        return np.asarray(now + (beyond if self.holds else 0.0))
 
     def acceleration(self, time: Array | float) -> Array:
         """Acceleration of the ground ``(…, 2)`` at some times [m/s²]."""
@@ -177,7 +188,7 @@ def read_history(table: Table, folder: Path) -> History:
         if amplitude == 0:
             raise SceneError(inner.key("amplitude"), "must not be zero", amplitude)
         time, values = pulse(kind, amplitude, period)
-        source, holds, interval = kind, kind == "ramp" and quantity != "velocity", period / INTERVALS
+        source, holds, interval = kind, kind == "ramp" and quantity in ("acceleration", "g"), period / INTERVALS
     else:
         name = table.text("file")
         record = read_record(folder / name, table.key("file"))

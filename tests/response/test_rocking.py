@@ -178,3 +178,32 @@ def test_a_force_that_stays_on_slides_a_block_away(period: float) -> None:
     for factor, verdict in ((0.998, "stands"), (1.005, "collapse")):
         response = follow(rest, factor * friction * GRAVITY, rows=50)
         assert response.verdict == verdict, response.message
+
+
+@pytest.mark.parametrize(("kind", "span"), [("half-sine", 0.5), ("sine", 1.0)])
+def test_a_displaced_ground_starts_and_ends_at_rest(kind: str, span: float) -> None:
+    """A block that slides on ground whose velocity jumps, beside its own equation in small steps."""
+    friction, amplitude = 0.3, 0.1
+    history = History(*pulse(kind, amplitude, 1.0), "displacement", interval=1 / 200)
+    response = follow(resting(block(0.5, 0.1, history, friction, stiffness=1e11)), 1.0)
+    step, velocity, slid = 1e-5, 0.0, 0.0
+    for moment in np.arange(0.0, span + 1.0, step) + step / 2:
+        ground = 2 * math.pi * amplitude * math.cos(2 * math.pi * moment) if moment < span else 0.0
+        velocity += float(np.clip(ground - velocity, -friction * GRAVITY * step, friction * GRAVITY * step))
+        slid += (velocity - ground) * step
+    assert response.verdict == "stands"
+    assert response.displacement[-1, 0, 0] == pytest.approx(slid, abs=0.01 * amplitude)
+    assert response.unaccounted < 0.01
+
+
+@pytest.mark.parametrize("scale", [0.9585, 0.9595])
+def test_a_block_that_turns_round_slowly_near_its_balance_does_not_stand_there(scale: float) -> None:
+    """It hardly moves for as long as it takes to rock; a quiet end of the record changes nothing."""
+    time, values = pulse("half-sine", 1.0, 1.0)
+    tail = np.arange(time[-1] + 0.01, 10.0, 0.01)
+    quiet = History(np.append(time, tail), np.concatenate([values, np.zeros((len(tail), 2))]), interval=1 / 200)
+    verdicts = {
+        follow(resting(block(0.05, 1.0, history, 0.7, stiffness=1e10)), scale, rows=50).verdict
+        for history in (History(time, values, interval=1 / 200), quiet)
+    }
+    assert verdicts == {"collapse"}

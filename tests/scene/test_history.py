@@ -82,6 +82,17 @@ def test_a_first_row_that_names_the_columns_may_have_digits(names: str, tmp_path
     assert len(read_record(tmp_path / "record.csv", "file").time) == ROWS.count("\n")
 
 
+def test_the_ground_is_at_rest_before_its_record_and_keeps_what_it_came_to() -> None:
+    """Its velocity jumps where a record begins with one; it stops where its displacements end."""
+    time = np.array([0.0, 1.0, 2.0])
+    moving = History(time, np.array([[0.5, 0.0], [0.7, 0.0], [0.6, 0.0]]), "velocity")
+    displaced = History(time, np.array([[0.0, 0.0], [1.0, 0.0], [2.5, 0.0]]), "displacement")
+    for history, first, last in ((moving, 0.5, 0.6), (displaced, 0.75, 0.0)):
+        assert history.velocity(np.array([-1.0, 0.0])).tolist() == [[0, 0], [0, 0]]
+        assert history.velocity(1e-9)[0] == pytest.approx(first, abs=1e-6)
+        assert history.velocity(9.0)[0] == pytest.approx(last, abs=1e-6)
+
+
 def test_a_ramp_stays_on_whatever_it_is_of() -> None:
     """An acceleration goes on; a ground that has come to its velocity is accelerated no more."""
     of_velocity = of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "velocity"})
