@@ -33,8 +33,8 @@ class PathState:
         Of the centroid [m/s] and of rotation [rad/s]; zero at rest.
     damage : (np,) float
         0 sound … 1 broken.
-    points
-        Where the joint points are.
+    points : JointPoints
+        Where the joint points are, in the order of `force`: their position (np, 2) [m], their joint and blocks.
     """
 
     multiplier: float

@@ -108,7 +108,8 @@ class Wall:
             Size of a block [m].
         keys
             The other keys of a scene file: those of ``[block]``, ``[joint]`` and ``[load]`` by their names
-            (``density=1800.0, friction=0.6``); of ``[wall]`` ``first_course``, ``ends`` and, in place of `height` and
+            (``density`` [kg/m³], ``young`` [Pa], ``friction``, ``normal_stiffness`` and ``shear_stiffness`` [Pa/m], or
+            ``mortar`` in their place); of ``[wall]`` ``first_course``, ``ends`` and, in place of `height` and
             `block_height`, ``course_heights``; whole tables and what stands at the
             file's top level (``title="…", joint={"inset": 0.01}``); a ``support`` or a ``live`` load that needs no
             more by its kind (``support="corners"``). Gravity is 9.81 m/s², the support the ground, the live load

@@ -30,7 +30,7 @@ def show(
     out
         Picture to write, .svg or .png: blocks and joints by material, supports, ties, and loads with their sizes.
     numbers
-        Write into each block the number by which `assign` knows it.
+        Write into each block of the picture, which --out names, the number by which `assign` knows it.
     """
     if out is not None and out.suffix.lower() not in VECTOR:
         raise SceneError("--out", "must end in .svg or .png", str(out))

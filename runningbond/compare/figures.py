@@ -138,11 +138,14 @@ def _curves(comparison: Comparison, source: str, models: Sequence[Model]) -> Fig
         for case in cases_of(source)
         for model in models
     }
-    title = f"{TITLES[source]}\neach begins at a quarter of its peak"
+    drawn, names = {name for (name, _), curve in curves.items() if len(curve)}, [case.name for case in cases_of(source)]
+    title = TITLES[source]
+    if panels and len(drawn) < len(names):
+        title = title.replace("the twelve panels", f"{len(drawn)} of the twelve panels")
+    title = f"{title}\neach begins at a quarter of its peak and ends in a dot"
     starts = [float(curve[0, 0]) for curve in curves.values() if len(curve)]
     shown = min(starts) / 1.2, 1.4 * max(float(curve[-1, 0]) for curve in curves.values() if len(curve))
     estimates = [model for model in comparison.models if panels and model.kind == "estimate"]
-    drawn, names = {name for (name, _), curve in curves.items() if len(curve)}, [case.name for case in cases_of(source)]
     if panels:
         here = [k for k in range(len(SLENDERNESS)) if drawn & set(names[4 * k : 4 * k + 4])]
         figure, columns = panel_figure(title, here, xlim=shown, **labels)

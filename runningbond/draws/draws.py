@@ -26,10 +26,18 @@ NUMBER = Range(least=2, most=10_000)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Draws:
-    """Outcomes of one model on a wall as it is, and on others drawn beside it."""
+    """Outcomes of one model on a wall as it is, and on others drawn beside it.
 
-    outcomes: tuple[Outcome, ...]  # by the numbers of the draws; 0 is the wall as it is
-    scatter: Scatter  # what differs besides the last bits
+    Parameters
+    ----------
+    outcomes
+        By the numbers of the draws; 0 is the wall as it is.
+    scatter
+        What differs besides the last bits: sizes of blocks, friction of joints.
+    """
+
+    outcomes: tuple[Outcome, ...]
+    scatter: Scatter
 
     @cached_property
     def multipliers(self) -> Array:

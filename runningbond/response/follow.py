@@ -3,7 +3,8 @@
 A block has fallen once it is lower by half its smaller side, or turned by more than `TURNED`, than under its weight.
 A wall of which more energy is missing than its loads have supplied is not followed on, and has no verdict.
 The wall stands once no more kinetic energy is in it, for as long as it takes to rock to and fro, than would lift it by
-`RISE` of a block, none is gathered any more, and it stays where it is (`STILL`). One that gathers energy to the end slides away: it collapses as well.
+`RISE` of a block, none is gathered any more, and it stays where it is (`STILL`). One that gathers energy to the end
+slides away: it collapses as well.
 """
 
 import math

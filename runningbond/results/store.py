@@ -140,5 +140,5 @@ def _trusted(folder: Path) -> Iterator[tuple[dict[str, Any], Mapping[str, NDArra
             yield record, stored
     except OSError as error:
         raise StoreError(f"{folder}: holds no outcome: {error.strerror or error}") from error
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise StoreError(f"{folder / RECORD}: is damaged: {error}") from error

@@ -44,7 +44,10 @@ class Lateral(Action):
     @classmethod
     def read(cls, table: Table) -> "Lateral":
         """The load of a table with a direction, to the right unless it says another."""
-        given = isinstance(table.peek("direction"), (list, tuple))
+        direction = table.peek("direction")
+        if isinstance(direction, str) and direction not in SIDES:
+            raise SceneError(table.key("direction"), 'must be "right", "left" or a vector [x, y]', direction)
+        given = isinstance(direction, (list, tuple))
         return cls(table.vector("direction") if given else SIDES[table.choice("direction", SIDES, "right")])
 
 

@@ -30,7 +30,8 @@ def read_protocol(table: Table) -> tuple[float, ...] | None:
         return None
     amplitudes = turning_points(table.key("amplitudes"), value := table.value("amplitudes"))
     if not all(amplitudes):
-        raise SceneError(table.key("amplitudes"), "must not be zero", value)
+        where = f"{table.key('amplitudes')}[{amplitudes.index(0.0)}]"
+        raise SceneError(where, "must not be zero: the path begins and ends there by itself", 0.0)
     cycles = table.optional_number("cycles", Range(least=1, most=MOST)) or 1.0
     if not cycles.is_integer():
         raise SceneError(table.key("cycles"), "must be a whole number", cycles)

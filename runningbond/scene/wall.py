@@ -471,7 +471,9 @@ def _check(scene: Scene) -> None:
     if not scene.load.live:
         raise SceneError("load.live", "is missing: nothing is multiplied by λ")
     if scene.is_led and len(scene.load.live) > 1:
-        raise SceneError("load.live", "must be alone where a support or the beam is moved by a displacement")
+        driven = scene.beam is not None and scene.beam.drive is not None
+        what = "be left out where the beam is moved by a" if driven else "be the settlement alone, for it is a"
+        raise SceneError("load.live", f"must {what} displacement")
     if scene.history and len(scene.load.live) > 1:
         raise SceneError("load.live", "does not go with load.history, which is what λ multiplies; leave one out")
     for key, load in scene.load.named():

@@ -151,7 +151,7 @@ class Moments(Action):
         ([DOWN, []], "load.live[1] = []: must be a load, or some"),
         ("lateral", "load.live = 'lateral': must be a table"),
         ({"kind": "latteral"}, 'did you mean "lateral"?'),
-        ({"kind": "lateral", "direction": "up"}, 'load.live.direction = \'up\': must be one of "right", "left"'),
+        ({"kind": "lateral", "direction": "up"}, 'load.live.direction = \'up\': must be "right", "left" or a vector'),
         ({"kind": "lateral", "direction": [0, 0]}, "load.live.direction = [0.0, 0.0]: must not be zero"),
         ({"kind": "body"}, "load.live.acceleration: is missing"),
         (Moments(0.0), "load.live = Moments(moment=0.0): must put finite forces on the blocks, not all of them zero"),

@@ -83,7 +83,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (assign({"joint": "mortar", "orientation": "flat"}), 'assign[0].orientation = \'flat\': must be one of "bed"'),
         (assign({"block": "oak", "box": BOX, "orientation": "bed"}), "assign[0].orientation = 'bed': is not a key"),
         # loads
-        (live({"kind": "tilt", "direction": "down"}), "load.live[0].direction = 'down': must be one of"),
+        (live({"kind": "tilt", "direction": "down"}), "load.live[0].direction = 'down': must be"),
         (live({"kind": "tilt", "direction": [1, -1]}), "load.live.direction = [0.707107, -0.707107]: must be"),
         (live({"kind": "lateral", "direction": [0, 0]}), "load.live[0].direction = [0.0, 0.0]: must not be zero"),
         (dead({"kind": "tilt"}), "load.dead[0].kind = 'tilt': must be one of"),
@@ -116,11 +116,11 @@ def beam(**changes: Any) -> dict[str, Any]:
         (live(SINK | {"path": [1], "amplitudes": [1]}), "load.live[0]: must have one of path and amplitudes, not both"),
         (live(SINK | {"cycles": 2}), "load.live[0].cycles = 2: needs amplitudes"),
         (live(SINK | {"amplitudes": 1}), "load.live[0].amplitudes = 1: must be a list"),
-        (live(SINK | {"amplitudes": [1, 0]}), "load.live[0].amplitudes = [1, 0]: must not be zero"),
+        (live(SINK | {"amplitudes": [1, 0]}), "load.live[0].amplitudes[1] = 0.0: must not be zero"),
         (live(SINK | {"amplitudes": [1], "cycles": 1.5}), "load.live[0].cycles = 1.5: must be a whole number"),
         (live(SINK | {"amplitudes": [1], "rate": 1e-3}), "load.live[0].rate = 0.001: is not a key"),
         (live(SINK | {"path": [1, -1]}), "load.live settlement, along a path: is not taken by model limit"),
-        ({"load__live": [SINK, {"kind": "lateral"}]}, "load.live: must be alone where a support"),
+        ({"load__live": [SINK, {"kind": "lateral"}]}, "load.live: must be the settlement alone"),
         (live(SINK) | {"support__kind": "corners"}, "load.live: needs support.kind"),
         # ties
         ({"tie": {"from": [0, 0]}}, "tie = {'from': [0, 0]}: must be tables, [[tie]]"),
@@ -148,7 +148,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (beam(drive={"amplitudes": 0.01}), "beam.drive.amplitudes = 0.01: must be a list"),
         (beam(drive={"amplitudes": "0.01"}), "beam.drive.amplitudes = '0.01': must be a list"),
         (beam(drive={"amplitudes": [[0.01]]}), "beam.drive.amplitudes = [0.01]: must be a number"),
-        (beam(drive={"amplitudes": [0.01, 0]}), "beam.drive.amplitudes = [0.01, 0]: must not be zero"),
+        (beam(drive={"amplitudes": [0.01, 0]}), "beam.drive.amplitudes[1] = 0.0: must not be zero"),
         (beam(drive={"amplitudes": [math.nan]}), "beam.drive.amplitudes = nan: must be a number"),
         (beam(drive={"amplitudes": [0.01], "cycles": 0}), "beam.drive.cycles = 0: must be a number at least 1"),
         (beam(drive={"amplitudes": [0.01], "cycles": 1001}), "beam.drive.cycles = 1001: must be a number at least 1"),
@@ -163,7 +163,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (beam(drive={"displacement": [[0, "a"]]}), "beam.drive.displacement = 'a': must be a number"),
         (beam(drive={"displacement": [0.01, 0], "rate": 0}), "beam.drive.rate = 0: must be a number above 0"),
         (beam(drive=None), "load.live: is missing"),
-        ({"beam": {"height": 0.2, "drive": {"displacement": [0.01, 0]}}}, "load.live: must be alone"),
+        ({"beam": {"height": 0.2, "drive": {"displacement": [0.01, 0]}}}, "load.live: must be left out where the beam is moved"),
     ],
 )  # fmt: skip
 def test_a_scene_that_is_no_real_wall(

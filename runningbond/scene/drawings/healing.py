@@ -95,6 +95,8 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     for k in np.flatnonzero(~shapely.is_valid([shapely.Polygon(p) for p in healed])):
         raise SceneError(KEY, f"makes {blocks.name(int(k))} cross itself; choose a smaller one", reach)
     changed = int(np.sum(moved > blocks.tolerance / 100))
+    if not changed:
+        return healed, "heal: nothing to close"
     note = f"heal: {changed} corners moved, by at most {moved[worst]:.2g} m"
     return healed, f"{note}, to close gaps and overlaps of up to {gap:.2g} m"
 
