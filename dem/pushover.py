@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from runningbond.joints.stiffness import GIVES
 from runningbond.scene import Array
 
 from .relaxation import LONGEST, Rest, relax
@@ -73,17 +74,23 @@ class LoadPath:
     undecided: str = ""  # why there is no bracket
     fall: Array | None = None  # (nd,) how it was moving when it had fallen far enough
     observe: StaticObserver = no_observer  # called with every state of rest under a load that is pushed for
+    elastic: float = 0.0  # motion under the live load while joints neither open nor slip
 
     @property
     def lower(self) -> float:
         """Largest load at rest."""
         return self.rests[-1].multiplier
 
+    def fall_over(self, multiplier: float) -> float:
+        """Motion under a load that counts as a fall, in units of the system: more than springs alone can give."""
+        return max(self.far, GIVES * self.elastic * abs(multiplier))
+
     def push(self, multiplier: float, budget: int = LONGEST) -> Rest:
         """Hold a load larger than the last until the wall rests or falls, and note which."""
         last = self.rests[-1]
         start = np.append(last.x[:-1], multiplier)
-        result = self.hold(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
+        control = Control(multiplier, multiplier=True)
+        result = self.hold(start, last.plastic_slip, control, budget, far=self.fall_over(multiplier))
         if result.verdict == "rest":
             self.rests.append(state_of(self.system, result))
             self.observe(self, self.rests[-1])
@@ -119,10 +126,17 @@ class LoadPath:
         self.past = states[2:]
 
     def hold(
-        self, start: Array, plastic_slip: Array, control: Control, budget: int = LONGEST, creeps: bool = True
+        self,
+        start: Array,
+        plastic_slip: Array,
+        control: Control,
+        budget: int = LONGEST,
+        creeps: bool = True,
+        far: float | None = None,
     ) -> Rest:
         """Let the wall come to rest or fall, and count the linear systems."""
-        result = relax(self.system, start, plastic_slip, control, self.far, min(budget, self.budget), creeps=creeps)
+        far = self.far if far is None else far
+        result = relax(self.system, start, plastic_slip, control, far, min(budget, self.budget), creeps=creeps)
         self.budget -= result.solves
         return result
 

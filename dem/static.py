@@ -23,6 +23,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.joints import stiffness_note
+from runningbond.limit import elastic_displacement
 from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
 from runningbond.limit.equilibrium import equilibrium
 from runningbond.limit.kinematics import control_row, dead_load, live_load
@@ -110,6 +111,7 @@ def dem_static(
                     system, late = with_late_pins(system, rest.x)
                     rest = replace(rest, x=late)
                 path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
+                path.elastic = _elastic(scene, system)
                 observe(path, path.rests[0])
                 if scene.is_led:
                     outcome = lead_along(outcome, path, tolerance, first_step)
@@ -121,6 +123,12 @@ def dem_static(
     except KeyboardInterrupt:
         outcome = replace(outcome, message=f"no answer: {INTERRUPTED}")
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def _elastic(scene: Scene, system: StaticSystem) -> float:
+    """Motion under the live load of a wall whose joints neither open nor slip, in units of the system."""
+    moved = elastic_displacement(scene.with_block(young=None), system.equilibrium.live_unit)
+    return (moved or 0.0) / system.length_unit
 
 
 def _window(path: LoadPath) -> str:
@@ -140,7 +148,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     if not first.undecided:
         cut = _look_closer(first, tolerance, past)
         if not cut:
-            paths.append(LoadPath(first.system, first.far, left, first.rests[:1]))
+            paths.append(LoadPath(first.system, first.far, left, first.rests[:1], elastic=first.elastic))
             climb(paths[-1], OTHER_STEP * first_step, tolerance, ends(first))
     found = [path for path in paths if not path.undecided]
     ways = _apart(found) or [first]
@@ -208,7 +216,7 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
         **Supports(equations.scene, equations.points).path(forces, ties, loads, works),
     )
     if not path.undecided:
-        heights = path.far * system.length_unit / equations.scene.lowest_block
+        heights = path.fall_over(path.upper or 0.0) * system.length_unit / equations.scene.lowest_block
         message = f"largest load at rest and smallest of a fall over {heights:.2g} block heights, small displacements"
         if path.fall is None:
             message = "largest load at rest, and what limit analysis proves that nothing exceeds; small displacements"

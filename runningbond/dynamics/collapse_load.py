@@ -10,6 +10,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.joints import JointPoints, stiffness_note
+from runningbond.joints.stiffness import GIVES
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
@@ -30,11 +31,8 @@ LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 So far small displacements are none, and what is elastic between two loads is more than counts as collapse.
 """
 
-GIVES, LARGEST_ELASTIC = 2.0, 20.0
-"""Least displacement that counts as collapse, in those of the whole wall's springs under a load that is proved too
-large: put on at once, it moves a wall so far that has not begun to fall. And displacement, in those, beyond which no
-collapse is looked for.
-"""
+LARGEST_ELASTIC = 20.0
+"""Displacement, in those of springs under a load that is proved too large, beyond which no collapse is looked for."""
 
 DRAWN_OVERLAP = 0.02
 """Overlap of joints in a mechanism, in largest displacements of a block, that is hardly seen."""

@@ -4,6 +4,12 @@ import numpy as np
 
 from runningbond.scene import JointMaterial, Mortar, Scene, SceneError, Stiffness, table_of
 
+GIVES = 2.0
+"""Least motion that counts as a collapse, in what the springs of all joints give under that load.
+
+Put on at once, it moves a wall so far that has not begun to fall.
+"""
+
 SOFT = 0.02
 """Overlap of two blocks, in displacements that count as collapse, above which joints are too soft.
 

@@ -28,7 +28,7 @@ def read_protocol(table: Table) -> tuple[float, ...] | None:
         if "cycles" in table:
             raise SceneError(table.key("cycles"), "needs amplitudes that are gone through", table.value("cycles"))
         return None
-    amplitudes = turning_points(table.key("amplitudes"), value := table.value("amplitudes"))
+    amplitudes = turning_points(table.key("amplitudes"), table.value("amplitudes"))
     if not all(amplitudes):
         where = f"{table.key('amplitudes')}[{amplitudes.index(0.0)}]"
         raise SceneError(where, "must not be zero: the path begins and ends there by itself", 0.0)

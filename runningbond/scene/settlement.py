@@ -66,9 +66,8 @@ class Settlement(Action):
         """The load of a table with a box, and a displacement or a rotation."""
         box = table.required("box", "two corners [[x0, y0], [x1, y1]]")
         if "by" not in table and "rotation_angle" not in table:
-            raise SceneError(
-                table.key("by"), "is missing: the displacement [x, y] in m; or give rotation_angle in degrees"
-            )
+            what = "is missing: the displacement [x, y] in m; or give rotation_angle in degrees"
+            raise SceneError(table.key("by"), what)
         by = table.vector("by") if "by" in table else (0.0, 0.0)
         angle = table.optional_number("rotation_angle", Range())
         about = table.vector("about") if "about" in table else None

@@ -26,7 +26,7 @@ def test_what_slips_far_at_rest_is_not_soft() -> None:
     assert "too soft" not in run_model("dem-static", published_scene("point-load-4"), 0.05).message
 
 
-@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
 @pytest.mark.parametrize(("count", "height", "stiffness"), [(20, 1.0, 1e9), (40, 0.25, 1e9), (40, 1.0, 1.04e11)])
 def test_a_slender_stack_falls_when_it_overturns_and_not_as_it_sways(
     model: str, count: int, height: float, stiffness: float
@@ -59,3 +59,24 @@ def test_what_a_wall_gives_is_the_motion_of_its_joints_resultants(name: str) -> 
     assert motion is not None
     farthest = np.abs(motion.reshape(-1, 3)[:, :2]).max()
     assert elastic_displacement(scene, 0.3) == pytest.approx(farthest, rel=1e-9)
+
+
+@pytest.mark.parametrize("stiffness", [1e9, 1e10, 1e12])
+def test_a_slender_pier_bears_as_much_on_soft_joints(stiffness: float) -> None:
+    """Sixty courses, which sway by two heights of a block on the softest; above `limit` nothing stands."""
+    pier = rb.Wall.running_bond(
+        length=0.5,
+        height=6.0,
+        block_width=0.25,
+        block_height=0.1,
+        thickness=0.3,
+        density=2000.0,
+        friction=0.6,
+        normal_stiffness=stiffness,
+        shear_stiffness=0.4 * stiffness,
+    )
+    result, bound = pier.run("dem-static"), pier.run("limit").upper
+    assert result.status == "collapse"
+    assert result.lower is not None
+    assert bound is not None
+    assert 0.99 * bound < result.lower <= bound
