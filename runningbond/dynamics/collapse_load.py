@@ -25,6 +25,9 @@ from .state import State
 FIRST_STEP = 0.05
 """First load step, in live loads as large as the largest dead one (for a weightless wall, as the strongest joint)."""
 
+HALVINGS = 8
+"""Most halvings of the first step: loads that are smaller still would not be seen at rest."""
+
 LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 """Multiplier, in first steps, and displacement, in block sizes, beyond which no collapse is looked for.
 
@@ -88,7 +91,7 @@ def collapse_by_steps(
         what the wall gives elastically under the `bound`.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not. One beyond the `bound` is
-        halved until it is not.
+        halved until it is not, or `HALVINGS` times.
     budget
         Time steps after which a load is left undecided.
     observe
@@ -150,15 +153,15 @@ def _search(
 ) -> LoadSteps:
     """Bring the load up, and count as a collapse nothing that an `elastic` displacement [m] at a bound may be."""
     sizes = scene.block_sizes[run.system.owner]
-    criteria = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic))
-    if bound and bound < first:
-        first *= 2.0 ** math.floor(math.log2(bound / first))
+    criteria, most = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic)), LARGEST_LOAD * first
+    if bound and 0 < bound < first:
+        first *= 2.0 ** max(-HALVINGS, math.floor(math.log2(bound / first)))
     return load_steps(
         run,
         first,
         tolerance,
         criteria,
-        most=LARGEST_LOAD * first,
+        most=most,
         farthest=np.maximum(LARGEST_DISPLACEMENT * sizes, LARGEST_ELASTIC * elastic),
         bound=bound,
         observe=observe,
