@@ -136,6 +136,7 @@ def fem(
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: proved_bound(scene),
         gives=lambda multiplier: elastic_displacement(scene, multiplier),
+        bears=cracks == "joints",
         note=note,
         collapse=collapse,
         first_step=first_step,

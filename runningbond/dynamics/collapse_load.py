@@ -55,6 +55,7 @@ def collapse_by_steps(
     is_self_locking: Callable[[], bool],
     bound: Callable[[], float | None] = lambda: None,
     gives: Callable[[float], float | None] = lambda _: None,
+    bears: bool = True,
     note: str = "",
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
@@ -84,6 +85,8 @@ def collapse_by_steps(
     gives
         Largest displacement of a block [m] under the live load times a multiplier while joints neither open nor slip,
         if it is known.
+    bears
+        Whether a `bound` above zero says that forces balance the dead load: not of one without the run's own cracks.
     note
         What the message is to say about the run besides.
     collapse
@@ -127,7 +130,9 @@ def collapse_by_steps(
     if result.rests:
         outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
-    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, above)
+    outcome = _judge(
+        outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, above if bears else None
+    )
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
