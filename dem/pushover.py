@@ -68,13 +68,13 @@ class LoadPath:
     far: float  # motion of a freedom that counts as a fall, in units of the system
     budget: int  # linear systems that may still be solved
     rests: list[StaticState]  # states of rest under growing loads, the dead load's first
+    elastic: float = 0.0  # motion under the live load while joints neither open nor slip
     past: list[StaticState] = field(default_factory=list)  # states of rest past the largest load, under displacements
     upper: float | None = None  # smallest load under which the wall fell, or above which nothing stands
     unclear: list[float] = field(default_factory=list)  # loads under which it neither rested nor fell
     undecided: str = ""  # why there is no bracket
     fall: Array | None = None  # (nd,) how it was moving when it had fallen far enough
     observe: StaticObserver = no_observer  # called with every state of rest under a load that is pushed for
-    elastic: float = 0.0  # motion under the live load while joints neither open nor slip
 
     @property
     def lower(self) -> float:
@@ -89,8 +89,7 @@ class LoadPath:
         """Hold a load larger than the last until the wall rests or falls, and note which."""
         last = self.rests[-1]
         start = np.append(last.x[:-1], multiplier)
-        control = Control(multiplier, multiplier=True)
-        result = self.hold(start, last.plastic_slip, control, budget, far=self.fall_over(multiplier))
+        result = self.hold(start, last.plastic_slip, Control(multiplier, multiplier=True), budget)
         if result.verdict == "rest":
             self.rests.append(state_of(self.system, result))
             self.observe(self, self.rests[-1])
@@ -126,16 +125,10 @@ class LoadPath:
         self.past = states[2:]
 
     def hold(
-        self,
-        start: Array,
-        plastic_slip: Array,
-        control: Control,
-        budget: int = LONGEST,
-        creeps: bool = True,
-        far: float | None = None,
+        self, start: Array, plastic_slip: Array, control: Control, budget: int = LONGEST, creeps: bool = True
     ) -> Rest:
         """Let the wall come to rest or fall, and count the linear systems."""
-        far = self.far if far is None else far
+        far = self.fall_over(control.value) if control.multiplier else self.far
         result = relax(self.system, start, plastic_slip, control, far, min(budget, self.budget), creeps=creeps)
         self.budget -= result.solves
         return result

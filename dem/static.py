@@ -110,8 +110,8 @@ def dem_static(
                 if len(scene.late_pins):
                     system, late = with_late_pins(system, rest.x)
                     rest = replace(rest, x=late)
-                path = LoadPath(system, far, budget - rest.solves, [state_of(system, rest)], observe=observe)
-                path.elastic = _elastic(scene, system)
+                rests, elastic = [state_of(system, rest)], _elastic(scene, system)
+                path = LoadPath(system, far, budget - rest.solves, rests, elastic, observe=observe)
                 observe(path, path.rests[0])
                 if scene.is_led:
                     outcome = lead_along(outcome, path, tolerance, first_step)
@@ -148,7 +148,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     if not first.undecided:
         cut = _look_closer(first, tolerance, past)
         if not cut:
-            paths.append(LoadPath(first.system, first.far, left, first.rests[:1], elastic=first.elastic))
+            paths.append(LoadPath(first.system, first.far, left, first.rests[:1], first.elastic))
             climb(paths[-1], OTHER_STEP * first_step, tolerance, ends(first))
     found = [path for path in paths if not path.undecided]
     ways = _apart(found) or [first]

@@ -19,11 +19,11 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, csr_array, diags_array, vstack
-from scipy.sparse.linalg import splu
+from scipy.sparse import csr_array, diags_array, vstack
 
 from runningbond.joints import ResultantLaw, gauss, joint_points, wall_stiffness, wall_strength
 from runningbond.joints.resultant_law import DETACHED
+from runningbond.limit.elastic import held_motion
 from runningbond.limit.kinematics import (
     control_row,
     dead_load,
@@ -41,9 +41,6 @@ MOST_UPDATES = 100
 
 ROUNDING = 1e-9
 """Excess over Eq. 3 that counts as none, relative to the largest action or load."""
-
-SINGULAR = 1e9
-"""Motion, in those of a single spring as stiff as any joint action, at which a matrix counts as singular."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,14 +77,8 @@ class ResultantWall:
         """Motion ``(nd,)`` under a load, with the joint modes ``(nj, 3)`` that are intact; None if singular."""
         stiffness = np.where(intact, self.law.stiffness, 0.0).T.ravel()
         largest = float(self.law.stiffness.max())
-        inner = self.jump.T @ diags_array(stiffness) @ self.jump
-        held = block_array([[inner, largest * self.pins.T], [largest * self.pins, None]])
-        try:
-            solved = splu(csc_array(held)).solve(np.concatenate([load, np.zeros(self.pins.shape[0])]))
-        except RuntimeError:
-            return None
-        motion = solved[: len(load)]
-        return motion if np.abs(motion).max() * largest <= SINGULAR * np.abs(load).max() else None
+        inner = csr_array(self.jump.T @ diags_array(stiffness) @ self.jump)
+        return held_motion(inner, self.pins, load, largest)
 
     def excess(self, force: Array) -> float:
         """Largest excess of actions ``(nj, 3)`` over Eq. 3 as a force, relative to the largest one."""

@@ -130,9 +130,8 @@ def collapse_by_steps(
     if result.rests:
         outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
-    outcome = _judge(
-        outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, above if bears else None
-    )
+    above = above if bears else None
+    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, above)
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
@@ -158,6 +157,7 @@ def _search(
 ) -> LoadSteps:
     """Bring the load up, and count as a collapse nothing that an `elastic` displacement [m] at a bound may be."""
     sizes = scene.block_sizes[run.system.owner]
+    tolerance = tolerance / 2 if can_break(run) else tolerance  # the bracket is wider by its last step
     criteria, most = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic)), LARGEST_LOAD * first
     if bound and 0 < bound < first:
         first *= 2.0 ** max(-HALVINGS, math.floor(math.log2(bound / first)))
@@ -221,7 +221,10 @@ def _judge(
     if result.upper is None or result.lower is None or result.fallen is None:
         return _never_fallen(outcome, result, is_self_locking)
     motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(_fall(run, result, result.fallen)))
-    outcome = replace(outcome, lower=result.lower, upper=result.upper, motion=motion)
+    # A load that grows by a step overshoots to twice it at most, and what breaks stays broken.
+    overshoot = result.upper - result.lower if can_break(run) else 0.0
+    upper = result.upper + overshoot
+    outcome = replace(outcome, lower=result.lower, upper=upper, motion=motion)
     lost = run.unaccounted(result.fallen)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -230,14 +233,14 @@ def _judge(
         return replace(outcome, status="unbounded", lower=None, upper=None, motion=np.zeros((0, 3)), message=message)
     if result.verdict == "undecided":
         return replace(outcome, message="the budget ran out inside this bracket: the wall neither rested nor fell")
-    wide = ""
-    if result.upper - result.lower > tolerance * result.upper:
+    wide, beyond = "", ", and the last step beyond it, by which joints that break may overshoot" if overshoot else ""
+    if upper - result.lower > tolerance * upper:
         wide = "; wider than the tolerance because loads as small as their difference would not be seen at rest"
     return replace(
         outcome,
         status="collapse",
-        multiplier=(result.lower + result.upper) / 2,
-        message="largest load at rest and smallest in collapse, small displacements; "
+        multiplier=(result.lower + upper) / 2,
+        message=f"largest load at rest and smallest in collapse{beyond}, small displacements; "
         f"work accounted for to {max(lost, 1e-6):.0e} of it{wide}",
     )
 

@@ -1,12 +1,12 @@
 """Elastic motion of rigid blocks whose joints neither open nor slip: how far a wall gives before it begins to fall."""
 
 import numpy as np
-from scipy.sparse import block_array, csc_array, diags_array
+from scipy.sparse import block_array, csc_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from runningbond.joints import gauss, joint_points, wall_stiffness
 from runningbond.joints.stiffness import block_compliance
-from runningbond.scene import Scene
+from runningbond.scene import Array, Scene
 
 from .kinematics import jump_operator, live_load, movable_freedoms, pin_operator
 
@@ -27,14 +27,38 @@ def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
     free = movable_freedoms(scene)
     jump = jump_operator(points, scene.blocks.centroid)
     opening, slip = jump.opening[:, free], jump.slip[:, free]
-    inner = opening.T @ diags_array(normal) @ opening + slip.T @ diags_array(shear) @ slip
-    pins, load = pin_operator(scene)[:, free], multiplier * live_load(scene)[free]
-    largest = float(max(normal.max(initial=0.0), shear.max(initial=0.0)))
-    held = block_array([[inner, largest * pins.T], [largest * pins, None]])
-    try:
-        motion = splu(csc_array(held)).solve(np.concatenate([load, np.zeros(pins.shape[0])]))[: len(load)]
-    except RuntimeError:
-        return None
-    if not np.abs(motion).max(initial=0.0) * largest <= SINGULAR * np.abs(load).max(initial=0.0):
+    inner = csr_array(opening.T @ diags_array(normal) @ opening + slip.T @ diags_array(shear) @ slip)
+    stiffest = float(max(normal.max(initial=0.0), shear.max(initial=0.0)))
+    motion = held_motion(inner, pin_operator(scene)[:, free], multiplier * live_load(scene)[free], stiffest)
+    if motion is None:
         return None
     return float(np.abs(motion.reshape(-1, 3)[:, :2]).max(initial=0.0) / (1 - block_compliance(scene)))
+
+
+def held_motion(stiffness: csr_array, pins: csr_array, load: Array, stiffest: float) -> Array | None:
+    """Motion of blocks on springs.
+
+    Parameters
+    ----------
+    stiffness : (nd, nd) sparse
+        Of the springs [N/m].
+    pins : (n_pins, nd) sparse
+        Displacements that are held.
+    load : (nd,) float
+        Loads [N, N, N m].
+    stiffest
+        Stiffness of the stiffest spring [N/m].
+
+    Returns
+    -------
+    (nd,) float or None
+        None where blocks are loose.
+    """
+    fixed = csr_array(stiffest * pins)
+    loose = csr_array((pins.shape[0], pins.shape[0]))
+    held = block_array([[stiffness, csr_array(fixed.T)], [fixed, loose]])
+    try:
+        motion: Array = splu(csc_array(held)).solve(np.concatenate([load, np.zeros(pins.shape[0])]))[: len(load)]
+    except RuntimeError:
+        return None
+    return motion if np.abs(motion).max() * stiffest <= SINGULAR * np.abs(load).max() else None

@@ -539,10 +539,10 @@ def undecided_at(least: float, most: float, monkeypatch: pytest.MonkeyPatch) -> 
     """No load between two is decided."""
     hold = LoadPath.hold
 
-    def held(path: LoadPath, start: Array, slip: Array, control: Control, *others: Any, **named: Any) -> Rest:
+    def held(path: LoadPath, start: Array, slip: Array, control: Control, *others: Any) -> Rest:
         if control.multiplier and least < control.value < most:
             return Rest("undecided", start, path.system.respond(start, slip), start, 10)
-        return hold(path, start, slip, control, *others, **named)
+        return hold(path, start, slip, control, *others)
 
     monkeypatch.setattr(LoadPath, "hold", held)
 

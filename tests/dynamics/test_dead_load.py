@@ -51,13 +51,12 @@ def is_bracketed(outcome: Outcome, exact: float) -> bool:
     assert outcome.status == "collapse", outcome.message
     assert outcome.lower is not None
     assert outcome.upper is not None
-    # A joint that shakes by what counts as rest, 1e-4 of the weight, may tear by so much too early.
-    return outcome.lower <= exact * (1 + 1e-6) and exact - 1e-4 <= outcome.upper
+    return outcome.lower <= exact * (1 + 1e-6) and exact * (1 - 1e-6) <= outcome.upper
 
 
 @pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("wall", [hanging, crushed])
-@pytest.mark.parametrize("share", [0.6, 0.8, 0.97])
+@pytest.mark.parametrize("share", [0.6, 0.8, 0.96, 0.97, 0.98, 0.985, 0.99])
 def test_what_the_weight_leaves_of_a_strength_is_borne(model: Any, wall: Any, share: float) -> None:
     """A joint that bears its dead load at a share of its strength bears λ = 1 / share − 1 times as much more."""
     assert is_bracketed(model(wall(share)), 1 / share - 1)
