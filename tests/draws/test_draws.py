@@ -174,6 +174,7 @@ def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.M
         return outcome(1.0)
 
     monkeypatch.setattr(tasks, "run_model", cut_short)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # which a process begun in the background has not
     drawing = Drawing(block(), MODELS["dem-static"], 5)
     with pytest.raises(Interrupted) as stopped:
         drawing.run(folder=tmp_path, jobs=1)
