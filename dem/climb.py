@@ -8,12 +8,10 @@ from contextlib import suppress
 
 import numpy as np
 
+from runningbond.dynamics.collapse_load import LARGEST_LOAD
 from runningbond.limit import proved_bound
 
 from .pushover import NOISE, LoadPath, StaticState, lengthened
-
-LARGEST_LOAD = 1e6
-"""Multiplier, in first steps, beyond which no collapse is looked for."""
 
 UNCLEAR = 3
 """Loads under which a wall may neither rest nor fall; after one more the bracket around them stays as wide as it is."""

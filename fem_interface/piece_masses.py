@@ -11,13 +11,12 @@ have (u_r + u_d)² ≤ (1 + a) u_r² + (1 + 1/a) u_d², and a = ω_d² / ω_r² 
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from runningbond.dynamics import BlockSystem, rigid_frequency_squared
 from runningbond.dynamics.clusters import Clusters
 from runningbond.joints.wall_points import wall_stiffness
 from runningbond.scene import Array, Indices, Mask
+from runningbond.scene.arrays import components
 
 from .mass_scaling import scaled_modes
 from .modal_wall import ModalWall
@@ -84,8 +83,7 @@ def _block_of_piece(wall: ModalWall) -> Indices:
     """Number of the block that each piece is part of, ``(np,)``: of all that inner joints hold together."""
     count, points = len(wall.scene.blocks), wall.elements.points
     joined = points.block[wall.scene.joints.inner[points.joint]]
-    graph = coo_array((np.ones(len(joined)), joined.T), shape=(count, count))
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+    return components(*joined.T, count)
 
 
 def _clusters(wall: ModalWall, block: Indices, part: Mask, more: float) -> Clusters:

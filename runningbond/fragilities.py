@@ -51,11 +51,14 @@ class Fragility:
 
     def probability(self, intensity: Array | float) -> Array:
         """Probability of a collapse at intensities [g], not negative, which a `SceneError` refuses."""
-        intensity = np.asarray(intensity, dtype=float)
-        if not (intensity >= 0).all():
-            raise SceneError("intensity", "must be at least 0, in g", intensity.tolist())
+        try:
+            level = np.asarray(intensity, dtype=float)
+        except (TypeError, ValueError):
+            level = np.array(np.nan)
+        if not (level >= 0).all():
+            raise SceneError("intensity", "must be numbers of at least 0, in g", intensity)
         with np.errstate(divide="ignore"):  # at none
-            return np.asarray(ndtr(np.log(intensity / self.median) / max(self.dispersion, 1e-12)))
+            return np.asarray(ndtr(np.log(level / self.median) / max(self.dispersion, 1e-12)))
 
     def __repr__(self) -> str:
         left_out = f"{self.left_out} left out" + (" (`runs` says why)" if self.left_out else "")

@@ -57,7 +57,7 @@ def sweep(
         remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
         raise SceneError("changes", remedy, changes)
     for key, values in changes.items():
-        if not isinstance(values, Iterable) or isinstance(values, (str, Mapping)):
+        if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
             raise SceneError(key, "must be a list of the values that it is to take", values)
     cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
     scenes: dict[str, Scene] = {}

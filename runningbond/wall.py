@@ -270,12 +270,12 @@ class Wall:
             For a model that follows no path, or no number of draws; and as of `run`.
         """
         from .campaigns import ctrl_c_passed_on
-        from .draws import Drawing
+        from .draws import Sampling
         from .models import find_model
 
-        drawing = Drawing(self.scene, find_model(model), number, scatter)
+        sampling = Sampling(self.scene, find_model(model), number, scatter)
         with ctrl_c_passed_on():
-            return drawing.run(tolerance, None if folder is None else path_of("folder", folder), jobs)
+            return sampling.run(tolerance, None if folder is None else path_of("folder", folder), jobs)
 
     def respond(self, model: "str | Model", scale: float = 1.0, **settings: Any) -> "DrawnResponse":
         """Follow the wall through the motion of its ground, ``load.history``.

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from runningbond.compare import published_scene
 from runningbond.compare.table import bracket
-from runningbond.draws import Drawing, Draws
+from runningbond.draws import Draws, Sampling
 from runningbond.models import MODELS, run_model
 from runningbond.results.outcome import number
 
@@ -55,8 +55,8 @@ def main() -> None:
                 f"| {name} | `{model}` | {bracket(found)} | | | | | | {time.perf_counter() - start:.2g} |", flush=True
             )
         for model in asked.models:
-            drawing = Drawing(scene, MODELS[model], asked.draws, asked.scatter)
-            draws = drawing.run(asked.tolerance, asked.folder / name / asked.scatter, asked.jobs)
+            sampling = Sampling(scene, MODELS[model], asked.draws, asked.scatter)
+            draws = sampling.run(asked.tolerance, asked.folder / name / asked.scatter, asked.jobs)
             seconds = sum(outcome.seconds for outcome in draws.outcomes) / len(draws.outcomes)
             print(f"| {name} | `{model}` | {row(draws)} | {seconds:.2g} |", flush=True)
 

@@ -13,7 +13,7 @@ from cyclopts import Parameter
 from runningbond.campaigns import Interrupted
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.compare.published import find_scene
-from runningbond.draws import Drawing
+from runningbond.draws import Sampling
 from runningbond.models import MODELS, TOLERANCE, Model, Progress, Recorder, check_tolerance, find_model, run_model
 from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
@@ -137,13 +137,13 @@ def _draws(
     check_jobs(jobs)
     folder = None if out is None else out / DRAWS
     with _as_options():
-        drawing = Drawing(wall, model, number, scatter)
+        sampling = Sampling(wall, model, number, scatter)
     if out is not None:
         make_folder(out)
         claim(out, "--out")
     try:
         with progress_bar(f"{model.name}, draws", number) as advance, _as_options():
-            found = drawing.run(tolerance, folder, jobs, advance)
+            found = sampling.run(tolerance, folder, jobs, advance)
     except Interrupted as stopped:
         kept = "nothing is kept without --out" if folder is None else f"{stopped.campaign.kept} of {number} draws are "
         kept += "" if folder is None else f"kept in {folder}; the same command goes on."

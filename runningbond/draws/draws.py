@@ -112,7 +112,7 @@ def _told(load: float | None) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class Drawing:
+class Sampling:
     """A model that follows a path, to be run on a wall and on others that differ in nothing that is known.
 
     Parameters

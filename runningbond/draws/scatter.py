@@ -4,10 +4,9 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from runningbond.scene import Array, Indices, JointMaterial, Scene, SceneError
+from runningbond.scene.arrays import components
 from runningbond.scene.ranges import Range, suggestion
 
 SEED = 20
@@ -148,5 +147,4 @@ def _lines(scene: Scene, axis: int) -> Indices:
     np.add.at(covered, last, -1)
     same = (np.diff(place[order], axis=0) == 0).all(axis=1)
     joined = np.flatnonzero((np.cumsum(covered)[:-2] > 0) | same)
-    pairs = coo_array((np.ones(len(joined)), (order[joined], order[joined + 1])), shape=(len(order),) * 2)
-    return np.asarray(connected_components(pairs, directed=False)[1], dtype=np.int64)
+    return components(order[joined], order[joined + 1], len(order))

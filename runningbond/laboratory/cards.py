@@ -8,7 +8,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from matplotlib.ticker import NullLocator
+from matplotlib.ticker import FixedLocator, NullLocator
 
 from runningbond.pictures.charts import bare
 from runningbond.pictures.flat import draw_mechanism
@@ -106,7 +106,7 @@ def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:
         axes.set(xscale="log", yscale="log", xlabel="CPU seconds", title=f"walls with {kind} joints")
     panels[0].set_ylabel("|ΔV|, strength against experiment")
     panels[0].yaxis.set_major_formatter(lambda value, _: f"{100 * value:g} %")
-    panels[0].set_yticks([0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0], minor=False)
+    panels[0].yaxis.set_major_locator(FixedLocator([0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10]))
     panels[0].yaxis.set_minor_locator(NullLocator())
     drawn = {name: mark for axes in panels for mark, name in zip(*axes.get_legend_handles_labels(), strict=True)}
     if drawn:

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_array, csc_array
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
 from runningbond.joints import PointStrength
 from runningbond.scene import Array, Indices, Mask
+from runningbond.scene.arrays import components
 
 from .canonical import ENTRY, rounded
 from .certificates import Certificate
@@ -60,8 +60,7 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
     pair = first * (n + 1) + second
     _, which, size = np.unique(pair, return_inverse=True, return_counts=True)
     holds = ((np.bincount(which, still) == size) & (size > 1))[which]
-    graph = coo_array((np.ones(holds.sum()), (first[holds], second[holds])), shape=(n + 1, n + 1))
-    _, label = connected_components(graph, directed=False)
+    label = components(first[holds], second[holds], n + 1)
     moving = label[:n] != label[n]
     _, macro = np.unique(label[:n][moving], return_inverse=True)
     motions = _motions(np.flatnonzero(moving), macro, place, system.scale)

@@ -26,7 +26,7 @@ CHART = (16.0, 8.0, 296.0, 108.0)
 """Left, top, width and height of the small chart of loads over displacements."""
 
 
-class Moment(Protocol):
+class Instant(Protocol):
     """A wall at one moment: λ and the motions of its blocks ``(nb, 3)`` since it was built."""
 
     @property
@@ -36,7 +36,7 @@ class Moment(Protocol):
     def motion(self) -> Array: ...  # noqa: D102
 
 
-def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Moment]) -> Outcome:
+def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Instant]) -> Outcome:
     """The outcome with some of the states that it came by, in their order.
 
     They are evenly apart by how far the wall has gone, in time where its ground moves, and that of the largest load.

@@ -1,9 +1,11 @@
-"""Array types shared by every room, and the one way to freeze an array."""
+"""Array types shared by every room, the one way to freeze an array, and which things hang together."""
 
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 Array: TypeAlias = NDArray[np.float64]
 Indices: TypeAlias = NDArray[np.int64]
@@ -17,3 +19,9 @@ def frozen(values: ArrayLike, dtype: type[Any] = np.float64) -> NDArray[Any]:
     array = np.array(values, dtype=dtype)
     array.setflags(write=False)
     return array
+
+
+def components(a: ArrayLike, b: ArrayLike, count: int) -> Indices:
+    """Number of the part ``(count,)`` that each of so many things is in, where those of `a` hang on `b` ``(n,)``."""
+    pairs = (np.ones(np.size(a)), (np.asarray(a), np.asarray(b)))
+    return np.asarray(connected_components(coo_array(pairs, shape=(count, count)), directed=False)[1], dtype=np.int64)

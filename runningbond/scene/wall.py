@@ -7,11 +7,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from .actions import Action
-from .arrays import Array, Indices, Mask, frozen
+from .arrays import Array, Indices, Mask, components, frozen
 from .assignment import BEAM, GROUND, Assignment, assign_blocks, assign_joints
 from .beam import Beam, Drive
 from .blocks import Blocks
@@ -505,9 +503,7 @@ def table_of(material: BlockMaterial | JointMaterial) -> str:
 
 def _refuse_floating_blocks(scene: Scene) -> None:
     """Every movable block hangs together with something that is held."""
-    n = len(scene.blocks)
-    a, b = scene.joints.block.T
-    _, component = connected_components(coo_array((np.ones(len(a)), (a, b)), shape=(n, n)), directed=False)
+    component = components(*scene.joints.block.T, len(scene.blocks))
     held = np.union1d(np.flatnonzero(scene.fixed), scene.pins.block[scene.pins.direction.any(axis=1)])
     floating = ~np.isin(component, component[held])
     if floating.any():

@@ -15,7 +15,7 @@ import runningbond as rb
 from runningbond.campaigns import Interrupted, tasks
 from runningbond.commands.command_line import command
 from runningbond.compare import published_scene
-from runningbond.draws import Drawing, Draws, Scatter
+from runningbond.draws import Draws, Sampling, Scatter
 from runningbond.models import MODELS, run_model
 from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
@@ -98,7 +98,7 @@ def test_no_friction_leaves_more_tensile_strength_than_cohesion_has() -> None:
 def test_a_block_slides_at_the_friction_it_was_drawn_with(model: str) -> None:
     """Exact: λ = tan φ of each draw's one joint; and no last bit matters to a single block."""
     scene, tolerance = block(block__young=1e12), 1e-3
-    found = Drawing(scene, MODELS[model], 4, "friction=0.2").run(tolerance, jobs=1)
+    found = Sampling(scene, MODELS[model], 4, "friction=0.2").run(tolerance, jobs=1)
     for k, outcome in enumerate(found.outcomes):
         drawn = Scatter(friction=0.2).draw(scene, k)
         friction = drawn.joint_materials[int(drawn.material_of_joint[0])].friction
@@ -108,7 +108,7 @@ def test_a_block_slides_at_the_friction_it_was_drawn_with(model: str) -> None:
         assert outcome.lower <= 1.001 * friction
     assert found.error is not None
     assert found.error > 0.01
-    bits = Drawing(scene, MODELS[model], 2).run(tolerance, jobs=1)
+    bits = Sampling(scene, MODELS[model], 2).run(tolerance, jobs=1)
     assert bits.multipliers == pytest.approx(0.3, rel=2e-3)
 
 
@@ -175,11 +175,11 @@ def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.M
 
     monkeypatch.setattr(tasks, "run_model", cut_short)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # which a process begun in the background has not
-    drawing = Drawing(block(), MODELS["dem-static"], 5)
+    sampling = Sampling(block(), MODELS["dem-static"], 5)
     with pytest.raises(Interrupted) as stopped:
-        drawing.run(folder=tmp_path, jobs=1)
+        sampling.run(folder=tmp_path, jobs=1)
     assert (len(begun), stopped.value.campaign.kept) == (2, 1)
-    assert len(drawing.run(folder=tmp_path, jobs=1).outcomes) == 5
+    assert len(sampling.run(folder=tmp_path, jobs=1).outcomes) == 5
     assert len(begun) == 6
 
 
@@ -229,7 +229,7 @@ def test_draws_end_without_an_answer_where_each_of_them_does(
     """As one run does: that a wall falls under its weight, or locks, is an answer."""
     draws = (outcome(1.0) if each == "collapse" else replace(outcome(None), status=each) for each in statuses)
     found = Draws(tuple(draws), Scatter())
-    monkeypatch.setattr(Drawing, "run", lambda *_: found)
+    monkeypatch.setattr(Sampling, "run", lambda *_: found)
     assert command(["run", small, "--model", "dem-static", "--draws", "2"]) == code
 
 
@@ -284,7 +284,7 @@ def test_blocks_of_an_arch_keep_their_sizes(capsys: pytest.CaptureFixture[str]) 
 @pytest.mark.parametrize("draws", [2.0, True, None, "3"])
 def test_a_number_of_draws_is_whole_in_python_too(draws: Any) -> None:
     with pytest.raises(SceneError, match="^number"):
-        Drawing(block(), MODELS["dem-static"], draws)
+        Sampling(block(), MODELS["dem-static"], draws)
 
 
 def test_refusals_in_python_name_no_option_of_the_command_line() -> None:

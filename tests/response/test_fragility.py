@@ -54,8 +54,8 @@ def test_a_fragility_is_of_intensities_that_are_not_negative() -> None:
     assert probability == pytest.approx([0.0, norm.cdf(-1.0), 0.5, 1.0], abs=1e-12)
     assert "0 left out>" in repr(found)
     assert "1 left out (`runs` says why)>" in repr(replace(found, left_out=1))
-    for bad in (-1.0, np.array([0.1, np.nan])):
-        with pytest.raises(rb.SceneError, match="intensity = .*: must be at least 0"):
+    for bad in (-1.0, np.array([0.1, np.nan]), "a"):
+        with pytest.raises(rb.SceneError, match="intensity = .*: must be numbers of at least 0"):
             found.probability(bad)
 
 

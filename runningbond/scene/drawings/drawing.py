@@ -12,7 +12,7 @@ from ..errors import SceneError
 from ..ranges import one_of
 from .compas import read_compas
 from .curves import ROUNDING, Arc, Chords
-from .dxf import KEY, Drawn, Sheet, read_dxf
+from .dxf import KEY, Drawn, ModelSpace, read_dxf
 from .healing import heal as healed
 from .healing import missed_joints
 from .loops import join
@@ -75,10 +75,10 @@ def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
             notes.append("assembly: no block is a support; the wall stands on what [support] says")
         names = [f"{KEY}, assembly"] * (len(blocks) + len(grounds))
     else:
-        sheet = read_dxf(path)
-        blocks, layers, names, notes = _outlines(sheet)
+        space = read_dxf(path)
+        blocks, layers, names, notes = _outlines(space)
         grounds = []
-        notes += _units_note(sheet, units)
+        notes += _units_note(space, units)
     outlines = _cleaned([scale * outline for outline in [*blocks, *grounds]], names)
     blocks, grounds = outlines[: len(blocks)], outlines[len(blocks) :]
     if path.suffix.lower() != ".json":
@@ -94,16 +94,16 @@ def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
     return Drawing(blocks, tuple(layers), grounds, (*notes, note) if note else tuple(notes))
 
 
-def _outlines(sheet: Sheet) -> tuple[list[Array], list[str], list[str], list[str]]:
-    """Closed outlines of a sheet with their layers and names, and what there is to say."""
-    ends = [piece.ends if isinstance(piece, Arc) else piece for curve in sheet.drawn for piece in curve.pieces]
+def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], list[str]]:
+    """Closed outlines of a space with their layers and names, and what there is to say."""
+    ends = [piece.ends if isinstance(piece, Arc) else piece for curve in space.drawn for piece in curve.pieces]
     corners = np.vstack([np.zeros((0, 2)), *ends])
     tolerance = ROUNDING * float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
-    arcs = [piece for curve in sheet.drawn for piece in curve.pieces if isinstance(piece, Arc)]
+    arcs = [piece for curve in space.drawn for piece in curve.pieces if isinstance(piece, Arc)]
     chords = Chords(arcs, corners, tolerance)
     found: list[tuple[Array, str, str]] = []
     loose: dict[str, list[Array]] = {}
-    for curve in sheet.drawn:
+    for curve in space.drawn:
         points = _traced(curve, chords)
         again = np.hypot(*(points[0] - points[-1])) <= tolerance
         if curve.closed or (again and len(points) > 3):
@@ -123,8 +123,8 @@ def _outlines(sheet: Sheet) -> tuple[list[Array], list[str], list[str], list[str
             f"arcs: {len(arcs)} are cut into {chords.number} chords, which leave them by at most {chords.sagitta:.2g}"
             " drawing units, at the same corners for all who share one"
         )
-    if sheet.left_out:
-        notes.append(f"left out: {_listed(sheet.left_out)}")
+    if space.left_out:
+        notes.append(f"left out: {_listed(space.left_out)}")
     return [one[0] for one in found], [one[1] for one in found], [one[2] for one in found], notes
 
 
@@ -140,10 +140,10 @@ def _listed(left_out: Counter[tuple[str, str]]) -> str:
     return "; ".join(f"{', '.join(kinds)} {place}" for place, kinds in by_place.items())
 
 
-def _units_note(sheet: Sheet, units: str) -> list[str]:
-    if sheet.units in (None, units):
+def _units_note(space: ModelSpace, units: str) -> list[str]:
+    if space.units in (None, units):
         return []
-    return [f"units: the drawing's header says {sheet.units}, wall.units says {units}, which counts"]
+    return [f"units: the drawing's header says {space.units}, wall.units says {units}, which counts"]
 
 
 def _without_ground(

@@ -35,7 +35,7 @@ class Drawn:
 
 
 @dataclass(frozen=True)
-class Sheet:
+class ModelSpace:
     """The curves of a drawing, entities left out by type and place, and the units that its header names."""
 
     drawn: list[Drawn]
@@ -43,7 +43,7 @@ class Sheet:
     units: str | None
 
 
-def read_dxf(path: Path) -> Sheet:
+def read_dxf(path: Path) -> ModelSpace:
     """Read the model space of a DXF file.
 
     Layers that are off or frozen are not seen in a CAD program and are not read here; what stands on layer 0 of a
@@ -70,7 +70,7 @@ def read_dxf(path: Path) -> Sheet:
                 left_out[entity.dxftype(), f"on layer {layer}"] += 1
             elif curve.pieces:
                 drawn.append(curve)
-        return Sheet(drawn, left_out, HEADER_UNITS.get(document.header.get("$INSUNITS", 0)))
+        return ModelSpace(drawn, left_out, HEADER_UNITS.get(document.header.get("$INSUNITS", 0)))
     except SceneError:
         raise
     except OSError as error:

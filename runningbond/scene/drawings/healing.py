@@ -6,11 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from scipy.sparse import coo_array, csc_array, csr_array, eye_array
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 from scipy.spatial import cKDTree
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Indices, components
 from ..blocks import Blocks, touching_boxes
 from ..errors import SceneError
 
@@ -129,11 +128,10 @@ def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
     inside = (blocks.owner[c] != blocks.owner[e]) & (place > 0) & (place < 1) & ~taken
     c, e, place, along = c[inside], e[inside], place[inside, None], along[inside]
     gaps = [start[corner] - start[other], start[c] - start[e] - place * along]
-    shape = (len(start), len(start))
-    _, node = connected_components(coo_array((np.ones(len(corner)), (corner, other)), shape=shape), directed=False)
+    node = components(corner, other, len(start))
     rows = np.unique(np.column_stack([node[c], node[e], node[blocks.successor[e]]]), axis=0)
     rows = rows[(rows[:, :1] != rows[:, 1:]).all(axis=1)]
-    return _Touches(node.astype(np.int64), *rows.T), float(np.hypot(*np.vstack(gaps).T).max(initial=0.0))
+    return _Touches(node, *rows.T), float(np.hypot(*np.vstack(gaps).T).max(initial=0.0))
 
 
 def _twins(blocks: Blocks, reach: float) -> tuple[Indices, Indices]:

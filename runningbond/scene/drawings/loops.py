@@ -6,11 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..arrays import Array, Indices, Mask
+from ..arrays import Array, Indices, Mask, components
 from ..errors import SceneError
 from .dxf import KEY
 
@@ -79,12 +77,11 @@ def _network(curves: Sequence[Array], tolerance: float) -> tuple[Array, Array]:
     """Edges ``(n, 2, 2)`` between all crossings and corners of curves, and the ends ``(m, 2)`` that meet nothing."""
     points = np.vstack(curves)
     pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
-    n = len(points)
-    _, group = connected_components(coo_array((np.ones(len(pairs)), pairs.T), shape=(n, n)), directed=False)
+    group = components(*pairs.T, len(points))
     _, first = np.unique(group, return_index=True)
     corner = first[group]
     stop = np.cumsum([len(curve) for curve in curves])
-    here = np.setdiff1d(np.arange(n), stop - 1)
+    here = np.setdiff1d(np.arange(len(points)), stop - 1)
     ends = np.column_stack([corner[here], corner[here + 1]])
     ends = ends[ends[:, 0] != ends[:, 1]]
     if not len(ends):
