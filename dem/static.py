@@ -225,7 +225,7 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
         return replace(result, status="collapse", multiplier=result.lower, message=message)
     if path.undecided != INTERRUPTED and path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
         message = f"self-locking: {path.undecided}, and joint forces balance any multiple of it"
-        return replace(result, status="unbounded", lower=None, message=message)
+        return replace(result, status="unbounded", lower=None, motion=np.zeros((0, 3)), message=message)
     return replace(result, message=f"no answer: {path.undecided}")
 
 

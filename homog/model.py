@@ -6,7 +6,7 @@ corner. Blocks hold together up to a crack slope tan ψ = s, ψ from the horizon
     s = (m / tan φ)^{1/2},    m = 2 a / b,    r = H / L
 
 (Baraldi, Reccia & Cecchi, Eq. 6, with the exponent corrected: the printed −1/2 in the second branch makes the
-multiplier jump at r = s; see docs/errata.md).
+multiplier jump at r = s; see docs/errata.md), or less where tan φ is above 1 (`crack_slope`).
 """
 
 import math
@@ -19,8 +19,19 @@ from runningbond.scene import Bond, Scene, SceneError
 
 
 def crack_slope(block_width: float, block_height: float, friction: float) -> float:
-    """Steepest crack slope s = (m / tan φ)^{1/2} of blocks b × a [m] with friction tan φ; inf without friction."""
-    return math.sqrt(2 * block_height / block_width / friction) if friction > 0 else math.inf
+    """Steepest crack slope s of blocks b × a [m] with friction tan φ; inf without friction.
+
+    A crack opens across itself, of which blocks know as long as head joints that slide open by tan φ times that or
+    more, and bed joints too (`StrengthDomain`). Bed joints allow s = (m / tan φ)^{1/2}, and so do head joints where
+    2 μ² (μ m)^{1/2} ≤ 1 + μ m, of any blocks up to μ = 1. Beyond, both give way at the root of
+    (1/μ + m − μ) s² − 2 μ m s + m = 0.
+    """
+    if friction <= 0:
+        return math.inf
+    m, mu = 2 * block_height / block_width, friction
+    if 2 * mu**2 * math.sqrt(mu * m) <= 1 + mu * m:
+        return math.sqrt(m / mu)
+    return m / (mu * m + math.sqrt((mu * m) ** 2 - m * (1 / mu + m - mu)))
 
 
 def lateral_multiplier(slenderness: float, slope: float, friction: float) -> float:

@@ -26,6 +26,11 @@ def main() -> None:
 
 def _leave_at_once(code: int) -> None:
     """Leave past the ends of libraries, where threads that HiGHS was interrupted in abort the process."""
+    if "multiprocessing.process" in sys.modules:
+        from multiprocessing import active_children
+
+        for worker in active_children():  # without work, they would be waited for until they leave of themselves
+            worker.terminate()
     atexit._run_exitfuncs()  # joblib's workers and folders go
     for stream in (sys.stdout, sys.stderr):
         with suppress(OSError, ValueError):

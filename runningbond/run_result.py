@@ -10,14 +10,14 @@ from .joints import listed_points, wall_points
 from .models import Model, find_model, run_model
 from .path_states import PathState, collected
 from .pictures.captions import to_png, to_svg
-from .pictures.curve import curve_quantities
+from .pictures.curve import curve_figure, draw_curve
 from .pictures.flat import draw_mechanism, figure_of
 from .results import Outcome, Status
 from .results.mechanism import rigid_jumps
 from .results.outcome import number
 from .scene import Array, SceneError, plausibility
 from .tables import Table, table
-from .wall import Wall, new_axes
+from .wall import Wall
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -108,19 +108,22 @@ class Result:
         return table({**place, **forces, "opening": opening, "slip": slip})
 
     def plot(self, what: Literal["mechanism", "curve"] | None = None, axes: "Axes | None" = None) -> "Axes":
-        """Draw the mechanism, the curve where there is no mechanism, or what is asked for, into axes."""
+        """Draw the mechanism, the curve where there is no mechanism, or what is asked for, into axes.
+
+        Without axes it is a figure of its own, which pyplot shows.
+        """
         if what not in (None, "mechanism", "curve"):
             raise SceneError("what", "must be mechanism or curve", what)
-        axes = axes or new_axes()
-        if what == "mechanism" or (what is None and (len(self.motion) or not len(self.outcome.curve))):
-            draw_mechanism(axes, self.wall.scene, self.outcome)
-            return axes
-        if not len(self.outcome.curve):
+        if what == "curve" and not len(self.outcome.curve):
             raise SceneError("what", f"must be mechanism: {self.model} has no curve here", what)
-        axes.plot(*self.outcome.curve.T, marker=".")
-        displacement, load = curve_quantities(self.wall.scene)
-        axes.set(xlabel=f"{displacement} [m]", ylabel=load)
-        axes.set_title(self.outcome.scene, parse_math=False)
+        is_curve = what == "curve" or (what is None and not len(self.motion) and len(self.outcome.curve))
+        if axes is None:
+            from matplotlib.pyplot import figure
+
+            make_figure = curve_figure if is_curve else figure_of
+            return make_figure(self.wall.scene, self.outcome, make=figure).axes[0]
+        draw = draw_curve if is_curve else draw_mechanism
+        draw(axes, self.wall.scene, self.outcome)
         return axes
 
     def _mechanism(self) -> Array:

@@ -296,10 +296,16 @@ class Wall:
         return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)))
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
-        """Draw the wall with its support and loads into axes, new ones where none are given."""
-        from .pictures.flat import draw_wall
+        """Draw the wall with its support and loads into axes, or a figure of its own where none are given.
 
-        axes = axes or new_axes()
+        A figure of several, with ``layout="constrained"``, leaves room for the words around each.
+        """
+        from .pictures.flat import draw_wall, figure_of
+
+        if axes is None:
+            from matplotlib.pyplot import figure
+
+            return figure_of(self.scene, make=figure).axes[0]
         draw_wall(axes, self.scene)
         return axes
 
@@ -352,13 +358,6 @@ def read(wall: str | Path) -> Wall:
 
     path = find_scene(str(path_of("wall", wall)))
     return Wall({"title": path.stem, **read_description(path)}, path.parent)
-
-
-def new_axes() -> "Axes":
-    """Axes of a figure that matplotlib's pyplot shows."""
-    from matplotlib.pyplot import subplots
-
-    return subplots()[1]
 
 
 def _as_in_a_file(value: Any) -> Any:

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from runningbond.joints import wall_points
+from runningbond.joints import wall_points, wall_rule
 from runningbond.pictures.legend import CONDITIONS, strength, used_block_materials, used_joint_materials
 from runningbond.pictures.quantities import counted, millimetres, minus, pair, readable
 from runningbond.scene import (
@@ -64,7 +64,8 @@ def _joints(scene: Scene) -> Iterator[Row]:
         lie = f"{int((own & bed).sum())} bed, {int((own & ~bed).sum())} head"
         yield f"  of {material.name}", f"{lie}: {strength(material)}{inset}"
     tolerance = f"{scene.blocks.tolerance:.3g} m count as contact"
-    yield "contact points", f"{len(wall_points(scene))}, two to a joint; gaps up to {tolerance}"
+    rule = wall_rule(scene)
+    yield "contact points", f"{len(wall_points(scene, rule))}, {len(rule.nodes)} to a joint; gaps up to {tolerance}"
 
 
 def _held(scene: Scene) -> Iterator[Row]:

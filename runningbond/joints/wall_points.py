@@ -26,11 +26,14 @@ def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
 
 
 def wall_rule(scene: Scene, parts: int = 1) -> Rule:
-    """Points that the law of a scene's joints is evaluated at: the ends, and between them what crushes or closes.
+    """Points that the law of a scene's joints is evaluated at: the ends, and what softens, crushes or closes between.
+
+    At its ends alone a joint is three times as stiff against turning as along all of its length. Of dry and perfectly
+    plastic ones the collapse load is the same; of one that softens it is up to three times as large (a stone on a bed).
 
     Of joints in several parts each part has a rule, and all of them together as many points as a whole joint.
     """
-    spread = any(each.compressive_strength or each.closure for each in scene.joint_materials)
+    spread = any(each.compressive_strength or each.closure or each.softens for each in scene.joint_materials)
     between = BETWEEN if parts == 1 else max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts))
     return lobatto(between if spread else 2)
 

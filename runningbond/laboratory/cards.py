@@ -93,7 +93,8 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
 def _envelope(axes: Axes, curve: Array, path: tuple[float, ...], colour: str) -> None:
     """Peaks of the cycles, in the order of their displacements."""
     ends = sorted(zip(path, cycle_peaks(curve, path), strict=False))
-    axes.plot([1e3 * x for x, _ in ends], [y / 1e3 for _, y in ends], "o-", color=colour, lw=1.4, ms=3)
+    said = "peaks of its cycles" if colour == MEASURED else None
+    axes.plot([1e3 * x for x, _ in ends], [y / 1e3 for _, y in ends], "o-", color=colour, lw=1.4, ms=3, label=said)
 
 
 def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:

@@ -4,6 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from runningbond.scene import Array
+
 from .deformed_shape import DeformedShape, Extent
 from .loads import LoadDrawing
 from .numbers import block_numbers
@@ -41,9 +45,20 @@ class Room:
     share: float
 
 
-def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False) -> Sketch:
-    """Everything around a wall, where a point of the type takes so many metres; with the numbers of blocks in it."""
+THRUST = "#7b3294"
+"""Colour of the forces in joints."""
+
+NO_LINES: Array = np.zeros((0, 2, 2))
+
+
+def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False, thrust: Array = NO_LINES) -> Sketch:
+    """Everything around a wall, where a point of the type takes so many metres.
+
+    With it the numbers of blocks, and lines of thrust ``(n, 2, 2)`` [m], of which those at the base go beyond the wall.
+    """
     sketch = Sketch(point, block_numbers(shape.scene, point) if numbers else [])
+    for line in thrust:
+        sketch.line("thrust", line, color=THRUST, lw=0.8, zorder=4)
     draw_supports(sketch, shape)
     draw_beam(sketch, shape)
     draw_ties(sketch, shape)
@@ -53,14 +68,19 @@ def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False) 
 
 
 def room_for(
-    shapes: Sequence[DeformedShape], extent: Extent, size: tuple[float, float], *, numbers: bool = False
+    shapes: Sequence[DeformedShape],
+    extent: Extent,
+    size: tuple[float, float],
+    *,
+    numbers: bool = False,
+    thrust: Array = NO_LINES,
 ) -> Room:
     """Room for supports and loads around a wall in some shapes, in a drawing at most so wide and high [in].
 
     What is around the wall is made smaller where it would leave too little of the drawing to the wall.
     """
     least = metres_of_point(extent, size)
-    rooms = (_room(shapes, extent, size, share, numbers) for share in SHARES)
+    rooms = (_room(shapes, extent, size, share, numbers, thrust) for share in SHARES)
     for room in rooms:
         if room.point < CROWDED * room.share * least:
             return room
@@ -68,13 +88,19 @@ def room_for(
 
 
 def _room(
-    shapes: Sequence[DeformedShape], extent: Extent, size: tuple[float, float], share: float, numbers: bool
+    shapes: Sequence[DeformedShape],
+    extent: Extent,
+    size: tuple[float, float],
+    share: float,
+    numbers: bool,
+    thrust: Array,
 ) -> Room:
     """Room for what is around the wall, which takes the more metres the more is shown."""
     base = float(shapes[0].scene.blocks.extent(shapes[0].scene.wall)[0][1])
     point = least = metres_of_point(extent, size)
     while True:
-        extents = [sketch_around(shape, share * point, numbers=numbers).extent for shape in shapes]
+        sketches = (sketch_around(shape, share * point, numbers=numbers, thrust=thrust) for shape in shapes)
+        extents = [sketch.extent for sketch in sketches]
         floor = (*extent[:2], min(extent[2], base - 1.2 * UNIT * share * point), extent[3])
         shown = _around([floor, *(one for one in extents if one)])
         needed = metres_of_point(shown, size)
@@ -94,9 +120,11 @@ def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:
     return max((right - left) / size[0], (top - bottom) / size[1]) / 72
 
 
-def annotate(axes: "Axes", shape: DeformedShape, room: Room, *, numbers: bool = False) -> None:
-    """Draw the supports of a wall, its ties and its loads into axes that have room for them."""
-    sketch_around(shape, room.point, numbers=numbers).draw(axes, room.share)
+def annotate(
+    axes: "Axes", shape: DeformedShape, room: Room, *, numbers: bool = False, thrust: Array = NO_LINES
+) -> None:
+    """Draw the supports of a wall, its ties, its loads and its lines of thrust into axes that have room for them."""
+    sketch_around(shape, room.point, numbers=numbers, thrust=thrust).draw(axes, room.share)
 
 
 def axes_size(axes: "Axes") -> tuple[float, float]:

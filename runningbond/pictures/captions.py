@@ -4,7 +4,7 @@ import io
 import math
 import textwrap
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +14,7 @@ from runningbond.scene import Scene
 from .deformed_shape import Extent
 from .joint_state import JointState
 from .mechanism import mechanism_warning
-from .style import AT_REST, CRUSHED, DARK, DRAWN, FASTEST, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
+from .style import AT_REST, CRUSHED, DARK, DRAWN, FASTEST, HELD, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,15 +83,17 @@ def _write(axes: "Axes", text: str, level: float, inches: float, **style: Any) -
     axes.annotate(text, (0.5, level), (0.0, 72 * inches), ha="center", parse_math=False, **place, **style)
 
 
-def figure_with_room(extent: Extent, caption: Caption, enlarged: float = 1.0) -> "tuple[Figure, Axes]":
-    """A figure of one drawing, so many times as large as a journal's, with room for its caption."""
+def figure_with_room(
+    extent: Extent, caption: Caption, enlarged: float = 1.0, make: "Callable[..., Figure] | None" = None
+) -> "tuple[Figure, Axes]":
+    """A figure of one drawing, so many times as large as a journal's, with room for its caption; `make` makes it."""
     from matplotlib.figure import Figure
 
     left, right, bottom, top = extent
     above, below = caption.room
     height = enlarged * min(WIDTH * (top - bottom) / (right - left), TALLEST)
     total = height + above + below
-    figure = Figure(figsize=(enlarged * WIDTH, total), dpi=DPI)
+    figure = (make or Figure)(figsize=(enlarged * WIDTH, total), dpi=DPI)
     return figure, figure.add_axes((0, below / total, 1, height / total))
 
 
@@ -116,12 +118,17 @@ def is_force(scene: Scene) -> bool:
 def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     """Load at collapse, or what there is instead, and its bracket; empty where that adds nothing."""
     name, unit = load_symbol(scene), " N" if is_force(scene) else ""
-    low, high = (None if x is None else number(x) for x in (outcome.lower, outcome.upper))
+    low, high = (None if x is None else _signed(x) for x in (outcome.lower, outcome.upper))
     if outcome.status != "collapse" or outcome.multiplier is None:
         bounds = [f"{name} ≥ {low}{unit}"] * (low is not None) + [f"{name} ≤ {high}{unit}"] * (high is not None)
         return outcome.status, ", ".join(bounds)
     bracket = "" if low is None or high is None or low == high else f"[{low}, {high}]{unit}"
-    return f"{name} = {number(outcome.multiplier)}{unit}", bracket
+    return f"{name} = {_signed(outcome.multiplier)}{unit}", bracket
+
+
+def _signed(value: float) -> str:
+    """A number with a true minus sign."""
+    return number(value).replace("-", "−")
 
 
 def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, drawn: bool) -> Caption:
@@ -130,6 +137,7 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
     warning = mechanism_warning(scene, outcome)
     if not drawn:
         return Caption(title, load, [warning or "no mechanism"], [])
+    key = [*key, *held_key(scene)]
     columns = 5 if sum(len(handle.get_label()) for handle in key) < 45 else 3
     what = "shape in the fall; the farthest corner" if scene.history else "mechanism; its fastest corner"
     size = f"{what} is drawn to move {DRAWN * scene.size:.2g} m"
@@ -160,6 +168,13 @@ def colour_key(
         return lines
     ends = ((AT_REST, "block at rest"), (FASTEST, "fastest block"))
     return [*lines, *(Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=label) for colour, label in ends)]
+
+
+def held_key(scene: Scene) -> list[Any]:
+    """What the colour of blocks of the wall that are held stands for, where there are some."""
+    from matplotlib.patches import Patch
+
+    return [Patch(facecolor=HELD, edgecolor="0.5", lw=0.5, label="held block")] if scene.fixed[scene.wall].any() else []
 
 
 def to_png(figure: "Figure", dpi: float = DPI) -> bytes:

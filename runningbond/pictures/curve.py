@@ -1,5 +1,6 @@
 """The pushover curve of one outcome as a chart: load against the displacement of the control point."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from .charts import bare
 from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 (CURVE, _, _, FALL, _), BAND = CHART_COLOURS, "#f2c879"
@@ -22,16 +24,20 @@ SEEN = 0.04
 """Share of the axis below which the displacement at half the peak is not seen, and the axis is bent into a log one."""
 
 
-def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
-    """Draw a curve that is not empty, its bracket as a band and the collapse load as a line in it."""
+def curve_figure(scene: Scene, outcome: Outcome, *, make: "Callable[..., Figure] | None" = None) -> "Figure":
+    """A figure of a curve that is not empty; `make` makes it in place of `Figure`."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(5.2, 3.7), layout="constrained", dpi=200)
-    axes = figure.add_subplot()
+    figure = (make or Figure)(figsize=(5.2, 3.7), layout="constrained", dpi=200)
+    draw_curve(figure.add_subplot(), scene, outcome)
+    return figure
+
+
+def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
+    """Draw a curve that is not empty into axes, its bracket as a band and the collapse load as a line in it."""
+    from matplotlib.patheffects import withStroke
+
     moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
-    rests = outcome.curve_columns().get(AT_REST, np.ones(len(load))) == 1
-    is_led = not rests.any()  # in motion all the way
-    rests |= is_led
     if outcome.lower is not None and outcome.upper is not None:
         axes.axhspan(outcome.lower, outcome.upper, color=BAND, lw=0, alpha=0.6)
     if outcome.multiplier is not None:
@@ -47,31 +53,52 @@ def curve_figure(scene: Scene, outcome: Outcome) -> "Figure":
         textcoords="offset points",
         fontsize=TYPE,
         color=DARK,
+        zorder=5,
+        path_effects=[withStroke(linewidth=2.0, foreground="white")],
     )
-    held = "stands" if scene.history else "at rest"
-    axes.plot(moved[rests], load[rests], "-" if is_led else ".-", color=CURVE, lw=1.2, ms=4, label=held)
-    if not rests.all():
-        last = np.flatnonzero(~rests)[0]
-        axes.plot(moved[last - 1 :], load[last - 1 :], ":", color=FALL, lw=1.0)
-        axes.plot(moved[~rests], load[~rests], "x", color=FALL, ms=6, mew=1.5, label="falls")
-        axes.legend(frameon=False, fontsize=SMALL_TYPE + 1, loc="lower right")
-    half = _half_way(moved, load)
-    if 0 < half < SEEN * np.ptp(moved) and moved.min() > -half:  # not of a wall that is pushed to and fro
-        linear = 10.0 ** np.ceil(np.log10(half))
-        axes.set_xscale("symlog", linthresh=linear)
-        axes.xaxis.set_major_formatter("{x:g}")
-        axes.axvspan(min(0.0, moved.min()), linear, color="0.93", lw=0, zorder=0)
-        for word, place, align in (("linear", -4, "right"), ("logarithmic", 4, "left")):
-            spot: dict[str, Any] = {"textcoords": "offset points", "ha": align, "fontsize": SMALL_TYPE}
-            axes.annotate(word, (linear, 0.0), (place, 3), **spot)
-    axes.set_ylim(min(0.0, 1.12 * load.min()), 1.12 * max(load.max(), level) or 1.0)
+    _draw_states(axes, scene, outcome)
+    _bend(axes, moved, load)
+    bottom = min(0.0, 1.12 * load.min())
+    axes.set_ylim(bottom, max(-0.05 * bottom, 1.12 * max(load.max(), level)) or 1.0)
     displacement, load_axis = curve_quantities(scene)
     axes.set_xlabel(f"{displacement} [mm]", fontsize=TYPE + 1)
     axes.set_ylabel(load_axis, fontsize=TYPE + 1)
     axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2, parse_math=False)
     axes.tick_params(labelsize=TYPE)
     bare(axes)
-    return figure
+
+
+def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
+    """States at rest and in a fall; those under motions of the ground, each of its own, have no line between them."""
+    moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
+    rests = outcome.curve_columns().get(AT_REST, np.ones(len(load))) == 1
+    is_led = not rests.any()  # in motion all the way
+    rests |= is_led
+    held, way = ("stands", ".") if scene.history else ("at rest", "-" if is_led else ".-")
+    axes.plot(moved[rests], load[rests], way, color=CURVE, lw=1.2, ms=4, label=held)
+    if not rests.all():
+        last = np.flatnonzero(~rests)[0]
+        if not scene.history:
+            axes.plot(moved[last - 1 :], load[last - 1 :], ":", color=FALL, lw=1.0)
+        axes.plot(moved[~rests], load[~rests], "x", color=FALL, ms=6, mew=1.5, label="falls")
+        axes.legend(frameon=False, fontsize=SMALL_TYPE + 1, loc="lower right")
+
+
+def _bend(axes: "Axes", moved: Array, load: Array) -> None:
+    """Make the axis of displacements a logarithmic one beyond a part, where the rise of the load were not seen."""
+    from matplotlib.ticker import SymmetricalLogLocator
+
+    half = _half_way(moved, load)
+    if not 0 < half < SEEN * np.ptp(moved) or moved.min() <= -half:  # a wall that is pushed to and fro
+        return
+    linear = float(10.0 ** np.ceil(np.log10(half)))
+    axes.set_xscale("symlog", linthresh=linear)
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_locator(SymmetricalLogLocator(base=10, linthresh=linear, subs=range(2, 10)))
+    axes.axvspan(min(0.0, moved.min()), linear, color="0.93", lw=0, zorder=0)
+    for word, place, align in (("linear", -4, "right"), ("logarithmic", 4, "left")):
+        spot: dict[str, Any] = {"textcoords": "offset points", "ha": align, "fontsize": SMALL_TYPE}
+        axes.annotate(word, (linear, 0.0), (place, 3), **spot)
 
 
 def curve_quantities(scene: Scene) -> tuple[str, str]:
@@ -79,7 +106,7 @@ def curve_quantities(scene: Scene) -> tuple[str, str]:
     symbol = load_symbol(scene)
     load = f"load {symbol} [N]" if is_force(scene) else f"load multiplier {symbol}"
     if scene.history:
-        return "largest displacement of the top", load
+        return "largest displacement of the top", f"scale {symbol} of the record"
     if scene.settlement:
         return "displacement of the support", f"share {symbol} of the dead load on the support"
     return "displacement of the control point along the live load", load

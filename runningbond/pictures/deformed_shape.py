@@ -47,6 +47,8 @@ class DeformedShape:
         Whether each joint is crushed at its ends; empty where none is.
     motion : (nb, 3) float
         Motion of each block, of which that of supports is drawn; empty where these rest.
+    time
+        Since the motion of the ground began [s]; None where there is none.
     """
 
     scene: Scene
@@ -63,6 +65,7 @@ class DeformedShape:
     colouring: Colouring = "displacement"
     motion: Array = field(default_factory=lambda: np.zeros((0, 3)))
     crushed: Mask = field(default_factory=lambda: np.zeros((0, 2), np.bool_))
+    time: float | None = None
 
     @classmethod
     def of_rigid_blocks(cls, scene: Scene, motion: Array, state: Indices, multiplier: float) -> "DeformedShape":
@@ -195,6 +198,11 @@ def visible_scale(scene: Scene, displacement: Array) -> float:
     """Factor that makes the largest displacement of corners ``(n, 2)`` [m] visible; 1 where nothing moves."""
     farthest = float(np.hypot(*displacement.T).max())
     return DRAWN * scene.size / farthest if farthest > 0 else 1.0
+
+
+def series_scale(size: float, farthest: float) -> float:
+    """Factor that makes the farthest motion [m] visible in a wall of a size [m]; none is drawn smaller than it is."""
+    return max(1.0, DRAWN * size / farthest) if farthest > 0 else 1.0
 
 
 def course_numbers(scene: Scene) -> Indices:

@@ -4,15 +4,15 @@
 What joints do is told apart by colour, and in grey print by solid, dashed and dotted lines.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Mask, Scene
 
-from .annotations import Room, annotate, axes_size, metres_of_point, room_for
+from .annotations import NO_LINES, THRUST, Room, annotate, axes_size, metres_of_point, room_for
 from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mechanism_caption, show_extent
 from .deformed_shape import DeformedShape, Extent, outline, undeformed_shape
 from .joint_state import JointState
@@ -39,8 +39,11 @@ DASHES: dict[JointState, Any] = {
     JointState.DEBONDED: (0, (0.8, 1.2)),
 }
 
-THRUST, LEGIBLE = "#7b3294", 14.0
-"""Colour of the forces in joints, and how large blocks must be drawn for them [pt]."""
+SPLIT = "#5c1400"
+"""Colour of cracks through blocks."""
+
+LEGIBLE = 14.0
+"""How large blocks must be drawn for the forces in joints to be drawn too [pt]."""
 
 CROSS: dict[str, Any] = {"marker": "X", "ls": "none", "mfc": CRUSHED, "mec": "white", "zorder": 6}
 HINGE: dict[str, Any] = {"marker": "o", "ls": "none", "mfc": "white", "mec": DARK, "zorder": 5}
@@ -63,20 +66,27 @@ def draw_mechanism(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     _draw(axes, shape, caption, thrust=thrust)
 
 
-def figure_of(scene: Scene, outcome: Outcome | None = None, *, numbers: bool = False) -> "Figure":
+def figure_of(
+    scene: Scene,
+    outcome: Outcome | None = None,
+    *,
+    numbers: bool = False,
+    make: "Callable[..., Figure] | None" = None,
+) -> "Figure":
     """A figure of a wall, or of the mechanism of an outcome: as wide as a journal's column.
 
-    With numbers of blocks it is as much larger as these need to be read.
+    With numbers of blocks it is as much larger as these need to be read. `make` makes it in place of `Figure`.
     """
     shape, caption, thrust = undeformed_shape(scene), wall_caption(scene), None
     if outcome is not None:
         shape, caption, thrust = _mechanism(scene, outcome)
-    room, enlarged = room_for([shape], shape.extent, (WIDTH, TALLEST), numbers=numbers), 1.0
+    lines, enlarged = NO_LINES if thrust is None else thrust, 1.0
+    room = room_for([shape], shape.extent, (WIDTH, TALLEST), numbers=numbers, thrust=lines)
     if numbers:
         smallest = min(one.label.size for one in block_numbers(scene, metres_of_point(room.extent, (WIDTH, TALLEST))))
         enlarged = float(np.clip(SMALLEST_NUMBER / smallest, 1.0, LARGEST_SHEET))
         room = room_for([shape], shape.extent, (enlarged * WIDTH, enlarged * TALLEST), numbers=numbers)
-    figure, axes = figure_with_room(room.extent, caption, enlarged)
+    figure, axes = figure_with_room(room.extent, caption, enlarged, make)
     _draw(axes, shape, caption, room, thrust=thrust, numbers=numbers)
     return figure
 
@@ -92,18 +102,18 @@ def _draw(
 ) -> None:
     """Draw a wall by its materials, or with its resultants the mechanism of one, into axes with room around it."""
     scene = shape.scene
-    room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers)
+    forces = NO_LINES if thrust is None else thrust
+    room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers, thrust=forces)
     show_extent(axes, room.extent)
     width = line_width(scene, room.extent, axes_size(axes))
     if thrust is not None:
         paint_mechanism(axes, shape, width)
-        _draw_lines(axes, thrust, THRUST, 0.8, "solid")
     else:
         _draw_blocks(axes, shape, block_colours(scene), 0.5 * width)
         for number in used_joint_materials(scene):
             lines, colour = scene.joints.ends[scene.material_of_joint == number], joint_colour(number)
             _draw_lines(axes, lines, colour, (1.0 if number else 0.6) * width, "solid")
-    annotate(axes, shape, room, numbers=numbers)
+    annotate(axes, shape, room, numbers=numbers, thrust=forces)
     caption.write(axes)
 
 
@@ -111,8 +121,12 @@ def paint_mechanism(axes: "Axes", shape: DeformedShape, width: float) -> None:
     """Draw the blocks where they move to over the undeformed wall, what joints do, and hinges; lines so wide [pt]."""
     _draw_ghost(axes, shape.scene, width)
     _draw_blocks(axes, shape, shape.block_colours(), 0.5 * width)
-    for state in shape.states:
-        _draw_joints(axes, shape, state, width)
+    _hide_sound_cracks(axes, shape, width)
+    splits = split_blocks(shape)
+    for state, colour in STATE_COLOURS.items():
+        own = (shape.drawn_state == state) & ~splits
+        _draw_joints(axes, shape.placed_faces[own], state, colour, width)
+    _draw_joints(axes, shape.placed_faces[splits], JointState.OPEN, SPLIT, width)
     axes.plot(*shape.hinges.T, ms=2.4 * width, mew=0.5 * width, **HINGE)
     axes.plot(*shape.crosses.T, ms=max(3.6 * width, 2.0), mew=0.3 * width, **CROSS)
 
@@ -123,7 +137,7 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
 
     mechanism = mechanism_shape(scene, outcome)
     shape = mechanism or undeformed_shape(scene)
-    key = mechanism_key(shape.states, hinges=len(shape.hinges) > 0, crushes=len(shape.crosses) > 0)
+    key = mechanism_key([shape])
     lines, largest = resultants(shape, outcome)
     if len(lines) and mechanism and scene.block_size > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=f"force ≤ {readable(largest, 'N')}"))
@@ -132,12 +146,20 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
     return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None), lines
 
 
-def mechanism_key(states: Sequence[JointState], *, hinges: bool, crushes: bool = False) -> list[Any]:
-    """What circles, crosses, dashes and colours of a mechanism stand for: handles of a legend."""
+def mechanism_key(shapes: Sequence[DeformedShape]) -> list[Any]:
+    """What circles, crosses, dashes and colours of mechanisms stand for: handles of a legend of what there is."""
     from matplotlib.lines import Line2D
 
-    circle = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if hinges else []
-    return [*circle, *colour_key(states, dashes=DASHES, crushes=crushes)]
+    circle = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if any(len(x.hinges) for x in shapes) else []
+    splits = [Line2D([], [], color=SPLIT, lw=1.5, label="block splits")] if any(map(_has_splits, shapes)) else []
+    drawn = {JointState(state) for shape in shapes for state in shape.drawn_state[~split_blocks(shape)]}
+    states = [state for state in STATE_COLOURS if state in drawn]
+    crushes = any(len(shape.crosses) for shape in shapes)
+    return [*circle, *splits, *colour_key(states, dashes=DASHES, crushes=crushes)]
+
+
+def _has_splits(shape: DeformedShape) -> bool:
+    return bool(split_blocks(shape).any())
 
 
 def line_width(scene: Scene, extent: Extent, size: tuple[float, float]) -> float:
@@ -163,11 +185,31 @@ def _draw_blocks(axes: "Axes", shape: DeformedShape, colours: Array, width: floa
     axes.add_collection(blocks, autolim=False)
 
 
-def _draw_joints(axes: "Axes", shape: DeformedShape, state: JointState, width: float) -> None:
-    """The gaps and lines of joints in one state."""
+def split_blocks(shape: DeformedShape) -> Mask:
+    """Which joints are cracks through blocks that have opened or slid ``(nj,)``."""
+    return np.asarray(shape.scene.joints.inner & (shape.drawn_state != JointState.STICK))
+
+
+def _hide_sound_cracks(axes: "Axes", shape: DeformedShape, width: float) -> None:
+    """Draw potential cracks that are none in the colour of their block, whose pieces then look like what they are."""
+    from matplotlib.collections import LineCollection
+
+    sound = shape.scene.joints.inner & (shape.drawn_state == JointState.STICK)
+    if not sound.any():
+        return
+    colours = shape.block_colours()[np.searchsorted(shape.block, shape.scene.joints.block[sound, 0])]
+    start, end = shape.placed_faces[sound, 0], shape.placed_faces[sound, 1]
+    within = np.stack([start + 0.04 * (end - start), end - 0.04 * (end - start)], axis=1)  # the outline stays whole
+    hidden = LineCollection(list(within), colors=list(colours), lw=0.9 * width, capstyle="butt", zorder=2.5)
+    axes.add_collection(hidden, autolim=False)
+
+
+def _draw_joints(axes: "Axes", faces: Array, state: JointState, colour: str, width: float) -> None:
+    """Gaps ``(n, 4, 2)`` [m] and lines of joints in one state."""
     from matplotlib.collections import PolyCollection
 
-    faces, colour = shape.placed_faces[shape.drawn_state == state], STATE_COLOURS[state]
+    if not len(faces):
+        return
     gaps = PolyCollection(faces, facecolors=[tint(state)], edgecolors="none", zorder=3)
     axes.add_collection(gaps, autolim=False)
     # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.

@@ -7,7 +7,7 @@ import numpy as np
 
 from runningbond.scene import Array, JointMaterial, Scene
 
-from .captions import Caption, is_force, wall_title
+from .captions import Caption, held_key, is_force, wall_title
 from .quantities import counted, minus, readable
 from .style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
 from .ties import TIE, tie_kinds
@@ -64,7 +64,10 @@ def strength(material: JointMaterial) -> str:
     """What a joint can bear, in a line."""
     cohesion = f", c = {_stress(material.cohesion)}" if material.cohesion else ""
     tension = f", fₜ = {_stress(material.tensile_strength)}" if material.tensile_strength else ""
-    return f"tan φ = {material.friction:.3g}{cohesion}{tension}"
+    crushing = f", f_m = {_stress(material.compressive_strength)}" if material.compressive_strength else ""
+    energy = material.fracture_energy_1
+    toughness = f", G_I = {readable(energy, 'J/m²')}" if energy else ""
+    return f"tan φ = {material.friction:.3g}{cohesion}{tension}{crushing}{toughness}"
 
 
 def _stress(value: float) -> str:
@@ -100,7 +103,7 @@ def _bodies(scene: Scene) -> list[Any]:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
-    handles: list[Any] = []
+    handles = held_key(scene)
     if scene.beam is not None:
         mass = f"{scene.beam.mass:g} kg" if scene.beam.mass else "weightless"
         text = f"stiff beam: {mass}, {CONDITIONS[scene.beam.condition]}"

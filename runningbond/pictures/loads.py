@@ -88,7 +88,7 @@ class LoadDrawing:
                 size = readable(math.hypot(*action.acceleration), "m/s²")
                 self._on_mass(unit_vector(np.array(action.acceleration)), size, live)
             case History():
-                size = f"{math.hypot(*action.peak) / STANDARD_GRAVITY:.3g} g at the peak"
+                size = f"{math.hypot(*action.peak) / STANDARD_GRAVITY:.3g} g\ninertia at the peak"
                 self._on_mass(unit_vector(-action.peak), size, live)
             case Settlement():
                 pass  # drawn with the support that it moves
@@ -256,8 +256,9 @@ class LoadDrawing:
         self.pushes.setdefault((live, x, y), []).append(times_lambda(size, live=live))
 
     def _push(self, direction: Array, text: str, colour: str, name: str) -> None:
-        """A row of arrows along the side on which all blocks are pushed, and what they are."""
-        a, low, high = self.a, self.low, self.high
+        """A row of arrows along the side on which all blocks are pushed, clear of where they move to, and its words."""
+        a, placed = self.a, self.shape.placed
+        low, high = np.minimum(self.low, placed.min(axis=0)), np.maximum(self.high, placed.max(axis=0))
         flat = abs(direction[0]) >= abs(direction[1])
         inwards = np.array([np.sign(direction[0]), 0.0] if flat else [0.0, np.sign(direction[1])])
         across = np.abs(inwards[::-1])

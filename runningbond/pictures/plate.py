@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from .captions import show_extent, to_png
 from .deformed_shape import DeformedShape, common_extent
 from .flat import line_width, mechanism_key, paint_mechanism
-from .style import STATE_COLOURS
 
 WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
 TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
@@ -46,11 +45,7 @@ def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> 
             show_extent(axes, extent)
             paint_mechanism(axes, shape, line_width(shape.scene, extent, (width, ratio * width)))
             _write(axes, 0.5, -0.02, caption, ha="center", va="top", fontsize=6.3)
-    shapes = [shape for row in rows for shape in row.shapes]
-    states = [state for state in STATE_COLOURS if any(state in shape.states for shape in shapes)]
-    hinges = any(len(shape.hinges) for shape in shapes)
-    crushes = any(len(shape.crosses) for shape in shapes)
-    handles = mechanism_key(states, hinges=hinges, crushes=crushes)
+    handles = mechanism_key([shape for row in rows for shape in row.shapes])
     looks = {"ncols": len(handles), "frameon": False, "fontsize": 7, "handlelength": 1.6}
     figure.legend(handles=handles, loc="outside lower center", **looks)
     return to_png(figure, DPI)

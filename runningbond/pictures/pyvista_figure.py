@@ -16,6 +16,7 @@ from .captions import (
     Caption,
     colour_key,
     figure_with_room,
+    held_key,
     is_force,
     load_symbol,
     mechanism_caption,
@@ -51,9 +52,10 @@ def frame_figure(
     film = film or (shape,)
     unit = " N" if is_force(shape.scene) else ""
     load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}{unit}"
+    load += "" if shape.time is None else f", t = {shape.time:.3f} s"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
     states = [state for state in STATE_COLOURS if any(state in one.drawn_state for one in film)]
-    key = colour_key(states, shape.colouring, crushes=any(len(one.crosses) for one in film))
+    key = [*colour_key(states, shape.colouring, crushes=any(len(one.crosses) for one in film)), *held_key(shape.scene)]
     return _figure(shape, painter, Caption(wall_title(outcome.scene), load, [note], key), film)
 
 

@@ -8,11 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
+from runningbond.scene import Indices
 
 from .captions import to_png, to_svg
-from .deformed_shape import DeformedShape, undeformed_shape, visible_scale
+from .deformed_shape import DeformedShape, series_scale, undeformed_shape
 from .flat import figure_of
 from .mechanism import has_mechanism, mechanism_shape
 from .pyvista_figure import frame_figure, mechanism_figure
@@ -25,6 +28,12 @@ from .vtk_safety import VtkError, import_pyvista
 FILM_DPI = 150
 FRAME_TIME, LAST_FRAME_TIME = 150, 2000
 """Milliseconds that a frame of a film is shown, and its last one."""
+
+EXACT_COLOURS = 160
+"""Colours of a film that are as they were drawn; shades between them share the other ones of a GIF."""
+
+PACKED = np.array([256**2, 256, 1])
+"""What makes one number of a colour's red, green and blue."""
 
 VECTOR = {".svg": to_svg, ".png": to_png}
 """Writers of flat drawings, by the ending of their files."""
@@ -77,7 +86,8 @@ def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list
         write_atomically(folder / "last-moment.png", to_png(frame_figure(last, outcome, painter)))
         written.append(folder / "last-moment.png")
     if len(shapes) > 1:
-        scale = visible_scale(last.scene, np.concatenate([shape.displacement for shape in shapes]))
+        farthest = max(float(np.hypot(*shape.displacement.T).max()) for shape in shapes)
+        scale = series_scale(last.scene.size, farthest)
         shapes = [replace(shape, scale=scale) for shape in shapes]
         figures = (frame_figure(shape, outcome, painter, tuple(shapes)) for shape in shapes)
         write_atomically(folder / "film.gif", _film(to_png(figure, FILM_DPI) for figure in figures))
@@ -112,14 +122,31 @@ def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
 
 
 def _film(contents: Iterable[bytes]) -> bytes:
-    """PNG files of one size as an animated GIF, whose colours are common to all."""
+    """PNG files of one size as an animated GIF, whose colours are common to all.
+
+    What is drawn in one colour keeps it, however small: colours that are seen most are in the palette as they are.
+    """
     from PIL import Image
 
-    images = [Image.open(io.BytesIO(content)).convert("RGB") for content in contents]
-    every_third = np.concatenate([np.asarray(image)[::3, ::3] for image in images])
-    palette = Image.fromarray(every_third).quantize(128, dither=Image.Dither.NONE)
-    frames = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
+    images = [np.asarray(Image.open(io.BytesIO(content)).convert("RGB")) @ PACKED for content in contents]
+    colours, count = np.unique(np.concatenate([image[::3, ::3].ravel() for image in images]), return_counts=True)
+    often, rare = np.split(_unpacked(colours[np.argsort(-count, kind="stable")]), [EXACT_COLOURS])
+    palette = often.tolist()
+    if len(rare):
+        shades = Image.fromarray(rare[None]).quantize(256 - len(often)).getpalette() or []
+        palette += np.reshape(shades, (-1, 3)).tolist()
+    nearest, frames = cKDTree(palette), []
+    for image in images:
+        seen, which = np.unique(image, return_inverse=True)
+        frame = Image.fromarray(nearest.query(_unpacked(seen))[1].astype(np.uint8)[which].reshape(image.shape))
+        frame.putpalette(np.ravel(palette).tolist())
+        frames.append(frame)
     times = [FRAME_TIME] * (len(frames) - 1) + [LAST_FRAME_TIME]
     buffer = io.BytesIO()
     frames[0].save(buffer, format="GIF", save_all=True, append_images=frames[1:], duration=times, loop=0)
     return buffer.getvalue()
+
+
+def _unpacked(colours: Indices) -> NDArray[np.uint8]:
+    """Red, green and blue of numbers that `PACKED` made of them, ``(n, 3)``."""
+    return (colours[:, None] // PACKED % 256).astype(np.uint8)

@@ -1,5 +1,6 @@
 """The response of a wall to a motion of its ground as a chart: ground, drift, base shear and energies over time."""
 
+import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,6 +12,9 @@ from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+LETTERS = 112
+"""Letters in a line of the title."""
 
 SPENT = dict(zip(("kinetic", "stored", "friction", "damped"), (*CHART_COLOURS[:3], "0.9"), strict=True))
 """What energy becomes, and its colour."""
@@ -24,7 +28,7 @@ def response_figure(response: Response) -> "Figure":
     ground, drift, shear, energy = figure.subplots(4, 1, sharex=True, height_ratios=(1, 1.5, 1, 1.7))
     time = response.time
     lines = (
-        (ground, response.ground[:, 0], "ground [m/s²]"),
+        (ground, response.ground[:, 0], "ground's\nacceleration [m/s²]"),
         (drift, response.drift, "drift [–]"),
         (shear, response.reaction[:, 0] / 1e3, "base shear [kN]"),
     )
@@ -44,7 +48,9 @@ def response_figure(response: Response) -> "Figure":
         bare(axes)
     fallen = np.flatnonzero(response.fallen)
     if len(fallen):
-        drift.axvline(time[fallen[0]], color=CHART_COLOURS[3], lw=0.9, ls="--")
-    title = f"{response.scene}: λ = {response.scale:g}, {response.message.split(';')[0]}"
+        drift.axvline(time[fallen[0]], color=CHART_COLOURS[3], lw=0.9, ls="--", label="first block falls")
+        drift.legend(frameon=False, fontsize=SMALL_TYPE)
+    verdict = textwrap.wrap(f"λ = {response.scale:g}: {response.message.split(';')[0]}", LETTERS)
+    title = "\n".join([*textwrap.wrap(response.scene, LETTERS), *verdict])
     figure.suptitle(title, fontsize=TYPE, parse_math=False)
     return figure

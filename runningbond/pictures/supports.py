@@ -49,23 +49,26 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
 def _draw_motion(sketch: Sketch, shape: DeformedShape, settlement: Settlement, moving: Mask) -> None:
     """Where supports move to, larger than they do, and arrows with their displacement and their rotation.
 
-    Where supports are drawn moved, the arrows alone.
+    Where supports are drawn moved, the arrows alone. Of a path it is the farthest end, and how many moves it has.
     """
     scene, a = shape.scene, sketch.a
     low, high = scene.blocks.extent(scene.wall)
     numbers = np.flatnonzero(moving)
+    farthest = max(settlement.path, key=abs)
+    moves = int(np.count_nonzero(np.diff([0.0, *settlement.path])))
+    path = f"\n{moves} moves" if moves > 1 else ""
     bottoms, tops = (corner[numbers] for corner in scene.blocks.boxes)
     level = np.where(scene.wall[numbers], bottoms[:, 1], tops[:, 1])
     ends = np.clip([bottoms[:, 0], tops[:, 0]], low[0] - a, high[0] + a).T
     surface = np.stack([ends, np.repeat(level[:, None], 2, axis=1)], axis=2)
-    moved = carried(scene.blocks, np.repeat(numbers, 2), surface.reshape(-1, 2), settlement.motion(scene))
+    moved = carried(scene.blocks, np.repeat(numbers, 2), surface.reshape(-1, 2), farthest * settlement.motion(scene))
     visible = 1.1 * a / np.hypot(*moved.T).max() * moved.reshape(-1, 2, 2)
     at = np.array([(ends.min() + ends.max()) / 2, level.min() - 0.9 * a])
     drawn = shape.drawn_displacement(numbers[:1], at)
     for line in surface + visible if not drawn.any() else []:
         sketch.line("motion", line, color=MOTION, lw=1.0, ls=(0, (3, 1.5)))
     at = at + drawn
-    by = np.array(settlement.by)
+    by = farthest * np.array(settlement.by)
     if by.any():
         direction = by / np.hypot(*by)
         depth = abs(direction[1])
@@ -73,14 +76,14 @@ def _draw_motion(sketch: Sketch, shape: DeformedShape, settlement: Settlement, m
         sketch.arrow("motion", [start, start + 2 * a * direction], MOTION)
         tip = start + (1.2 if depth > 0.5 else 2.0) * a * direction
         sides = [(1.0, 0.0), (-1.0, 0.0)] if depth > 0.5 else [(float(np.sign(by[0])), 0.0), (0.0, -1.0)]
-        size = millimetres(float(np.hypot(*by)))
+        size = millimetres(float(np.hypot(*by))) + path
         sketch.label(size, [Spot(tip, side) for side in sides], MOTION)
         at = at + [-4 * a, 0]
-    if angle := settlement.rotation_angle:
+    if angle := farthest * settlement.rotation_angle:
         at = at - [0, 1.2 * a]
         sketch.turn("motion", at, 0.9 * a, MOTION, clockwise=angle < 0)
         spots = [Spot(at + 0.9 * a * np.array(side), side) for side in ((1.0, 0.0), (-1.0, 0.0))]
-        sketch.label(f"{minus(abs(angle))}°", spots, MOTION)
+        sketch.label(f"{minus(abs(angle))}°{'' if by.any() else path}", spots, MOTION)
 
 
 def _draw_pin(sketch: Sketch, tip: Array, *, roller: bool) -> None:

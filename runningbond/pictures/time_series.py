@@ -11,8 +11,9 @@ import numpy as np
 
 from runningbond.results.store import StoreError, write_atomically
 
+from .deformed_shape import series_scale
 from .frame import Discretisation, Frame
-from .style import AT_REST, CRUSHED, DRAWN, EDGE, FASTEST, OUTLINE, STATE_COLOURS, STATE_NAMES
+from .style import AT_REST, CRUSHED, EDGE, FASTEST, OUTLINE, STATE_COLOURS, STATE_NAMES
 from .vtk_grids import DISPLACEMENT, Grid, GridBuilder
 from .vtk_safety import import_pyvista, vtk_errors_raised
 
@@ -76,7 +77,7 @@ class TimeSeries:
         """Write the macro with which ParaView opens the series, enlarged as pictures of its largest motion are."""
         from matplotlib.colors import to_rgb
 
-        scale = DRAWN * self._size / self._farthest if self._farthest else 1.0
+        scale = series_scale(self._size, self._farthest)
         states = {
             str(int(state)): (name, to_rgb(STATE_COLOURS.get(state, CRUSHED))) for state, name in STATE_NAMES.items()
         }

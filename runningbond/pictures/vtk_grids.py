@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from runningbond.results.mechanism import carried, turned
 from runningbond.scene import Array, Blocks, Indices, Scene
 
-from .deformed_shape import DeformedShape, course_numbers, crushed_ends, outer_edges, visible_scale
+from .deformed_shape import DeformedShape, course_numbers, crushed_ends, outer_edges, series_scale
 from .frame import Discretisation, Frame
 from .joint_state import joint_states
 from .vtk_safety import import_pyvista
@@ -23,6 +23,9 @@ Grid: TypeAlias = Any
 
 DISPLACEMENT = "displacement [m]"
 """Array of both grids by whose vectors they are warped."""
+
+SECONDS = "time [s]"
+"""Value of both grids of a wall whose ground moves."""
 
 GROUND = 0.15
 """How far the ground is shown around a wall, in sizes of it."""
@@ -148,9 +151,10 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
         np.asarray(joints.point_data[DISPLACEMENT])[corners, :2],
         np.asarray(joints.cell_data["state"])[quads],
         float(blocks.field_data["multiplier"][0]),
-        visible_scale(scene, displacement),
+        series_scale(scene.size, float(np.hypot(*displacement.T).max())),
         motion=_motion_of_supports(scene, blocks) if scene.settlement else np.zeros((0, 3)),
         crushed=crushed_ends(np.asarray(joints.point_data["state"])[corners[:, :2]]),
+        time=float(blocks.field_data[SECONDS][0]) if SECONDS in blocks.field_data else None,
     )
 
 
@@ -198,7 +202,7 @@ def _tensors(stress: Array) -> dict[str, Array]:
 
 def _moment(frame: Frame) -> dict[str, ArrayLike]:
     """The load of a frame and, of a ground that moves, its time."""
-    moment = {"multiplier": frame.multiplier} | ({} if frame.time is None else {"time [s]": frame.time})
+    moment = {"multiplier": frame.multiplier} | ({} if frame.time is None else {SECONDS: frame.time})
     return {name: [value] for name, value in moment.items()}
 
 

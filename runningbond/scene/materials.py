@@ -206,6 +206,11 @@ class JointMaterial:
             raise SceneError("joint.closure.stiffest", what, self.closure.stiffest)
 
     @property
+    def softens(self) -> bool:
+        """Whether it loses with its opening and slip what it can bear beyond friction."""
+        return self.fracture_energy_1 is not None and (self.tension > 0.0 or self.cohesion > 0.0)
+
+    @property
     def tension(self) -> float:
         """Tensile strength [Pa]: the one given, or the apex of the cone."""
         if self.tensile_strength is not None:

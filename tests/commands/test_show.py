@@ -57,7 +57,7 @@ def test_materials_are_counted_and_weighed_each_with_its_joints() -> None:
     assert told["  of oak"] == "1 block of 700 kg/m³, 105 kg, 1.03 kN"
     assert told["  of joint"] == "1 bed, 0 head: tan φ = 0.6"
     assert told["  of mortar"] == "1 bed, 0 head: tan φ = 0.75, c = 0.1 MPa"
-    assert told["contact points"].startswith("4, two to a joint")
+    assert told["contact points"].startswith("4, 2 to a joint")
     assert (told["assign[0]"], told["assign[1]"]) == ("1 block of oak", "1 joint of mortar")
 
 

@@ -163,7 +163,13 @@ def test_mechanism_and_curve_are_drawn_into_axes() -> None:
     assert result.plot(axes=mechanism) is mechanism
     assert mechanism.has_data()
     result.plot("curve", curve)
-    assert np.array_equal(curve.lines[0].get_xdata(), result.outcome.curve[:, 0])
+    assert curve.get_xlabel().endswith("[mm]")
+    at_rest = next(line for line in curve.lines if line.get_label() == "at rest")
+    drawn = np.asarray(at_rest.get_xdata())
+    assert np.array_equal(drawn, 1e3 * result.outcome.curve[: len(drawn), 0])
+    assert len(drawn) > 2
+    alone = result.plot()
+    assert alone.get_position().y0 > 0.1  # with room for its words below
     with pytest.raises(rb.SceneError, match="what = 'curves': must be mechanism or curve"):
         result.plot("curves")  # type: ignore[arg-type]
 

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import linprog
 
 from homog import StrengthDomain, crack_slope, elastic_moduli, homog, lateral_multiplier
+from runningbond.limit import limit
 from runningbond.scene import Bond, JointMaterial, SceneError
 from tests.walls import courses, panel
 
@@ -136,3 +138,36 @@ def test_model_says_which_assumption_a_scene_breaks(changes: dict[str, object], 
 def test_model_refuses_what_is_no_running_bond(pattern: list[list[float]]) -> None:
     with pytest.raises(SceneError, match="running bond|rectangular"):
         homog(courses(pattern))
+
+
+def admits(slope: float, m: float, mu: float) -> bool:
+    """Whether blocks can follow a crack of a slope that opens across itself: one unknown, the shear of the heads."""
+    # Strain rates over cos² ψ, lengths over b / 2: heads open by slope² and slide by y, beds on either side alike.
+    heads = [[mu, slope**2], [-mu, slope**2]]
+    beds = [[-side + q * mu * -m, m - q * mu * (side * slope**2 + 2 * m * slope)] for side in (1, -1) for q in (1, -1)]
+    rows, right = np.split(np.array(heads + beds), 2, axis=1)
+    return bool(linprog([0.0], A_ub=rows, b_ub=right.ravel(), bounds=[(None, None)]).status == 0)
+
+
+@settings(max_examples=60, deadline=None)
+@given(mu=st.floats(0.1, 3.0), m=st.floats(0.05, 4.0))
+def test_the_crack_slope_is_the_steepest_that_blocks_can_follow(mu: float, m: float) -> None:
+    """A linear program of the compatible strain rates, below and above; above tan φ = 1 heads forbid m / tan φ."""
+    slope = crack_slope(2.0, m, mu)
+    assert admits(0.999 * slope, m, mu)
+    assert not any(admits(factor * slope, m, mu) for factor in (1.001, 1.1, 2.0, 5.0, 20.0))
+
+
+@pytest.mark.parametrize("friction", [1.2, 1.5, 2.0])
+def test_walls_of_ever_finer_blocks_come_to_bear_what_the_continuum_does(friction: float) -> None:
+    """Blocks of 4 : 1 that dilate: half as large, they are at two thirds of the distance or nearer."""
+    apart = []
+    for count in (8, 16):
+        width = 1.6 / count
+        size = {"wall__block_width": width, "wall__block_height": width / 4}
+        scene = panel(**size, wall__length=1.6, wall__height=0.8, joint__friction=friction)
+        continuum, blocks = homog(scene).multiplier, limit(scene).multiplier
+        assert continuum is not None
+        assert blocks is not None
+        apart.append(blocks / continuum - 1)
+    assert 0 < apart[1] < min(0.07, 0.67 * apart[0])

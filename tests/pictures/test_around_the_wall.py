@@ -255,7 +255,7 @@ def test_an_own_load_on_mass_and_moments_is_drawn() -> None:
 def test_a_motion_of_the_ground_is_drawn_as_its_largest_inertia() -> None:
     pulse = {"pulse": {"kind": "half-sine", "amplitude": 0.4, "period": 1.0}, "quantity": "g", "scale": 0.5}
     tables = wall(1.0, 0.5) | {"load": {"gravity": 9.81, "history": pulse}}
-    assert labels(figure_of(scene_from_dict(tables))) == ["λ · 0.2 g at the peak"]
+    assert labels(figure_of(scene_from_dict(tables))) == ["λ · 0.2 g\ninertia at the peak"]
 
 
 def test_blocks_have_the_colour_of_their_material(drawn: Any) -> None:

@@ -89,7 +89,7 @@ def test_a_contact_bears_what_it_bore_when_another_side_takes_over(
 def test_a_column_that_only_sways_stands() -> None:
     """Springs without friction calm down as slowly as their viscosity has it."""
     glued = {"cohesion": 1e6, "fracture_energy_1": 100.0, "fracture_energy_2": 500.0}
-    soft = {"normal_stiffness": 1e7, "shear_stiffness": 6e6}
+    soft = {"normal_stiffness": 2e7, "shear_stiffness": 1.2e7}
     scene = column([[1]] * 5, **glued, **soft)
     rest = resting(replace(scene, load=Load(live=(History(*pulse("half-sine", 3.0, 0.3)),))))
     response = follow(rest, 1.0)
