@@ -421,6 +421,8 @@ class Result:
             "multiplier outside its bracket": max(lower - here, here - upper, 0.0),
             "width of the bracket": (upper - lower) * MOST / widest if self.dilatant else 0.0,
         }
+        if not self.dilatant:  # the load that is certified is an end of the interval
+            found["nearer end of the interval"] = abs((upper if self.settles else lower) - self.record["multiplier"])
         if self.settles:
             moving = np.abs(self.support).max(axis=1) > 0
             work = float((self.inner * self.support)[moving].sum())

@@ -20,8 +20,10 @@ def _true_or_false(key: str, value: object) -> None:
 
 
 def _modes(key: str, value: object) -> None:
-    if value != "all":
-        whole(key, value, least=3)
+    from fem_interface.modes import MOST_MODES
+
+    if value != "all" and value != 3 and value not in range(6, MOST_MODES + 1):
+        raise SceneError(key, f'must be 3, a number from 6 to {MOST_MODES}, or "all"', value)
 
 
 def _rule(key: str, value: object) -> None:

@@ -24,7 +24,7 @@ MACRO = "open_run.py"
 """Macro with which ParaView opens a series as pictures show it."""
 
 MAX_FRAMES = 40
-"""Frames that a series keeps; when there are more, every other one is deleted."""
+"""Frames that a series keeps; of more, those are deleted that lie nearest to others."""
 
 
 class TimeSeries:
@@ -64,14 +64,26 @@ class TimeSeries:
         moved = np.asarray(grids["blocks"].point_data[DISPLACEMENT])
         self._farthest = max(self._farthest, float(np.hypot(*moved.T[:2]).max()))
         self._next += 1
-        dropped = list(self._frames)[1:-1:2] if len(self._frames) > MAX_FRAMES else []
-        self._frames = {number: stamp for number, stamp in self._frames.items() if number not in dropped}
+        dropped = [self._nearest()] if len(self._frames) > MAX_FRAMES else []
+        for number in dropped:
+            del self._frames[number]
         times = times_shown(list(self._frames.values()))
         for kind in KINDS:
             files = [(time, self._file(kind, number)) for time, number in zip(times, self._frames, strict=True)]
             write_atomically(self._folder / f"{kind}.pvd", _pvd(files, self._folder))
             for number in dropped:
                 self._file(kind, number).unlink(missing_ok=True)  # of another run into the same folder
+
+    def _nearest(self) -> int:
+        """Number of the frame that is missed least: between the two nearest, but not the one of the largest load."""
+        numbers = list(self._frames)
+        largest = max(numbers, key=lambda number: self._frames[number][1])
+        between = {
+            number: after - before
+            for before, number, after in zip(numbers, numbers[1:], numbers[2:], strict=False)
+            if number != largest
+        }
+        return min(between, key=between.__getitem__)
 
     def write_macro(self) -> None:
         """Write the macro with which ParaView opens the series, enlarged as pictures of its largest motion are."""

@@ -17,6 +17,10 @@ LEAST_COMPONENT = 1e-6
 """Least component of a force that is not 0, in the other one: what is smaller is lost in a program's tolerance."""
 
 
+ROUNDING = 1e-12
+"""Component, in the other one, that is what a computed sine or cosine leaves of zero."""
+
+
 class Action:
     """A load. `forces` is what every kind has to say; the rest follows from it unless a kind knows better."""
 
@@ -72,6 +76,8 @@ class Action:
 def nonzero_vector(key: str, value: Any) -> tuple[float, float]:
     """A vector that is not zero, neither component of which is lost in the other."""
     pair = vector(key, value)
+    rounding = ROUNDING * max(map(abs, pair))
+    pair = pair[0] * (abs(pair[0]) > rounding), pair[1] * (abs(pair[1]) > rounding)
     if not any(pair):
         raise SceneError(key, "must not be zero", list(pair))
     smaller, larger = sorted(map(abs, pair))

@@ -271,3 +271,6 @@ def test_the_lowest_and_the_highest_certificate_are_stored_and_proved_by_the_che
     assert not check(tmp_path / "wrong")
     save_outcome(replace(outcome, far_motion=-outcome.far_motion), tmp_path / "backwards", scene=scene)
     assert not check(tmp_path / "backwards")
+    assert outcome.lower is not None
+    save_outcome(replace(outcome, lower=outcome.lower - 1e-3), tmp_path / "longer", scene=scene)
+    assert not check(tmp_path / "longer")

@@ -232,6 +232,19 @@ def test_ctrl_c_while_the_suite_is_loading_is_no_traceback() -> None:
     assert process.returncode == -signal.SIGINT
 
 
+def test_ctrl_c_after_the_last_case_does_not_wait_for_idle_workers(tmp_path: Path) -> None:
+    """While tables and charts are made: workers without work stay for minutes."""
+    line = [sys.executable, "-m", "runningbond", "compare", "wall-w1", "panel-04", "--models", "limit", "--jobs", "2"]
+    where: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "cwd": tmp_path}
+    process = subprocess.Popen([*line, "--out", "kept"], **where)
+    assert process.stderr is not None
+    while "2 of 2" not in process.stderr.readline():
+        pass
+    process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=60)
+    assert process.returncode == 130, told
+
+
 @pytest.mark.parametrize("seconds", [2.0, 2.2, 2.4])
 def test_ctrl_c_within_linear_programs_ends_with_the_exit_code_of_interruptions(seconds: float, tmp_path: Path) -> None:
     """HiGHS leaves threads behind that abort a process which ends as usual."""

@@ -255,10 +255,23 @@ def test_a_series_stays_short_and_keeps_its_ends(tmp_path: Path) -> None:
     loads = [float(arrays(read_grid(path).GetFieldData())["multiplier"][0]) for path in frame_files(tmp_path, "blocks")]
     assert (loads[0], loads[-1]) == (0, 3 * MAX_FRAMES - 1)
     assert loads == sorted(loads)
+    assert np.ptp(np.diff(loads)) < np.diff(loads).max()
     on_disk = {path.name for path in (tmp_path / "frames").iterdir()}
     assert on_disk == {path.name for kind in ("blocks", "joints") for path in frame_files(tmp_path, kind)}
     times = [float(entry.attrib["timestep"]) for entry in ET.parse(tmp_path / "blocks.pvd").iter("DataSet")]
     assert times == sorted(set(times))
+
+
+def test_a_long_series_keeps_the_way_up_and_the_largest_load(tmp_path: Path) -> None:
+    """Fifteen states up to the peak, a hundred past it: as many of a hundred as of fifteen, by their numbers."""
+    scene = courses([[1]])
+    series, frame = TimeSeries(Discretisation.of_rigid_blocks(scene), tmp_path), moved(scene)
+    curve = [*np.linspace(0, 1, 16), *np.linspace(0.99, 0.5, 100)]
+    for load in curve:
+        series.add(replace(frame, multiplier=load))
+    loads = [float(arrays(read_grid(path).GetFieldData())["multiplier"][0]) for path in frame_files(tmp_path, "blocks")]
+    assert max(loads) == 1.0
+    assert loads.index(1.0) >= 4
 
 
 def test_names_and_kinds_do_not_change_over_time(tmp_path: Path) -> None:

@@ -47,7 +47,7 @@ SQUARE = [(0, 0, 200, 0), (200, 0, 200, 100), (200, 100, 0, 100), (0, 100, 0, 0)
 @pytest.mark.parametrize(
     ("draw", "said"),
     [
-        (texts, "holds 1 closed outlines; it needs the ground and at least one block"),
+        (texts, "holds 1 closed outlines (left out: 1 TEXT on layer 0); it needs the ground and at least one block"),
         (closed(BRICKS, "soil"), "has all its outlines on layer soil, which is the ground's"),
         (
             polyline((0, 0), (200, 0), (200, 100), close=False),

@@ -1,5 +1,6 @@
 """Loads: several of them, of a user's own, and what a file and Python may say of them."""
 
+import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -112,6 +113,10 @@ def test_a_wall_pushed_to_the_left_is_the_mirror_image_of_one_pushed_to_the_righ
 
 def test_a_direction_that_is_no_unit_vector_is_one_in_python_too() -> None:
     assert Lateral((1.0, 1.0)).direction == pytest.approx((0.5**0.5, 0.5**0.5))
+
+
+def test_a_direction_may_be_a_computed_one() -> None:
+    assert Lateral((math.cos(math.pi / 2), 1.0)).direction == (0.0, 1.0)
 
 
 def test_gravity_may_be_a_vector() -> None:

@@ -82,7 +82,8 @@ def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
     outlines = _cleaned([scale * outline for outline in [*blocks, *grounds]], names)
     blocks, grounds = outlines[: len(blocks)], outlines[len(blocks) :]
     if path.suffix.lower() != ".json":
-        blocks, layers, grounds, more = _without_ground(blocks, layers, str(path))
+        passed_over = f" (left out: {_listed(space.left_out)})" if space.left_out else ""
+        blocks, layers, grounds, more = _without_ground(blocks, layers, str(path), passed_over)
         notes += more
     if not blocks:
         raise SceneError(KEY, "is an assembly of supports; it needs at least one block", str(path))
@@ -147,11 +148,11 @@ def _units_note(space: ModelSpace, units: str) -> list[str]:
 
 
 def _without_ground(
-    outlines: list[Array], layers: list[str], path: str
+    outlines: list[Array], layers: list[str], path: str, passed_over: str
 ) -> tuple[list[Array], list[str], list[Array], list[str]]:
     """Blocks with their layers, pieces of the ground, and a note where the ground had to be guessed."""
     if len(outlines) < 2:
-        what = f"holds {len(outlines)} closed outlines; it needs the ground and at least one block"
+        what = f"holds {len(outlines)} closed outlines{passed_over}; it needs the ground and at least one block"
         raise SceneError(KEY, what, path)
     ground = [k for k, layer in enumerate(layers) if layer.lower() in GROUND_LAYERS]
     notes = []
