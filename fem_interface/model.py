@@ -29,6 +29,7 @@ from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import CALMING, MOVING
 from runningbond.joints import JointPoints, Rule, listed_points, wall_points
 from runningbond.joints.wall_law import with_impacts
+from runningbond.joints.wall_points import spread_rule
 from runningbond.limit import elastic_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
@@ -120,6 +121,8 @@ def fem(
             blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
             wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
         else:
+            if rule is None and energies != "given":
+                rule = spread_rule(cells if points == "elements" else 1)
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
             run = run_of_longer_steps(wall, system) if mass_scaling else Run(system)

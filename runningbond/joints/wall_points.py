@@ -34,8 +34,12 @@ def wall_rule(scene: Scene, parts: int = 1) -> Rule:
     Of joints in several parts each part has a rule, and all of them together as many points as a whole joint.
     """
     spread = any(each.compressive_strength or each.closure or each.softens for each in scene.joint_materials)
-    between = BETWEEN if parts == 1 else max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts))
-    return lobatto(between if spread else 2)
+    return spread_rule(parts) if spread else lobatto()
+
+
+def spread_rule(parts: int = 1) -> Rule:
+    """Points of `wall_rule` where joints soften, crush or close."""
+    return lobatto(BETWEEN if parts == 1 else max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts)))
 
 
 def listed_points(scene: Scene, count: int) -> JointPoints | None:

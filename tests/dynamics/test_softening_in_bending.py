@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from dem.dynamic import dem_dynamic
+from fem_interface.fracture import fractured
 from fem_interface.model import fem
 from runningbond.limit import limit
+from runningbond.scene import Mortar
 from tests.walls import courses
 
 WIDTH, HEIGHT, THICKNESS, DENSITY, GRAVITY = 0.5, 1.0, 0.4, 2000.0, 9.81
@@ -54,3 +56,16 @@ def test_mortar_tears_from_its_edge_on(model: Any, off: float, energy: float) ->
     plastic = limit(scene).multiplier
     assert plastic is not None
     assert plastic > 1.6 * exact
+
+
+def test_energies_of_a_formula_are_spent_along_the_joint_too() -> None:
+    """As the same energies do that the scene gives."""
+    mortar = Mortar(thickness=0.01, young=1e8, poisson=0.2)
+    scene = stone(10.0).with_joint(elasticity=mortar, cohesion=4e4, tensile_strength=1e4)
+    materials, _ = fractured(scene, "corrected")
+    energies = {f"fracture_energy_{mode}": getattr(materials[0], f"fracture_energy_{mode}") for mode in (1, 2)}
+    given = fem(scene.with_joint(**energies))
+    taken = fem(scene.with_joint(fracture_energy_1=None, fracture_energy_2=None), energies="corrected")
+    assert (taken.lower, taken.upper) == (given.lower, given.upper)
+    assert given.lower is not None
+    assert given.lower < 0.9 * (limit(scene).multiplier or 0.0)

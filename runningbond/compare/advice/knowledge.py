@@ -60,12 +60,9 @@ class Knowledge:
 
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
-        self.softens = any(  # joints have a strength to lose, and fracture energies by which they lose it
-            material.cohesion > 0 and (material.fracture_energy_1, material.fracture_energy_2) != (None, None)
-            for material in self.scene.joint_materials
-        )
         self.cracks = self.scene.inner_joint is not None  # blocks may crack
         materials = self.scene.joint_materials
+        self.softens = any(each.softens for each in materials)
         self.crushes = any(each.compressive_strength is not None for each in materials)
         self.closes = any(each.closure is not None for each in materials)
         _refuse(self.scene)
