@@ -83,7 +83,7 @@ def _block_of_piece(wall: ModalWall) -> Indices:
     """Number of the block that each piece is part of, ``(np,)``: of all that inner joints hold together."""
     count, points = len(wall.scene.blocks), wall.elements.points
     joined = points.block[wall.scene.joints.inner[points.joint]]
-    return components(*joined.T, count)
+    return components(joined, count)
 
 
 def _clusters(wall: ModalWall, block: Indices, part: Mask, more: float) -> Clusters:

@@ -147,4 +147,4 @@ def _lines(scene: Scene, axis: int) -> Indices:
     np.add.at(covered, last, -1)
     same = (np.diff(place[order], axis=0) == 0).all(axis=1)
     joined = np.flatnonzero((np.cumsum(covered)[:-2] > 0) | same)
-    return components(order[joined], order[joined + 1], len(order))
+    return components(np.column_stack([order[joined], order[joined + 1]]), len(order))

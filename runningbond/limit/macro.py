@@ -60,7 +60,7 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
     pair = first * (n + 1) + second
     _, which, size = np.unique(pair, return_inverse=True, return_counts=True)
     holds = ((np.bincount(which, still) == size) & (size > 1))[which]
-    label = components(first[holds], second[holds], n + 1)
+    label = components(np.column_stack([first[holds], second[holds]]), n + 1)
     moving = label[:n] != label[n]
     _, macro = np.unique(label[:n][moving], return_inverse=True)
     motions = _motions(np.flatnonzero(moving), macro, place, system.scale)

@@ -210,7 +210,7 @@ def _draw_joints(axes: "Axes", faces: Array, state: JointState, colour: str, wid
 
     if not len(faces):
         return
-    gaps = PolyCollection(faces, facecolors=[tint(state)], edgecolors="none", zorder=3)
+    gaps = PolyCollection(list(faces), facecolors=[tint(state)], edgecolors="none", zorder=3)
     axes.add_collection(gaps, autolim=False)
     # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.
     middle = (faces[:, :2] + faces[:, :1:-1]) / 2

@@ -138,7 +138,8 @@ def _film(contents: Iterable[bytes]) -> bytes:
     nearest, frames = cKDTree(palette), []
     for image in images:
         seen, which = np.unique(image, return_inverse=True)
-        frame = Image.fromarray(nearest.query(_unpacked(seen))[1].astype(np.uint8)[which].reshape(image.shape))
+        number = np.asarray(nearest.query(_unpacked(seen))[1], dtype=np.uint8)
+        frame = Image.fromarray(number[which].reshape(image.shape))
         frame.putpalette(np.ravel(palette).tolist())
         frames.append(frame)
     times = [FRAME_TIME] * (len(frames) - 1) + [LAST_FRAME_TIME]
@@ -149,4 +150,4 @@ def _film(contents: Iterable[bytes]) -> bytes:
 
 def _unpacked(colours: Indices) -> NDArray[np.uint8]:
     """Red, green and blue of numbers that `PACKED` made of them, ``(n, 3)``."""
-    return (colours[:, None] // PACKED % 256).astype(np.uint8)
+    return np.asarray(colours[:, None] // PACKED % 256, dtype=np.uint8)

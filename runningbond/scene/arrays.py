@@ -21,7 +21,8 @@ def frozen(values: ArrayLike, dtype: type[Any] = np.float64) -> NDArray[Any]:
     return array
 
 
-def components(a: ArrayLike, b: ArrayLike, count: int) -> Indices:
-    """Number of the part ``(count,)`` that each of so many things is in, where those of `a` hang on `b` ``(n,)``."""
-    pairs = (np.ones(np.size(a)), (np.asarray(a), np.asarray(b)))
-    return np.asarray(connected_components(coo_array(pairs, shape=(count, count)), directed=False)[1], dtype=np.int64)
+def components(pairs: Indices, count: int) -> Indices:
+    """Number of the part ``(count,)`` that each of so many things is in, of which `pairs` ``(n, 2)`` hang together."""
+    a, b = pairs.T
+    graph = coo_array((np.ones(len(pairs)), (a, b)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)

@@ -503,7 +503,7 @@ def table_of(material: BlockMaterial | JointMaterial) -> str:
 
 def _refuse_floating_blocks(scene: Scene) -> None:
     """Every movable block hangs together with something that is held."""
-    component = components(*scene.joints.block.T, len(scene.blocks))
+    component = components(scene.joints.block, len(scene.blocks))
     held = np.union1d(np.flatnonzero(scene.fixed), scene.pins.block[scene.pins.direction.any(axis=1)])
     floating = ~np.isin(component, component[held])
     if floating.any():

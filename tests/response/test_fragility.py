@@ -56,7 +56,7 @@ def test_a_fragility_is_of_intensities_that_are_not_negative() -> None:
     assert "1 left out (`runs` says why)>" in repr(replace(found, left_out=1))
     for bad in (-1.0, np.array([0.1, np.nan]), "a"):
         with pytest.raises(rb.SceneError, match="intensity = .*: must be numbers of at least 0"):
-            found.probability(bad)
+            found.probability(bad)  # type: ignore[arg-type]
 
 
 def test_a_wall_without_a_record_has_no_fragility() -> None:

@@ -128,7 +128,7 @@ def _touches(blocks: Blocks, reach: float) -> tuple[_Touches, float]:
     inside = (blocks.owner[c] != blocks.owner[e]) & (place > 0) & (place < 1) & ~taken
     c, e, place, along = c[inside], e[inside], place[inside, None], along[inside]
     gaps = [start[corner] - start[other], start[c] - start[e] - place * along]
-    node = components(corner, other, len(start))
+    node = components(np.column_stack([corner, other]), len(start))
     rows = np.unique(np.column_stack([node[c], node[e], node[blocks.successor[e]]]), axis=0)
     rows = rows[(rows[:, :1] != rows[:, 1:]).all(axis=1)]
     return _Touches(node, *rows.T), float(np.hypot(*np.vstack(gaps).T).max(initial=0.0))

@@ -77,7 +77,7 @@ def _network(curves: Sequence[Array], tolerance: float) -> tuple[Array, Array]:
     """Edges ``(n, 2, 2)`` between all crossings and corners of curves, and the ends ``(m, 2)`` that meet nothing."""
     points = np.vstack(curves)
     pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
-    group = components(*pairs.T, len(points))
+    group = components(pairs, len(points))
     _, first = np.unique(group, return_index=True)
     corner = first[group]
     stop = np.cumsum([len(curve) for curve in curves])
