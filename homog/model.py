@@ -76,7 +76,7 @@ def homog(scene: Scene) -> Outcome:
 
 def _bond(scene: Scene) -> Bond:
     """Bond of a scene that keeps every assumption of the closed form; the others are refused."""
-    reason = "it needs blocks of one size in all courses" if scene.bond is None else _why_not(scene, scene.bond)
+    reason = "it needs a block width and height for all courses" if scene.bond is None else _why_not(scene, scene.bond)
     if scene.bond is None or reason:
         raise SceneError("model homog", f"has no closed form for this scene: {reason}")
     return scene.bond
