@@ -151,15 +151,12 @@ def mechanism_key(shapes: Sequence[DeformedShape]) -> list[Any]:
     from matplotlib.lines import Line2D
 
     circle = [Line2D([], [], ms=2.8, mew=0.6, label="hinge", **HINGE)] if any(len(x.hinges) for x in shapes) else []
-    splits = [Line2D([], [], color=SPLIT, lw=1.5, label="block splits")] if any(map(_has_splits, shapes)) else []
+    splits = [Line2D([], [], color=SPLIT, lw=1.5, label="block splits")]
+    splits = splits if any(split_blocks(shape).any() for shape in shapes) else []
     drawn = {JointState(state) for shape in shapes for state in shape.drawn_state[~split_blocks(shape)]}
     states = [state for state in STATE_COLOURS if state in drawn]
     crushes = any(len(shape.crosses) for shape in shapes)
     return [*circle, *splits, *colour_key(states, dashes=DASHES, crushes=crushes)]
-
-
-def _has_splits(shape: DeformedShape) -> bool:
-    return bool(split_blocks(shape).any())
 
 
 def line_width(scene: Scene, extent: Extent, size: tuple[float, float]) -> float:
