@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from runningbond.scene import Array, free_motions
+from runningbond.scene import Array, SceneError, free_motions
 
 from .eigenvectors import eigenvectors, symmetric_eigenvectors
 from .mirror_symmetry import facing
@@ -34,18 +34,18 @@ EQUAL = 1e-9
 """Relative difference of two ω² below which a mixture of their modes is one to rounding, which is less than `ALIKE`."""
 
 
-def degree_of(count: ModeCount) -> int:
+def degree_of(count: ModeCount, key: str = "modes") -> int:
     """Degree of the displacements of so many modes.
 
     Raises
     ------
-    ValueError
-        If there is no such number of modes.
+    SceneError
+        Under a key, if there is no such number of modes.
     """
     if count == "all":
         return 1
     if not isinstance(count, int) or (count != 3 and not 6 <= count <= MOST_MODES):
-        raise ValueError(f'modes = {count!r}: must be 3, a number from 6 to {MOST_MODES}, or "all"')
+        raise SceneError(key, f'must be 3, a number from 6 to {MOST_MODES}, or "all"', count)
     return 1 if count <= 6 else 3
 
 

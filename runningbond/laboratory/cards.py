@@ -82,7 +82,7 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
         if wall.is_cyclic:
             _envelope(axes, each.curve, wall.path, each.rung.model.colour)
     if wall.is_cyclic:
-        _envelope(axes, wall.curve, wall.path, MEASURED)
+        _envelope(axes, wall.curve, wall.path, MEASURED, "peaks of its cycles")
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="displacement at the actuator [mm]", ylabel="horizontal force [kN]")
     axes.set_title(f"{wall.name}" + ("" if wall.is_scored else ", shown, not scored"), fontsize=10)
@@ -90,11 +90,10 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
     bare(axes)
 
 
-def _envelope(axes: Axes, curve: Array, path: tuple[float, ...], colour: str) -> None:
+def _envelope(axes: Axes, curve: Array, path: tuple[float, ...], colour: str, label: str | None = None) -> None:
     """Peaks of the cycles, in the order of their displacements."""
     ends = sorted(zip(path, cycle_peaks(curve, path), strict=False))
-    said = "peaks of its cycles" if colour == MEASURED else None
-    axes.plot([1e3 * x for x, _ in ends], [y / 1e3 for _, y in ends], "o-", color=colour, lw=1.4, ms=3, label=said)
+    axes.plot([1e3 * x for x, _ in ends], [y / 1e3 for _, y in ends], "o-", color=colour, lw=1.4, ms=3, label=label)
 
 
 def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:

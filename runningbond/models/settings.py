@@ -19,11 +19,10 @@ def _true_or_false(key: str, value: object) -> None:
         raise SceneError(key, "must be True or False", value)
 
 
-def _modes(key: str, value: object) -> None:
-    from fem_interface.modes import MOST_MODES
+def _modes(key: str, value: Any) -> None:
+    from fem_interface.modes import degree_of
 
-    if value != "all" and value != 3 and value not in range(6, MOST_MODES + 1):
-        raise SceneError(key, f'must be 3, a number from 6 to {MOST_MODES}, or "all"', value)
+    degree_of(value, key)
 
 
 def _rule(key: str, value: object) -> None:

@@ -4,8 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from runningbond.scene import Array
 
 from .deformed_shape import DeformedShape, Extent
@@ -48,16 +46,14 @@ class Room:
 THRUST = "#7b3294"
 """Colour of the forces in joints."""
 
-NO_LINES: Array = np.zeros((0, 2, 2))
 
-
-def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False, thrust: Array = NO_LINES) -> Sketch:
+def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False, thrust: Array | None = None) -> Sketch:
     """Everything around a wall, where a point of the type takes so many metres.
 
     With it the numbers of blocks, and lines of thrust ``(n, 2, 2)`` [m], of which those at the base go beyond the wall.
     """
     sketch = Sketch(point, block_numbers(shape.scene, point) if numbers else [])
-    for line in thrust:
+    for line in () if thrust is None else thrust:
         sketch.line("thrust", line, color=THRUST, lw=0.8, zorder=4)
     draw_supports(sketch, shape)
     draw_beam(sketch, shape)
@@ -73,7 +69,7 @@ def room_for(
     size: tuple[float, float],
     *,
     numbers: bool = False,
-    thrust: Array = NO_LINES,
+    thrust: Array | None = None,
 ) -> Room:
     """Room for supports and loads around a wall in some shapes, in a drawing at most so wide and high [in].
 
@@ -93,7 +89,7 @@ def _room(
     size: tuple[float, float],
     share: float,
     numbers: bool,
-    thrust: Array,
+    thrust: Array | None,
 ) -> Room:
     """Room for what is around the wall, which takes the more metres the more is shown."""
     base = float(shapes[0].scene.blocks.extent(shapes[0].scene.wall)[0][1])
@@ -121,7 +117,7 @@ def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:
 
 
 def annotate(
-    axes: "Axes", shape: DeformedShape, room: Room, *, numbers: bool = False, thrust: Array = NO_LINES
+    axes: "Axes", shape: DeformedShape, room: Room, *, numbers: bool = False, thrust: Array | None = None
 ) -> None:
     """Draw the supports of a wall, its ties, its loads and its lines of thrust into axes that have room for them."""
     sketch_around(shape, room.point, numbers=numbers, thrust=thrust).draw(axes, room.share)

@@ -91,7 +91,7 @@ class DeformedShape:
             moved,
             joint_states(state.reshape(len(faces), -1)),
             multiplier,
-            visible_scale(scene, displacement),
+            visible_scale(scene.size, farthest_motion(displacement)),
             motion=motion,
             crushed=crushed_ends(state),
         )
@@ -194,15 +194,19 @@ def common_extent(shapes: Sequence[DeformedShape]) -> Extent:
     return min(lefts), max(rights), min(bottoms), max(tops)
 
 
-def visible_scale(scene: Scene, displacement: Array) -> float:
-    """Factor that makes the largest displacement of corners ``(n, 2)`` [m] visible; 1 where nothing moves."""
-    farthest = float(np.hypot(*displacement.T).max())
-    return DRAWN * scene.size / farthest if farthest > 0 else 1.0
+def farthest_motion(displacement: Array) -> float:
+    """Largest of some displacements ``(n, 2)``."""
+    return float(np.hypot(*displacement.T).max())
+
+
+def visible_scale(size: float, farthest: float) -> float:
+    """Factor that makes the farthest motion [m] visible in a wall of a size [m]; 1 where nothing moves."""
+    return DRAWN * size / farthest if farthest > 0 else 1.0
 
 
 def series_scale(size: float, farthest: float) -> float:
-    """Factor that makes the farthest motion [m] visible in a wall of a size [m]; none is drawn smaller than it is."""
-    return max(1.0, DRAWN * size / farthest) if farthest > 0 else 1.0
+    """The same of a motion that has a size of its own: none is drawn smaller than it is."""
+    return max(1.0, visible_scale(size, farthest))
 
 
 def course_numbers(scene: Scene) -> Indices:

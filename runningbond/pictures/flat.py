@@ -12,7 +12,7 @@ import numpy as np
 from runningbond.results import Outcome
 from runningbond.scene import Array, Mask, Scene
 
-from .annotations import NO_LINES, THRUST, Room, annotate, axes_size, metres_of_point, room_for
+from .annotations import THRUST, Room, annotate, axes_size, metres_of_point, room_for
 from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mechanism_caption, show_extent
 from .deformed_shape import DeformedShape, Extent, outline, undeformed_shape
 from .joint_state import JointState
@@ -80,8 +80,7 @@ def figure_of(
     shape, caption, thrust = undeformed_shape(scene), wall_caption(scene), None
     if outcome is not None:
         shape, caption, thrust = _mechanism(scene, outcome)
-    lines, enlarged = NO_LINES if thrust is None else thrust, 1.0
-    room = room_for([shape], shape.extent, (WIDTH, TALLEST), numbers=numbers, thrust=lines)
+    room, enlarged = room_for([shape], shape.extent, (WIDTH, TALLEST), numbers=numbers, thrust=thrust), 1.0
     if numbers:
         smallest = min(one.label.size for one in block_numbers(scene, metres_of_point(room.extent, (WIDTH, TALLEST))))
         enlarged = float(np.clip(SMALLEST_NUMBER / smallest, 1.0, LARGEST_SHEET))
@@ -102,8 +101,7 @@ def _draw(
 ) -> None:
     """Draw a wall by its materials, or with its resultants the mechanism of one, into axes with room around it."""
     scene = shape.scene
-    forces = NO_LINES if thrust is None else thrust
-    room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers, thrust=forces)
+    room = room or room_for([shape], shape.extent, axes_size(axes), numbers=numbers, thrust=thrust)
     show_extent(axes, room.extent)
     width = line_width(scene, room.extent, axes_size(axes))
     if thrust is not None:
@@ -113,7 +111,7 @@ def _draw(
         for number in used_joint_materials(scene):
             lines, colour = scene.joints.ends[scene.material_of_joint == number], joint_colour(number)
             _draw_lines(axes, lines, colour, (1.0 if number else 0.6) * width, "solid")
-    annotate(axes, shape, room, numbers=numbers, thrust=forces)
+    annotate(axes, shape, room, numbers=numbers, thrust=thrust)
     caption.write(axes)
 
 

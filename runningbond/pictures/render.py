@@ -15,7 +15,7 @@ from runningbond.results.store import StoreError, load_outcome, load_scene, writ
 from runningbond.scene import Indices
 
 from .captions import to_png, to_svg
-from .deformed_shape import DeformedShape, series_scale, undeformed_shape
+from .deformed_shape import DeformedShape, farthest_motion, series_scale, undeformed_shape
 from .flat import figure_of
 from .mechanism import has_mechanism, mechanism_shape
 from .pyvista_figure import frame_figure, mechanism_figure
@@ -86,7 +86,7 @@ def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list
         write_atomically(folder / "last-moment.png", to_png(frame_figure(last, outcome, painter)))
         written.append(folder / "last-moment.png")
     if len(shapes) > 1:
-        farthest = max(float(np.hypot(*shape.displacement.T).max()) for shape in shapes)
+        farthest = max(farthest_motion(shape.displacement) for shape in shapes)
         scale = series_scale(last.scene.size, farthest)
         shapes = [replace(shape, scale=scale) for shape in shapes]
         figures = (frame_figure(shape, outcome, painter, tuple(shapes)) for shape in shapes)

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from runningbond.results.mechanism import carried, turned
 from runningbond.scene import Array, Blocks, Indices, Scene
 
-from .deformed_shape import DeformedShape, course_numbers, crushed_ends, outer_edges, series_scale
+from .deformed_shape import DeformedShape, course_numbers, crushed_ends, farthest_motion, outer_edges, series_scale
 from .frame import Discretisation, Frame
 from .joint_state import joint_states
 from .vtk_safety import import_pyvista
@@ -151,7 +151,7 @@ def shape_of_grids(scene: Scene, blocks: Grid, joints: Grid) -> DeformedShape:
         np.asarray(joints.point_data[DISPLACEMENT])[corners, :2],
         np.asarray(joints.cell_data["state"])[quads],
         float(blocks.field_data["multiplier"][0]),
-        series_scale(scene.size, float(np.hypot(*displacement.T).max())),
+        series_scale(scene.size, farthest_motion(displacement)),
         motion=_motion_of_supports(scene, blocks) if scene.settlement else np.zeros((0, 3)),
         crushed=crushed_ends(np.asarray(joints.point_data["state"])[corners[:, :2]]),
         time=float(blocks.field_data[SECONDS][0]) if SECONDS in blocks.field_data else None,

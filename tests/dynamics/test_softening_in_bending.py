@@ -58,6 +58,23 @@ def test_mortar_tears_from_its_edge_on(model: Any, off: float, energy: float) ->
     assert plastic > 1.6 * exact
 
 
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_brittle_mortar_bears_what_its_first_crack_does_to_an_eighth(model: Any) -> None:
+    """Lifted off its middle, hardly any energy: (f_t A + W) / (1 + 6 e / b), of which nine points make 11 % more."""
+    length, thickness, height, strength, eccentricity = 2.0, 0.4, 0.2, 1e4, 0.5
+    joint = {"friction": 0.6, "cohesion": 2e4, "tensile_strength": strength}
+    joint |= {"normal_stiffness": 1e10, "shear_stiffness": 4e9, "fracture_energy_1": 0.01, "fracture_energy_2": 0.05}
+    lift = {"kind": "point", "at": [length / 2 + eccentricity, height / 2], "force": [0, 1]}
+    block = {"density": DENSITY, "young": 1e15, "poisson": 0.2}
+    scene = courses([[1]], length, height, wall__thickness=thickness, joint=joint, block=block, load__live=lift)
+    weight = DENSITY * GRAVITY * length * height * thickness
+    exact = (strength * length * thickness + weight) / (1 + 6 * eccentricity / length)
+    outcome = model(scene)
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert 0.98 * exact < outcome.lower < outcome.upper < 1.125 * exact
+
+
 def test_energies_of_a_formula_are_spent_along_the_joint_too() -> None:
     """As the same energies do that the scene gives."""
     mortar = Mortar(thickness=0.01, young=1e8, poisson=0.2)
