@@ -24,8 +24,9 @@ NO_JUMP = 1e-7
 PENETRATION = 1e-6
 """Closing rate, relative to the mechanism's largest motion, that rules a mechanism out."""
 
-MANY = 3000
-"""Freedoms from which the loads that drive a mechanism are found by interior point and repair: HiGHS takes seconds."""
+MANY = 700
+"""Freedoms from which the loads that drive a mechanism are found by interior point and repair, which HiGHS takes longer
+for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,11 @@ class Certificate:
     motion: Array
     least: ForceSolution
     most: ForceSolution
+
+
+def least_multiplier(certificate: Certificate) -> float:
+    """The smallest multiplier at which a certificate proves collapse."""
+    return certificate.least.multiplier
 
 
 def driving_forces(system: Equilibrium, motion: Array, still: float = NO_JUMP) -> ForceSet | None:

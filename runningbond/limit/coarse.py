@@ -19,16 +19,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from runningbond.scene import Array, Mask
+from runningbond.scene import Array
 
-from .certificates import NO_JUMP, Certificate, certify, roughly_certified
-from .descent import Descent, jump_pattern
+from .certificates import Certificate, certify, least_multiplier, roughly_certified
+from .descent import jump_pattern
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+from .found import Observer, Search
 from .interior_point import near
-from .macro import Glued, glue, sides
+from .macro import Glued, freest
+from .neighbourhood import certificates_near, moving_points, neighbourhood, one_of
 from .programs import Programs
-from .search import WEIGHTS, Observer, Search, averaged, programs_allowed, search, short_sequence
+from .search import programs_allowed, search
+from .sequences import WEIGHTS, averaged
 
 POINTS = 1000
 """Joint points from which a wall is searched so first; smaller ones are searched themselves as soon."""
@@ -51,18 +54,11 @@ DRY, STARTS = 4, 40
 ALLOWED = 4
 """What a search may cost beside one over the wall itself: it mostly ends long before."""
 
-AROUND, SEQUENCES, NEARBY = 350, 8, 0.5
-"""Most freedoms of a neighbourhood of a certificate, sequences in it, and the scatter of the logarithm of the pressures
-that they start from, beside the certificate's."""
+AROUND, SEQUENCES = 350, 8
+"""Most freedoms of a neighbourhood of a certificate, and sequences in it."""
 
 IN_VAIN = 6
 """Neighbourhoods of a certificate in a row that hold nothing lower, after which it is left."""
-
-PLACES = 6
-"""Decimals of distances, in sizes of the wall, that are looked at: a wall that is drawn larger has the same."""
-
-POWER = 1.5
-"""Power of the freedoms as which a program costs."""
 
 WORTH = 1e-5
 """Change of the multiplier, relative to itself and 1, that is worth a proof: interior points tell no smaller ones."""
@@ -141,8 +137,8 @@ class CoarseSearch:
         """
         rng, in_vain = np.random.default_rng(3), 0
         while (best := self.found.best) is not None and in_vain < IN_VAIN and not self._ends():
-            before, moving = best.least.multiplier, self._jumps(best.motion) > NO_JUMP
-            one = np.arange(len(moving)) == rng.choice(np.flatnonzero(moving))
+            before, moving = best.least.multiplier, moving_points(self.system, best.motion)
+            one = one_of(moving, rng)
             glued = neighbourhood(self.system, self.place, moving, one if in_vain else moving, AROUND)
             self._look_from(best, glued, rng)
             in_vain += 1
@@ -188,11 +184,10 @@ class CoarseSearch:
         """Search a glued wall."""
         if glued is None or self._knows(glued):
             return
-        share = self._share(glued)
-        most = min(float(programs), (self._allowed - self.found.cost) / share)
+        most = min(float(programs), (self._allowed - self.found.cost) / glued.cost)
         associated = solve_forces(glued.system, coulomb(glued.system.strength))
         parts = search(glued.system, associated, workers=self.workers, most=most)
-        self.found.add_programs(parts.programs, share)
+        self.found.add_programs(parts.programs, glued.cost)
         self.found.interrupted |= parts.interrupted
         self._prove(glued, parts.certificates)
 
@@ -200,20 +195,13 @@ class CoarseSearch:
         """Search a glued wall from a certificate that moves nothing glued."""
         if glued is None or self._knows(glued):
             return
-        programs, known = Programs(glued.system, asks_interior_point=False), glued.certificate(best)
-        descent, pressure, certificates = Descent(programs), known.least.pressure, list[Certificate]()
+        programs, certificates = Programs(glued.system, asks_interior_point=False), list[Certificate]()
         try:
-            certificates += descent.around(known, rng)
-            for k in range(SEQUENCES):
-                start = pressure * np.exp(NEARBY * rng.normal(size=len(pressure))) if k else pressure
-                for certificate in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
-                    certificates.append(certificate)
-                    certificates += descent.below(certificate.motion, certificate.least, rng)
-            if certificates:
-                certificates += descent.around(min(certificates, key=lambda each: each.least.multiplier), rng)
+            for each in certificates_near(glued, best, programs, SEQUENCES, rng):
+                certificates.append(each)
         except KeyboardInterrupt:
             self.found.interrupted = True
-        self.found.add_programs(programs.solved, self._share(glued))
+        self.found.add_programs(programs.solved, glued.cost)
         self._prove(glued, certificates)
 
     def _knows(self, glued: Glued) -> bool:
@@ -222,16 +210,12 @@ class CoarseSearch:
         self.seen.add(glued.points.tobytes())
         return known
 
-    def _share(self, glued: Glued) -> float:
-        """What a program over a glued wall costs, in programs over the wall."""
-        return float((glued.system.freedoms / self.system.freedoms) ** POWER)
-
     def _prove(self, glued: Glued, certificates: Sequence[Certificate]) -> None:
         """Prove certificates of the glued wall in the wall, as far as they may be lower or higher than what is.
 
         After Ctrl-C the lowest alone.
         """
-        for each in sorted(certificates, key=lambda each: each.least.multiplier):
+        for each in sorted(certificates, key=least_multiplier):
             if not is_worth(self.found.lowest, each.least.multiplier):
                 break
             self._try(glued.motions @ each.motion)
@@ -267,33 +251,4 @@ def is_worth(large: float, small: float) -> bool:
 
 def finest(system: Equilibrium, place: Array, jumps: Array, freedoms: int) -> Glued | None:
     """The wall glued where points jump least ``(np,)``, as far as leaves so many freedoms; None for none."""
-    return _freest(system, place, jumps, LEVELS, freedoms)
-
-
-def neighbourhood(system: Equilibrium, place: Array, moving: Mask, centres: Mask, freedoms: int) -> Glued | None:
-    """The wall glued but where points move ``(np,)`` and near some, as near as leaves so many freedoms; None for none.
-
-    Nearness goes by the blocks.
-    """
-    first, second = sides(system)
-    of_centres = np.unique([first[centres], second[centres]])
-    at = place[of_centres[of_centres < len(place)]]
-    far = np.hypot(*(place[:, None] - at).transpose(2, 0, 1)).min(axis=1) / np.ptp(place, axis=0).max()
-    distance = np.append(np.round(far, PLACES), np.inf)
-    nearness = np.where(moving, 2.0, 1 / (1 + np.minimum(distance[first], distance[second])))
-    return _freest(system, place, nearness, np.unique(nearness[~moving])[::-1].tolist(), freedoms)
-
-
-def _freest(
-    system: Equilibrium, place: Array, looseness: Array, levels: Sequence[float], freedoms: int
-) -> Glued | None:
-    """The wall glued below the least of some levels, which fall, that leaves no more than so many freedoms."""
-    low, high, result = 0, len(levels), None
-    while low < high:  # the fewer points are glued, the more freedoms are left
-        middle = (low + high) // 2
-        glued = glue(system, place, looseness < levels[middle])
-        if glued.system.freedoms <= freedoms:
-            low, result = middle + 1, glued
-        else:
-            high = middle
-    return result if result is not None and result.system.freedoms else None
+    return freest(system, place, jumps, LEVELS, freedoms)

@@ -20,9 +20,10 @@ from runningbond.scene import Array
 from .certificates import Certificate, driving_forces, roughly_certified
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
+from .found import Observer, Search
 from .interior_point import near
 from .macro import glue, still_points
-from .search import Observer, Search, averaged
+from .sequences import averaged
 
 POINTS = 4500
 """Joint points, six or so a block, from which a wall is searched so."""

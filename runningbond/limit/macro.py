@@ -4,6 +4,7 @@ Whatever moves in a wall so glued moves in the wall itself too: a mechanism of t
 the same load. Its forces are balanced macro-block by macro-block, and say nothing of those inside.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +19,9 @@ from .canonical import ENTRY, rounded
 from .certificates import Certificate
 from .equilibrium import Equilibrium
 
+POWER = 1.5
+"""Power of the freedoms as which a program costs."""
+
 
 @dataclass(frozen=True, eq=False)
 class Glued:
@@ -26,6 +30,11 @@ class Glued:
     system: Equilibrium
     motions: csc_array
     points: Indices
+
+    @property
+    def cost(self) -> float:
+        """What a program over it costs, in programs over the wall."""
+        return float((self.system.freedoms / self.motions.shape[0]) ** POWER)
 
     def certificate(self, whole: Certificate) -> Certificate:
         """A certificate of the wall as one of the glued wall, in which all that it moves is free to move."""
@@ -81,6 +90,19 @@ def glue(system: Equilibrium, place: Array, still: Mask) -> Glued:
         motions,
         kept,
     )
+
+
+def freest(system: Equilibrium, place: Array, looseness: Array, levels: Sequence[float], freedoms: int) -> Glued | None:
+    """The wall glued below the least of some levels, which fall, that leaves no more than so many freedoms."""
+    low, high, result = 0, len(levels), None
+    while low < high:  # the fewer points are glued, the more freedoms are left
+        middle = (low + high) // 2
+        glued = glue(system, place, looseness < levels[middle])
+        if glued.system.freedoms <= freedoms:
+            low, result = middle + 1, glued
+        else:
+            high = middle
+    return result if result is not None and result.system.freedoms else None
 
 
 def sides(system: Equilibrium) -> tuple[Indices, Indices]:

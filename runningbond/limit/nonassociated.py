@@ -15,14 +15,15 @@ from runningbond.scene import Array, Scene, SceneError, table_of
 
 from .associated import LimitState, arrays_of, judge, limit_state, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
-from .certificates import Certificate, certified_loads, certify
+from .certificates import Certificate, certified_loads, certify, least_multiplier
 from .coarse import POINTS, CoarseSearch
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
+from .found import Observer, Search
 from .large import search_large, takes_one_start
 from .moving_support import JAMMED, NOTHING, bridged_message, is_bridged, may_leave, reaction_note
 from .remarks import remarks
-from .search import STARTS, Observer, Search, search
+from .search import STARTS, search
 
 LISTED = 4
 """Intervals of certified loads, apart from each other, that a message lists; of more it tells the number."""
@@ -147,7 +148,8 @@ def _look(
     if takes_one_start(system):
         return search_large(system, place, observe)
     if len(system.points) < POINTS or system.has_support:
-        return search(system, _associated(system), starts, workers, observe, most)
+        searched = None if system.has_support else place
+        return search(system, _associated(system), starts, workers, observe, most, place=searched)
     coarse = CoarseSearch(system, place, observe, workers, starts, most)
     found = coarse.run()
     if not (found.certificates or found.interrupted):
@@ -184,7 +186,7 @@ def _proved_again(full: Equilibrium, system: Equilibrium, order: Order, result: 
         for each in certificates
         if proved[0].least.multiplier <= each.least.multiplier and each.most.multiplier <= proved[-1].most.multiplier
     ]
-    return sorted([*proved, *inside], key=lambda each: each.least.multiplier)
+    return sorted([*proved, *inside], key=least_multiplier)
 
 
 def _depth(certificate: Certificate) -> float:

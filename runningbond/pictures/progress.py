@@ -10,7 +10,7 @@ from dem.static import BUDGET as STATIC_BUDGET
 from runningbond.dynamics import Criteria, Run, State
 from runningbond.dynamics.collapse import CALM
 from runningbond.dynamics.collapse_load import BUDGET
-from runningbond.limit.search import Search
+from runningbond.limit.found import Search
 from runningbond.results.outcome import number
 
 

@@ -53,8 +53,8 @@ def test_json_is_one_object_with_the_keys_of_the_contract(model: str, capfd: pyt
 
 
 def test_an_undecided_run_leaves_with_3(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("runningbond.limit.search.PROGRAM_BUDGET", 0)
-    monkeypatch.setattr("runningbond.limit.search.SHORT", 0)
+    monkeypatch.setattr("runningbond.limit.starts.PROGRAM_BUDGET", 0)
+    monkeypatch.setattr("runningbond.limit.sequences.SHORT", 0)
     assert command(["run", "panel-04", "--model", "limit-nonassociated"]) == 3
 
 

@@ -7,11 +7,13 @@ from runningbond.compare import published_scene
 from runningbond.limit import equilibrium, limit, limit_nonassociated
 from runningbond.limit.canonical import canonical_order
 from runningbond.limit.certificates import Certificate, certify
-from runningbond.limit.coarse import POINTS, CoarseSearch, finest, is_worth, neighbourhood
+from runningbond.limit.coarse import POINTS, CoarseSearch, finest, is_worth
 from runningbond.limit.descent import Descent, jump_pattern
 from runningbond.limit.equilibrium import Equilibrium
 from runningbond.limit.force_program import ForceSolution, coulomb, solve_forces
-from runningbond.limit.search import Search, search
+from runningbond.limit.found import Search
+from runningbond.limit.neighbourhood import neighbourhood
+from runningbond.limit.search import search
 from runningbond.scene import Array, Scene
 from tests.limit.test_search import rubble
 

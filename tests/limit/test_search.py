@@ -16,8 +16,9 @@ from runningbond.limit.canonical import canonical_order
 from runningbond.limit.certificates import driving_forces
 from runningbond.limit.descent import Descent, is_lower
 from runningbond.limit.force_program import frozen_friction, solve_forces
+from runningbond.limit.found import Search
 from runningbond.limit.programs import Programs
-from runningbond.limit.search import Search, search
+from runningbond.limit.search import search
 from runningbond.pictures.progress import SearchProgress
 from runningbond.results import save_outcome
 from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene

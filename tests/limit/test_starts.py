@@ -1,0 +1,89 @@
+"""Starts from what is known: in neighbourhoods of certificates, and from their pressures."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from runningbond.compare import published_scene
+from runningbond.limit.certificates import Certificate, certify, least_multiplier
+from runningbond.limit.descent import Descent
+from runningbond.limit.equilibrium import Equilibrium
+from runningbond.limit.force_program import ForceSolution, coulomb, solve_forces
+from runningbond.limit.macro import sides
+from runningbond.limit.neighbourhood import distances
+from runningbond.limit.programs import Programs
+from runningbond.limit.search import search
+from runningbond.limit.starts import ROUND, WAYS, Start, Way
+from runningbond.scene import Array, Scene
+from tests.limit.test_coarse import ordered
+from tests.limit.test_search import rubble
+
+Known = tuple[Equilibrium, Array, ForceSolution, list[Certificate]]
+
+
+def known(scene: Scene) -> Known:
+    """Equations, places, the associated solution, and what the first start finds, from the lowest up."""
+    system, place = ordered(scene)
+    associated = solve_forces(system, coulomb(system.strength))
+    return system, place, associated, sorted(search(system, associated, 1).certificates, key=least_multiplier)
+
+
+def numbers(way: Way) -> range:
+    """Starts of the first round of a way."""
+    return range(WAYS.index(way) * ROUND, (WAYS.index(way) + 1) * ROUND)
+
+
+@pytest.mark.parametrize("name", ["rubble", "wall-w5"])
+def test_neighbourhoods_of_the_first_certificate_hold_smaller_loads(name: str) -> None:
+    """Rubble loses a seventh of its load, W5 a fortieth; each mechanism is one of the wall, driven by its forces."""
+    system, place, associated, before = known(rubble(3) if name == "rubble" else published_scene(name))
+    lowest = before[0].least.multiplier
+    found: list[Certificate] = []
+    for number in numbers("neighbourhood"):
+        start = Start(number, associated, before, {}, place)
+        start.run(Programs(system))
+        found += start.found.certificates
+        assert start.found.programs > start.found.cost > 0  # those of glued walls cost less
+    assert min(map(least_multiplier, found)) < (0.98 if name == "wall-w5" else 0.87) * lowest
+    for each in found:
+        again = certify(system, each.motion)
+        assert again is not None
+        assert again.least.multiplier == pytest.approx(each.least.multiplier, rel=1e-6)
+
+
+def test_pressures_are_scattered_everywhere_or_near_one_block(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Near one with no radius those at its own joints change alone; beside no places all do."""
+    system, place, associated, before = known(rubble(3))
+    started: list[Array] = []
+
+    def sequence(descent: Descent, pressure: Array, weight: float | None) -> Iterator[Certificate]:
+        started.append(pressure)
+        return iter(())
+
+    monkeypatch.setattr("runningbond.limit.starts.short_sequence", sequence)
+    monkeypatch.setattr("runningbond.limit.starts.LOCAL", 1.0)
+    monkeypatch.setattr("runningbond.limit.starts.RADIUS", (0.0, 0.0))
+    ends = np.stack(sides(system), axis=1)
+    first, changes = before[0].least.pressure, 0
+    for number in numbers("known"):
+        for at in (place, None):
+            Start(number, associated, before[:1], {}, at).run(Programs(system))
+            changed = started.pop() != first
+            if at is None:
+                assert changed[first > 0].all()
+            elif changed.any():
+                changes += 1
+                assert set.intersection(*map(set, ends[changed].tolist()))  # one block is at all of them
+    assert changes
+
+
+@pytest.mark.parametrize("size", [1.0, 2.7])
+def test_distances_are_from_the_nearer_block_in_sizes_of_the_wall(size: float) -> None:
+    system, place = ordered(rubble(3, size=size))
+    distance = distances(system, place, place[[0]])
+    ends = np.stack(sides(system), axis=1)
+    assert (distance[(ends == 0).any(axis=1)] == 0).all()
+    assert (distance[(ends != 0).all(axis=1)] > 0).all()
+    reference, at = ordered(rubble(3))
+    assert distance == pytest.approx(distances(reference, at, at[[0]]), abs=1e-6)
