@@ -46,7 +46,8 @@ def neighbourhood(system: Equilibrium, place: Array, moving: Mask, centres: Mask
 def distances(system: Equilibrium, place: Array, centres: Array) -> Array:
     """Distances ``(np,)`` of each point's nearer block from the nearest of some centres ``(n, 2)``, in wall sizes."""
     first, second = sides(system)
-    far = np.hypot(*(place[:, None] - centres).transpose(2, 0, 1)).min(axis=1) / np.ptp(place, axis=0).max()
+    size = float(np.ptp(place, axis=0).max()) or 1.0  # of a single block nothing is far
+    far = np.hypot(*(place[:, None] - centres).transpose(2, 0, 1)).min(axis=1) / size
     of_blocks = np.append(np.round(far, PLACES), np.inf)
     return np.asarray(np.minimum(of_blocks[first], of_blocks[second]))
 

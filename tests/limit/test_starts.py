@@ -15,7 +15,7 @@ from runningbond.limit.neighbourhood import distances
 from runningbond.limit.programs import Programs
 from runningbond.limit.search import search
 from runningbond.limit.starts import ROUND, WAYS, Start, Way
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
 from tests.limit.test_coarse import ordered
 from tests.limit.test_search import rubble
 
@@ -87,3 +87,10 @@ def test_distances_are_from_the_nearer_block_in_sizes_of_the_wall(size: float) -
     assert (distance[(ends != 0).all(axis=1)] > 0).all()
     reference, at = ordered(rubble(3))
     assert distance == pytest.approx(distances(reference, at, at[[0]]), abs=1e-6)
+
+
+def test_of_a_single_block_nothing_is_far() -> None:
+    block = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)])
+    material = {"block": BlockMaterial(1800.0), "joint": JointMaterial(0.6), "load": Load(live=(Lateral((1.0, 0.0)),))}
+    system, place = ordered(build_scene("one", [block], thickness=0.1, **material))  # type: ignore[arg-type]
+    assert (distances(system, place, place) == 0).all()
