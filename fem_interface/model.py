@@ -57,7 +57,7 @@ def fem(
     scene: Scene,
     tolerance: float = 0.01,
     *,
-    cells: int = 1,
+    cells: int | None = None,
     modes: ModeCount | None = None,
     rule: Rule | None = None,
     points: PointsOn = "elements",
@@ -78,7 +78,8 @@ def fem(
     scene
         The scene; its joints need a stiffness, its blocks one too unless `modes` is 3.
     cells
-        Cells in half a block along the course, and in a block's height.
+        Cells in half a block along the course, and in a block's height: one where none are given, but at finite
+        displacements four where joints soften, crush or close, for their contacts are at nodes.
     modes
         Modes of each block (`ModeCount`): 10 by default, all where blocks may crack.
     rule
@@ -121,6 +122,7 @@ def fem(
             blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
             wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
         else:
+            cells = 1 if cells is None else cells
             if rule is None and energies != "given":
                 rule = spread_rule(cells if points == "elements" else 1)
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
@@ -195,7 +197,7 @@ def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
 
 
 def fem_response(
-    scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
+    scene: Scene, scale: float = 1.0, *, cells: int | None = None, modes: ModeCount | None = None, **settings: Any
 ) -> Response:
     """Response of a scene's deformable blocks to the motion of its ground, λ times as large, as `follow` has it."""
     return follow(
@@ -213,7 +215,7 @@ def fem_pushover(
     scene: Scene,
     distance: float,
     *,
-    cells: int = 1,
+    cells: int | None = None,
     modes: ModeCount | None = None,
     speed: float = 5e-4,
     local: float = MOVING,

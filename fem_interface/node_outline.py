@@ -8,6 +8,7 @@ import numpy as np
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
 from runningbond.dynamics.rig import check_finite
+from runningbond.joints.wall_points import spreads
 from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
@@ -15,6 +16,10 @@ from .deformable_sides import OutlineNodes, Sides
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .templates import nodes_of, rows_of
+
+CELLS = 4
+"""Cells in half a block whose nodes spread pressures along its joints: a mortared stone is 3 % too strong so, 12 % with
+two cells and 50 % with one; a toe that crushes 1, 4 and 20 %."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,8 +82,8 @@ class NodeOutline:
         return nodal_tables(rows, int(place[-1]), 1)
 
 
-def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> NodeOutline:
-    """Mesh a scene whose blocks are to move far.
+def node_outline(scene: Scene, cells: int | None = None, modes: ModeCount | None = None) -> NodeOutline:
+    """Mesh a scene whose blocks are to move far; cells not given are one in half a block, `CELLS` where joints spread.
 
     Raises
     ------
@@ -90,6 +95,8 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     for key, forces in (("load.live", scene.live_forces), ("load.dead", scene.dead_forces)):
         if forces.moment.any() or not scene.is_beam[forces.block].all():
             raise SceneError(key, "finite displacements need loads on the blocks' mass, or on a beam")
+    if cells is None:
+        cells = CELLS if spreads(scene) else 1
     wall, outline = modal_wall(scene, cells, modes), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])

@@ -33,8 +33,12 @@ def wall_rule(scene: Scene, parts: int = 1) -> Rule:
 
     Of joints in several parts each part has a rule, and all of them together as many points as a whole joint.
     """
-    spread = any(each.compressive_strength or each.closure or each.softens for each in scene.joint_materials)
-    return spread_rule(parts) if spread else lobatto()
+    return spread_rule(parts) if spreads(scene) else lobatto()
+
+
+def spreads(scene: Scene) -> bool:
+    """Whether any joint softens, crushes or closes, so that how pressures are spread along it matters."""
+    return any(each.compressive_strength or each.closure or each.softens for each in scene.joint_materials)
 
 
 def spread_rule(parts: int = 1) -> Rule:
