@@ -44,7 +44,7 @@ from .fracture import Energies
 from .loads import Loads
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
-from .node_outline import node_outline
+from .node_outline import node_outline, spread_note
 from .operators import PointsOn
 from .piece_masses import with_heavier_pieces
 from .system import system_of
@@ -57,7 +57,7 @@ def fem(
     scene: Scene,
     tolerance: float = 0.01,
     *,
-    cells: int | None = None,
+    cells: int = 1,
     modes: ModeCount | None = None,
     rule: Rule | None = None,
     points: PointsOn = "elements",
@@ -78,8 +78,8 @@ def fem(
     scene
         The scene; its joints need a stiffness, its blocks one too unless `modes` is 3.
     cells
-        Cells in half a block along the course, and in a block's height: one where none are given, but at finite
-        displacements four where joints soften, crush or close, for their contacts are at nodes.
+        Cells in half a block along the course, and in a block's height. At finite displacements contacts are at nodes,
+        and joints that soften, crush or close take four.
     modes
         Modes of each block (`ModeCount`): 10 by default, all where blocks may crack.
     rule
@@ -122,13 +122,14 @@ def fem(
             blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
             wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
         else:
-            cells = 1 if cells is None else cells
             if rule is None and energies != "given":
                 rule = spread_rule(cells if points == "elements" else 1)
             wall = modal_wall(scene, cells, modes, rule, points, cracks)
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
             run = run_of_longer_steps(wall, system) if mass_scaling else Run(system)
     note = _note(wall, run.system, cracks)
+    if finite:
+        note = "; ".join(filter(None, (note, spread_note(scene, cells))))
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(
@@ -197,12 +198,12 @@ def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
 
 
 def fem_response(
-    scene: Scene, scale: float = 1.0, *, cells: int | None = None, modes: ModeCount | None = None, **settings: Any
+    scene: Scene, scale: float = 1.0, *, cells: int = 1, modes: ModeCount | None = None, **settings: Any
 ) -> Response:
     """Response of a scene's deformable blocks to the motion of its ground, λ times as large, as `follow` has it."""
-    return follow(
-        Resting.of(scene, "fem", finite_system(node_outline(with_impacts(scene), cells, modes))), scale, **settings
-    )
+    resting = Resting.of(scene, "fem", finite_system(node_outline(with_impacts(scene), cells, modes)))
+    response = follow(resting, scale, **settings)
+    return replace(response, message="; ".join(filter(None, (response.message, spread_note(scene, cells)))))
 
 
 def fem_vibration(scene: Scene, count: int = 10, *, cells: int = 1, modes: ModeCount | None = None) -> Vibration:
@@ -215,7 +216,7 @@ def fem_pushover(
     scene: Scene,
     distance: float,
     *,
-    cells: int | None = None,
+    cells: int = 1,
     modes: ModeCount | None = None,
     speed: float = 5e-4,
     local: float = MOVING,

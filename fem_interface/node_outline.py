@@ -17,9 +17,9 @@ from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .templates import nodes_of, rows_of
 
-CELLS = 4
-"""Cells in half a block whose nodes spread pressures along its joints: a mortared stone is 3 % too strong so, 12 % with
-two cells and 50 % with one; a toe that crushes 1, 4 and 20 %."""
+CELLS, EXCESS = 4, 0.5
+"""Cells in half a block whose nodes spread pressures along its joints, and by how much one cell makes a mortared stone
+too strong: two make it a quarter of that, four a sixteenth; a toe that crushes is a fifth too strong at most."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +82,8 @@ class NodeOutline:
         return nodal_tables(rows, int(place[-1]), 1)
 
 
-def node_outline(scene: Scene, cells: int | None = None, modes: ModeCount | None = None) -> NodeOutline:
-    """Mesh a scene whose blocks are to move far; cells not given are one in half a block, `CELLS` where joints spread.
+def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> NodeOutline:
+    """Mesh a scene whose blocks are to move far.
 
     Raises
     ------
@@ -95,14 +95,21 @@ def node_outline(scene: Scene, cells: int | None = None, modes: ModeCount | None
     for key, forces in (("load.live", scene.live_forces), ("load.dead", scene.dead_forces)):
         if forces.moment.any() or not scene.is_beam[forces.block].all():
             raise SceneError(key, "finite displacements need loads on the blocks' mass, or on a beam")
-    if cells is None:
-        cells = CELLS if spreads(scene) else 1
     wall, outline = modal_wall(scene, cells, modes), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])
     tables = list(_tables(wall, np.split(node, first[outline.blocks.first[1:-1]])))
     nodes = _outline_nodes(wall, node, first, tables)
     return NodeOutline(wall, outline, node, first, nodes, _sides(outline, first, nodes.length), tables)
+
+
+def spread_note(scene: Scene, cells: int) -> str:
+    """What a message says of pressures along joints that too few nodes spread; empty where there are none."""
+    if cells >= CELLS or not spreads(scene):
+        return ""
+    few = f"{cells} cell{'s' * (cells > 1)} in half a block"
+    excess = f"joints that soften, crush or close bear up to {EXCESS / cells**2:.0%} too much"
+    return f"contacts are at nodes: from {few} {excess}, which is not in the bracket; cells = {CELLS} spreads pressures"
 
 
 def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, tables: list[tuple[Indices, Array]]) -> OutlineNodes:
