@@ -21,14 +21,14 @@ import numpy as np
 
 from runningbond.scene import Array
 
-from .certificates import Certificate, certify, least_multiplier, roughly_certified
+from .certificates import NO_JUMP, Certificate, certify, least_multiplier, roughly_certified
 from .descent import jump_pattern
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .found import Observer, Search
 from .interior_point import near
-from .macro import Glued, freest
-from .neighbourhood import certificates_near, moving_points, neighbourhood, one_of
+from .macro import Glued, freest, still_points
+from .neighbourhood import certificates_near, neighbourhood, one_of
 from .programs import Programs
 from .search import programs_allowed, search
 from .sequences import WEIGHTS, averaged
@@ -137,7 +137,7 @@ class CoarseSearch:
         """
         rng, in_vain = np.random.default_rng(3), 0
         while (best := self.found.best) is not None and in_vain < IN_VAIN and not self._ends():
-            before, moving = best.least.multiplier, moving_points(self.system, best.motion)
+            before, moving = best.least.multiplier, ~still_points(self.system, best.motion, NO_JUMP)
             one = one_of(moving, rng)
             glued = neighbourhood(self.system, self.place, moving, one if in_vain else moving, AROUND)
             self._look_from(best, glued, rng)
@@ -197,8 +197,7 @@ class CoarseSearch:
             return
         programs, certificates = Programs(glued.system, asks_interior_point=False), list[Certificate]()
         try:
-            for each in certificates_near(glued, best, programs, SEQUENCES, rng):
-                certificates.append(each)
+            certificates += certificates_near(glued, best, programs, SEQUENCES, rng)
         except KeyboardInterrupt:
             self.found.interrupted = True
         self.found.add_programs(programs.solved, glued.cost)

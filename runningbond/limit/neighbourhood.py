@@ -12,7 +12,7 @@ import numpy as np
 
 from runningbond.scene import Array, Mask
 
-from .certificates import NO_JUMP, Certificate, least_multiplier
+from .certificates import Certificate, least_multiplier
 from .descent import Descent
 from .equilibrium import Equilibrium
 from .macro import Glued, freest, sides
@@ -24,12 +24,6 @@ NEARBY = 0.5
 
 PLACES = 6
 """Decimals of distances, in sizes of the wall, that are looked at: a wall that is drawn larger has the same."""
-
-
-def moving_points(system: Equilibrium, motion: Array) -> Mask:
-    """Points ``(np,)`` that a mechanism ``(nd,)`` moves."""
-    jumps = np.abs(system.jumps(motion)).max(axis=0)
-    return np.asarray(jumps > NO_JUMP * np.abs(motion).max(initial=0.0))
 
 
 def neighbourhood(system: Equilibrium, place: Array, moving: Mask, centres: Mask, freedoms: int) -> Glued | None:
@@ -65,15 +59,20 @@ def certificates_near(
     So many `sequences` are run beside walks from that one and from the lowest.
     """
     known = glued.certificate(certificate)
-    descent, pressure, lowest = Descent(programs), known.least.pressure, list[Certificate]()
-    for each in descent.around(known, rng):
-        lowest = [each]
+    descent, pressure, found = Descent(programs), known.least.pressure, list[Certificate]()
+    for each in chain(descent.around(known, rng), _from_sequences(descent, pressure, sequences, rng)):
+        found.append(each)
         yield each
+    if found:
+        yield from descent.around(min(found, key=least_multiplier), rng)
+
+
+def _from_sequences(
+    descent: Descent, pressure: Array, sequences: int, rng: np.random.Generator
+) -> Iterator[Certificate]:
+    """Certificates of sequences that start from pressures ``(np,)``, and near them, and those below."""
     for k in range(sequences):
         start = pressure * np.exp(NEARBY * rng.normal(size=len(pressure))) if k else pressure
-        for first in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
-            for each in chain([first], descent.below(first.motion, first.least, rng)):
-                lowest = [min([*lowest, each], key=least_multiplier)]
-                yield each
-    if lowest:
-        yield from descent.around(lowest[0], rng)
+        for each in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
+            yield each
+            yield from descent.below(each.motion, each.least, rng)

@@ -22,13 +22,13 @@ from .equilibrium import Equilibrium
 from .force_program import ForceSolution
 from .found import Observer, Search
 from .programs import Corners, Programs
-from .starts import ROUND, Start
+from .starts import ROUND, WAYS, Start
 
 STARTS = 160
 """Most starts."""
 
-DRY = 64
-"""Starts in a row that bring nothing lower, after which the search ends."""
+DRY = 2 * ROUND * len(WAYS)
+"""Starts in a row that bring nothing lower, every way to start twice, after which the search ends."""
 
 AFFORDED = 22_000
 """Joint points up to which one program more is afforded: programs cost as the power of 2.5 of the points."""

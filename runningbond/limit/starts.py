@@ -12,13 +12,13 @@ import numpy as np
 
 from runningbond.scene import Array
 
-from .certificates import Certificate, least_multiplier
+from .certificates import NO_JUMP, Certificate, least_multiplier
 from .descent import Descent, is_lower, random_weights
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, solve_forces
 from .found import Search
-from .macro import Glued
-from .neighbourhood import certificates_near, distances, moving_points, neighbourhood, one_of
+from .macro import Glued, still_points
+from .neighbourhood import certificates_near, distances, neighbourhood, one_of
 from .programs import Corners, Programs
 from .sequences import WEIGHTS, averaged, certified, short_sequence
 
@@ -129,7 +129,7 @@ class Start:
         """The wall glued but around one point that a certificate moves, more or less of it; None for none."""
         if self.place is None:
             return None
-        moving = moving_points(system, base.motion)
+        moving = ~still_points(system, base.motion, NO_JUMP)
         freedoms = int(rng.uniform(*AROUND) * system.freedoms)
         return neighbourhood(system, self.place, moving, one_of(moving, rng), freedoms)
 

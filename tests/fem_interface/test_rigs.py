@@ -62,20 +62,20 @@ def test_blocks_with_three_modes_are_rigid_ones() -> None:
 
 
 @pytest.mark.parametrize(
-    ("far", "strength"),
+    ("far", "off", "strength"),
     [
-        (0.02, {"compressive_strength": 1e6}),
-        (0.002, {"cohesion": 4e5, "tensile_strength": 1e5, "fracture_energy_1": 10.0, "fracture_energy_2": 10.0}),
+        (0.02, 0.015, {"compressive_strength": 1e6}),
+        (0.002, 0.05, {"cohesion": 4e5, "tensile_strength": 1e5, "fracture_energy_1": 10.0, "fracture_energy_2": 10.0}),
     ],
 )
-def test_what_crushes_and_softens_is_spread_over_nodes(far: float, strength: dict[str, float]) -> None:
+def test_what_crushes_and_softens_is_spread_over_nodes(far: float, off: float, strength: dict[str, float]) -> None:
     """As along the joint of a rigid block; from one cell in half a block 20 and 43 % more is borne, as messages say."""
     joint = {"friction": 0.9, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
     scene = stone(beam__drive={"displacement": [far, 0], "at": 0.6}, joint=joint | strength)
     other = run_model("dem-dynamic", scene, displacements="finite")
     ours, coarse = (fem(scene, displacements="finite", cells=cells) for cells in (4, 1))
-    assert ours.lower == pytest.approx(other.lower, rel=0.05)
-    assert ours.upper == pytest.approx(other.upper, rel=0.05)
+    assert ours.lower == pytest.approx(other.lower, rel=off)
+    assert ours.upper == pytest.approx(other.upper, rel=off)
     assert "contacts are at nodes" not in ours.message
     assert "from 1 cell in half a block joints that soften, crush or close bear up to 50% too much" in coarse.message
     assert other.upper is not None
