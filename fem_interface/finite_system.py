@@ -27,7 +27,7 @@ from runningbond.dynamics.rig import Rig
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.frames import keep_frames
 from runningbond.joints.law import KernelLaw
-from runningbond.scene import Array, Indices
+from runningbond.scene import Array, Indices, Mask
 
 from .deformable_sides import (
     DeformableSides,
@@ -49,6 +49,10 @@ def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSys
     return replace(block_system(blocks.wall, scaled, interface), contacts=contacts, rig=rig)
 
 
+HALF = 0.5 + 1e-6
+"""More than half a facet, for all rounding: how far inside the arcs of corners a node bears."""
+
+
 class DeformableContacts:
     """Contacts of deformable blocks; see `runningbond.dynamics.ContactSearch`.
 
@@ -61,8 +65,11 @@ class DeformableContacts:
     def __init__(self, blocks: NodeOutline) -> None:
         self.blocks, self.outline, self._materials = blocks, blocks.outline, ContactMaterials(blocks.scene)
         self._thickness = blocks.scene.thickness
+        self._of_joints: tuple[Indices, Indices, Array] = (np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
         undeformed = self.find(np.zeros(len(blocks.wall.mass)), self.outline.margin)
-        self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
+        area = self._areas(undeformed)
+        self._of_joints = undeformed.key, undeformed.joint, area
+        self.undeformed = replace(undeformed, area=area, glued=undeformed.joint >= 0)
 
     def find(self, motion: Array, margin: float) -> Contacts:
         """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then nodes inside them."""
@@ -73,7 +80,10 @@ class DeformableContacts:
         side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
         # The corner inwards is the last of side e and the first of f at the low end, and the other way at the high.
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
-        area = np.minimum(ends.area, self._thickness * self.blocks.nodes.length[facet] / 2)
+        # An end stands for its side up to half-way from the first node that is far enough inside the arc to bear.
+        length = self.blocks.nodes.length[facet]
+        passed = np.floor(self.blocks.sides.inset[corner] / length + HALF)
+        area = np.minimum(ends.area, self._thickness * (passed + 0.5) * length)
         inner = self._inner(rigid, margin)
         contacts = Contacts(
             ends.motion,
@@ -85,7 +95,30 @@ class DeformableContacts:
             np.concatenate([ends.joint, inner.joint]),
             np.concatenate([ends.glued, inner.glued]),
         )
+        key, joint, area = self._of_joints
+        at = position_of(key, contacts.key)
+        known = (at >= 0) & (np.append(joint, -1)[at] == contacts.joint) & (contacts.joint >= 0)
+        contacts = replace(contacts, area=np.where(known, np.append(area, 0.0)[at], contacts.area))
         return contacts.chosen(np.argsort(self._materials.number(contacts), kind="stable"))
+
+    def _areas(self, contacts: Contacts) -> Array:
+        """Areas ``(n,)`` [m²] of contacts on the undeformed wall, by trapezoids whose sum is the area of their joint.
+
+        What is under the arcs of corners is shared by all of the joint.
+        """
+        geometry, (opening, _) = self.geometry(contacts), (jumps := np.zeros((2, len(contacts))))
+        gather_deformable(np.zeros(len(self.blocks.wall.mass)), tuple(geometry), *jumps)
+        joints, joint, area = self.outline.joints, contacts.joint, contacts.area.copy()
+        run = (joints.ends[:, 1] - joints.ends[:, 0]) / joints.length[:, None]
+        own = np.flatnonzero((joint >= 0) & (opening < self.outline.blocks.tolerance))
+        along = (geometry.contact[own, :2] * run[joint[own]]).sum(axis=1)
+        own, along = own[order := np.lexsort((along, joint[own]))], along[order]
+        for here in np.split(np.arange(len(own)), np.flatnonzero(np.diff(joint[own])) + 1):
+            place = along[here]
+            borders = np.concatenate([place[:1], (place[1:] + place[:-1]) / 2, place[-1:]])
+            whole = self._thickness * joints.length[joint[own[here[0]]]]
+            area[own[here]] = whole * (np.diff(borders) / np.ptp(place) if len(here) > 1 else 1.0)
+        return area
 
     def _inner(self, rigid: Array, margin: float) -> Contacts:
         """Nodes inside one of two facing sides that are near the other: of block b's, unless that one is held."""
@@ -99,7 +132,8 @@ class DeformableContacts:
         pair = np.repeat(np.arange(len(own)), count)
         node = first[own][pair] + 1 + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
         arcs = outline.placed(rigid).arcs
-        at = outline.points(self.blocks.nodes.owner[node], self.blocks.wall.mesh.points[self.blocks.node[node]], rigid)
+        block = self.blocks.nodes.owner[node]
+        at = outline.points(block, outline.blocks.centroid[block] + self.blocks.nodes.arm[node], rigid)
         corners = outline.corners(rigid)
         on = other[pair]
         run = corners[after[on]] - corners[on]
@@ -107,23 +141,32 @@ class DeformableContacts:
         away = ((at - corners[on]) * arcs[on, 2:]).sum(axis=1)
         along = ((at - corners[on]) * run).sum(axis=1) / length
         opposed = -(arcs[own, 2:] * arcs[other, 2:]).sum(axis=1)[pair] > np.cos(np.pi / 4)
-        # Those that are still to come farther from the corners before they bear are near them only.
+        # Those that are still to come farther from the other side's corners before they bear are near them only.
         inside = np.minimum(along - inset[on], length - inset[after[on]] - along)
-        beyond = np.minimum(length_of[node], length_of[node - 1]) / 2 - inside
-        near = opposed & (np.abs(away) < margin) & (beyond < margin)
+        half = np.minimum(length_of[node], length_of[node - 1]) / 2
+        near = opposed & (np.abs(away) < margin) & (half - inside < margin) & self._bearing[node]
         node, pair, on = node[near], pair[near], on[near]
         rows = (len(outline.radius) + node, on, of_a[pair], after[on], e[pair], f[pair])
+        joint = outline.joint_of(e, f)[pair]
         area = self._thickness * (length_of[node] + length_of[node - 1]) / 2
         still = np.zeros(len(node))
-        joint = outline.joint_of(e, f)[pair]
         return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, joint, still > 0)
+
+    @cached_property
+    def _bearing(self) -> Mask:
+        """Which outline nodes are half a facet inside the arcs of their side's corners."""
+        nodes, sides = self.blocks.nodes, self.blocks.sides
+        side = np.repeat(np.arange(len(sides.inset)), np.diff(self.blocks.first))
+        far_end = sides.extent[side] - sides.inset[sides.successor[side]]
+        inside = np.minimum(nodes.begin - sides.inset[side], far_end - nodes.begin)
+        return np.asarray(inside > HALF * np.minimum(nodes.length, np.roll(nodes.length, 1)))
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
         """The arrays that `gather_deformable` and `scatter_deformable` share, with buffers of their own."""
         blocks, n = self.blocks, len(contacts)
         placed = PlacedNodes(
             np.zeros((len(self.outline.blocks), 4)),
-            np.zeros((len(blocks.node), 5)),
+            np.zeros((len(blocks.nodes.arm), 5)),
             np.zeros((len(blocks.first) - 1, 4)),
         )
         return DeformableSides(
@@ -198,7 +241,7 @@ class DeformableContacts:
     def deformation(self, motion: Array) -> float:
         """At most how far deformation takes an outline node in a motion ``(nd,)`` [m]."""
         pairs = zip(self.blocks.tables, self.blocks.wall.split(motion), strict=True)
-        far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for (_, table), Q in pairs]
+        far = [float(np.abs(table @ Q[3:]).max(initial=0.0)) for table, Q in pairs]
         return float(np.sqrt(2) * max(far, default=0.0))
 
 
@@ -242,23 +285,21 @@ def _blocks_on(
     mass = scaled.mass[wall.rigid[:, 0]]
     facets = geometry.touched[:, :2]
     owner = blocks.nodes.owner[facets]
-    for number, template in enumerate(wall.templates):
-        shape = template.modes.shape.reshape(-1, 2, len(template.modes.mass))
-        own = np.zeros((len(template.blocks), shape.shape[2], shape.shape[2]))
+    for number, (template, table) in enumerate(zip(wall.templates, blocks.tables, strict=True)):
+        own = np.zeros((len(template.blocks), *2 * [len(template.modes.mass)]))
         for side in (0, 1):
             here = np.flatnonzero(wall.place[owner[:, side], 0] == number)
             block, facet, share = owner[here, side], facets[here, side], contact[here, 4 + side, None, None]
-            ends = blocks.node[np.column_stack([facet, blocks.nodes.following[facet]])]
-            nodes = ends - wall.mesh.first_node[block][:, None]
-            at = (1 - share) * shape[nodes[:, 0]] + share * shape[nodes[:, 1]]
+            start, stop = blocks.row[facet], blocks.row[blocks.nodes.following[facet]]
+            at = (1 - share) * table[start] + share * table[stop]
             cosine, sine, x, y = turned[block].T
             arm = contact[here, :2] - np.column_stack([x, y])
             part = joint_shares(mass[np.column_stack([block, owner[here, 1 - side]])], 0.5)[:, 0]
             for direction, stiffness in directions:
                 dx, dy = direction[here].T
                 local = np.column_stack([cosine * dx + sine * dy, cosine * dy - sine * dx])
-                row = np.einsum("px,pxm->pm", local, at)
-                row[:, :3] = np.column_stack([dx, dy, arm[:, 0] * dy - arm[:, 1] * dx])
+                turn = arm[:, 0] * dy - arm[:, 1] * dx
+                row = np.column_stack([dx, dy, turn, np.einsum("px,pxm->pm", local, at)])
                 weight = part * stiffness[here] * contacts.area[here]
                 np.add.at(own, wall.place[block, 1], weight[:, None, None] * row[:, :, None] * row[:, None, :])
         mass_k, k, c = (values[number].T for values in split)

@@ -118,24 +118,30 @@ class ModalWall:
         pieces = np.split(motion, self.first[1:])[:-1]
         return [piece.reshape(-1, len(t.blocks)) for piece, t in zip(pieces, self.templates, strict=True)]
 
-    def places(self, local: list[Indices]) -> tuple[Indices, Indices]:
-        """Places for the displacements of some nodes of each template's blocks, given in numbers of their own nodes.
+    def places(self, block: Indices, row: Indices, counts: list[int]) -> tuple[Indices, Indices]:
+        """Places for the displacements of points of blocks ``(n,)``, given their rows in tables of the templates.
+
+        Parameters
+        ----------
+        block, row : (n,) int
+            Block of each point, and its row in the table of that block's template; -1 where it has none.
+        counts
+            Number of rows of each template's table.
 
         Returns
         -------
-        (nn, 2) int
-            Place of each node's displacements along x and y, those of a template's blocks side by side; after the
+        (n, 2) int
+            Place of each point's displacements along x and y, those of a template's blocks side by side; after the
             last of all where there are none.
         (n_templates + 1,) int
             First place of each template, then the number of places.
         """
-        counts = [2 * len(own) * len(template.blocks) for own, template in zip(local, self.templates, strict=True)]
-        first = np.concatenate([[0], np.cumsum(counts, dtype=np.int64)])
-        place = np.full((len(self.mesh.points), 2), first[-1])
-        for template, own, at in zip(self.templates, local, first, strict=False):
-            n = len(template.blocks)
-            rows = at + n * np.arange(2 * len(own)).reshape(-1, 2)
-            place[self.mesh.first_node[template.blocks][:, None] + own] = rows + np.arange(n)[:, None, None]
+        blocks = np.array([len(template.blocks) for template in self.templates], dtype=np.int64)
+        first = np.concatenate([[0], np.cumsum(2 * blocks * counts, dtype=np.int64)])
+        place, there = np.full((len(block), 2), first[-1]), row >= 0
+        template, at = self.place[block[there]].T
+        rows = 2 * row[there, None] + [0, 1]
+        place[there] = (first[template] + at)[:, None] + blocks[template, None] * rows
         return place, first
 
     def load(self, forces: Forces, loads: Loads = "consistent") -> Array:

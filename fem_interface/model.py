@@ -44,7 +44,7 @@ from .fracture import Energies
 from .loads import Loads
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
-from .node_outline import node_outline, spread_note
+from .node_outline import node_outline
 from .operators import PointsOn
 from .piece_masses import with_heavier_pieces
 from .system import system_of
@@ -78,8 +78,7 @@ def fem(
     scene
         The scene; its joints need a stiffness, its blocks one too unless `modes` is 3.
     cells
-        Cells in half a block along the course, and in a block's height. At finite displacements contacts are at nodes,
-        and joints that soften, crush or close take four.
+        Cells in half a block along the course, and in a block's height.
     modes
         Modes of each block (`ModeCount`): 10 by default, all where blocks may crack.
     rule
@@ -96,8 +95,8 @@ def fem(
         Where the joints' fracture energies come from; without any, joints are perfectly plastic.
     displacements
         Whether a wall that is led by its beam is followed through finite displacements, as `dem.dynamic.dem_dynamic`
-        follows it. Contacts are then at nodes, `rule`, `points`, `loads` and `energies` are not taken, and blocks
-        crack on their axes.
+        follows it. Contacts are then at nodes and, where joints soften, crush or close, at points between them; `rule`,
+        `points`, `loads` and `energies` are not taken, and blocks crack on their axes.
     tolerance, collapse, first_step, budget, observe
         As in `collapse_by_steps`.
 
@@ -128,8 +127,6 @@ def fem(
             system = system_of(wall, loads=loads, mass_scaling=mass_scaling, energies=energies)
             run = run_of_longer_steps(wall, system) if mass_scaling else Run(system)
     note = _note(wall, run.system, cracks)
-    if finite:
-        note = "; ".join(filter(None, (note, spread_note(scene, cells))))
     if scene.history:
         return critical_scale(scene, "fem", run.system, tolerance, note=note, observe=observe)
     outcome = collapse_by_steps(
@@ -149,7 +146,7 @@ def fem(
         budget=budget,
         observe=observe,
     )
-    if len(outcome.force) and not listed_points(scene, len(outcome.force)):
+    if len(outcome.force) and (finite or not listed_points(scene, len(outcome.force))):
         elements = wall.elements
         outcome = replace(outcome, force=at_ends(scene, elements.points.part(elements.listing), outcome.force))
     return replace(outcome, seconds=time.perf_counter() - start)
@@ -202,8 +199,7 @@ def fem_response(
 ) -> Response:
     """Response of a scene's deformable blocks to the motion of its ground, λ times as large, as `follow` has it."""
     resting = Resting.of(scene, "fem", finite_system(node_outline(with_impacts(scene), cells, modes)))
-    response = follow(resting, scale, **settings)
-    return replace(response, message="; ".join(filter(None, (response.message, spread_note(scene, cells)))))
+    return follow(resting, scale, **settings)
 
 
 def fem_vibration(scene: Scene, count: int = 10, *, cells: int = 1, modes: ModeCount | None = None) -> Vibration:

@@ -1,5 +1,10 @@
-"""Outlines of deformable blocks: their sides as polygons of the nodes of their mesh."""
+"""Outlines of deformable blocks: their sides as polygons of the nodes of their mesh, and of points between those.
 
+Contacts are at the corners of the polygons. Where pressures along joints matter, the facets of the mesh are divided,
+by points that move as the mesh between its nodes does.
+"""
+
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -8,18 +13,15 @@ import numpy as np
 from runningbond.contacts.materials import ContactMaterials
 from runningbond.contacts.outline import Outline
 from runningbond.dynamics.rig import check_finite
-from runningbond.joints.wall_points import spreads
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.joints.points import trapezoids
+from runningbond.joints.wall_points import BETWEEN, spreads
+from runningbond.scene import Array, Blocks, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, Sides
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
-from .templates import nodes_of, rows_of
-
-CELLS, EXCESS = 4, 0.5
-"""Cells in half a block whose nodes spread pressures along its joints, and by how much one cell makes a mortared stone
-too strong: two make it a quarter of that, four a sixteenth; a toe that crushes is a fifth too strong at most."""
+from .templates import nodes_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,23 +37,25 @@ class NodeOutline:
     outline
         Their undeformed outlines.
     node : (no,) int
-        Node of the mesh.
+        Node of the mesh that each is, or that it lies after.
+    row : (no,) int
+        Its row in the table of its block's template.
     first : (nv + 1,) int
         First outline node of each side, then their number.
     nodes, sides
         The outline nodes and the sides, as the kernels take them.
-    tables : list
-        Of each template the nodes on its outline, in numbers of its own, and their displacements per deformation;
-        no nodes if the blocks do not deform.
+    tables : list of (n, 2, m) float
+        Of each template the displacements of its outline nodes per deformation.
     """
 
     wall: ModalWall
     outline: Outline
     node: Indices
+    row: Indices
     first: Indices
     nodes: OutlineNodes
     sides: Sides
-    tables: list[tuple[Indices, Array]]
+    tables: list[Array]
 
     @property
     def scene(self) -> Scene:
@@ -72,14 +76,15 @@ class NodeOutline:
         return np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py])
 
     def new_tables(self) -> NodalTables:
-        """Displacements of the nodes per deformation, with buffers of their own."""
+        """Displacements of the outline nodes per deformation, with buffers of their own."""
         wall, rows = self.wall, []
-        _, place = wall.places([own for own, _ in self.tables])
-        for template, first, (_, table), at in zip(wall.templates, wall.first, self.tables, place, strict=False):
-            n, (width, modes) = len(template.blocks), table.shape
+        _, first = _places(wall, self.nodes.owner, self.row, self.tables)
+        for template, coordinate, at, table in zip(wall.templates, wall.first, first, self.tables, strict=False):
+            n, (points, _, modes) = len(template.blocks), table.shape
             if modes:
-                rows.append(((n, modes, width, int(first) + 3 * n, int(at)), table))
-        return nodal_tables(rows, int(place[-1]), 1)
+                flat = table.reshape(2 * points, modes)
+                rows.append(((n, modes, 2 * points, int(coordinate) + 3 * n, int(at)), flat))
+        return nodal_tables(rows, int(first[-1]), 1)
 
 
 def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> NodeOutline:
@@ -95,29 +100,31 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     for key, forces in (("load.live", scene.live_forces), ("load.dead", scene.dead_forces)):
         if forces.moment.any() or not scene.is_beam[forces.block].all():
             raise SceneError(key, "finite displacements need loads on the blocks' mass, or on a beam")
-    wall, outline = modal_wall(scene, cells, modes), Outline.of(scene)
+    parts = math.ceil((BETWEEN - 1) / cells) if spreads(scene) else 1
+    wall, outline = modal_wall(scene, cells, modes, trapezoids(parts)), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])
-    tables = list(_tables(wall, np.split(node, first[outline.blocks.first[1:-1]])))
-    nodes = _outline_nodes(wall, node, first, tables)
-    return NodeOutline(wall, outline, node, first, nodes, _sides(outline, first, nodes.length), tables)
+    following = node[_following(first, outline.blocks)]
+    share = np.arange(parts) / parts
+    points = (1 - share)[:, None] * wall.mesh.points[node, None] + share[:, None] * wall.mesh.points[following, None]
+    node, first = np.repeat(node, parts), parts * first
+    row, tables = _tables(wall, node, np.repeat(following, parts), np.tile(share, len(following)))
+    nodes = _outline_nodes(wall, points.reshape(-1, 2), first, _places(wall, wall.mesh.block[node], row, tables)[0])
+    return NodeOutline(wall, outline, node, row, first, nodes, _sides(outline, first, nodes.length), tables)
 
 
-def spread_note(scene: Scene, cells: int) -> str:
-    """What a message says of pressures along joints that too few nodes spread; empty where there are none."""
-    if cells >= CELLS or not spreads(scene):
-        return ""
-    few = f"{cells} cell{'s' * (cells > 1)} in half a block"
-    excess = f"joints that soften, crush or close bear up to {EXCESS / cells**2:.0%} too much"
-    return f"contacts are at nodes: from {few} {excess}, which is not in the bracket; cells = {CELLS} spreads pressures"
+def _following(first: Indices, blocks: Blocks) -> Indices:
+    """Next outline node of each, from the first one of each side, ``(no,)``."""
+    following = np.arange(1, first[-1] + 1)
+    following[first[1:] - 1] = first[blocks.successor]
+    return following
 
 
-def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, tables: list[tuple[Indices, Array]]) -> OutlineNodes:
-    blocks, points = wall.scene.blocks, wall.mesh.points[node]
+def _outline_nodes(wall: ModalWall, points: Array, first: Indices, place: Indices) -> OutlineNodes:
+    blocks = wall.scene.blocks
     side = np.repeat(np.arange(len(first) - 1), np.diff(first))
     owner = blocks.owner[side]
-    following = np.arange(1, len(node) + 1)
-    following[first[1:] - 1] = first[blocks.successor]
+    following = _following(first, blocks)
     length = np.hypot(*(points[following] - points).T)
     total = np.cumsum(length) - length
     return OutlineNodes(
@@ -125,7 +132,7 @@ def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, tables: list[
         blocks.centroid.copy(),
         owner.astype(np.int64),
         points - blocks.centroid[owner],
-        wall.places([own for own, _ in tables])[0][node],
+        place,
         following,
         total - total[first[:-1]][side],
         length,
@@ -142,11 +149,29 @@ def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
     return Sides(outer, shares, extent, outline.straight.copy(), successor, inset, outline.radius.copy())
 
 
-def _tables(wall: ModalWall, of_block: list[Indices]) -> Iterator[tuple[Indices, Array]]:
-    for template in wall.templates:
-        block, shape = template.blocks[0], template.modes.shape[:, 3:]
-        local = np.sort(of_block[block]) - wall.mesh.first_node[block] if shape.size else np.zeros(0, dtype=np.int64)
-        yield local, rows_of(shape, local)
+def _tables(wall: ModalWall, node: Indices, following: Indices, share: Array) -> tuple[Indices, list[Array]]:
+    """Row of each outline node in the table of its block's template, ``(no,)``, and the tables.
+
+    The outline nodes lie between two nodes of the mesh, at some share of the way; those of fixed blocks have no row.
+    """
+    mesh, row, tables = wall.mesh, np.full(len(node), -1), []
+    block = mesh.block[node]
+    local = np.column_stack([node, following]) - mesh.first_node[block][:, None]
+    for number, template in enumerate(wall.templates):
+        own = np.flatnonzero(wall.place[block, 0] == number)
+        likeness = np.column_stack([local[own], share[own]])
+        _, chosen, row[own] = np.unique(likeness, axis=0, return_index=True, return_inverse=True)
+        (i, j), s = local[own[chosen]].T, share[own[chosen], None, None]
+        shape = template.modes.shape.reshape(-1, 2, len(template.modes.mass))[:, :, 3:]
+        tables.append((1 - s) * shape[i] + s * shape[j])
+    return row, tables
+
+
+def _places(wall: ModalWall, owner: Indices, row: Indices, tables: list[Array]) -> tuple[Indices, Indices]:
+    """As `ModalWall.places`, of outline nodes; none of blocks that do not deform."""
+    counts = [len(table) if table.size else 0 for table in tables]
+    deforms = np.append(np.array(counts) > 0, False)[wall.place[owner, 0]]  # -1, of fixed blocks, is the last
+    return wall.places(owner, np.where(deforms, row, -1), counts)
 
 
 def _nodes_of_sides(wall: ModalWall) -> Iterator[Indices]:

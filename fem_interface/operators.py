@@ -217,7 +217,10 @@ def _on_elements(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tupl
             name, f"must leave something of a joint element {length[worst]:.4g} m long", float(inset[joint[worst]])
         )
     local = low[:, None] + (high - low)[:, None] * (rule.nodes + 1) / 2
-    return np.arange(len(joint)), local, np.tile(rule.weights / 2, (len(joint), 1))
+    # What lies in the inset is shared by all of the joint, as by that of a rigid block.
+    whole, left = (np.bincount(joint, length * part) for part in (np.ones(len(joint)), high - low))
+    share = (high - low) * (whole / np.where(left > 0, left, 1.0))[joint]
+    return np.arange(len(joint)), local, share[:, None] * rule.weights / 2
 
 
 def _on_joints(mesh: WallMesh, scene: Scene, rule: Rule, inset: Array) -> tuple[Indices, Array, Array]:

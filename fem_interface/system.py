@@ -104,7 +104,10 @@ def _geometry(wall: ModalWall) -> ModalJoints:
     n, ne, _ = joint.weights.shape
     _, start = element_runs(wall)
     local, tables = zip(*_tables(wall), strict=True) if wall.templates else ((), ())
-    place, first = wall.places(list(local))
+    row = np.full(len(mesh.points), -1)
+    for template, own in zip(wall.templates, local, strict=True):
+        row[mesh.first_node[template.blocks][:, None] + own] = np.arange(len(own))
+    place, first = wall.places(mesh.block, row, [len(own) for own in local])
     plain, folds = [], []
     for template, own, table, coordinate, at in zip(wall.templates, local, tables, wall.first, first, strict=False):
         shape = (len(template.blocks), table.shape[1], len(table), int(coordinate), int(at))
