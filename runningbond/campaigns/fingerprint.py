@@ -4,7 +4,7 @@ import hashlib
 import inspect
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from importlib.metadata import version
 from pathlib import Path
@@ -30,8 +30,7 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
         own = _own_code(model.solve)
         loads = (*scene.load.live, *scene.load.dead) if own else ()  # of which it may read whatever it likes
         digest.update(own + b"".join(_own_code(type(load)) for load in loads))
-        if settings := getattr(model.solve, "keywords", None):  # with which it was made of another's
-            digest.update(repr(sorted(settings.items())).encode())
+        _feed_given(digest, model.solve)
         model = model.name
     digest.update(f"{model} {tolerance!r} ".encode())
     for value in (scene, scene.dead_forces, scene.live_forces, scene.control_point):
@@ -42,13 +41,54 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
 def _own_code(given: Callable[..., Any]) -> bytes:
     """The file of a user's function or class, or its compiled code where there is none; nothing for the package's."""
     function: Any = getattr(given, "func", given)
+    function = function if hasattr(function, "__module__") else type(function)
     if function.__module__.split(".")[0] in {room.split(".")[0] for room in COMPUTING_ROOMS}:
         return b""
     try:
         return Path(inspect.getfile(function)).read_bytes()
     except (TypeError, OSError):
-        code = getattr(function, "__code__", None)
-        return b"" if code is None else code.co_code + repr(code.co_consts).encode()
+        return repr(_code(getattr(function, "__code__", None))).encode()
+
+
+def _code(code: Any) -> tuple[Any, ...]:
+    """Compiled code as what it says, that of functions within it too."""
+    if not hasattr(code, "co_code"):
+        return ("", code)
+    return code.co_code, code.co_names, *map(_code, code.co_consts)
+
+
+def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ()) -> None:
+    """Add what something that is called was given beside its code: defaults, what it is closed over, fields, settings.
+
+    Of code without a file also the plain values that it names outside of itself.
+    """
+    if id(given) in seen:
+        return
+    seen = (*seen, id(given))
+    if isinstance(given, partial):
+        _feed_values(digest, (*given.args, *sorted((given.keywords or {}).items())), seen)
+        _feed_given(digest, given.func, seen)
+    elif inspect.isfunction(given):
+        closure, defaults = inspect.getclosurevars(given), (given.__defaults__, given.__kwdefaults__)
+        outside = {} if Path(given.__code__.co_filename).exists() else closure.globals
+        _feed_values(digest, (*defaults, *sorted({**closure.nonlocals, **outside}.items())), seen)
+    elif inspect.ismethod(given):
+        _feed_values(digest, (given.__self__, given.__func__), seen)
+    elif not inspect.isroutine(given) and not inspect.isclass(given) and not inspect.ismodule(given):
+        _feed_values(digest, tuple(sorted(getattr(given, "__dict__", {}).items())), seen)
+
+
+def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[int, ...]) -> None:
+    """Add values, and what those that are called, or say nothing of themselves, are made of."""
+    for value in values:
+        if isinstance(value, tuple):
+            _feed_values(digest, value, seen)
+            continue
+        _feed(digest, value)
+        if _says_nothing(value):
+            if inspect.isfunction(value):
+                digest.update(_own_code(value))
+            _feed_given(digest, value, seen)
 
 
 @cache
@@ -77,7 +117,12 @@ def _feed(digest: "hashlib._Hash", value: object) -> None:
         for name in [entry.name for entry in fields(value)] if is_dataclass(value) else sorted(vars(value)):
             digest.update(name.encode())
             _feed(digest, getattr(value, name))
-    elif type(value).__repr__ is object.__repr__ or callable(value):  # in a load, which is known by what it does
+    elif _says_nothing(value):  # in a load, which is known by what it does
         digest.update(f"{type(value).__name__} {getattr(value, '__qualname__', '')}".encode())
     else:
         digest.update(repr(value).encode())
+
+
+def _says_nothing(value: object) -> bool:
+    """Whether a value is told by where it lies in memory."""
+    return type(value).__repr__ is object.__repr__ or callable(value)

@@ -16,6 +16,8 @@ from runningbond.scene import Scene, SceneError
 from .fingerprint import fingerprint
 
 Cell: TypeAlias = tuple[str, str]  # name of a scene and of a model
+INTERRUPTIONS = signal.SIGINT, signal.SIGTERM
+"""Signals that end work before its end: Ctrl-C, and a scheduler's."""
 _ONE_AT_A_TIME = threading.Lock()
 
 
@@ -84,19 +86,22 @@ class Task:
 @contextmanager
 def _interruptions_kept() -> Iterator[None]:
     """Raise KeyboardInterrupt in the end where a model took it for a sign to end with what it had."""
-    before, seen = signal.getsignal(signal.SIGINT), list[int]()
-    if not callable(before) or threading.current_thread() is not threading.main_thread():
+    before = {number: signal.getsignal(number) for number in INTERRUPTIONS}
+    heard, seen = {number: each for number, each in before.items() if callable(each)}, list[int]()
+    if not heard or threading.current_thread() is not threading.main_thread():
         yield
         return
 
     def note(number: int, frame: FrameType | None) -> None:
         seen.append(number)
-        before(number, frame)
+        heard[signal.Signals(number)](number, frame)
 
-    signal.signal(signal.SIGINT, note)
+    for number in heard:
+        signal.signal(number, note)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number in heard:
+            signal.signal(number, before[number])
     if seen:
         raise KeyboardInterrupt

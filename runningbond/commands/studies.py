@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runningbond.campaigns import INTERRUPTIONS
 from runningbond.results import make_folder
 from runningbond.scene import SceneError
 from runningbond.scene.ranges import suggestion
 
-from .terminal import DONE, INTERRUPTIONS, NO_ANSWER, STOPPED, Whole, print_table, progress_bar
+from .terminal import DONE, NO_ANSWER, STOPPED, Whole, print_table, progress_bar
 
 if TYPE_CHECKING:
     from runningbond.studies import Row, Study

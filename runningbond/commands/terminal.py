@@ -15,7 +15,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 from rich.text import Text
 
-from runningbond.campaigns import Interrupted
+from runningbond.campaigns import INTERRUPTIONS, Interrupted
 from runningbond.compare.advice.costs import estimate
 from runningbond.models import Model
 from runningbond.pictures.offscreen import why_not_drawn
@@ -34,9 +34,6 @@ PATIENCE, REFRESH = 2.0, 0.25
 
 INTERVAL = 30.0
 """Seconds between two lines of progress in a file."""
-
-INTERRUPTIONS = signal.SIGINT, signal.SIGTERM
-"""Signals that end a command: Ctrl-C, and a scheduler's."""
 
 UNDECIDED = ("undecided", "failed")
 """Statuses of outcomes that are no answer."""

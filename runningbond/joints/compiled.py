@@ -172,7 +172,7 @@ def identity(function: Any, callers: tuple[Any, ...] = ()) -> tuple[Any, ...]:
     used = [cell.cell_contents for cell in function.__closure__ or ()]
     own: tuple[Any, ...] = ()
     if not _is_own(function.__module__):
-        own = code.co_code, [dumps(value) for value in code.co_consts if not hasattr(value, "co_code")]
+        own = code.co_code, code.co_names, [dumps(value) for value in code.co_consts if not hasattr(value, "co_code")]
         named = (function.__globals__.get(name) for name in code.co_names)
         used += [value for value in named if isinstance(value, (Dispatcher, bool, int, float, tuple, np.ndarray))]
     callers = (*callers, function)

@@ -2,11 +2,22 @@
 
 import ast
 import sys
+from functools import partial
 from importlib import import_module
 from importlib.metadata import packages_distributions
 from pathlib import Path
+from typing import Any
 
-from runningbond.campaigns.fingerprint import COMPUTING_ROOMS, LIBRARIES
+import pytest
+
+from runningbond.campaigns.fingerprint import COMPUTING_ROOMS, LIBRARIES, fingerprint
+from runningbond.models import Model
+from runningbond.results import Outcome
+from runningbond.scene import Scene
+
+from ..walls import panel
+
+WALL = panel(wall__length=0.48, wall__height=0.12)
 
 OWN = {"runningbond", "meshing", "fem_interface", "dem", "homog"}
 OTHERS = {"threadpoolctl", "filelock", "ezdxf", "meshio"}
@@ -27,3 +38,64 @@ def test_no_library_that_computes_is_left_out() -> None:
     assert {"numpy", "clarabel", "highspy"} <= foreign
     distributions = packages_distributions()
     assert {name for module in foreign for name in distributions[module]} - OTHERS <= set(LIBRARIES)
+
+
+def closed_over(factor: float) -> Any:
+    """A solver of a user's that knows of a number by being closed over it."""
+    return lambda scene, tolerance: Outcome(scene.title, "mine", "collapse", factor)
+
+
+def with_default(factor: float) -> Any:
+    """One that has it by default."""
+
+    def solve(scene: Scene, tolerance: float, by: float = factor) -> Outcome:
+        return Outcome(scene.title, "mine", "collapse", by)
+
+    return solve
+
+
+class Solver:
+    """One that is an object, and has it in a field."""
+
+    def __init__(self, factor: float) -> None:
+        self.factor = factor
+
+    def solve(self, scene: Scene, tolerance: float) -> Outcome:
+        """As of a bound method."""
+        return Outcome(scene.title, "mine", "collapse", self.factor)
+
+    __call__ = solve
+
+
+def named(factor: float) -> Any:
+    """One without a file, as of a notebook, that names a number outside of itself."""
+    names: dict[str, Any] = {"FACTOR": factor, "__name__": "__main__"}
+    exec("def solve(scene, tolerance): return FACTOR", names)
+    return names["solve"]
+
+
+def through_another(factor: float) -> Any:
+    """One that calls another."""
+    inner = closed_over(factor)
+    return lambda scene, tolerance: inner(scene, tolerance)
+
+
+@pytest.mark.parametrize(
+    "made", [closed_over, with_default, lambda x: Solver(x).solve, Solver, named, partial, through_another]
+)
+def test_a_users_model_is_known_by_what_it_was_given(made: Any) -> None:
+    made = (lambda x: partial(Solver.solve, Solver(x))) if made is partial else made
+    keys = [
+        fingerprint(WALL, Model("mine", "a user's own", made(factor), frozenset()), 1e-3) for factor in (1.0, 1.0, 2.0)
+    ]
+    assert keys[0] == keys[1] != keys[2]
+
+
+def test_code_without_a_file_is_known_by_the_names_in_it() -> None:
+    """The same instructions and constants, of another function."""
+    keys = set()
+    for name in ("min", "max"):
+        names: dict[str, Any] = {"__name__": "__main__"}
+        exec(f"def solve(scene, tolerance): return {name}(scene.thickness, 10.0)", names)
+        keys.add(fingerprint(WALL, Model("mine", "a user's own", names["solve"], frozenset()), 1e-3))
+    assert len(keys) == 2
