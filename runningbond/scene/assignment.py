@@ -182,9 +182,10 @@ def _chosen_joints(entry: Assignment, joints: Joints, material_names: Sequence[s
 def _on_layer(entry: Assignment, n: int, layers: Sequence[str]) -> Mask:
     if not layers:
         raise SceneError(f"{entry.key}.layer", "needs a drawing, whose blocks have layers", entry.layer)
-    if entry.layer is not None and entry.layer not in layers:
+    sought, known = str(entry.layer).lower(), [layer.lower() for layer in layers]
+    if sought not in known:
         one_of(f"{entry.key}.layer", entry.layer, sorted(set(layers)))
-    on = np.array([layer == entry.layer for layer in layers], dtype=np.bool_)
+    on = np.array([layer == sought for layer in known], dtype=np.bool_)
     return np.append(on, np.zeros(n - len(on), dtype=np.bool_))
 
 

@@ -124,16 +124,28 @@ class Settlement(Action):
         return (Arrow(direction, at, block),)
 
 
-def cut_ground(grounds: Sequence[Array], settlements: Sequence[Settlement]) -> list[Array]:
-    """Cut grounds ``(n, 2)`` [m] at the left and right sides of the boxes of settlements, where these reach them."""
+def cut_ground(grounds: Sequence[Array], settlements: Sequence[Settlement], reach: float) -> list[Array]:
+    """Cut grounds ``(n, 2)`` [m] at the sides of the boxes of settlements.
+
+    What is nearer to a corner of theirs than contacts `reach` [m] is at that corner: no piece is thinner.
+    """
     pieces = [shapely.Polygon(ground) for ground in grounds]
+    corners = np.concatenate([np.zeros((0, 2)), *grounds])
     for settlement in settlements:
         (x0, _), (x1, y1) = settlement.box
+        x0, x1, y1 = (_at_corner(x, corners[:, axis], reach) for x, axis in ((x0, 0), (x1, 0), (y1, 1)))
         deep = min((piece.bounds[1] for piece in pieces), default=0.0) - 1.0
         inside = shapely.box(x0, deep, x1, max(y1, deep))
         parts = [part for piece in pieces for part in (piece.intersection(inside), piece.difference(inside))]
-        pieces = [one for part in parts for one in shapely.get_parts(part) if one.area > 0]
+        found = [one for part in parts for one in shapely.get_parts(part)]
+        pieces = [one for one in found if not one.buffer(-reach / 2).is_empty]
     return [np.array(orient(piece).exterior.coords)[:-1] for piece in pieces]
+
+
+def _at_corner(place: float, corners: Array, reach: float) -> float:
+    """A place along an axis, or that of a corner within reach of it."""
+    apart = np.abs(corners - place)
+    return float(corners[apart.argmin()]) if apart.min(initial=np.inf) <= reach else place
 
 
 def read_box(key: str, value: Any) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -419,7 +419,8 @@ def _bodies(
     blocks = Blocks.from_polygons(polygons)
     if not grounds and support == "base":
         grounds = [_strip_below(blocks)]
-    grounds = cut_ground(grounds, [live for live in load.live if isinstance(live, Settlement)])
+    settlements = [live for live in load.live if isinstance(live, Settlement)]
+    grounds = cut_ground(grounds, settlements, blocks.tolerance)
     bodies = [*polygons]
     if beam is not None:
         beam = replace(beam, block=len(bodies))

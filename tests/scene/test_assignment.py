@@ -79,9 +79,11 @@ def test_cracks_keep_their_material_and_halves_that_of_their_block() -> None:
     assert names_of_blocks(scene)[2] == "block"
 
 
-def test_blocks_and_joints_by_layer(tmp_path: Path) -> None:
+@pytest.mark.parametrize("drawn", ["OAK", "Oak", "oak"])
+def test_blocks_and_joints_by_layer(drawn: str, tmp_path: Path) -> None:
+    """Names of layers that differ in capitals alone are one layer's, as in CAD programs."""
     document = ezdxf.new()  # type: ignore[attr-defined]
-    for layer, y in (("0", 0.0), ("OAK", 100.0)):
+    for layer, y in (("0", 0.0), (drawn, 100.0)):
         corners = [(0.0, y), (200.0, y), (200.0, y + 100.0), (0.0, y + 100.0)]
         document.modelspace().add_lwpolyline(corners, close=True, dxfattribs={"layer": layer})
     document.modelspace().add_lwpolyline(GROUND, close=True)

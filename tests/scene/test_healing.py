@@ -126,6 +126,7 @@ def test_a_gap_that_takes_a_joint_away_is_said_and_what_would_close_it(tmp_path:
     )
     proposed = float(note.split("heal = ")[1].split()[0])
     assert len(scene_of(path, heal=proposed).joints) == 14
+    assert read_drawing(path, "mm", heal=2e-4).notes == ("heal: nothing to close", note)
 
 
 def test_a_wide_gap_is_meant() -> None:

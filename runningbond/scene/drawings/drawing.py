@@ -90,9 +90,9 @@ def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
     if heal is not None:
         joined, note = healed([*blocks, *grounds], heal)
         blocks, grounds = joined[: len(blocks)], joined[len(blocks) :]
-    else:
-        note = missed_joints([*blocks, *grounds])
-    return Drawing(blocks, tuple(layers), grounds, (*notes, note) if note else tuple(notes))
+        notes += [note] if note else []
+    missed = missed_joints([*blocks, *grounds])
+    return Drawing(blocks, tuple(layers), grounds, (*notes, missed) if missed else tuple(notes))
 
 
 def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], list[str]]:

@@ -94,7 +94,7 @@ class _Walk:
         for entity in entities:
             self._count(1)
             kind, own = entity.dxftype(), entity.dxf.get("layer", "0")
-            layer = owner if owner is not None and own == "0" else own
+            layer = owner if owner is not None and own == "0" else self._spelt(own)
             name = f"{KEY}, {kind} {entity.dxf.handle}" if not within else f"{within}, {kind}"
             hidden = self._hidden(layer)
             if entity.dxf.get("invisible", 0) or (hidden and (kind != "INSERT" or hidden == "frozen")):
@@ -121,6 +121,11 @@ class _Walk:
         for one in insert.multi_insert() if several else [insert]:
             parts = one.virtual_entities(skipped_entity_callback=skipped)
             yield from self._within(parts, layer, name, depth + 1)
+
+    def _spelt(self, layer: str) -> str:
+        """A layer as the document's table spells it: names that differ in capitals alone are one layer's."""
+        entry = self._layers.get(layer.lower())
+        return layer if entry is None else str(entry.dxf.name)
 
     def _hidden(self, layer: str) -> str:
         entry = self._layers.get(layer.lower())

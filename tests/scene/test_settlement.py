@@ -1,0 +1,41 @@
+"""Grounds that are cut by the boxes of settlements."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.models import run_model
+from runningbond.scene import Scene, scene_from_dict
+
+from .drafting import box as box_of
+from .drafting import closed, dxf, tables
+
+
+def piers(tmp_path: Any, at: float, box: float) -> Scene:
+    """Two mortared piers on a ground of two pieces that meet at a place; it sinks from the left side of a box on."""
+    x = 1e3 * at
+    blocks = [box_of(0.0, 0.0, 400.0, 300.0), box_of(400.02, 0.0, 800.0, 300.0)]
+    grounds = [box_of(-200.0, -100.0, x, 0.0), box_of(x, -100.0, 1000.0, 0.0)]
+    path = dxf(tmp_path / "wall.dxf", closed(blocks), closed(grounds, layer="ground"), ground=False)
+    live = {"kind": "settlement", "box": [[box, -1.0], [2.0, 0.0]], "by": [0.0, -1.0]}
+    joint = {"friction": 0.6, "cohesion": 3e3}
+    return scene_from_dict(
+        tables(thickness=0.2) | {"joint": joint, "load": {"gravity": 9.81, "live": live}}, folder=path.parent
+    )
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-5, -1e-5])
+def test_a_box_a_hair_beside_an_edge_of_the_ground_is_at_that_edge(off: float, tmp_path: Any) -> None:
+    """No sliver of ground: contacts reach as far, and the wall bears the same."""
+    exact, beside = (piers(tmp_path, 0.40001, 0.40001 + x) for x in (0.0, off))
+    assert len(beside.blocks) == 4
+    assert beside.blocks.tolerance == exact.blocks.tolerance
+    assert np.array_equal(beside.support_motion != 0, exact.support_motion != 0)
+    loads = [run_model("limit", scene).multiplier for scene in (exact, beside)]
+    assert loads[1] == pytest.approx(loads[0], rel=1e-6)
+
+
+@pytest.mark.parametrize("at", [0.3, 0.5, 0.7, 0.1 + 0.2])
+def test_rounding_of_units_cuts_no_sliver(at: float, tmp_path: Any) -> None:
+    assert len(piers(tmp_path, at, at).blocks) == 4
