@@ -44,28 +44,43 @@ class Draws:
         """λ of the draws that collapse, from the lowest ``(n,)``."""
         return np.sort([x.multiplier for x in self.outcomes if x.multiplier is not None])
 
+    @cached_property
+    def borne(self) -> Array:
+        """λ of all draws that are decided, from the lowest ``(n,)``.
+
+        It is 0 where the dead load alone is too much, and infinite where every load is borne.
+        """
+        none, all_of_them = (self._count(status) for status in ("infeasible", "unbounded"))
+        return np.concatenate([np.zeros(none), self.multipliers, np.full(all_of_them, np.inf)])
+
     @property
     def lowest(self) -> float | None:
-        """Lowest λ."""
-        return float(self.multipliers[0]) if len(self.multipliers) else None
+        """Lowest λ; 0 where a draw falls under its dead load."""
+        return float(self.borne[0]) if len(self.borne) and np.isfinite(self.borne[0]) else None
 
     @property
     def mean(self) -> float | None:
-        """Mean λ."""
-        return float(self.multipliers.mean()) if len(self.multipliers) else None
+        """Mean λ; None where a draw bears every load."""
+        return float(self.borne.mean()) if len(self.borne) and np.isfinite(self.borne[-1]) else None
 
     @property
     def error(self) -> float | None:
         """Standard error of the mean, of two draws or more."""
-        n = len(self.multipliers)
-        return float(self.multipliers.std(ddof=1) / np.sqrt(n)) if n > 1 else None
+        n = len(self.borne)
+        return float(self.borne.std(ddof=1) / np.sqrt(n)) if n > 1 and np.isfinite(self.borne[-1]) else None
 
     @property
     def quantiles(self) -> dict[str, float]:
-        """λ below which `QUANTILES` of the draws lie, by their percentages."""
-        if not len(self.multipliers):
+        """λ below which `QUANTILES` of the draws that are decided lie, by their percentages; infinite where none."""
+        if not len(self.borne):
             return {}
-        return {f"{100 * q:g}": float(np.quantile(self.multipliers, q)) for q in QUANTILES}
+        high = np.quantile(self.borne, QUANTILES, method="higher")
+        finite = np.quantile(np.minimum(self.borne, np.finfo(float).max / 2), QUANTILES)
+        values = np.where(np.isfinite(high), finite, high)
+        return {f"{100 * q:g}": float(value) for q, value in zip(QUANTILES, values, strict=True)}
+
+    def _count(self, status: str) -> int:
+        return sum(outcome.status == status for outcome in self.outcomes)
 
     def summary(self) -> dict[str, Any]:
         """All of this as an object of JSON."""
@@ -74,7 +89,9 @@ class Draws:
             "scatter": str(self.scatter),
             "number": len(self.outcomes),
             "collapsed": len(self.multipliers),
-            **{key: getattr(self, key) for key in ("lowest", "mean", "error", "quantiles")},
+            **{status: self._count(status) for status in ("infeasible", "unbounded")},
+            **{key: getattr(self, key) for key in ("lowest", "mean", "error")},
+            "quantiles": {q: x if np.isfinite(x) else None for q, x in self.quantiles.items()},
             "each": [{key: getattr(outcome, key) for key in keys} for outcome in self.outcomes],
         }
 
@@ -90,14 +107,16 @@ class Draws:
 
     def __str__(self) -> str:
         """What they come to, in a line."""
-        collapsed = f"{len(self.multipliers)} of {len(self.outcomes)} draws collapse"
-        if self.error is None or self.lowest is None or self.mean is None:
-            return f"{collapsed}{'' if self.lowest is None else f', at {_told(self.lowest)}'}"
+        told = f"{len(self.multipliers)} of {len(self.outcomes)} draws collapse"
+        for status, words in (("infeasible", "under dead load alone, at 0"), ("unbounded", "at no load, ∞")):
+            told += f", {self._count(status)} fall {words}" if self._count(status) else ""
+        if len(self.borne) < 2:
+            return f"{told}{'' if self.lowest is None else f', at {_told(self.lowest)}'}"
         quantiles = ", ".join(f"{q} % {_told(x)}" for q, x in self.quantiles.items())
-        return (
-            f"{collapsed}: lowest {_told(self.lowest)}, quantiles {quantiles}, "
-            f"mean {_told(self.mean)} ± {_told(self.error)} (standard error)"
-        )
+        told += f": lowest {_told(self.lowest)}, quantiles {quantiles}"
+        if self.mean is None:
+            return told
+        return f"{told}, mean {_told(self.mean)} ± {_told(self.error)} (standard error)"
 
     def __repr__(self) -> str:
         first, ends = self.outcomes[0], {"lowest": self.lowest, "mean": self.mean}
@@ -108,7 +127,7 @@ class Draws:
 
 
 def _told(load: float | None) -> str:
-    return "–" if load is None else number(load)
+    return "–" if load is None else number(load) if np.isfinite(load) else "∞"
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.scene import Array, Indices, JointMaterial, Scene, SceneError
-from runningbond.scene.arrays import components
+from runningbond.scene import Action, Array, GivenForces, Indices, JointMaterial, Scene, SceneError
+from runningbond.scene.arrays import components, frozen
 from runningbond.scene.ranges import Range, suggestion
 
 SEED = 20
@@ -14,6 +14,9 @@ SEED = 20
 
 BITS = 1e-12
 """Relative change of densities and frictions that changes nothing but their last bits."""
+
+MOST_OF_JOINT = 0.45
+"""Most that a line moves, in lengths of the joints that end at it: two that move towards each other leave a tenth."""
 
 KEY = "scatter"
 RANGES = {"size": Range(above=0.0, most=0.1), "friction": Range(above=0.0, most=0.5)}
@@ -101,40 +104,80 @@ def _with_friction(scene: Scene, factors: Array) -> Scene:
 
 
 def _resized(scene: Scene, size: float, random: np.random.Generator) -> Scene:
-    """A wall whose lines of joints, each straight and as long as it goes, have moved; its outer sides stay."""
-    corners = scene.blocks.vertices.copy()
-    along = np.abs(np.diff(corners[np.column_stack([np.arange(len(corners)), scene.blocks.successor])], axis=1)[:, 0])
-    places, ends_at = _places(scene, scene.blocks.vertices), _places(scene, scene.joints.ends.reshape(-1, 2))
-    if (along.min(axis=1) > scene.blocks.tolerance).any() or not {*ends_at} <= {*places}:
+    """A wall whose lines of joints, each straight and as long as it goes, have moved.
+
+    Its outer sides stay, and so do a beam, the ground and what is in line with them. Lines move by less where a joint
+    between two of them would vanish. Loads, pins and bars at points stay on their blocks, and move as those do.
+    """
+    blocks, corners, ends = scene.blocks, scene.blocks.vertices.copy(), scene.joints.ends.copy()
+    place, place_of_end = np.split(_places(scene), [len(corners)])
+    along = np.abs(np.diff(corners[np.column_stack([np.arange(len(corners)), blocks.successor])], axis=1)[:, 0])
+    corner_at = {(int(x), int(y)): k for k, (x, y) in enumerate(place)}
+    corner_of_end = np.array([corner_at.get((int(x), int(y)), -1) for x, y in place_of_end]).reshape(-1, 2)
+    if (along.min(axis=1) > blocks.tolerance).any() or (corner_of_end < 0).any():
         raise SceneError(
             KEY, "size is taken by walls of level and upright joints alone; leave it out", f"size={size:g}"
         )
-    low, high = scene.blocks.extent(scene.wall)
-    sides = np.subtract(*scene.blocks.boxes[::-1])[scene.wall]
-    ends = scene.joints.ends.copy()
+    low, high = blocks.extent(scene.masonry)
+    sides = np.subtract(*blocks.boxes[::-1])[scene.masonry]
     for axis in (0, 1):
-        line = _lines(scene, axis)
+        line, at = _lines(scene, place, axis), blocks.vertices[:, axis]
         shift = random.uniform(-0.5, 0.5, line.max() + 1) * size * sides[:, axis].min()
-        at = scene.blocks.vertices[:, axis]
-        inside = (at > low[axis] + scene.blocks.tolerance) & (at < high[axis] - scene.blocks.tolerance)
-        moved = np.where(inside, shift[line], 0.0)
+        most, length = np.full(len(shift), np.inf), np.abs(np.diff(scene.joints.ends[..., axis], axis=1))
+        np.minimum.at(most, line[corner_of_end], np.where(length > blocks.tolerance, MOST_OF_JOINT * length, np.inf))
+        outer = (at < low[axis] + blocks.tolerance) | (at > high[axis] - blocks.tolerance)
+        most[line[outer | ~scene.masonry[blocks.owner]]] = 0.0
+        moved = np.clip(shift, -most, most)[line]
         corners[:, axis] += moved
-        by_place = dict(zip(places, moved, strict=True))
-        ends[..., axis] += np.reshape([by_place[place] for place in ends_at], ends.shape[:2])
-    return replace(scene, blocks=replace(scene.blocks, vertices=corners), joints=replace(scene.joints, ends=ends))
+        ends[..., axis] += moved[corner_of_end]
+    drawn = replace(scene, blocks=replace(blocks, vertices=corners), joints=replace(scene.joints, ends=ends))
+    return _carried(scene, drawn)
 
 
-def _places(scene: Scene, points: Array) -> list[tuple[int, int]]:
-    """Where points are, to the tolerance of contacts."""
-    return [(int(x), int(y)) for x, y in np.rint(points / scene.blocks.tolerance)]
+def _carried(scene: Scene, drawn: Scene) -> Scene:
+    """A wall drawn from a scene with its loads, pins and bars on the blocks that have them there."""
+    (low, high), (drawn_low, drawn_high) = scene.blocks.boxes, drawn.blocks.boxes
+    shift, growth = drawn_low - low, (drawn_high - drawn_low) / (high - low) - 1.0
+
+    def moved(block: Indices, at: Array) -> Array:
+        """Points of blocks, -1 for those fixed in space, where they are in the boxes that have moved."""
+        there = at + shift[block] + (at - low[block]) * growth[block]
+        return np.where((block < 0)[..., None], at, there)
+
+    def on_blocks(load: Action) -> Action:
+        forces = load.forces(scene)
+        there = moved(forces.block, forces.at)
+        if not forces.moment.any() and np.array_equal(there, forces.at):
+            return load
+        return GivenForces(replace(forces, at=frozen(there)))
+
+    live, dead = (tuple(map(on_blocks, loads)) for loads in (scene.load.live, scene.load.dead))
+    return replace(
+        drawn,
+        load=replace(scene.load, live=live, dead=dead),
+        pins=replace(scene.pins, point=moved(scene.pins.block, scene.pins.point)),
+        ties=replace(scene.ties, ends=moved(scene.ties.block, scene.ties.ends)),
+    )
 
 
-def _lines(scene: Scene, axis: int) -> Indices:
+def _places(scene: Scene) -> Indices:
+    """Numbers of the places along x and y of all corners, then of the joints' ends, ``(nv + 2 nj, 2)``.
+
+    What is nearer than contacts reach is at one place.
+    """
+    points = np.concatenate([scene.blocks.vertices, scene.joints.ends.reshape(-1, 2)])
+    order = np.argsort(points, axis=0)
+    apart = np.diff(np.take_along_axis(points, order, axis=0), axis=0, prepend=-np.inf) > scene.blocks.tolerance
+    place = np.empty_like(order)
+    np.put_along_axis(place, order, np.cumsum(apart, axis=0), axis=0)
+    return place
+
+
+def _lines(scene: Scene, place: Indices, axis: int) -> Indices:
     """Number of the straight line across an axis that each corner lies on, ``(nv,)``.
 
     A line is made up of sides of blocks that share a corner or lie on one another, at one place along the axis.
     """
-    place = np.array(_places(scene, scene.blocks.vertices))
     start, end = np.arange(len(place)), scene.blocks.successor
     across = place[start, axis] == place[end, axis]
     order = np.lexsort((place[:, 1 - axis], place[:, axis]))

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import runningbond as rb
 from runningbond.campaigns import Interrupted, tasks
@@ -69,6 +71,103 @@ def test_sizes_lie_within_the_tolerance(name: str) -> None:
     assert Counter(map(tuple, drawn.joints.block)) <= Counter(map(tuple, joints.block))
     for pair, ends in zip(map(tuple, drawn.joints.block), drawn.joints.ends, strict=True):
         assert ends == pytest.approx(found[pair], abs=1e-12)
+
+
+@pytest.mark.parametrize("model", ["limit", "dem-static"])
+def test_a_floor_loads_the_course_that_it_lies_in_whatever_the_sizes(model: str) -> None:
+    """Three blocks in a stack, a floor in the upper joint: the block above it slides first, at tan φ, in every draw."""
+    floor = {"kind": "line", "from": [0.0, 0.4], "to": [0.8, 0.4], "force": [0.0, -2e4]}
+    scene = courses([[1]] * 3, 0.8, 0.2, joint__friction=0.3, load__dead=[floor], **STIFF)
+    for k in range(6):
+        drawn = Scatter(size=0.02).draw(scene, k)
+        assert np.diff(drawn.blocks.boxes[1][drawn.wall, 1]).std() > (1e-4 if k else -1)
+        assert run_model(model, drawn).multiplier == pytest.approx(0.3, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"kind": "point", "at": [0.6, 0.4], "force": [0.0, -1e4]},
+        {"kind": "point", "at": [0.4, 0.7], "force": [-1.0, 0.0]},
+        {"kind": "line", "from": [0.4, 0.4], "to": [0.7, 0.4], "force": [0.0, -1e4]},
+        {"kind": "moment", "at": [0.6, 0.38], "moment": 300.0},
+    ],
+)
+def test_loads_stay_on_their_blocks_whatever_the_sizes(load: dict[str, Any]) -> None:
+    """On a step of the wall: as much force, of the same moment about it but for the change of sizes, on each block."""
+    scene = courses([[1, 1], [1, 1], [1], [1]], 0.4, 0.2, load__dead=[load], **STIFF)
+    given = scene.dead_forces
+    for k in range(1, 8):
+        drawn = Scatter(size=0.05).draw(scene, k)
+        forces = drawn.dead_forces
+        assert np.array_equal(forces.block, given.block)
+        assert np.array_equal(forces.force, given.force)
+        assert np.array_equal(forces.moment, given.moment)
+        low, high = drawn.blocks.boxes
+        assert (forces.at > low[forces.block] - 1e-12).all()
+        assert (forces.at < high[forces.block] + 1e-12).all()
+
+
+def test_pins_and_bars_stay_on_their_blocks_whatever_the_sizes() -> None:
+    """A wall held at the corners of its first course, and two of its blocks tied."""
+    tie = {"from": [0.2, 0.3], "to": [0.6, 0.3], "area": 1e-4, "young": 2e11, "yield": 4e8}
+    scene = courses([[1, 1], [1, 1]], 0.4, 0.2, support__kind="corners", tie=[tie], **STIFF)
+    drawn = Scatter(size=0.1).draw(scene, 1)
+    corners = {tuple(x) for x in drawn.blocks.vertices.round(12)}
+    assert {tuple(x) for x in drawn.pins.point.round(12)} <= corners
+    middle = drawn.blocks.centroid[drawn.ties.block[0]]
+    assert drawn.ties.ends[0] == pytest.approx(middle)
+    assert not np.allclose(drawn.ties.ends, scene.ties.ends)
+
+
+def test_joints_do_not_pass_each_other_where_they_are_near() -> None:
+    """Head joints 1 to 4 mm apart in courses of 0.2 m: blocks touch as they did, at most a tenth as long."""
+    bond: list[list[float]] = [[1, 1], [1.02, 0.98], [1.025, 0.975], [1, 1]]
+    scene = courses(bond, **STIFF)
+    for k in range(20):
+        drawn = Scatter(size=0.1).draw(scene, k)
+        run = [each.joints.ends[:, 1] - each.joints.ends[:, 0] for each in (scene, drawn)]
+        assert ((run[0] * run[1]).sum(axis=1) > 0.09 * (run[0] ** 2).sum(axis=1)).all()
+        found = find_joints(drawn.blocks)
+        assert Counter(map(tuple, drawn.joints.block)) == Counter(
+            pair for pair in map(tuple, found.block) if not drawn.fixed[list(pair)].all()
+        )
+
+
+@settings(max_examples=20)
+@given(noise=st.floats(0.0, 5e-6), seed=st.integers(0, 99))
+def test_blocks_that_touch_to_within_contact_move_together(noise: float, seed: int) -> None:
+    """Corners of a surveyed bond lie micrometres apart: no gap, no overlap is wider after the draw."""
+    scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], **STIFF)
+    random = np.random.default_rng(seed)
+    per_side = {key: random.uniform(-noise, noise) for key in range(2 * len(scene.blocks))}
+    rough = scene.blocks.vertices.copy()
+    low, high = scene.blocks.boxes
+    for block in np.flatnonzero(scene.wall).tolist():
+        own = slice(scene.blocks.first[block], scene.blocks.first[block + 1])
+        for side, edge in enumerate((low, high)):
+            rough[own, 0] += np.where(rough[own, 0] == edge[block, 0], per_side[2 * block + side], 0.0)
+    surveyed = replace(scene, blocks=replace(scene.blocks, vertices=rough))
+    joints = find_joints(surveyed.blocks)
+    drawn = Scatter(size=0.05).draw(surveyed, 1 + seed)
+    boxes = [np.column_stack(each.blocks.boxes) for each in (surveyed, drawn)]
+    for pair, (start, stop) in zip(joints.block, joints.ends, strict=True):
+        axis = int(np.argmin(np.abs(stop - start)))
+        a, b = ((each[pair[0]], each[pair[1]]) for each in boxes)
+        gaps = [min(abs(p[2 + axis] - q[axis]), abs(q[2 + axis] - p[axis])) for p, q in (a, b)]
+        assert gaps[1] == pytest.approx(gaps[0], abs=1e-9)
+
+
+def test_a_beam_is_no_block_of_the_wall_whose_sizes_differ() -> None:
+    """The top of the masonry stays, and its blocks differ by their tolerance, not by that of a beam of 1 cm."""
+    scene = courses([[1, 1]] * 3, beam={"height": 0.01, "mass": 10.0}, **STIFF)
+    heights = []
+    for k in range(1, 30):
+        drawn = Scatter(size=0.1).draw(scene, k)
+        low, high = drawn.blocks.boxes
+        assert high[drawn.masonry, 1].max() == pytest.approx(3 * 0.175, abs=1e-12)
+        heights.append((high - low)[drawn.masonry, 1] / 0.175)
+    assert np.abs(np.array(heights) - 1).max() == pytest.approx(0.1, abs=0.02)
 
 
 def test_friction_scatters_joint_by_joint() -> None:
@@ -132,6 +231,23 @@ def test_statistics_are_those_of_the_draws_that_collapse() -> None:
     json.dumps(said, allow_nan=False)
 
 
+def test_walls_that_fall_under_their_weight_or_never_are_ranked_among_the_others() -> None:
+    """Of 0, 0, 0, 1, 2 the median is 0; of 1, 2, ∞, ∞, ∞ it is infinite, and there is no mean."""
+    weak, strong = (
+        Draws(tuple(outcome(x) if x else replace(outcome(None), status=status) for x in (1.0, 2.0, 0, 0, 0)), Scatter())
+        for status in ("infeasible", "unbounded")
+    )
+    assert (weak.lowest, weak.mean, weak.quantiles["50"], weak.quantiles["75"]) == (0.0, 0.6, 0.0, 1.0)
+    assert "2 of 5 draws collapse, 3 fall under dead load alone, at 0: lowest 0" in str(weak)
+    assert (strong.lowest, strong.mean, strong.error, strong.quantiles["50"]) == (1.0, None, None, np.inf)
+    assert strong.quantiles["5"] == pytest.approx(1.2)
+    assert str(strong).endswith(
+        "3 fall at no load, ∞: lowest 1.0000, quantiles 5 % 1.2000, 25 % 2.0000, 50 % ∞, 75 % ∞, 95 % ∞"
+    )
+    said = json.loads(json.dumps(strong.summary(), allow_nan=False))
+    assert (said["collapsed"], said["unbounded"], said["quantiles"]["50"]) == (2, 3, None)
+
+
 def test_draws_of_which_none_or_one_collapses_have_no_spread() -> None:
     none, one = (Draws(tuple(map(outcome, found)), Scatter()) for found in ((None, None), (None, 2.0)))
     assert (none.lowest, none.mean, none.error, none.quantiles) == (None, None, None, {})
@@ -162,7 +278,10 @@ def test_draws_go_on_where_they_were(small: str, tmp_path: Path, monkeypatch: py
     assert len(computed) == 7  # the first is the same wall
 
 
-def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_what_an_interruption_cuts_short_is_no_draw(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: signal.Signals
+) -> None:
     """A model ends with what it has, in this very process; that is kept under no draw, and no other is begun."""
     begun = []
 
@@ -170,14 +289,18 @@ def test_what_ctrl_c_cuts_short_is_no_draw(tmp_path: Path, monkeypatch: pytest.M
         begun.append(1)
         if len(begun) == 2:
             with suppress(KeyboardInterrupt):
-                signal.raise_signal(signal.SIGINT)
+                signal.raise_signal(number)
         return outcome(1.0)
 
     monkeypatch.setattr(tasks, "run_model", cut_short)
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # which a process begun in the background has not
     sampling = Sampling(block(), MODELS["dem-static"], 5)
-    with pytest.raises(Interrupted) as stopped:
-        sampling.run(folder=tmp_path, jobs=1)
+    before = signal.signal(number, signal.default_int_handler)  # which a process begun in the background has not
+    try:
+        with pytest.raises(Interrupted) as stopped:
+            sampling.run(folder=tmp_path, jobs=1)
+        assert signal.getsignal(number) is signal.default_int_handler
+    finally:
+        signal.signal(number, before)
     assert (len(begun), stopped.value.campaign.kept) == (2, 1)
     assert len(sampling.run(folder=tmp_path, jobs=1).outcomes) == 5
     assert len(begun) == 6
