@@ -1,11 +1,12 @@
-"""Where an answer of `dem-dynamic` to a motion of its ground may be trusted: three Markdown tables.
+"""Where an answer of `dem-dynamic` to a motion of its ground may be trusted: four Markdown tables.
 
-    PYTHONPATH=. python benchmarks/studies/motion_stability.py [block | mesh | wall]
+    PYTHONPATH=. python benchmarks/studies/motion_stability.py [block | contacts | mesh | wall]
 
 The block of 0.5 × 2 m beside Housner's equation, over stiffness of its joint, viscous damping and time step, one at a
-time from those of the suite; then by `fem`, over its mesh. And a wall of 12 blocks under one sine and under seconds of
-noise, at scales around its critical one, each `DRAWS` times with joints that are a little different (`SCATTER`): how
-many fall, and which drifts those have gone through that do not; then where each draw begins to fall.
+time from those of the suite; its impacts, over the points that bear them; then by `fem`, over its mesh. And a wall of
+12 blocks under one sine and under seconds of noise, at scales around its critical one, each `DRAWS` times with joints
+that are a little different (`SCATTER`): how many fall, and which drifts those have gone through that do not; then where
+each draw begins to fall.
 """
 
 import math
@@ -13,6 +14,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from importlib import import_module
+from itertools import pairwise
 
 import numpy as np
 
@@ -69,6 +71,31 @@ def on_the_block() -> Iterator[str]:
         cells = [off(rest, *each, runs) for each in EDGES]
         yield f"| {name} | {' | '.join(cells)} | {max(run.unaccounted for run in runs):.1%} |"
     setattr(FOLLOW, "PART", PART)  # noqa: B010
+
+
+def on_contacts() -> Iterator[str]:
+    """First peak under half a sine, and the rate after an impact over that before, of the block on more contacts."""
+    yield "| contacts | first peak [α] | rate after an impact over that before |"
+    yield "|---|---|---|"
+    period, amplitude = math.pi / BLOCK.p, 1.4 * UNIT
+    yield f"| Housner's | {BLOCK.peak(amplitude, period, 0.5) / BLOCK.alpha:.3f} | {BLOCK.restitution:.3f} |"
+    history, scene = shaken("half-sine", amplitude, period), block(BLOCK.b, BLOCK.h, still())
+    crushing = scene.with_joint(compressive_strength=1e9)  # which it never comes to
+    size = {"block_width": 2 * BLOCK.b, "block_height": 2 * BLOCK.h, "thickness": 0.12}
+    laid = rb.Wall.courses([[1]], **size, density=1800.0, friction=2.0).scene
+    bonded = replace(laid, joint_materials=scene.joint_materials, load=scene.load)
+    rigid = {f"`fem`, 3 modes, base of {2 * n} facets": at_rest(bonded, {"cells": n, "modes": 3}) for n in (1, 2, 4)}
+    rests = {"`dem-dynamic`, dry: two": resting(scene), "`dem-dynamic`, crushing: nine": resting(crushing), **rigid}
+    for name, rest in rests.items():
+        response = follow(under(rest, history), 1.0, points=np.array([[0.0, 2 * BLOCK.h], [2 * BLOCK.b, 2 * BLOCK.h]]))
+        width, height = np.diff(response.displacement, axis=1)[:, 0].T
+        turn = np.arctan2(height, 2 * BLOCK.b + width) / BLOCK.alpha
+        swings = np.split(np.abs(turn), np.flatnonzero(np.diff(np.sign(turn))) + 1)
+        peaks = [swing.max() for swing in swings if swing.max() > 0.01][:3]
+        # The energy at a turning point is what an impact left of that at the one before.
+        left = [math.cos(BLOCK.alpha * (1 - peak)) - math.cos(BLOCK.alpha) for peak in peaks]
+        rates = ", ".join(f"{math.sqrt(after / before):.3f}" for before, after in pairwise(left))
+        yield f"| {name} | {peaks[0]:.3f} | {rates} |"
 
 
 def on_the_mesh() -> Iterator[str]:
@@ -170,7 +197,8 @@ def first(rest: Resting, history: History, about: float) -> str:
 
 
 if __name__ == "__main__":
-    for part in sys.argv[1:] or ("block", "mesh", "wall"):
-        for line in {"block": on_the_block, "mesh": on_the_mesh, "wall": on_the_wall}[part]():
+    tables = {"block": on_the_block, "contacts": on_contacts, "mesh": on_the_mesh, "wall": on_the_wall}
+    for part in sys.argv[1:] or tables:
+        for line in tables[part]():
             print(line, flush=True)
         print()

@@ -41,7 +41,8 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
     """
     state, breaks = State.at_rest(run.system), can_break(run)
     verdict = settle(run, state, 0.0, criteria, no_observer if breaks else observe, sudden=True)
-    if _is_broken(run, state):
+    # What has fallen may have no contacts left to be broken.
+    if _is_broken(run, state) or (breaks and verdict == "collapse"):
         return _slowly(run, criteria, observe, state.steps)
     for _ in range(CALM if breaks else 0):  # observers take a wall to be at rest that is so at as many looks
         observe(run, state, 0.0)

@@ -7,6 +7,7 @@ from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw
 from .stiffness import joint_stiffness, stiffness_note
 from .wall_points import (
+    impact_note,
     listed_points,
     static_law,
     wall_caps,
@@ -28,6 +29,7 @@ __all__ = [
     "ResultantLaw",
     "Rule",
     "gauss",
+    "impact_note",
     "joint_points",
     "joint_stiffness",
     "listed_points",

@@ -41,6 +41,12 @@ def spreads(scene: Scene) -> bool:
     return any(each.compressive_strength or each.closure or each.softens for each in scene.joint_materials)
 
 
+def impact_note(scene: Scene) -> str:
+    """What a message says of impacts on joints that bear them all along; empty where their ends do."""
+    what = "joints that soften, crush or close bear impacts all along, which then take less of a rocking motion"
+    return f"{what} than Housner's" if spreads(scene) else ""
+
+
 def spread_rule(parts: int = 1) -> Rule:
     """Points of `wall_rule` where joints soften, crush or close."""
     return lobatto(BETWEEN if parts == 1 else max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts)))

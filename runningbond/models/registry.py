@@ -281,7 +281,9 @@ def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: An
     own = OF_RESPONSES if find_model(model) is not MODELS["fem"] else (*OF_RESPONSES, "cells", "modes")
     check_response_settings(settings, own)
     from runningbond.dynamics import beam_note
+    from runningbond.joints import impact_note
 
     response = follow(scene, scale, **settings)
-    parts = response.message, beam_note(scene), _left_out(find_model(model), scene)
+    impacts = impact_note(scene) if len(response.time) else ""
+    parts = response.message, impacts, beam_note(scene), _left_out(find_model(model), scene)
     return replace(response, message="; ".join(filter(None, parts)))

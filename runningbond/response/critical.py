@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runningbond.dynamics import BlockSystem, Observer, beam_note, no_observer
+from runningbond.joints import impact_note
 from runningbond.results import Outcome, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.results.reactions import AT_REST
@@ -105,7 +106,7 @@ def critical_scale(
     if outcome.upper is not None and observe is not no_observer and not stopped:
         with suppress(KeyboardInterrupt):
             follow(rest, outcome.upper, after=AFTER, rows=ROWS, observe=observe)
-    message = "; ".join(filter(None, (outcome.message, note, beam_note(scene))))
+    message = "; ".join(filter(None, (outcome.message, impact_note(scene), note, beam_note(scene))))
     return replace(outcome, message=message, seconds=seconds)
 
 

@@ -20,7 +20,7 @@ from runningbond.results.mechanism import carried
 from runningbond.scene import Array, SceneError
 
 from .ground import Ground
-from .response import ENERGIES, MISSED, Response, ResponseVerdict, supplied, unaccounted
+from .response import ENERGIES, MISSED, Response, ResponseVerdict, supplied, unaccounted, until_fallen
 from .resting import Resting
 
 TURNED = math.radians(60)
@@ -158,7 +158,7 @@ def follow(
     """Follow a wall through the motion of its ground.
 
     A motion whose ledger misses more than `MISSED` is gone through again at half the step, which misses a quarter to a
-    half.
+    half, and at a quarter.
 
     Parameters
     ----------
@@ -185,10 +185,12 @@ def follow(
     if rest.trouble:
         return _not_shaken(rest, scale, places, *rest.trouble)
     response = _followed(rest, scale, PART, after, places, rows, observe)
-    if response.unaccounted <= MISSED:
-        return response
-    again = _followed(rest, scale, PART / 2, after, places, rows, observe)
-    return replace(again, steps=response.steps + again.steps, seconds=response.seconds + again.seconds)
+    for part in (PART / 2, PART / 4):
+        if response.unaccounted <= MISSED:
+            break
+        again = _followed(rest, scale, part, after, places, rows, observe)
+        response = replace(again, steps=response.steps + again.steps, seconds=response.seconds + again.seconds)
+    return response
 
 
 def _places(rest: Resting, points: Array) -> Array:
@@ -269,16 +271,17 @@ def _response(
     left = f"with a residual drift of {drift[-1]:.3g}"
     if sway is not None:
         left = f"and sways on by drifts from {sway[0]:.3g} to {sway[1]:.3g}"
-    names = ", ".join(rest.scene.blocks.name(block) for block in log.first[:3])
+    first = log.first[: until_fallen(fallen, fallen)[-1]]
+    names = ", ".join(rest.scene.blocks.name(block) for block in first[:3])
     undecided = "neither rests nor falls within" if not log.is_lost else "more energy is missing than was supplied at"
     message = {
         "stands": f"stands, {left}",
-        "collapse": f"falls: {names} at {fell:.3g} s" + (" first" if len(log.first) > 3 else "")
-        if log.first
+        "collapse": f"falls: {names} at {fell:.3g} s" + (" first" if len(first) > 3 else "")
+        if first
         else f"slides ever faster until {times[-1]:.3g} s",
         "undecided": f"{undecided} {times[-1]:.3g} s",
     }[verdict]
-    lost = unaccounted(energy)
+    lost = unaccounted(until_fallen(energy, fallen))
     close = f"energy accounted for to {max(lost, 1e-6):.0e}"
     if not lost <= MISSED:
         close = f"{lost:.1%} of the energy supplied is unaccounted for: beyond {MISSED:.0%} this is not to be relied on"
@@ -287,7 +290,7 @@ def _response(
         model=rest.model,
         scale=scale,
         verdict=verdict,
-        message=f"{message}; peak drift {np.abs(drift).max():.3g}; {close}",
+        message=f"{message}; peak drift {np.abs(until_fallen(drift, fallen)).max():.3g}; {close}",
         points=log.points,
         time=times,
         ground=ground,

@@ -9,6 +9,9 @@ import numpy as np
 from runningbond.dynamics import Run, State
 from runningbond.scene import Array, History
 
+LONGEST = 5e-4
+"""Longest time [s] over which the ground's acceleration stands for its mean, however far apart the samples are."""
+
 
 class Ground:
     """The ground under a run, from the time of a state on.
@@ -41,9 +44,12 @@ class Ground:
         """Bring a state forward to a time of the record [s], to within half a time step."""
         run, history = self.run, self.history
         while (left := until - (now := self.time(state))) > run.dt / 2:
-            steps = max(1, round(min(left, self._span(now)) / run.dt))
+            # To the end of an interval of the record, at whatever times a state is asked for within it.
+            whole = min(left, self._span(now)) if now >= history.duration else self._span(now)
+            steps = max(1, round(whole / run.dt))
             aim = self.scale * history.velocity(now + steps * run.dt)
             acceleration = (aim - self.velocity) / (steps * run.dt)
+            steps = max(1, min(steps, round(left / run.dt)))
             load, before = run.system.dead - acceleration @ self.inertia, state.time
             # Half of the step that ends where the load changes is under either.
             state.external += 0.5 * run.dt * float((load - self.load) @ state.velocity)
@@ -57,7 +63,11 @@ class Ground:
         step, to_the_end = self.run.dt, self.history.duration - now
         if self.history.has_jumps and min(now, abs(to_the_end)) <= step / 2:
             return step
-        return np.inf if to_the_end <= 0 else min(max(self.history.resolution, step), max(to_the_end, step))
+        if to_the_end <= 0:
+            return np.inf
+        interval = min(self.history.resolution, LONGEST)
+        to_the_next = interval * (np.floor(now / interval) + 1) - now
+        return float(min(to_the_next if to_the_next > step / 2 else interval, max(to_the_end, step)))
 
     def momentum(self, state: State) -> Array:
         """Momentum of the wall in space ``(2,)`` [kg m/s]."""

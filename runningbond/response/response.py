@@ -54,7 +54,7 @@ class Response:
         Displacement of each block's centroid [m] and its rotation [rad] since the wall was at rest: at the end, and at
         the last moment at which no corner had gone farther than a tenth of the wall's size.
     unaccounted
-        Largest share of the energy supplied that the ledger misses.
+        Largest share of the energy supplied that the ledger misses, until a block has fallen.
     steps
         Time steps taken.
     seconds
@@ -93,8 +93,8 @@ class Response:
 
     @property
     def peak_drift(self) -> float:
-        """Largest drift, by its size."""
-        return float(np.abs(self.drift).max()) if len(self.drift) else math.nan
+        """Largest drift, by its size, until a block has fallen: for how long it is followed then is no matter."""
+        return float(np.abs(until_fallen(self.drift, self.fallen)).max()) if len(self.drift) else math.nan
 
     @property
     def line(self) -> str:
@@ -131,6 +131,11 @@ class Response:
 
     def __repr__(self) -> str:
         return f"<Response of {self.model} on {self.scene!r}, λ = {self.scale:g}: {self.line.split(';')[0]}>"
+
+
+def until_fallen(rows: Array, fallen: Indices) -> Array:
+    """Rows ``(n, …)`` up to the first in which a block has fallen."""
+    return rows[: int(np.argmax(fallen > 0)) + 1] if fallen.any() else rows
 
 
 def supplied(energy: Array) -> Array:

@@ -84,7 +84,9 @@ class History(Action):
         if self.scale == 0:
             raise SceneError(f"{KEY}.scale", "must not be zero", self.scale)
         if not np.abs(self.acceleration(self.time)).max() > 0:
-            raise SceneError(KEY, "does not move the ground", self.source or None)
+            moves = "moves the ground by a jump alone, as it begins; let it begin at 0 and rise"
+            what = moves if self.jump else "does not move the ground"
+            raise SceneError(KEY, what, self.source or None)
 
     @property
     def duration(self) -> float:
@@ -114,6 +116,11 @@ class History(Action):
     def has_jumps(self) -> bool:
         """Whether the ground's velocity jumps as the record begins or ends."""
         return self.quantity in ("velocity", "displacement")
+
+    @cached_property
+    def jump(self) -> float:
+        """Velocity that the ground has at once as the record begins [m/s]."""
+        return float(np.hypot(*self._velocity(0.0))) if self.has_jumps else 0.0
 
     def velocity(self, time: Array | float) -> Array:
         """Velocity of the ground ``(…, 2)`` at some times [s], which is at rest before the record [m/s].
@@ -153,8 +160,10 @@ class History(Action):
             )
 
     def note(self, multiplier: float) -> str:
-        """The largest acceleration."""
-        return f"the ground is accelerated by up to {abs(multiplier) * np.hypot(*self.peak) / STANDARD_GRAVITY:.4g} g"
+        """The largest acceleration, and the jump that the record begins with."""
+        peak, jump = (abs(multiplier) * x for x in (float(np.hypot(*self.peak)) / STANDARD_GRAVITY, self.jump))
+        told = f"the ground is accelerated by up to {peak:.4g} g"
+        return told if not jump else f"{told}, and has {jump:.4g} m/s at once as the record begins"
 
 
 def pulse(kind: str, amplitude: float, period: float) -> tuple[Array, Array]:

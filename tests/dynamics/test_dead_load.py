@@ -7,6 +7,7 @@ import pytest
 from dem.dynamic import dem_dynamic, quasi_static_run
 from fem_interface.model import fem
 from runningbond.dynamics import Criteria, put_on_dead_load
+from runningbond.models import respond
 from runningbond.results import Outcome
 from runningbond.scene import Scene, scene_from_dict
 
@@ -90,3 +91,17 @@ def test_a_load_that_grows_does_half_of_its_work() -> None:
     assert state.external == pytest.approx(whole * (1 + 1 / 16) / 2, rel=1e-2)
     assert run.dead_work(state) == pytest.approx(state.external, rel=1e-9)
     assert run.unaccounted(state) < 1e-3
+
+
+@pytest.mark.parametrize("share", [0.9, 0.95])
+def test_a_brittle_block_near_its_strength_stands_on_ground_that_hardly_moves(share: float) -> None:
+    """Pressed by shares of its strength, evenly: what grows too fast overshoots, and does not come back."""
+    stress = DENSITY * GRAVITY * 1.0
+    wall = {"block_width": 0.5, "block_height": 1.0, "thickness": 0.3, "courses": [[1]]}
+    joint = {"friction": 0.7, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
+    joint |= {"compressive_strength": stress / share, "compressive_fracture_energy": 50.0}
+    pulse = {"kind": "half-sine", "amplitude": 1e-3, "period": 0.02}
+    load = {"gravity": GRAVITY, "history": {"pulse": pulse, "quantity": "g"}}
+    scene = scene_from_dict({"wall": wall, "block": {"density": DENSITY}, "joint": joint, "support": {"kind": "base"}, "load": load})
+    response = respond("dem-dynamic", scene)
+    assert response.verdict == "stands", response.message

@@ -98,3 +98,20 @@ def test_a_wall_that_leaves_its_ground_is_filmed(ask: Any, tmp_path: Path) -> No
     response = json.loads(ask("respond", out, "--json", load__live=None, load__history=history))
     assert response["verdict"] == "stands"
     assert (out / "blocks.pvd").exists()
+
+
+def test_a_folder_changes_nothing_of_an_answer(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A fall is filmed for a folder; drifts, energies and the blocks that are named are those of the fall."""
+    pulse = {"kind": "sine", "amplitude": 8.0, "period": 0.5}
+    tall = {"wall__length": 0.12, "wall__block_width": 0.12, "wall__block_height": 0.24, "wall__height": 0.48}
+    history = {"pulse": pulse, "quantity": "acceleration"}
+    path = write_toml(content(**tall, **STIFF, load__live=None, load__history=history), tmp_path / "wall.toml")
+    said = []
+    for options in ([], ["--out", str(tmp_path / "out")]):
+        assert command(["respond", str(path), "--model", "dem-dynamic", "--json", *options]) == 0
+        said.append(json.loads(capsys.readouterr().out))
+    bare, kept = said
+    assert bare["verdict"] == "collapse"
+    assert kept["time"] > bare["time"]
+    for key in ("peak_drift", "unaccounted", "message"):
+        assert kept[key] == bare[key]

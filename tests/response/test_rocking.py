@@ -11,6 +11,7 @@ from scipy.integrate import quad
 
 from dem.finite_system import finite_system
 from runningbond.dynamics import Run, State
+from runningbond.joints import impact_note, lobatto
 from runningbond.joints.wall_law import with_impacts
 from runningbond.response import Resting, follow
 from runningbond.response.resting import VISCOUS
@@ -18,6 +19,7 @@ from runningbond.scene import Array, History, PointLoad
 from runningbond.scene.history import pulse
 
 from .housner import GRAVITY, HousnerBlock
+from .spring_bed import peak
 from .walls import block, resting, shaken, still
 
 BLOCK = HousnerBlock()
@@ -207,3 +209,43 @@ def test_a_block_that_turns_round_slowly_near_its_balance_does_not_stand_there(s
         for history in (History(time, values, interval=1 / 200), quiet)
     }
     assert verdicts == {"collapse"}
+
+
+def test_what_the_ground_does_depends_neither_on_rows_nor_on_samples_between() -> None:
+    """A record at 50 Hz, and the same straight lines at 1 kHz; however many rows are asked for.
+
+    To 0.3 % of the largest drift after two seconds of impacts; rows are at the time steps nearest to their times.
+    """
+    time, finer = np.arange(0.0, 2.001, 0.02), np.linspace(0.0, 2.0, 2001)
+    values = 4.0 * np.random.default_rng(1).standard_normal(len(time))
+    records = [(time, values), (finer, np.interp(finer, time, values))]
+    coarse, fine = (History(t, np.column_stack([x, np.zeros(len(t))])) for t, x in records)
+    few, many, resampled = (
+        follow(resting(block(0.25, 0.75, history)), 1.0, rows=rows)
+        for history, rows in ((coarse, 100), (coarse, 1000), (fine, 1000))
+    )
+    size = many.peak_drift
+    assert size > 0.02
+    assert np.interp(few.time, many.time, many.drift) == pytest.approx(few.drift, abs=3e-3 * size)
+    assert np.interp(many.time, resampled.time, resampled.drift) == pytest.approx(many.drift, abs=3e-3 * size)
+
+
+def test_joints_that_bear_all_along_rock_as_beds_of_springs_do() -> None:
+    """A strength that is never reached makes nine points of two: an impact then takes less than Housner's, by a lot."""
+    amplitude, period = 1.4 * GRAVITY * math.tan(BLOCK.alpha), math.pi / BLOCK.p
+    scene = block(BLOCK.b, BLOCK.h, shaken("half-sine", amplitude, period))
+    corners = ((0.0, 2 * BLOCK.h), (2 * BLOCK.b, 2 * BLOCK.h))
+    found = {}
+    for strength in (None, 1e9):
+        crushing = scene.with_joint(compressive_strength=strength)
+        response = follow(resting(crushing), 1.0, points=np.array(corners))
+        base, height = np.diff(response.displacement, axis=1)[:, 0].T
+        turn = np.abs(np.arctan2(height, 2 * BLOCK.b + base))
+        found[strength] = float(turn[response.time < 1.2].max())
+    rule = lobatto(9)
+    bed = peak(BLOCK, (rule.nodes, rule.weights / 2), 1e10, (amplitude, period))
+    assert found[None] == pytest.approx(BLOCK.peak(amplitude, period, 0.5), rel=0.01)
+    assert found[1e9] == pytest.approx(bed, rel=0.02)
+    assert bed > 1.3 * BLOCK.peak(amplitude, period, 0.5)
+    assert "Housner's" in impact_note(scene.with_joint(compressive_strength=1e9))
+    assert not impact_note(scene)

@@ -91,6 +91,8 @@ def test_the_ground_is_at_rest_before_its_record_and_keeps_what_it_came_to() -> 
         assert history.velocity(np.array([-1.0, 0.0])).tolist() == [[0, 0], [0, 0]]
         assert history.velocity(1e-9)[0] == pytest.approx(first, abs=1e-6)
         assert history.velocity(9.0)[0] == pytest.approx(last, abs=1e-6)
+        assert history.jump == pytest.approx(first)
+        assert history.note(2.0).endswith(f"g, and has {2 * first:.4g} m/s at once as the record begins")
 
 
 def test_a_ramp_stays_on_whatever_it_is_of() -> None:
@@ -174,6 +176,7 @@ REFUSED: list[tuple[Any, str]] = [
     (record("0 1\n0.1 1;2\n"), "record.csv, line 2 = '0.1 1 2': must have 2 columns"),
     (record(ROWS + "0.40, 1\n"), "record.csv, line 21 = 0.4: comes after a gap of 0.21 s, the steps of the record are"),
     (record("0, 0\n1, 0\n"), "load.history = 'record.csv': does not move the ground"),
+    (record("0, 1\n1, 1\n", quantity="velocity"), "'record.csv': moves the ground by a jump alone, as it begins"),
     (peer("OF G", "OF FURLONGS"), "record.at2, line 3 = 'ACCELERATION TIME SERIES IN UNITS OF FURLONGS': must name"),
     (peer(" IN UNITS OF G", ""), "record.at2, line 3 = 'ACCELERATION TIME SERIES': must name the unit"),
     (peer("NPTS=  7", "NPTS=  9"), "record.at2, line 6: ends a record of 7 values; NPTS says 9"),
