@@ -102,6 +102,7 @@ def test_a_brittle_block_near_its_strength_stands_on_ground_that_hardly_moves(sh
     joint |= {"compressive_strength": stress / share, "compressive_fracture_energy": 50.0}
     pulse = {"kind": "half-sine", "amplitude": 1e-3, "period": 0.02}
     load = {"gravity": GRAVITY, "history": {"pulse": pulse, "quantity": "g"}}
-    scene = scene_from_dict({"wall": wall, "block": {"density": DENSITY}, "joint": joint, "support": {"kind": "base"}, "load": load})
+    tables = {"wall": wall, "block": {"density": DENSITY}, "joint": joint, "support": {"kind": "base"}, "load": load}
+    scene = scene_from_dict(tables)
     response = respond("dem-dynamic", scene)
     assert response.verdict == "stands", response.message
