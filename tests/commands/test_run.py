@@ -17,6 +17,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
+from runningbond.campaigns import INTERRUPTIONS
 from runningbond.commands import terminal
 from runningbond.commands.command_line import command
 from runningbond.compare.published import published_scene
@@ -222,7 +223,7 @@ def test_an_interruption_of_limit_leaves_the_proved_bracket_under_no_fingerprint
     """Exit code 130, one JSON object, and no comparison takes it for the answer."""
     scene, out = str(write_toml(content(**SIZE), tmp_path / "wall.toml")), tmp_path / "out"
     interrupt_at(8, monkeypatch, how=how)
-    before = {number: signal.getsignal(number) for number in terminal.INTERRUPTIONS}
+    before = {number: signal.getsignal(number) for number in INTERRUPTIONS}
     try:
         assert command(["run", scene, "--model", "limit", "--json", "--out", str(out)]) == 130
     finally:
