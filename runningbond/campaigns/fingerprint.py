@@ -2,6 +2,7 @@
 
 import hashlib
 import inspect
+import sys
 from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from functools import cache, partial
@@ -20,6 +21,8 @@ COMPUTING_ROOMS = (  # packages in which a change can change a number
     *(f"runningbond.{room}" for room in ("scene", "joints", "contacts", "results", "limit", "dynamics", "response")),
     *("meshing", "fem_interface", "dem", "homog", "runningbond.models"),
 )
+PLAIN = (bool, int, float, complex, str, bytes, tuple, np.ndarray)
+"""Values outside of code without a file that it is known by, beside its own."""
 LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh", "clarabel", "highspy")
 
 
@@ -30,7 +33,8 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
         own = _own_code(model.solve)
         loads = (*scene.load.live, *scene.load.dead) if own else ()  # of which it may read whatever it likes
         digest.update(own + b"".join(_own_code(type(load)) for load in loads))
-        _feed_given(digest, model.solve)
+        if own or getattr(model.solve, "keywords", None):  # of the package's own none is known by more than its name
+            _feed_given(digest, model.solve)
         model = model.name
     digest.update(f"{model} {tolerance!r} ".encode())
     for value in (scene, scene.dead_forces, scene.live_forces, scene.control_point):
@@ -39,15 +43,28 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
 
 
 def _own_code(given: Callable[..., Any]) -> bytes:
-    """The file of a user's function or class, or its compiled code where there is none; nothing for the package's."""
+    """The file of a user's function or class, or its compiled code where it is in none; nothing for the package's."""
     function: Any = getattr(given, "func", given)
-    function = function if hasattr(function, "__module__") else type(function)
+    function = getattr(function, "__func__", function)
+    function = function if hasattr(function, "__module__") and hasattr(function, "__qualname__") else type(function)
     if function.__module__.split(".")[0] in {room.split(".")[0] for room in COMPUTING_ROOMS}:
         return b""
-    try:
+    if _is_in_file(function):
         return Path(inspect.getfile(function)).read_bytes()
-    except (TypeError, OSError):
-        return repr(_code(getattr(function, "__code__", None))).encode()
+    if inspect.isclass(function):
+        return repr(
+            [(name, _code(getattr(x, "__code__", None))) for name, x in sorted(vars(function).items())]
+        ).encode()
+    return repr(_code(getattr(function, "__code__", None))).encode()
+
+
+def _is_in_file(function: Any) -> bool:
+    """Whether other processes find a function or class by its name, in a module: else they are sent its code alone."""
+    module = sys.modules.get(function.__module__)
+    found: Any = module
+    for name in function.__qualname__.split("."):
+        found = getattr(found, name, None)
+    return found is function and function.__module__ != "__main__" and bool(getattr(module, "__file__", None))
 
 
 def _code(code: Any) -> tuple[Any, ...]:
@@ -60,7 +77,7 @@ def _code(code: Any) -> tuple[Any, ...]:
 def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ()) -> None:
     """Add what something that is called was given beside its code: defaults, what it is closed over, fields, settings.
 
-    Of code without a file also the plain values that it names outside of itself.
+    Of code in no file also the plain values and the functions that it names outside of itself.
     """
     if id(given) in seen:
         return
@@ -70,8 +87,11 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
         _feed_given(digest, given.func, seen)
     elif inspect.isfunction(given):
         closure, defaults = inspect.getclosurevars(given), (given.__defaults__, given.__kwdefaults__)
-        outside = {} if Path(given.__code__.co_filename).exists() else closure.globals
-        _feed_values(digest, (*defaults, *sorted({**closure.nonlocals, **outside}.items())), seen)
+        outside = {} if _is_in_file(given) else closure.globals
+        named = [(name, x) for name, x in outside.items() if isinstance(x, PLAIN) or inspect.isfunction(x)]
+        _feed_values(
+            digest, (*defaults, *sorted(closure.nonlocals.items()), *sorted(named, key=lambda pair: pair[0])), seen
+        )
     elif inspect.ismethod(given):
         _feed_values(digest, (given.__self__, given.__func__), seen)
     elif not inspect.isroutine(given) and not inspect.isclass(given) and not inspect.ismodule(given):
@@ -83,6 +103,9 @@ def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[i
     for value in values:
         if isinstance(value, tuple):
             _feed_values(digest, value, seen)
+            continue
+        if inspect.isclass(value) or inspect.ismodule(value):
+            digest.update(value.__name__.encode())
             continue
         _feed(digest, value)
         if _says_nothing(value):
@@ -108,6 +131,8 @@ def _feed(digest: "hashlib._Hash", value: object) -> None:
         digest.update(repr(value.identity).encode())
     elif isinstance(value, np.ndarray):
         digest.update(f"{value.dtype}{value.shape}".encode() + value.tobytes())
+    elif isinstance(value, (set, frozenset)):
+        digest.update(repr(sorted(map(repr, value))).encode())
     elif isinstance(value, (list, tuple)):
         digest.update(f"{len(value)} ".encode())
         for entry in value:

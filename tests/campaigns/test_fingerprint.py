@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from numba.cloudpickle import dumps, loads
 
 from runningbond.campaigns.fingerprint import COMPUTING_ROOMS, LIBRARIES, fingerprint
 from runningbond.models import Model
@@ -84,11 +85,14 @@ def through_another(factor: float) -> Any:
     "made", [closed_over, with_default, lambda x: Solver(x).solve, Solver, named, partial, through_another]
 )
 def test_a_users_model_is_known_by_what_it_was_given(made: Any) -> None:
+    """Wherever it is asked for: a process that it was sent to has its code without a file."""
     made = (lambda x: partial(Solver.solve, Solver(x))) if made is partial else made
     keys = [
         fingerprint(WALL, Model("mine", "a user's own", made(factor), frozenset()), 1e-3) for factor in (1.0, 1.0, 2.0)
     ]
     assert keys[0] == keys[1] != keys[2]
+    sent = loads(dumps(made(1.0)))
+    assert fingerprint(WALL, Model("mine", "a user's own", sent, frozenset()), 1e-3) == keys[0]
 
 
 def test_code_without_a_file_is_known_by_the_names_in_it() -> None:
