@@ -187,7 +187,7 @@ class Moment(Action):
 
 @dataclass(frozen=True, eq=False)
 class GivenForces(Action):
-    """Forces as they are: what a record keeps of a load of a user's own."""
+    """Forces as they are: what a record keeps of a load of a user's own, and a drawn wall of loads at points."""
 
     given: Forces
 
