@@ -58,7 +58,7 @@ class RigidContacts:
     def find(self, motion: Array, margin: float) -> Contacts:
         """Contacts nearer than a margin [m] after a motion ``(3 nb,)``, material by material."""
         contacts = find_contacts(self.outline, motion, margin)
-        return contacts.chosen(np.argsort(self._materials.number(contacts), kind="stable"))
+        return self._materials.side_by_side(contacts)
 
     def interface_on(self, contacts: Contacts, system: BlockSystem | None = None) -> Interface:
         """The interface of the blocks on contacts."""

@@ -3,8 +3,9 @@
 A node is at c + u + R(θ) (X + Σ φ_k q_k): centroid, translation and rotation of its block, and small deformations in
 the block's frame. A side of a block is the polygon of its nodes, and lies on a side of another block at the two ends
 of their overlap, as the sides of rigid blocks do (`contacts.rigid_sides`): there the corner of one block, rounded or
-sharp, rests on a facet of the other. Nodes inside a side rest on the other one's facets too, once they are farther
-from its corners than half a facet, where the ends of the overlap bear for them.
+sharp, rests on a facet of the other. Points inside a side, its nodes and others between those, rest on the other
+one's facets too, once they are farther from its corners than half-way to the next point, where the ends of the overlap
+bear for them.
 
 Tractions are forces on the two facets at the point where they touch: on their blocks' rigid coordinates as they are,
 so that linear and angular momentum are kept to rounding, and on their nodes with the share of the displacement that
@@ -55,6 +56,24 @@ class OutlineNodes(NamedTuple):
     length: Array
 
 
+class SidePoints(NamedTuple):
+    """Points along the sides of blocks, a number of them on each facet, the first one at its start.
+
+    Parameters
+    ----------
+    facet : (ns,) int
+        Facet of each point.
+    share : (ns,) float
+        Where it is on that.
+    half : (ns,) float
+        Half-way to the nearer of the points beside it [m].
+    """
+
+    facet: Indices
+    share: Array
+    half: Array
+
+
 class Sides(NamedTuple):
     """Sides of blocks, numbered as the corners that they start from.
 
@@ -92,11 +111,14 @@ class PlacedNodes(NamedTuple):
         Node that each facet starts from [m], its direction and one over its length [1/m].
     arcs : (nv, 4) float
         Centres of the arcs at the two ends of each side [m].
+    pushed : (no, 2) float
+        Buffer of the forces on outline nodes [N].
     """
 
     blocks: Array
     facets: Array
     arcs: Array
+    pushed: Array
 
 
 class DeformableSides(NamedTuple):
@@ -106,13 +128,13 @@ class DeformableSides(NamedTuple):
     ----------
     tables
         Displacements of the outlines' nodes per deformation.
-    nodes, sides
+    nodes, points, sides
         The outlines of the undeformed blocks.
     ends : (np, 6) int
-        As in `RigidSides`; of a node inside a side, that node after the number of corners, the side it is near, 1
+        As in `RigidSides`; of a point inside a side, that point after the number of corners, the side it is near, 1
         where that is block b's, the corner after that side, and the two sides e and f.
     inwards : (np,) float
-        1 where inwards is along the tangent of f, −1 where it is against it, 0 for a node inside a side.
+        1 where inwards is along the tangent of f, −1 where it is against it, 0 for a point inside a side.
     area : (np,) float
         Area that each contact stands for [m²].
     placed
@@ -126,6 +148,7 @@ class DeformableSides(NamedTuple):
 
     tables: NodalTables
     nodes: OutlineNodes
+    points: SidePoints
     sides: Sides
     ends: Indices
     inwards: Array
@@ -139,7 +162,7 @@ class DeformableSides(NamedTuple):
 def place_nodes(motion: Array, tables: NodalTables, nodes: OutlineNodes, placed: PlacedNodes) -> None:
     """Write where blocks and facets are after a motion ``(nd,)``."""
     rigid, centroid, owner, arm, place, following, _, _ = nodes
-    turned, facets, _ = placed
+    turned, facets, _, _ = placed
     nodal = tables.nodal
     to_nodes(tables, motion)
     nodal[tables.still[0] :] = 0.0
@@ -206,7 +229,7 @@ def _onto(x: float, y: float, facets: Array, begin: Array, length: Array, ends: 
 @kernel
 def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, slip: Array) -> None:
     """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``."""
-    tables, nodes, sides, ends, inwards, _, placed, contact, touched = geometry
+    tables, nodes, points, sides, ends, inwards, _, placed, contact, touched = geometry
     begin, length = nodes.begin, nodes.length
     outer, shares, extent, straight, successor, inset, radius = sides
     facets, arcs = placed.facets, placed.arcs
@@ -218,17 +241,19 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
         stretch, out = 1.0, 0.0
         on_arc = False
         if sense == 0.0:
-            # A node inside a side; the row has it in place of a corner v, beyond the number of corners.
+            # A point inside a side; the row has it in place of a corner v, beyond the number of corners.
             of_a = ends[k, 2] == 1
             side = e if of_a else f
-            own, share_own, r = v - radius.size, 0.0, 0.0
-            x, y = facets[own, 0], facets[own, 1]
+            point, r = v - radius.size, 0.0
+            own, share_own = points.facet[point], points.share[point]
+            way = share_own / facets[own, 4]
+            x, y = facets[own, 0] + way * facets[own, 2], facets[own, 1] + way * facets[own, 3]
             j, share, moved = _onto(x, y, facets, begin, length, outer[side])
             nx, ny = facets[j, 3], -facets[j, 2]
             away = (x - facets[j, 0]) * nx + (y - facets[j, 1]) * ny
             stretch = length[j] * facets[j, 4]
             inside = min(moved - inset[side], extent[side] - inset[successor[side]] - moved)
-            away = max(away, 0.5 * min(length[own], length[own - 1]) - inside)
+            away = max(away, points.half[point] - inside)
         else:
             # Side e's last corner lies at f's first one where inwards is along the tangent.
             low = sense > 0.0
@@ -296,7 +321,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
 @kernel
 def reframe_deformable(geometry: DeformableSides, frames: Frames, history: Array) -> None:
     """After `gather_deformable`, as `reframe_sharp` does."""
-    _, _, sides, ends, inwards, _, placed, _, touched = geometry
+    _, _, _, sides, ends, inwards, _, placed, _, touched = geometry
     (facets, arcs), (bore, plastic) = (placed.facets, placed.arcs), frames
     for k in range(bore.size):
         bears = touched[k, 2] == 1
@@ -316,11 +341,9 @@ def reframe_deformable(geometry: DeformableSides, frames: Frames, history: Array
 @kernel
 def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSides, force: Array) -> None:
     """Subtract from forces ``(nd,)`` what the contacts' tractions ``(np,)`` do on the modes."""
-    tables, nodes, _, _, _, area, placed, contact, touched = geometry
-    rigid, _, owner, _, place, following, _, _ = nodes
-    turned, facets, _ = placed
-    nodal = tables.nodal
-    nodal[:] = 0.0
+    tables, nodes, _, _, _, _, area, placed, contact, touched = geometry
+    following, (_, facets, _, pushed) = nodes.following, placed
+    pushed[:] = 0.0
     for k in range(normal.size):
         if normal[k] == 0.0 and tangential[k] == 0.0:
             continue
@@ -332,20 +355,36 @@ def scatter_deformable(normal: Array, tangential: Array, geometry: DeformableSid
         # On b, and the opposite on a.
         for side in range(2):
             j, share = touched[k, side], contact[k, 4 + side]
-            p, after = owner[j], following[j]
-            c, s = turned[p, 0], turned[p, 1]
-            force[rigid[p, 0]] += fx
-            force[rigid[p, 1]] += fy
-            force[rigid[p, 2]] += (x - turned[p, 2]) * fy - (y - turned[p, 3]) * fx
-            tx, ty, along = facets[j, 2], facets[j, 3], share / facets[j, 4]
+            after = following[j]
+            tx, ty, inverse = facets[j, 2], facets[j, 3], facets[j, 4]
+            along = share / inverse
             # The point may be off the facet by a penetration or a radius: a couple on its two nodes.
             off_x, off_y = x - facets[j, 0] - along * tx, y - facets[j, 1] - along * ty
-            couple = (off_x * fy - off_y * fx) * facets[j, 4]
+            couple = (off_x * fy - off_y * fx) * inverse
             gx, gy = (1.0 - share) * fx + couple * ty, (1.0 - share) * fy - couple * tx
-            hx, hy = fx - gx, fy - gy
-            nodal[place[j, 0]] -= c * gx + s * gy
-            nodal[place[j, 1]] -= c * gy - s * gx
-            nodal[place[after, 0]] -= c * hx + s * hy
-            nodal[place[after, 1]] -= c * hy - s * hx
+            pushed[j, 0] += gx
+            pushed[j, 1] += gy
+            pushed[after, 0] += fx - gx
+            pushed[after, 1] += fy - gy
             fx, fy = -fx, -fy
+    _push_nodes(nodes, placed, tables.nodal, force)
     to_modes(tables, force)
+
+
+@kernel
+def _push_nodes(nodes: OutlineNodes, placed: PlacedNodes, nodal: Array, force: Array) -> None:
+    """Forces on outline nodes in space: add them to those of their blocks, and write the opposite in these's frames."""
+    rigid, _, owner, _, place, _, _, _ = nodes
+    turned, facets, _, pushed = placed
+    nodal[:] = 0.0
+    for j in range(owner.size):
+        fx, fy = pushed[j, 0], pushed[j, 1]
+        if fx == 0.0 and fy == 0.0:
+            continue
+        b = owner[j]
+        c, s = turned[b, 0], turned[b, 1]
+        force[rigid[b, 0]] += fx
+        force[rigid[b, 1]] += fy
+        force[rigid[b, 2]] += (facets[j, 0] - turned[b, 2]) * fy - (facets[j, 1] - turned[b, 3]) * fx
+        nodal[place[j, 0]] -= c * fx + s * fy
+        nodal[place[j, 1]] -= c * fy - s * fx

@@ -50,7 +50,7 @@ def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSys
 
 
 HALF = 0.5 + 1e-6
-"""More than half a facet, for all rounding: how far inside the arcs of corners a node bears."""
+"""More than half-way to the next point, for all rounding: how far inside the arcs of corners one bears."""
 
 
 class DeformableContacts:
@@ -72,7 +72,7 @@ class DeformableContacts:
         self.undeformed = replace(undeformed, area=area, glued=undeformed.joint >= 0)
 
     def find(self, motion: Array, margin: float) -> Contacts:
-        """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then nodes inside them."""
+        """Contacts nearer than a margin [m] after a motion ``(nd,)``: ends of facing sides, then points in them."""
         rigid = self.blocks.rigid(motion)
         ends = find_contacts(self.outline, rigid, margin)
         corner, _ = resting(self.outline, ends, rigid)
@@ -80,8 +80,8 @@ class DeformableContacts:
         side, low = np.where(corner == v, e, f), (ends.inwards > 0) == (corner == v)
         # The corner inwards is the last of side e and the first of f at the low end, and the other way at the high.
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
-        # An end stands for its side up to half-way from the first node that is far enough inside the arc to bear.
-        length = self.blocks.nodes.length[facet]
+        # An end stands for its side up to half-way from the first point that is far enough inside the arc to bear.
+        length = self.blocks.nodes.length[facet] / self.blocks.parts
         passed = np.floor(self.blocks.sides.inset[corner] / length + HALF)
         area = np.minimum(ends.area, self._thickness * (passed + 0.5) * length)
         inner = self._inner(rigid, margin)
@@ -99,7 +99,7 @@ class DeformableContacts:
         at = position_of(key, contacts.key)
         known = (at >= 0) & (np.append(joint, -1)[at] == contacts.joint) & (contacts.joint >= 0)
         contacts = replace(contacts, area=np.where(known, np.append(area, 0.0)[at], contacts.area))
-        return contacts.chosen(np.argsort(self._materials.number(contacts), kind="stable"))
+        return self._materials.side_by_side(contacts)
 
     def _areas(self, contacts: Contacts) -> Array:
         """Areas ``(n,)`` [m²] of contacts on the undeformed wall, by trapezoids whose sum is the area of their joint.
@@ -121,19 +121,21 @@ class DeformableContacts:
         return area
 
     def _inner(self, rigid: Array, margin: float) -> Contacts:
-        """Nodes inside one of two facing sides that are near the other: of block b's, unless that one is held."""
-        outline, first = self.outline, self.blocks.first
-        length_of, inset = self.blocks.nodes.length, self.blocks.sides.inset
+        """Points inside one of two facing sides that are near the other: of block b's, unless that one is held."""
+        outline, first = self.outline, self.blocks.first * self.blocks.parts
+        nodes, points, inset = self.blocks.nodes, self.blocks.points, self.blocks.sides.inset
         owner, after = outline.blocks.owner, outline.blocks.successor
         e, f = facing_sides(outline, rigid, margin)
         of_a = outline.held[owner[e]]
         own, other = np.where(of_a, f, e), np.where(of_a, e, f)
         count = np.diff(first)[own] - 1
         pair = np.repeat(np.arange(len(own)), count)
-        node = first[own][pair] + 1 + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
+        point = first[own][pair] + 1 + np.arange(len(pair)) - np.repeat(np.cumsum(count) - count, count)
         arcs = outline.placed(rigid).arcs
-        block = self.blocks.nodes.owner[node]
-        at = outline.points(block, outline.blocks.centroid[block] + self.blocks.nodes.arm[node], rigid)
+        facet, share = points.facet[point], points.share[point, None]
+        block = nodes.owner[facet]
+        arm = (1 - share) * nodes.arm[facet] + share * nodes.arm[nodes.following[facet]]
+        at = outline.points(block, outline.blocks.centroid[block] + arm, rigid)
         corners = outline.corners(rigid)
         on = other[pair]
         run = corners[after[on]] - corners[on]
@@ -143,23 +145,23 @@ class DeformableContacts:
         opposed = -(arcs[own, 2:] * arcs[other, 2:]).sum(axis=1)[pair] > np.cos(np.pi / 4)
         # Those that are still to come farther from the other side's corners before they bear are near them only.
         inside = np.minimum(along - inset[on], length - inset[after[on]] - along)
-        half = np.minimum(length_of[node], length_of[node - 1]) / 2
-        near = opposed & (np.abs(away) < margin) & (half - inside < margin) & self._bearing[node]
-        node, pair, on = node[near], pair[near], on[near]
-        rows = (len(outline.radius) + node, on, of_a[pair], after[on], e[pair], f[pair])
+        near = opposed & (np.abs(away) < margin) & (points.half[point] - inside < margin) & self._bearing[point]
+        point, pair, on = point[near], pair[near], on[near]
+        rows = (len(outline.radius) + point, on, of_a[pair], after[on], e[pair], f[pair])
         joint = outline.joint_of(e, f)[pair]
-        area = self._thickness * (length_of[node] + length_of[node - 1]) / 2
-        still = np.zeros(len(node))
+        length_of = nodes.length[points.facet[[point, point - 1]]] / self.blocks.parts
+        area = self._thickness * length_of.sum(axis=0) / 2
+        still = np.zeros(len(point))
         return Contacts(rigid, margin, np.column_stack(rows).astype(np.uint64), still, still, area, joint, still > 0)
 
     @cached_property
     def _bearing(self) -> Mask:
-        """Which outline nodes are half a facet inside the arcs of their side's corners."""
-        nodes, sides = self.blocks.nodes, self.blocks.sides
-        side = np.repeat(np.arange(len(sides.inset)), np.diff(self.blocks.first))
+        """Which points along sides are half-way to the next one inside the arcs of their side's corners."""
+        (facet, share, half), nodes, sides = self.blocks.points, self.blocks.nodes, self.blocks.sides
+        side = np.repeat(np.arange(len(sides.inset)), np.diff(self.blocks.first))[facet]
         far_end = sides.extent[side] - sides.inset[sides.successor[side]]
-        inside = np.minimum(nodes.begin - sides.inset[side], far_end - nodes.begin)
-        return np.asarray(inside > HALF * np.minimum(nodes.length, np.roll(nodes.length, 1)))
+        along = nodes.begin[facet] + share * nodes.length[facet]
+        return np.asarray(np.minimum(along - sides.inset[side], far_end - along) > 2 * HALF * half)
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
         """The arrays that `gather_deformable` and `scatter_deformable` share, with buffers of their own."""
@@ -168,10 +170,12 @@ class DeformableContacts:
             np.zeros((len(self.outline.blocks), 4)),
             np.zeros((len(blocks.nodes.arm), 5)),
             np.zeros((len(blocks.first) - 1, 4)),
+            np.zeros((len(blocks.nodes.arm), 2)),
         )
         return DeformableSides(
             blocks.new_tables(),
             blocks.nodes,
+            blocks.points,
             blocks.sides,
             contacts.ends.astype(np.int64),
             contacts.inwards.copy(),
@@ -229,7 +233,7 @@ class DeformableContacts:
         return contacts.key[nearest], points.area / area[nearest]
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
-        """A number of the corner or node that rests and the side it rests on, for each contact."""
+        """A number of the corner or point that rests and the side it rests on, for each contact."""
         geometry = self.geometry(contacts)
         gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
         of_a = geometry.touched[:, 2] == 1

@@ -1,7 +1,6 @@
-"""Outlines of deformable blocks: their sides as polygons of the nodes of their mesh, and of points between those.
+"""Outlines of deformable blocks: their sides as polygons of the nodes of their mesh, and points along those.
 
-Contacts are at the corners of the polygons. Where pressures along joints matter, the facets of the mesh are divided,
-by points that move as the mesh between its nodes does.
+Contacts are at the points: the nodes or, where pressures along joints matter, at others between them as well.
 """
 
 import math
@@ -18,7 +17,7 @@ from runningbond.joints.wall_points import BETWEEN, spreads
 from runningbond.scene import Array, Blocks, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
-from .deformable_sides import OutlineNodes, Sides
+from .deformable_sides import OutlineNodes, SidePoints, Sides
 from .modal_wall import ModalWall, modal_wall
 from .modes import ModeCount
 from .templates import nodes_of
@@ -37,13 +36,15 @@ class NodeOutline:
     outline
         Their undeformed outlines.
     node : (no,) int
-        Node of the mesh that each is, or that it lies after.
+        Node of the mesh that each is.
     row : (no,) int
         Its row in the table of its block's template.
     first : (nv + 1,) int
         First outline node of each side, then their number.
-    nodes, sides
-        The outline nodes and the sides, as the kernels take them.
+    nodes, points, sides
+        The outline nodes, the points along the sides and these, as the kernels take them.
+    parts : int
+        Points on each facet.
     tables : list of (n, 2, m) float
         Of each template the displacements of its outline nodes per deformation.
     """
@@ -54,7 +55,9 @@ class NodeOutline:
     row: Indices
     first: Indices
     nodes: OutlineNodes
+    points: SidePoints
     sides: Sides
+    parts: int
     tables: list[Array]
 
     @property
@@ -104,13 +107,10 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     wall, outline = modal_wall(scene, cells, modes, trapezoids(parts)), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])
-    following = node[_following(first, outline.blocks)]
-    share = np.arange(parts) / parts
-    points = (1 - share)[:, None] * wall.mesh.points[node, None] + share[:, None] * wall.mesh.points[following, None]
-    node, first = np.repeat(node, parts), parts * first
-    row, tables = _tables(wall, node, np.repeat(following, parts), np.tile(share, len(following)))
-    nodes = _outline_nodes(wall, points.reshape(-1, 2), first, _places(wall, wall.mesh.block[node], row, tables)[0])
-    return NodeOutline(wall, outline, node, row, first, nodes, _sides(outline, first, nodes.length), tables)
+    row, tables = _tables(wall, node)
+    nodes = _outline_nodes(wall, node, first, _places(wall, wall.mesh.block[node], row, tables)[0])
+    points, sides = _points(nodes.length, parts), _sides(outline, first, nodes.length)
+    return NodeOutline(wall, outline, node, row, first, nodes, points, sides, parts, tables)
 
 
 def _following(first: Indices, blocks: Blocks) -> Indices:
@@ -120,23 +120,30 @@ def _following(first: Indices, blocks: Blocks) -> Indices:
     return following
 
 
-def _outline_nodes(wall: ModalWall, points: Array, first: Indices, place: Indices) -> OutlineNodes:
-    blocks = wall.scene.blocks
+def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, place: Indices) -> OutlineNodes:
+    blocks, position = wall.scene.blocks, wall.mesh.points[node]
     side = np.repeat(np.arange(len(first) - 1), np.diff(first))
     owner = blocks.owner[side]
     following = _following(first, blocks)
-    length = np.hypot(*(points[following] - points).T)
+    length = np.hypot(*(position[following] - position).T)
     total = np.cumsum(length) - length
     return OutlineNodes(
         wall.rigid.astype(np.int64),
         blocks.centroid.copy(),
         owner.astype(np.int64),
-        points - blocks.centroid[owner],
+        position - blocks.centroid[owner],
         place,
         following,
         total - total[first[:-1]][side],
         length,
     )
+
+
+def _points(length: Array, parts: int) -> SidePoints:
+    """Points along the sides, some on each facet of some length ``(no,)`` [m]."""
+    apart = np.repeat(length, parts) / parts
+    half = np.minimum(apart, np.roll(apart, 1)) / 2
+    return SidePoints(np.repeat(np.arange(len(length)), parts), np.tile(np.arange(parts) / parts, len(length)), half)
 
 
 def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
@@ -149,21 +156,19 @@ def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
     return Sides(outer, shares, extent, outline.straight.copy(), successor, inset, outline.radius.copy())
 
 
-def _tables(wall: ModalWall, node: Indices, following: Indices, share: Array) -> tuple[Indices, list[Array]]:
+def _tables(wall: ModalWall, node: Indices) -> tuple[Indices, list[Array]]:
     """Row of each outline node in the table of its block's template, ``(no,)``, and the tables.
 
-    The outline nodes lie between two nodes of the mesh, at some share of the way; those of fixed blocks have no row.
+    Nodes of fixed blocks have no row.
     """
     mesh, row, tables = wall.mesh, np.full(len(node), -1), []
     block = mesh.block[node]
-    local = np.column_stack([node, following]) - mesh.first_node[block][:, None]
+    local = node - mesh.first_node[block]
     for number, template in enumerate(wall.templates):
         own = np.flatnonzero(wall.place[block, 0] == number)
-        likeness = np.column_stack([local[own], share[own]])
-        _, chosen, row[own] = np.unique(likeness, axis=0, return_index=True, return_inverse=True)
-        (i, j), s = local[own[chosen]].T, share[own[chosen], None, None]
-        shape = template.modes.shape.reshape(-1, 2, len(template.modes.mass))[:, :, 3:]
-        tables.append((1 - s) * shape[i] + s * shape[j])
+        chosen, row[own] = np.unique(local[own], return_inverse=True)
+        shape = template.modes.shape.reshape(-1, 2, len(template.modes.mass))
+        tables.append(shape[chosen, :, 3:])
     return row, tables
 
 

@@ -57,6 +57,11 @@ class ContactMaterials:
         joint = np.append(self._of_joint, 0)[contacts.joint]
         return np.where(contacts.glued, joint, joint + len(self._broken))
 
+    def side_by_side(self, contacts: Contacts) -> Contacts:
+        """Contacts that may be of one material one after the other, for kernels go from one material to the next."""
+        in_joint = replace(contacts, glued=contacts.joint >= 0)
+        return contacts.chosen(np.argsort(self._alike[self.number(in_joint)], kind="stable"))
+
     def law(self, contacts: Contacts, pairs: Indices | None = None, points: int = 1) -> KernelLaw:
         """Law of the ends, or of a number of points along ``pairs`` ``(n, 2)`` of them (`joints.along`)."""
         number = self._alike[self.number(contacts)]

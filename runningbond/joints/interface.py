@@ -103,7 +103,7 @@ def any_points(
         jump_n = opening[i] + seat[i]
         before = damage[i]
         after, sheared = before, slipped[i] * per_slip
-        if jump_n > first or sheared > 0.0:
+        if before < 1.0 and (jump_n > first or sheared > 0.0):
             torn = max(0.0, (jump_n - first) / (last - first))
             after = max(before, damage_at(math.sqrt(torn * torn + sheared * sheared), exponential))
         sound = 1.0 - after
@@ -111,11 +111,12 @@ def any_points(
         room = sound * (shear + friction * tension)
         viscous, pressure, closure = 0.0, 0.0, max(0.0, -jump_n)
         if jump_n > 0.0:
-            onset = first + way_to(before, exponential) * (last - first)
-            secant_before = (1.0 - before) * tension / onset if tension > 0.0 else 0.0
-            until = first + way_to(after, exponential) * (last - first)
-            secant = sound * tension / until if tension > 0.0 else 0.0
-            spent[i] += 0.5 * (secant_before - secant) * jump_n * min(jump_n, onset)
+            secant = 0.0
+            if tension > 0.0 and sound > 0.0:
+                secant = sound * tension / (first + way_to(after, exponential) * (last - first))
+            if tension > 0.0 and after > before:
+                onset = first + way_to(before, exponential) * (last - first)
+                spent[i] += 0.5 * ((1.0 - before) * tension / onset - secant) * jump_n * min(jump_n, onset)
             elastic = secant * jump_n
         else:
             pressure = pressure_at(closure, curve)

@@ -9,7 +9,7 @@ import pytest
 from scipy.optimize import brentq
 
 import dem.finite_system
-from fem_interface.deformable_sides import place_nodes
+from fem_interface.deformable_sides import gather_deformable
 from fem_interface.finite_system import DeformableContacts, finite_system
 from fem_interface.model import fem
 from fem_interface.node_outline import node_outline
@@ -97,17 +97,19 @@ def test_contacts_have_the_area_of_their_joints(cells: int, inset: float, streng
 def test_points_between_nodes_move_as_the_mesh_does() -> None:
     """On the straight line between two nodes of it, in any motion."""
     scene = stone(2, 0.2, wall__courses=[[1, 1], [0.5, 1, 0.5]], joint__compressive_strength=1e6)
-    blocks, parts = node_outline(scene), 8
+    blocks = node_outline(scene)
     motion = np.random.default_rng(3).normal(0.0, 1e-3, len(blocks.wall.mass))
     motion[-1] = 0.0
     contacts = DeformableContacts(blocks)
-    geometry = contacts.geometry(contacts.undeformed)
-    place_nodes(motion, geometry.tables, geometry.nodes, geometry.placed)
-    at = geometry.placed.facets[:, :2].reshape(-1, parts, 2)
-    ends = blocks.positions(motion)[blocks.node[::parts]]
-    following = blocks.positions(motion)[blocks.node[blocks.nodes.following[parts - 1 :: parts]]]
-    share = np.arange(parts)[:, None] / parts
-    assert at == pytest.approx((1 - share) * ends[:, None] + share * following[:, None], abs=1e-12)
+    found = contacts.undeformed.chosen(contacts.undeformed.inwards == 0)
+    geometry = contacts.geometry(found)
+    gather_deformable(motion, geometry, *np.zeros((2, len(found))))
+    point = found.ends[:, 0].astype(np.int64) - len(contacts.outline.radius)
+    facet, share = blocks.points.facet[point], blocks.points.share[point, None]
+    assert len(found) > 7 * len(scene.joints)
+    assert set((8 * share.ravel()).tolist()) == set(range(8))
+    at, after = blocks.positions(motion)[blocks.node[[facet, blocks.nodes.following[facet]]]]
+    assert geometry.contact[:, :2] == pytest.approx((1 - share) * at + share * after, abs=1e-12)
 
 
 def test_small_drifts_are_those_of_small_displacements() -> None:
