@@ -34,6 +34,9 @@ LARGEST_LOAD, LARGEST_DISPLACEMENT = 1e6, 10.0
 So far small displacements are none, and what is elastic between two loads is more than counts as collapse.
 """
 
+BEYOND_BOUND = 2.0
+"""Multiplier, in proved bounds, up to which a collapse is looked for all the same."""
+
 LARGEST_ELASTIC = 20.0
 """Displacement, in those of springs under a load that is proved too large, beyond which no collapse is looked for."""
 
@@ -158,7 +161,9 @@ def _search(
     """Bring the load up, and count as a collapse nothing that an `elastic` displacement [m] at a bound may be."""
     sizes = scene.block_sizes[run.system.owner]
     tolerance = tolerance / 2 if can_break(run) else tolerance  # the bracket is wider by its last step
-    criteria, most = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic)), LARGEST_LOAD * first
+    criteria = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic))
+    # The first steps of a weightless wall may be millionths of what brings it down.
+    most = max(LARGEST_LOAD * first, BEYOND_BOUND * (bound or 0.0))
     if bound and 0 < bound < first:
         first *= 2.0 ** max(-HALVINGS, math.floor(math.log2(bound / first)))
     return load_steps(

@@ -175,7 +175,7 @@ def crushed(system: Equilibrium, joints: Crushing) -> tuple[ForceSolution, bool 
         return ForceSolution.none(point.status, iterations), True
     forces, motion = _repaired(program, point, _rest(InnerProgram(dead, joints, program.known)))
     found = None if forces is None or motion is None else program.solution("optimal", forces, motion, 0)
-    if found is None or _width(system, found) > closest(system):
+    if found is None or not _width(system, found) <= closest(system):
         found = _beside_vertex(program, forces, motion) or found
     return (ForceSolution.none("numerical") if found is None else replace(found, iterations=iterations)), True
 

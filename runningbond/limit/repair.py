@@ -116,6 +116,8 @@ def admissible(program: dict[str, Any], point: InteriorPoint) -> Array | None:
         slack = point.slack if k < 3 else 0.0  # where blocks wedge each other, no motion opens their points
         solve = metric(program, weights)
         for _ in range(STEPS):
+            if not np.isfinite(motion).all():  # the metric was singular
+                return None
             reduced = cost - matrix.T @ motion
             closing, held = half & (reduced < 0), np.abs(reduced[free]).max(initial=0.0)
             if not closing.any() and held <= rounding:

@@ -5,7 +5,8 @@ slack nor yield,
 
     K = diag(k) + B_nᵀ diag(w k_n) B_n + B_tᵀ diag(w k_t) B_t + Gᵀ diag(E A / L) G,    K φ = ω² M φ.
 
-Of a joint that closes the more it is pressed, k_n is the tangent under its pressure at rest.
+Of a joint that closes the more it is pressed, k_n is the tangent under its pressure at rest; of one that has softened
+and stands open, the secant along which it unloads.
 The weight closes the joints; of what it does besides, the moment of a block that leans, nothing is in K.
 """
 
@@ -23,6 +24,9 @@ from runningbond.scene import Array, Scene, SceneError
 
 DENSE = 200
 """Freedoms up to which all modes are computed at once."""
+
+PRESSED = 1e-6
+"""Pressure of a joint that is closed, in the largest ones; what touches without bearing has some by rounding."""
 
 LOOSE = 1e-6
 """ω of a motion that no closed joint holds, in largest ones."""
@@ -61,7 +65,7 @@ def vibration_at_rest(scene: Scene, run: Run, count: int = 10) -> Vibration:
     loaded = put_on_dead_load(run, Criteria(collapse=U_CRIT * scene.block_sizes[run.system.owner]))
     if loaded.verdict != "stable":
         raise SceneError(scene.title, "does not come to rest under its dead load")
-    return vibration(Run(_with_true_beam(scene, run.system)), loaded.state, count)
+    return vibration(Run(_with_true_beam(scene, run.system.held_late)), loaded.state, count)
 
 
 def _with_true_beam(scene: Scene, system: BlockSystem) -> BlockSystem:
@@ -74,12 +78,17 @@ def _with_true_beam(scene: Scene, system: BlockSystem) -> BlockSystem:
 def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     """Natural vibrations of a wall about a state at rest, at small displacements."""
     system = run.system
-    _, _, normal, _ = run.tractions(state)
+    opening, _, normal, _ = run.tractions(state)
     law, damage = run.interface.law, run.interface.law.damage(state.history)
     pull, most = system.ties.force(state.motion, state.stretch), system.ties.constants[:, YIELD]
-    closed = (normal < 0) | ((law.tension > 0) & (damage < 1) & (normal < law.tension))
+    closed = (normal < -PRESSED * np.abs(normal).max(initial=0.0)) | (
+        (law.tension > 0) & (damage < 1) & (normal < law.tension)
+    )
     moving = np.flatnonzero(np.isfinite(system.mass))
-    springs = closed * np.array([law.normal_tangent(np.maximum(0.0, -normal)), law.shear_stiffness])
+    jump = opening + law.plastic_closure(state.history)
+    torn = (damage > 0) & (jump > 0)
+    tangent = law.normal_tangent(np.maximum(0.0, -normal))
+    springs = closed * np.array([np.where(torn, normal / np.where(torn, jump, 1.0), tangent), law.shear_stiffness])
     stiffness = stiffness_matrix(system, springs, (pull > 0) & (pull < most))[moving][:, moving]
     root = 1 / np.sqrt(system.mass[moving])
     scaled = diags_array(root) @ stiffness @ diags_array(root)

@@ -158,6 +158,28 @@ def test_joints_that_crush_are_followed_and_no_load_above_the_bound_is_certified
     assert found.lower <= (limit(pier).upper or 0.0)
 
 
+def test_joints_that_give_way_once_crushed_leave_no_proof() -> None:
+    """Three piers that share a load by their stiffness: the stiffest one crushes before the others bear theirs.
+
+    Forces and a mechanism prove 600 kN less the weight for joints that bear their strength for ever; with the energy
+    of 2 kN/m the two outer piers, ten times softer, bear a third of it when the middle one breaks.
+    """
+    joint = {"friction": 0.7, "normal_stiffness": 1e10, "shear_stiffness": 4e9, "compressive_strength": 5e6}
+    soft = {"normal_stiffness": 1e9, "shear_stiffness": 4e8}
+    boxes = [[[-0.1, -0.1], [0.5, 0.1]], [[1.5, -0.1], [2.1, 0.1]]]
+    changes: dict[str, Any] = {
+        "joints": {"soft": joint | soft | {"compressive_fracture_energy": 2e3}},
+        "assign": [{"joint": "soft", "box": box} for box in boxes],
+        "load": {"gravity": 9.81, "live": {"kind": "point", "at": [1.0, 0.4], "force": [0, -1]}},
+    }
+    pattern = [[1.0, -1.0, 1.0, -1.0, 1.0], [5.0]]
+    scene = courses(pattern, height=0.2, joint=joint | {"compressive_fracture_energy": 2e3}, **changes)
+    found = Knowledge(scene, 0.05)
+    found.learn(MODELS["limit"], limit(scene))
+    assert found.evidence == ""
+    assert found.bound is not None
+
+
 def test_what_closes_under_pressure_is_followed_by_a_model_that_knows_of_it() -> None:
     scene = published_scene("wall-w3")
     stiff = scene.with_joint(elasticity=Stiffness(1e10, 4e9))

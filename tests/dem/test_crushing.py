@@ -1,6 +1,8 @@
 """Rigid blocks on joints that crush and close: stress blocks, closed forms of settlement, energy, listed forces."""
 
 import sys
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from runningbond.joints import lobatto, wall_points, wall_rule
 from runningbond.models import MODELS
 from runningbond.pictures.mechanism import mechanism_frame
 from runningbond.results import Outcome, Supports
-from runningbond.scene import Scene, SceneError
+from runningbond.scene import Scene, SceneError, scene_from_dict
 from tests.walls import courses
 
 STIFF = {"normal_stiffness": 1e9, "shear_stiffness": 4e8}
@@ -138,3 +140,38 @@ def test_a_joint_too_weak_for_the_weight_lets_the_wall_fall() -> None:
     outcome = dem_dynamic(block(compressive_strength=0.9 * WEIGHT))
     assert isinstance(outcome, Outcome)
     assert outcome.status == "infeasible"
+
+
+def prism(courses: int, strength: float, stiffness: float, **load: Any) -> Scene:
+    """Blocks on one another, on joints that crush, under a load in the middle of their top."""
+    push = {"kind": "point", "at": [0.2, 0.2 * courses], "force": [0, -1]}
+    joint = {"friction": 0.7, "normal_stiffness": stiffness, "shear_stiffness": 0.4 * stiffness}
+    wall = {"courses": [[1]] * courses, "block_width": 0.4, "block_height": 0.2, "thickness": 0.1}
+    return scene_from_dict(
+        {
+            "wall": wall,
+            "block": {"density": 2000.0, "young": 1e12, "poisson": 0.2},
+            "joint": joint | {"compressive_strength": strength},
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81, "live": push} | load,
+        }
+    )
+
+
+@pytest.mark.parametrize("solve", [dem_dynamic, fem])
+@pytest.mark.parametrize(
+    ("courses", "strength", "stiffness", "gravity"),
+    [(4, 5e6, 1e9, 9.81), (1, 5e6, 4e8, 9.81), (1, 5e6, 1e10, 0.0), (1, 5e6, 1e10, 0.01)],
+)
+def test_a_column_crushes_under_its_strength_however_soft_or_light(
+    solve: Callable[..., Outcome], courses: int, strength: float, stiffness: float, gravity: float
+) -> None:
+    """At f A less what weighs on the lowest joint: such walls were told to lock, as joints that never crush do."""
+    scene = prism(courses, strength, stiffness, gravity=gravity)
+    exact = strength * 0.4 * 0.1 - courses * 0.4 * 0.2 * 0.1 * 2000.0 * gravity
+    found = solve(scene, 0.02)
+    assert found.status == "collapse"
+    assert found.lower is not None
+    assert found.upper is not None
+    assert found.lower <= exact * 1.001
+    assert exact <= found.upper * 1.001

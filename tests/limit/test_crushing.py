@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.optimize import brentq
 from scipy.sparse import csc_matrix, eye_array, hstack, vstack
 
 from runningbond.compare.published import published_scene
@@ -221,6 +222,26 @@ def test_an_eccentric_column_bears_the_pressure_on_twice_its_way_to_the_edge(ecc
     live = PointLoad((0.5 + eccentricity, 2.0), (0.0, -1.0))
     scene = built([rectangle(0, 0, 1, 2)], material, live, [rectangle(0, -1, 1, 1)])
     assert collapse(scene) == pytest.approx(THICKNESS * 1e6 * (1 - 2 * eccentricity), rel=NARROW)
+
+
+@pytest.mark.parametrize("hundredths", range(20))
+def test_a_heavy_column_bears_its_load_s_stress_block(hundredths: int) -> None:
+    """Of two blocks: of each bed, N = t f_c (l − 2 M / N) with what weighs on it, the smallest load of the two.
+
+    Some of these were `failed`: few resultants are in use, and the metric of their repair is singular.
+    """
+    strength, length, height, away = 5e6, 0.4, 0.2, hundredths / 100
+    material = JointMaterial(0.7, compressive_strength=strength, cap_shear=0.0)
+    live = PointLoad((length / 2 + away, 2 * height), (0.0, -1.0))
+    scene = built([rectangle(0, k * height, length, height) for k in range(2)], material, live)
+
+    def beyond(load: float, weight: float) -> float:
+        total = load + weight
+        return total - THICKNESS * strength * (length - 2 * load * away / total)
+
+    weights = [k * DENSITY * 9.81 * THICKNESS * length * height for k in (1, 2)]
+    exact = min(float(brentq(beyond, 1.0, 1e6, args=(weight,))) for weight in weights)
+    assert collapse(scene) == pytest.approx(exact, rel=NARROW)
 
 
 @pytest.mark.parametrize("strength", [2e5, 1e6])

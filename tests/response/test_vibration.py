@@ -4,12 +4,15 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 from dem.dynamic import dem_vibration
+from dem.rigid_system import contact_points, rigid_system
 from fem_interface.model import fem_vibration
+from runningbond.dynamics import Criteria, Run, put_on_dead_load
 from runningbond.response import Vibration
-from runningbond.scene import Closure, Scene, Stiffness, scene_from_dict
+from runningbond.scene import Array, Closure, Scene, Stiffness, scene_from_dict
 from tests.walls import content
 
 THICKNESS, DENSITY = 0.12, 1800.0
@@ -131,3 +134,62 @@ def test_a_beam_vibrates_with_its_own_mass() -> None:
         )
     ).with_joint(elasticity=Stiffness(1e9, 4e8))
     assert under.frequency == pytest.approx(dem_vibration(over, 9).frequency, rel=1e-6)
+
+
+STIFF = Stiffness(1e9, 4e8)
+
+
+def frequencies(scene: Scene, count: int, springs: Array) -> Array:
+    """Natural frequencies [Hz] of rigid blocks on normal and shear springs `(np, 2)` [Pa/m] at their joints' points."""
+    points, blocks, mass = contact_points(scene), scene.blocks, scene.density * scene.thickness
+    stiffness = np.zeros((3 * len(blocks), 3 * len(blocks)))
+    for k, (block, at, area) in enumerate(zip(points.block, points.position, points.area, strict=True)):
+        for direction, spring in zip((points.normal[k], points.tangent[k]), springs[k], strict=True):
+            row = np.zeros(3 * len(blocks))
+            for body, sense in zip(block, (-1.0, 1.0), strict=True):
+                arm = at - blocks.centroid[body]
+                turn = direction[1] * arm[0] - direction[0] * arm[1]
+                row[3 * body : 3 * body + 3] = sense * np.array([*direction, turn])
+            stiffness += area * spring * np.outer(row, row)
+    inertia = np.repeat(mass * blocks.area, 3)
+    inertia[2::3] = (mass * blocks.polar_moment)[:]
+    free = np.flatnonzero(np.repeat(~scene.fixed, 3))
+    square = eigh(stiffness[np.ix_(free, free)], np.diag(inertia[free]), eigvals_only=True)
+    return np.asarray(np.sqrt(square[:count]) / (2 * np.pi))
+
+
+@pytest.mark.parametrize("density", [1800.0, 1800.001, 1801.0])
+def test_joints_that_touch_without_bearing_are_no_springs(density: float) -> None:
+    """Head joints of a dry wall carry nothing but rounding: its frequencies are those of blocks on beds alone."""
+    scene = scene_from_dict(content(block__density=density)).with_joint(elasticity=STIFF)
+    beds = np.abs(contact_points(scene).normal[:, 1]) > 0.5
+    own = frequencies(scene, 6, beds[:, None] * np.array([1e9, 4e8]))
+    assert dem_vibration(scene, 6).frequency == pytest.approx(own, rel=1e-6)
+
+
+def test_a_beam_of_fixed_height_only_goes_sideways() -> None:
+    """It has one freedom, and what is below vibrates beneath a ceiling."""
+    beam = {"height": 0.1, "mass": 3.0, "condition": "fixed-height", "force": [0, -1e3]}
+    found = dem_vibration(stack(2, 0.4, 0.2, 1e9, 4e8, beam=beam), 9)
+    assert len(found.frequency) == 7
+    assert found.shape[:, -1, 1:] == pytest.approx(0.0, abs=1e-12)
+    # Upright, two masses on three springs between the ground and the ceiling.
+    springs, mass = 1e9 * 0.4 * THICKNESS, DENSITY * 0.4 * 0.2 * THICKNESS
+    upright = [f for f, share in zip(found.frequency, found.share, strict=True) if share[1] > 10 * share[0]]
+    assert upright[0] == pytest.approx(math.sqrt(springs / mass) / (2 * math.pi), rel=1e-6)
+
+
+def test_a_joint_that_has_softened_is_as_stiff_as_its_secant() -> None:
+    """A block that leans on mortar torn by part: each point that stands open with its traction over its opening."""
+    glue = {"cohesion": 6e4, "tensile_strength": 3e4, "fracture_energy_1": 30.0, "fracture_energy_2": 300.0}
+    push = {"kind": "point", "at": [0.0, 1.2], "force": [200.0, 0.0]}
+    scene = stack(1, 0.4, 1.2, 1e9, 4e8, joint={"friction": 0.6, **glue}, load__dead=[push])
+    run = Run(rigid_system(scene))
+    state = put_on_dead_load(run, Criteria(collapse=np.array([0.1]))).state
+    opening, _, normal, _ = run.tractions(state)
+    assert run.interface.law.damage(state.history).max() > 0.01
+    secant = np.where(opening > 0, normal / opening, 1e9)
+    own = frequencies(scene, 3, np.column_stack([secant, np.full(len(secant), 4e8)]))
+    found = dem_vibration(scene, 3).frequency
+    assert found == pytest.approx(own, rel=1e-6)
+    assert found[0] < 0.95 * frequencies(scene, 3, np.tile([1e9, 4e8], (len(secant), 1)))[0]

@@ -64,6 +64,7 @@ class Knowledge:
         materials = self.scene.joint_materials
         self.softens = any(each.softens for each in materials)
         self.crushes = any(each.compressive_strength is not None for each in materials)
+        self.gives_way = any(each.compressive_fracture_energy is not None for each in materials)
         self.closes = any(each.closure is not None for each in materials)
         _refuse(self.scene)
 
@@ -77,7 +78,8 @@ class Knowledge:
             return
         if model.kind == "bound":
             self.bound = outcome.upper
-            if not (self.softens or self.cracks or sliding_dilates(self.scene, outcome.motion)):
+            weakens = self.softens or self.gives_way or self.cracks
+            if not (weakens or sliding_dilates(self.scene, outcome.motion)):
                 self._answer("proof", outcome, outcome.lower)
         elif model.kind == "certificate":
             certified = outcome
