@@ -113,7 +113,7 @@ def _scene(content: dict[str, Any], folder: Path, default_title: str) -> Scene:
     support.finish()
     loads = read_load(load, folder, driven=beam is not None and beam.drive is not None)
     thickness = wall.number("thickness", ABOVE_ZERO)
-    outlines = read_outlines(wall, folder, block_names)
+    outlines = read_outlines(wall, folder, thickness, block_names)
     wall.finish()
     return build_scene(
         title,

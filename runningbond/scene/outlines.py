@@ -54,13 +54,15 @@ class Outlines:
     notes: tuple[str, ...] = ()
 
 
-def read_outlines(wall: Table, folder: Path, block_names: Sequence[str]) -> Outlines:
+def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequence[str]) -> Outlines:
     """The outlines that the table of a wall describes.
 
     Parameters
     ----------
     folder
         Where drawings are looked up.
+    thickness
+        Of the wall [m].
     block_names
         Names of the materials that blocks may have.
 
@@ -74,7 +76,7 @@ def read_outlines(wall: Table, folder: Path, block_names: Sequence[str]) -> Outl
         from .drawings import METRES, read_drawing  # only now: healing needs a good part of scipy
 
         path, heal = folder / wall.text("drawing"), wall.optional_number("heal", ABOVE_ZERO)
-        drawing = read_drawing(path, wall.choice("units", METRES), heal)
+        drawing = read_drawing(path, wall.choice("units", METRES), heal, thickness=thickness)
         return Outlines(drawing.blocks, drawing.grounds, layers=drawing.layers, notes=drawing.notes)
     width = wall.number("block_width", ABOVE_ZERO)
     heights = _course_heights(wall)

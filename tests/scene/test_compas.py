@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from runningbond.scene import SceneError
 from runningbond.scene.drawings import read_drawing
 
-from .drafting import BRICKS, GROUND, Outline, closed, dxf, multiplier, scene_of
+from .drafting import BRICKS, GROUND, Outline, box, closed, dxf, multiplier, scene_of
 
 WALL = [[(x / 1e3, y / 1e3) for x, y in outline] for outline in BRICKS]
 BASE = [(x / 1e3, y / 1e3) for x, y in GROUND]
@@ -134,3 +135,138 @@ def test_gaps_of_an_assembly_are_healed(tmp_path: Path) -> None:
             vertex["z"] += 1e-3 * (vertex["z"] > 0.05) if k == "7" else 1e-4 * int(k)
     (tmp_path / "wall.json").write_text(json.dumps(found))
     assert len(scene_of(tmp_path / "wall.json", units="m", heal=2e-3).joints) == 14
+
+
+PIER = [box(0, 0.1 * k, 0.3, 0.1 * (k + 1)) for k in range(-1, 6)]
+"""A stack 0.3 m wide and 0.6 m high, and its support of the same width."""
+
+
+def stack(axes: tuple[str, str, str], depth: float) -> dict[str, Any]:
+    """A pier as an assembly."""
+    found = assembly()
+    nodes = found["data"]["graph"]["data"]["node"]
+    for k, outline in enumerate(PIER):
+        nodes[str(k)] = {"block": {"data": mesh(outline, axes, depth)}, "is_support": k == 0}
+    del nodes["7"]
+    return found
+
+
+AXES = [("x", "z", "y"), ("y", "z", "x"), ("x", "y", "z")]
+
+
+@pytest.mark.parametrize("axes", AXES)
+def test_a_pier_is_seen_from_the_side_across_which_it_is_as_thick_as_the_wall(
+    axes: tuple[str, str, str], tmp_path: Path
+) -> None:
+    """It topples at b / h = 0.5, whichever way it stands or lies; seen from its narrow side it did at 0.2."""
+    (tmp_path / "wall.json").write_text(json.dumps(stack(axes, 0.12)))
+    assert multiplier(scene_of(tmp_path / "wall.json", units="m")) == pytest.approx(0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize("axes", AXES)
+def test_a_pier_that_may_be_seen_from_several_sides_is_refused_with_both(
+    axes: tuple[str, str, str], tmp_path: Path
+) -> None:
+    (tmp_path / "wall.json").write_text(json.dumps(stack(axes, 0.12)))
+    said = [f"{depth} (seen along {axis})" for depth, axis in ((0.3, axes[0]), (0.12, axes[2]))]
+    with pytest.raises(SceneError, match="wall.thickness = 0.2: must be ") as refused:
+        scene_of(tmp_path / "wall.json", units="m", thickness=0.2)
+    assert all(one in str(refused.value) for one in said)
+
+
+def test_a_pier_as_wide_as_it_is_thick_is_the_same_from_both_sides_unless_it_lies(tmp_path: Path) -> None:
+    """Standing, 0.5; lying, it may be a stack or a row of the same blocks."""
+    (tmp_path / "wall.json").write_text(json.dumps(stack(UPRIGHT, 0.3)))
+    assert multiplier(scene_of(tmp_path / "wall.json", units="m", thickness=0.3)) == pytest.approx(0.5, rel=1e-6)
+    (tmp_path / "wall.json").write_text(json.dumps(stack(("x", "y", "z"), 0.3)))
+    with pytest.raises(SceneError, match="is how thick all blocks are along x and z"):
+        scene_of(tmp_path / "wall.json", units="m", thickness=0.3)
+
+
+def test_a_flat_pier_is_seen_across_its_plane(tmp_path: Path) -> None:
+    (tmp_path / "wall.json").write_text(json.dumps(stack(("y", "z", "x"), 0.0)))
+    assert multiplier(scene_of(tmp_path / "wall.json", units="m", thickness=0.3)) == pytest.approx(0.5, rel=1e-6)
+
+
+def moving(x: float, z: float, turned: bool = False) -> dict[str, Any]:
+    """A motion, as COMPAS writes it; `turned` by a quarter about the thickness, from z towards x."""
+    turn = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]] if turned else np.eye(3).tolist()
+    matrix = [[*row, by] for row, by in zip(turn, (x, 0.0, z), strict=True)] + [[0.0, 0.0, 0.0, 1.0]]
+    return {"dtype": "compas.geometry/Transformation", "data": {"matrix": matrix}}
+
+
+def test_a_block_is_moved_by_all_that_it_is_nested_in(tmp_path: Path) -> None:
+    """As compas_model's `modeltransformation`: the block's own motion, its parent's, the group's, and the model's."""
+    found = model()
+    elements = found["data"]["elements"]
+    elements["0"]["data"]["transformation"] = moving(2, 0)
+    elements["1"]["data"]["transformation"] = moving(0, 5, turned=True)
+    bare: dict[str, Any] = {"transformation": moving(0, 1), "features": [], "name": "Group", "material": None}
+    elements["group"] = {"dtype": "compas_model.elements/Group", "data": bare}
+    nested = {"element": "group", "children": [{"element": "1", "children": [{"element": "0"}]}]}
+    found["data"] |= {"transformation": moving(10, 0), "tree": {"root": {"name": "root", "children": [nested]}}}
+    (tmp_path / "wall.json").write_text(json.dumps(found))
+    blocks = [np.mean(outline, axis=0) for outline in read_drawing(tmp_path / "wall.json", "m").blocks]
+    (x, z), (u, v), (free, low) = (np.mean(outline, axis=0) for outline in WALL[:3])
+    x += 2 - 3  # the first block is written 3 m beside its place
+    assert blocks[0] == pytest.approx((z + 10, -x + 5 + 1))
+    assert blocks[1] == pytest.approx((v + 10, -u + 5 + 1))
+    assert blocks[2] == pytest.approx((free + 10, low))
+
+
+def without_zeros(value: Any) -> Any:
+    """What a COMPAS mesh writes of its corners: no coordinate that is the usual one."""
+    if isinstance(value, list):
+        return [without_zeros(one) for one in value]
+    if not isinstance(value, dict):
+        return value
+    value = {key: without_zeros(one) for key, one in value.items()}
+    corners = value.get("vertex", {}) if "face" in value else {}
+    for corner in corners.values():
+        for axis in [axis for axis in corner if corner[axis] == 0.0]:
+            del corner[axis]
+    return value
+
+
+@pytest.mark.parametrize("usual", ["default_vertex_attributes", "dva"])
+@pytest.mark.parametrize("layout", [assembly, first_version, untyped, model])
+def test_coordinates_that_are_left_out_are_the_usual_ones(layout: Any, usual: str, tmp_path: Path) -> None:
+    """`Mesh.add_vertex(x=1, y=2)` writes no z; COMPAS 1 abbreviates what is usual."""
+    outlines = []
+    for found in (layout(), without_zeros(layout())):
+        text = json.dumps(found).replace("default_vertex_attributes", usual)
+        (tmp_path / "wall.json").write_text(text)
+        outlines.append(read_drawing(tmp_path / "wall.json", "m").blocks)
+    assert len(json.dumps(without_zeros(layout()))) < len(json.dumps(layout()))
+    assert np.array_equal(outlines[0], outlines[1])
+
+
+@pytest.mark.parametrize("wider", [0.05, -0.05])
+def test_a_block_with_another_outline_between_its_sides_is_refused(wider: float, tmp_path: Path) -> None:
+    """Its two sides are alike, and between them it is thicker, or has a waist."""
+    found = assembly()
+    rings = [[(x + out * np.sign(x - 0.1), z) for x, z in WALL[0]] for out in (0.0, wider, 0.0)]
+    vertex = {
+        str(4 * k + i): {"x": x, "y": 0.06 * k, "z": z} for k, ring in enumerate(rings) for i, (x, z) in enumerate(ring)
+    }
+    around = [
+        [4 * k + i, 4 * k + (i + 1) % 4, 4 * k + 4 + (i + 1) % 4, 4 * k + 4 + i] for k in (0, 1) for i in range(4)
+    ]
+    faces = [[0, 1, 2, 3], [11, 10, 9, 8], *around]
+    block = {"vertex": vertex, "face": {str(k): face for k, face in enumerate(faces)}}
+    found["data"]["graph"]["data"]["node"]["0"]["block"]["data"] |= block
+    (tmp_path / "wall.json").write_text(json.dumps(found))
+    with pytest.raises(SceneError, match="node 0: is not a prism across the wall: between its two sides"):
+        read_drawing(tmp_path / "wall.json", "m")
+
+
+def test_sides_of_a_prism_may_be_divided(tmp_path: Path) -> None:
+    """A ring of corners half-way, and triangles from it, leave the outline what it is."""
+    found, n = assembly(), 4
+    block = found["data"]["graph"]["data"]["node"]["0"]["block"]["data"]
+    block["vertex"] |= {str(8 + i): {"x": x, "y": 0.06, "z": z} for i, (x, z) in enumerate(WALL[0])}
+    lower = [[i, (i + 1) % n, 8 + i] for i in range(n)] + [[(i + 1) % n, 8 + (i + 1) % n, 8 + i] for i in range(n)]
+    upper = [[8 + i, 8 + (i + 1) % n, n + (i + 1) % n, n + i] for i in range(n)]
+    block["face"] = {str(k): face for k, face in enumerate([[0, 1, 2, 3], [7, 6, 5, 4], *lower, *upper])}
+    (tmp_path / "wall.json").write_text(json.dumps(found))
+    assert np.array(read_drawing(tmp_path / "wall.json", "m").blocks[0]) == pytest.approx(np.array(WALL[0]))

@@ -145,6 +145,12 @@ def vertices(found: dict[str, Any]) -> dict[str, Any]:
     return dict(nodes(found)["0"]["block"]["data"]["vertex"])
 
 
+def without_x(found: dict[str, Any]) -> None:
+    """A corner without its x, in a mesh that has no usual one."""
+    del vertices(found)["0"]["x"]
+    del nodes(found)["0"]["block"]["data"]["default_vertex_attributes"]["x"]
+
+
 def holed(found: dict[str, Any]) -> None:
     """A frame of four prisms about a hole, as one mesh."""
     parts = [mesh(o) for o in (box(0, 0, 3, 1), box(2, 1, 3, 2), box(0, 2, 3, 3), box(0, 1, 1, 2))]
@@ -171,7 +177,7 @@ def holed(found: dict[str, Any]) -> None:
         ('{"assembly": {"vertex": {}}, "blocks": {}}', "is an assembly without blocks"),
         (spoilt(lambda a: a.pop("data")), "is not a COMPAS assembly"),
         (spoilt(lambda a: nodes(a)["0"].pop("block")), "is not a COMPAS assembly: KeyError, 'block'"),
-        (spoilt(lambda a: vertices(a)["0"].pop("x")), "is not a COMPAS assembly: KeyError, 'x'"),
+        (spoilt(without_x), "is not a COMPAS assembly: KeyError, 'x'"),
         (spoilt(lambda a: vertices(a)["0"].update(x="a")), "is not a COMPAS assembly: ValueError"),
         (spoilt(lambda a: vertices(a)["0"].update(x=math.nan)), "node 0: must have its corners at finite coordinates"),
         (spoilt(lambda a: vertices(a)["0"].update(x=-0.1)), "node 0: is not a prism across the wall"),
@@ -188,8 +194,15 @@ def holed(found: dict[str, Any]) -> None:
         (spoilt(lambda a: [n.update(is_support=True) for n in nodes(a).values()]), "is an assembly of supports"),
         (spoilt(holed), "node 0: is not a prism across the wall, with one outline a side and no hole"),
         (spoilt(lambda a: a["blocks"]["0"].pop("face"), untyped), "is not a COMPAS assembly: KeyError, 'face'"),
-        (spoilt(lambda a: a["data"].update(transformation={}), model), "element Block 0: is moved as a whole"),
-        (spoilt(lambda a: a["data"]["elements"]["0"]["data"].pop("geometry"), model), "element Block 0: is moved as a"),
+        (spoilt(lambda a: a["data"].update(transformation={}), model), "is not a COMPAS assembly: KeyError, 'data'"),
+        (
+            spoilt(lambda a: a["data"]["elements"]["0"]["data"].pop("geometry"), model),
+            "element Block 0: has no geometry",
+        ),
+        (
+            spoilt(lambda a: a["data"]["tree"]["root"].update(children=[{"element": "none"}]), model),
+            "is not a COMPAS assembly: KeyError, 'none'",
+        ),
         (
             spoilt(lambda a: a["data"]["elements"]["1"]["data"].update(transformation={}), model),
             "is not a COMPAS assembly",

@@ -1,11 +1,11 @@
 """Assemblies of COMPAS, as its packages write them in JSON, read without them.
 
 The layouts are those of compas_assembly 0.7 (COMPAS 1 and 2), of its files before there were types in them, and of
-the BlockModel of compas_dem 0.3.
+the BlockModel of compas_dem 0.3 to 0.6.
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,15 +18,27 @@ from .dxf import KEY
 
 ASSEMBLY, MODEL = "compas_assembly.datastructures/Assembly", "compas_dem.models/BlockModel"
 
+GROUP = "compas_model.elements/Group"
+
 AXES = {"y": (0, 2), "x": (1, 2), "z": (0, 1)}
 """The wall's plane for each direction of its thickness; up is z, but for a wall that lies flat."""
 
 SAME = 1e-6
 """Difference of two coordinates that are one, in sizes of the assembly."""
 
+ALIKE = 1e-3
+"""Difference of two thicknesses that are one, relative to them: units are converted and decimals rounded."""
 
-def read_compas(path: Path) -> tuple[list[Array], list[Array], str]:
+
+def read_compas(path: Path, unit: float, thickness: float | None = None) -> tuple[list[Array], list[Array], str]:
     """Read an assembly whose blocks are prisms across the wall, or flat.
+
+    Parameters
+    ----------
+    unit
+        The file's [m].
+    thickness
+        The wall's [m], which tells across which axis it is read where several would do.
 
     Returns
     -------
@@ -56,7 +68,7 @@ def read_compas(path: Path) -> tuple[list[Array], list[Array], str]:
         raise SceneError(KEY, f"is not a COMPAS assembly: {type(error).__name__}, {error}", str(path)) from error
     if not found:
         raise SceneError(KEY, "is an assembly without blocks", str(path))
-    across, plane, size = _plane([(name, points) for name, points, *_ in found])
+    across, plane, size = _plane([(name, points) for name, points, *_ in found], unit, thickness)
     outlines = [(_outline(name, points, faces, across, plane, size), held) for name, points, faces, held in found]
     thick = float(np.ptp(found[0][1][:, across]))
     note = f"assembly: read in its {'xyz'[plane[0]]}-{'xyz'[plane[1]]} plane"
@@ -91,41 +103,90 @@ def _blocks(content: Any) -> Iterator[tuple[str, Any, bool]]:
         for key, node in graph["node"].items():
             yield f"node {key}", (_payload(node["block"]), None), node.get("is_support", usual)
         return
-    model = content["data"]
-    for element in model["elements"].values():
+    yield from _elements(content["data"])
+
+
+def _elements(model: Any) -> Iterator[tuple[str, Any, bool]]:
+    """Name, mesh and support of each element of a model, with its motion."""
+    placed = _placed(model)
+    for key, element in model["elements"].items():
         data = element["data"]
-        if "geometry" not in data or model.get("transformation") is not None:
-            what = "is moved as a whole, or in groups; apply the transformations before it is written"
-            raise SceneError(f"{KEY}, element {data.get('name')}", what)
-        yield f"element {data.get('name')}", (_payload(data["geometry"]), data["transformation"]), data["is_support"]
+        name = f"element {data.get('name')}"
+        if "geometry" in data:
+            yield name, (_payload(data["geometry"]), placed[key]), data["is_support"]
+        elif element["dtype"] != GROUP:
+            raise SceneError(f"{KEY}, {name}", "has no geometry in the file; read are blocks, and groups of them")
+
+
+def _placed(model: Any) -> dict[str, Array]:
+    """Motion ``(4, 4)`` of each element: its own, after which all that it is nested in and the model move it."""
+    own = {key: _matrix(element["data"]["transformation"]) for key, element in model["elements"].items()}
+    whole = _matrix(model.get("transformation"))
+    placed = {key: whole @ matrix for key, matrix in own.items()}
+    nested = [(node, whole) for node in model["tree"]["root"].get("children", [])]
+    while nested:
+        node, outer = nested.pop()
+        key = node["element"]
+        placed[key] = outer @ own[key]
+        nested += [(child, placed[key]) for child in node.get("children", [])]
+    return placed
+
+
+def _matrix(transformation: Any) -> Array:
+    """The matrix of a transformation ``(4, 4)``; of none, that which moves nothing."""
+    return np.eye(4) if transformation is None else np.array(transformation["data"]["matrix"], dtype=float)
 
 
 def _mesh(block: tuple[Any, Any], name: str) -> tuple[Array, list[list[int]]]:
     """Corners ``(n, 3)`` and faces, by numbers of corners."""
     mesh, motion = block
+    usual = mesh.get("default_vertex_attributes", mesh.get("dva", {}))  # COMPAS writes what differs from it
     keys = {key: k for k, key in enumerate(mesh["vertex"])}
-    points = np.array([[vertex[axis] for axis in "xyz"] for vertex in mesh["vertex"].values()], dtype=float)
+    points = np.array([[(usual | vertex)[axis] for axis in "xyz"] for vertex in mesh["vertex"].values()], dtype=float)
     if motion is not None:
-        matrix = np.array(motion["data"]["matrix"], dtype=float)
-        points = points @ matrix[:3, :3].T + matrix[:3, 3]
+        points = points @ motion[:3, :3].T + motion[:3, 3]
     if not np.isfinite(points).all() or not len(points):
         raise SceneError(f"{KEY}, {name}", "must have its corners at finite coordinates")
     return points, [[keys[str(corner)] for corner in face] for face in mesh["face"].values()]
 
 
-def _plane(meshes: list[tuple[str, Array]]) -> tuple[int, tuple[int, int], float]:
+def _plane(meshes: list[tuple[str, Array]], unit: float, thickness: float | None) -> tuple[int, tuple[int, int], float]:
     """Direction of the thickness, in which all blocks reach from one plane to one other, and the wall's own two."""
     low, high = (np.array([reach(points, axis=0) for _, points in meshes]) for reach in (np.min, np.max))
     size = float((high.max(axis=0) - low.min(axis=0)).max())
     scatter = np.maximum(np.ptp(low, axis=0), np.ptp(high, axis=0))
-    for name, plane in AXES.items():
-        across = "xyz".index(name)
-        if scatter[across] <= SAME * size:
-            return across, plane, size
+    fits = [name for name in AXES if scatter["xyz".index(name)] <= SAME * size]
+    if fits:
+        thick = {name: unit * float((high - low)[0, "xyz".index(name)]) for name in fits}
+        name = _across(thick, thickness, SAME * size * unit)
+        return "xyz".index(name), AXES[name], size
     across = int(np.argmin(scatter))
     odd = int(np.argmax(np.maximum(abs(low - np.median(low, axis=0)), abs(high - np.median(high, axis=0)))[:, across]))
     what = "is not as thick along any axis, or not in one plane with the others; read are walls in a plane"
     raise SceneError(f"{KEY}, {meshes[odd][0]}", what)
+
+
+def _across(thick: dict[str, float], thickness: float | None, flat: float) -> str:
+    """The axis across the wall, of those along which blocks are as `thick` [m] as one another.
+
+    Blocks without a thickness are flat across the wall alone. Of several axes it is that along which they are as thick
+    as the wall; a pier that is so along x and y is the same from both sides.
+    """
+    without = [name for name in thick if thick[name] <= flat]
+    if without or len(thick) == 1:
+        return next(iter(without or thick))
+    alike = [name for name in thick if thickness is not None and abs(thick[name] - thickness) <= ALIKE * thickness]
+    if len(alike) == 1 or set(alike) == {"x", "y"}:
+        return alike[0]
+    if alike:
+        along = " and ".join(alike)
+        remedy = (
+            f"is how thick all blocks are along {along}; stand the assembly up along z, on a support of another size"
+        )
+    else:
+        sides = " or ".join(f"{thick[name]:.6g} (seen along {name})" for name in thick)
+        remedy = f"must be {sides}: all blocks of the assembly reach between the same two planes along each"
+    raise SceneError("wall.thickness", remedy, thickness)
 
 
 def _outline(
@@ -133,12 +194,8 @@ def _outline(
 ) -> Array:
     """Outline of a prism: what its faces on one side cover, and those on the other side too."""
     depth, flat = points[:, across], points[:, list(plane)]
-    sides = []
-    for level in (depth.min(), depth.max()):
-        on = np.abs(depth - level) <= SAME * size
-        parts = [shapely.Polygon(flat[face]) for face in faces if len(face) > 2 and on[face].all()]
-        sides.append(shapely.union_all(parts) if all(part.is_valid for part in parts) else shapely.Polygon())
-    front, back = sides
+    on = [np.abs(depth - level) <= SAME * size for level in (depth.min(), depth.max())]
+    front, back = (_covered([flat[face] for face in faces if side[face].all()]) for side in on)
     thin = SAME * size * max(front.length, SAME * size)
     if (
         front.geom_type != "Polygon"
@@ -147,4 +204,16 @@ def _outline(
         or front.symmetric_difference(back).area > thin
     ):
         raise SceneError(f"{KEY}, {name}", "is not a prism across the wall, with one outline a side and no hole")
+    rims = [flat[[*face, face[0]]] for face in faces if not any(side[face].all() for side in on)]
+    along = shapely.covers(front.exterior.buffer(SAME * size), [shapely.LineString(rim) for rim in rims])
+    if not along.all():
+        raise SceneError(
+            f"{KEY}, {name}", "is not a prism across the wall: between its two sides it has another outline"
+        )
     return np.array(front.exterior.coords)[:-1]
+
+
+def _covered(corners: Sequence[Array]) -> shapely.Geometry:
+    """What faces ``(n, 2)`` cover together; nothing where one crosses itself."""
+    parts = [shapely.Polygon(face) for face in corners if len(face) > 2]
+    return shapely.union_all(parts) if all(part.is_valid for part in parts) else shapely.Polygon()

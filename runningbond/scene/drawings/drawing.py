@@ -48,7 +48,7 @@ class Drawing:
     notes: tuple[str, ...]
 
 
-def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
+def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness: float | None = None) -> Drawing:
     """Read a DXF drawing or, where the file's name ends in .json, a COMPAS assembly.
 
     The ground is what lies on a layer of `GROUND_LAYERS` or, where there is none, the outline whose corners lie lowest
@@ -60,6 +60,8 @@ def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
         A key of `METRES`.
     heal
         Gaps and overlaps up to this are closed [m]; None leaves all as they are.
+    thickness
+        The wall's [m], which tells from which side an assembly is seen that could be seen from several.
 
     Raises
     ------
@@ -68,7 +70,7 @@ def read_drawing(path: Path, units: str, heal: float | None = None) -> Drawing:
     """
     scale = METRES[one_of("wall.units", units, METRES)]
     if path.suffix.lower() == ".json":
-        blocks, grounds, note = read_compas(path)
+        blocks, grounds, note = read_compas(path, scale, thickness)
         layers: list[str] = []
         notes = [note]
         if not grounds:
