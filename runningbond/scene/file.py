@@ -146,11 +146,11 @@ def _block_material(block: Table) -> BlockMaterial:
 
 
 def _material_name(table: Table) -> str:
-    """Name of a material: the last part of its table's."""
-    name = table.name.rpartition(".")[2]
-    if "." in table.name and name in RESERVED:
+    """Name of a material: that of its table, without the one that holds it; it may have dots of its own."""
+    kind, _, name = table.name.partition(".")
+    if name in RESERVED:
         raise SceneError(table.name, f"is a name that means something else; take another than {', '.join(RESERVED)}")
-    return name
+    return name or kind
 
 
 def _joint_material(joint: Table) -> JointMaterial:

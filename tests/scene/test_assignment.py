@@ -47,6 +47,23 @@ def test_later_entries_win() -> None:
     assert scene.mass[2] == pytest.approx(700 * scene.blocks.area[2] * 0.12)
 
 
+def test_names_with_dots_are_whole(tmp_path: Path) -> None:
+    """Two that end alike, and one that ends as a word that means something else."""
+    tables: dict[str, Any] = {
+        "materials": {"oak.1": {"density": 700.0}, "stone.1": {"density": 2600.0}},
+        "joints": {"my.joint": {"friction": 0.3}},
+        "assign": [
+            {"block": "oak.1", "blocks": [0]},
+            {"block": "stone.1", "blocks": [1]},
+            {"joint": "my.joint", "between": ["oak.1", "*"]},
+        ],
+    }
+    for scene in (panel(**tables), read_scene(write_toml(content(**tables), tmp_path / "wall.toml"))):
+        assert names_of_blocks(scene)[:2] == ["oak.1", "stone.1"]
+        beside = (scene.joints.block == 0).any(axis=1)
+        assert np.array_equal(beside, [name == "my.joint" for name in names_of_joints(scene)])
+
+
 def test_bed_and_head_joints_apart() -> None:
     scene = assigned({"joint": "mortar", "orientation": "bed"}, {"joint": "dust", "orientation": "head"})
     run = np.abs(scene.joints.ends[:, 1] - scene.joints.ends[:, 0])
