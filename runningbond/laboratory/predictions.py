@@ -66,7 +66,9 @@ class Prediction:
         drive = self.scene.drive
         if self.outcome is None or drive is None or not drive.path:
             return np.zeros((0, 2))
-        return np.asarray(self.outcome.curve * np.sign(drive.force[0]))
+        # Outcomes are positive along the first move, and so are tests to one side, whichever it was.
+        is_to_both = any(goal < 0 for goal in self.wall.path)
+        return np.asarray(self.outcome.curve * (np.sign(drive.force[0]) if is_to_both else 1.0))
 
     @cached_property
     def marks(self) -> Marks | None:

@@ -1,5 +1,6 @@
 """The scene of a tested wall: its own file, or what its row of the table and its stone say of it."""
 
+import math
 import re
 from dataclasses import dataclass, replace
 from typing import Any
@@ -74,8 +75,13 @@ def _scene_of(wall: MeasuredWall, features: Features) -> Scene:
     beam = tables.get("beam", {})
     if not isinstance(beam, dict) or "drive" not in beam:
         raise SceneError(f"{wall.scene_file.name}: beam.drive", "is missing; a tested wall is pushed at its beam")
-    if not features.driven:
-        beam["drive"] = {"force": [1, 0], **{key: beam["drive"][key] for key in ("at",) if key in beam["drive"]}}
+    scene = scene_from_dict(tables, folder=wall.scene_file.parent, default_title=wall.name)
+    if features.driven or scene.drive is None:
+        return scene
+    # A force pushes to the side that the wall is pushed to first: it may bear less there than on the other one.
+    side = math.copysign(1.0, scene.drive.force[0])
+    at = {} if scene.drive.at is None else {"at": scene.drive.at}
+    tables["beam"] = beam | {"drive": {"force": [side, 0]} | at}
     return scene_from_dict(tables, folder=wall.scene_file.parent, default_title=wall.name)
 
 

@@ -9,8 +9,12 @@ from unittest.mock import patch
 import pytest
 
 from runningbond.commands.command_line import command
+from runningbond.laboratory import read_folder
 from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.rig import Features, scene_of
 from runningbond.results import Outcome
+from runningbond.scene import Drive
+from tests.walls import write_toml
 
 from .folders import GRANITE, SANDSTONE, write_folder
 
@@ -104,6 +108,54 @@ def test_row_that_changes_is_predicted_again(
     loads = [{(row["wall"], row["model"]): row["V_max"] for row in rows} for rows in (before, after)]
     assert loads[1]["SW.100.1", "limit"] == pytest.approx(loads[0]["SW.100.1", "limit"] / 2, rel=0.05)
     assert loads[1]["WS.175", "limit"] == loads[0]["WS.175", "limit"]
+
+
+def leaning(side: int) -> dict[str, Any]:
+    """A wall that is short at the top behind where it is pushed: to the right with 1, its mirror image with -1."""
+    courses = [[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1], [-1, 1, 1] if side > 0 else [1, 1]]
+    return {
+        "wall": {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2, "courses": courses},
+        "block": {"density": 2000.0},
+        "joint": {"friction": 0.7, "normal_stiffness": 5e9, "shear_stiffness": 2e9},
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81},
+        "beam": {"height": 0.2, "force": [0, -2e4], "drive": {"displacement": [0.02 * side, 0]}},
+    }
+
+
+def test_a_wall_that_is_pushed_to_the_left_is_scored_as_its_mirror_image(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It rocks at 9.9 kN where it was pushed; to the other side it would slide, at 14 = 0.7 · 20 kN."""
+    folder = write_folder(tmp_path / "walls", "left,,,,,,,,,,,,,R", "right,,,,,,,,,,,,,R")
+    for name, side in (("left", -1), ("right", 1)):
+        write_toml(leaning(side), folder / f"{name}.toml")
+        points = "".join(f"{side * x:g},{side * min(2.0 * x, 5.0):g}\n" for x in range(21))
+        (folder / f"{name}.csv").write_text(f"displacement_mm,force_kN\n{points}")
+    arguments = ["--data", str(folder), "--out", str(tmp_path / "out"), "--models", "limit,rigid", "--jobs", "1"]
+    assert command(["validate", *arguments, "--json"]) == 0
+    found = printed(capsys)["walls"]
+    for row, mirrored in zip(found[:2], found[2:], strict=True):
+        assert (row["wall"], mirrored["wall"], row["mode"]) == ("left", "right", "R/TC")
+        assert row["V_max"] == pytest.approx(mirrored["V_max"], rel=1e-3)
+    assert found[0]["V_max"] == pytest.approx(9889, rel=1e-3)
+    for key in ("stiffness_ratio", "peak_displacement_ratio"):
+        assert found[1][key] == pytest.approx(found[3][key], rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "drive", [{"force": [-5, 0], "at": 0.7}, {"displacement": [[0, -0.01, 0.01]]}, {"amplitudes": [-0.01]}]
+)
+def test_limit_analysis_pushes_to_the_side_that_a_wall_is_pushed_to_first(
+    drive: dict[str, Any], tmp_path: Path
+) -> None:
+    """By λ newtons, at the same height."""
+    folder = write_folder(tmp_path / "walls", "left,,,,,,,,,,,5,,R")
+    tables = leaning(-1)
+    tables["beam"]["drive"] = drive
+    write_toml(tables, folder / "left.toml")
+    (wall,) = read_folder(folder)
+    assert scene_of(wall, Features(driven=False)).drive == Drive((-1.0, 0.0), drive.get("at"))
 
 
 @pytest.mark.parametrize(
