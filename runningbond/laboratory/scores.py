@@ -42,7 +42,7 @@ class Marks:
     loops
         Of a curve to both sides, as `loops` has them.
     residual
-        Largest displacement [m] without force, of a curve to both sides.
+        Largest displacement [m] at which the force has come to zero, of a curve to both sides.
     """
 
     strength: float
@@ -78,6 +78,8 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
     after, borne = side[top:], LOSS * float(side[top, 1])
     if cyclic:  # a reload may pass below what the envelope bears
         after = after[int(np.flatnonzero(after[:, 1] >= borne)[-1]) :]
+    else:  # what is unloaded loses force by going back, if only as far as noise does
+        after = after[after[:, 0] >= np.maximum.accumulate(after[:, 0])]
     loss = first_crossing(after * (1, -1), -borne)
     both = (tuple(loops(curve)), residual(curve)) if cyclic else ((), None)
     return Marks(strength, stiffness, float(side[top, 0]), loss, *both)
@@ -207,10 +209,10 @@ def _work(piece: Array) -> float:
 
 
 def residual(curve: Array) -> float | None:
-    """Largest displacement [m] at which the force changes its sign; None where it never does."""
+    """Largest displacement [m] at which the force comes to zero, recorded or between two points; None without one."""
     zeros = list[float]()
     for (x0, y0), (x1, y1) in pairwise(curve.tolist()):
-        if y0 * y1 < 0:
+        if y0 * y1 < 0 or (y1 == 0 and abs(y0) > 0):
             zeros.append(abs(x0 - y0 * (x1 - x0) / (y1 - y0)))
     return max(zeros, default=None)
 

@@ -76,6 +76,43 @@ def test_a_wall_that_was_unloaded_on_the_way_is_read_along_its_envelope() -> Non
     assert [marks.at_peak, marks.at_loss] == pytest.approx([20, 40.5])
 
 
+@pytest.mark.parametrize("most", [0.3, 0.9])
+def test_unloading_is_no_loss(most: float) -> None:
+    """40 kN up to 30 mm, where the wall is unloaded at its own 40 kN/mm: its force never falls on the way out."""
+    back = np.arange(0.1, most, 0.1)
+    out = np.column_stack([[0, 1, 20, 30], [0, 40, 40, 40]])
+    marks = marks_of(np.concatenate([out, np.column_stack([30 - back, 40 - 40 * back])]) * (1e-3, 1e3), cyclic=False)
+    assert marks is not None
+    assert marks.at_loss is None
+
+
+@pytest.mark.parametrize(
+    ("name", "at_loss"),
+    [
+        ("SW.30.1", None),
+        ("SW.30.2", 9.37485e-3),
+        ("SW.200.1", 16.077667e-3),
+        ("SW.200.2", None),
+        ("WS.100", None),
+        ("WS.250", None),
+    ],
+)
+def test_loss_of_shipped_walls_is_what_their_records_say(name: str, at_loss: float | None) -> None:
+    """As it was read while points a little behind the farthest counted: none of these was read off an unloading."""
+    marks = marks_of(WALLS[name].curve, cyclic=False)
+    assert marks is not None
+    assert (marks.at_loss is None) if at_loss is None else (marks.at_loss == pytest.approx(at_loss, rel=1e-6))
+
+
+def test_residual_counts_recorded_zeros() -> None:
+    """A loop to ±5 mm that is unloaded to 4 mm, whether zero force was recorded, passed, or the end of a part."""
+    points = [(0, 0), (5, 10), (4, 0), (-5, -10), (-4, 0), (5, 10), (4, 0)]
+    parts = [*points[:3], (np.nan, np.nan), (4, 0), *points[3:]]
+    passed = [(x, y or 1e-6) for x, y in points]
+    for record in (points, parts, passed):
+        assert residual(curve(*record)) == pytest.approx(4.0, rel=1e-6)
+
+
 def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed() -> None:
     """A beam's own weight, a load along the wall and a bed of another joint, against limit analysis."""
     tables: dict[str, Any] = {
