@@ -8,12 +8,22 @@ from pathlib import Path
 
 from runningbond.scene import SceneError
 
-UNITS = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "N": 1.0, "kN": 1e3, "Pa": 1.0, "MPa": 1e6, "GPa": 1e9, "%": 1e-2}
+LENGTHS, FORCES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0}, {"N": 1.0, "kN": 1e3}
+STRESSES, SHARES = {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9}, {"%": 1e-2}
+KINDS: tuple[dict[str, float], ...] = (LENGTHS, FORCES, STRESSES, SHARES)
+"""Units of each kind, in SI units."""
+
 USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "ntot": "kN"}
 USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa", "σ0,pc": "MPa"}
 """Units of columns that do not say theirs."""
 
 HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)
+
+
+def units_of(column: str) -> dict[str, float]:
+    """Units that a column may have: those of the kind of its usual one, any where it has none."""
+    usual = USUAL.get(column.casefold())
+    return {unit: size for kind in KINDS if usual is None or usual in kind for unit, size in kind.items()}
 
 
 @dataclass(frozen=True)
@@ -70,6 +80,7 @@ class TableRow:
             value = math.nan
         if not (math.isfinite(value) and value > 0):
             raise SceneError(self.key(column), "must be a number above 0", text)
-        if unit not in UNITS:
-            raise SceneError(self.key(column), f"must have a unit, one of {', '.join(UNITS)}", unit)
-        return value * UNITS[unit]
+        units = units_of(column)
+        if unit not in units:
+            raise SceneError(self.key(column), f"must have a unit, one of {', '.join(units)}", unit)
+        return value * units[unit]

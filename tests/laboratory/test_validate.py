@@ -16,7 +16,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Drive
 from tests.walls import write_toml
 
-from .folders import GRANITE, SANDSTONE, write_folder
+from .folders import GRANITE, HEADS, SANDSTONE, write_folder
 
 QUICK = ["--models", "rocking,sliding,by-hand,limit", "--jobs", "1"]
 KEYS = {
@@ -175,6 +175,27 @@ def test_bad_arguments_are_one_line_and_nothing_is_written(
     assert told.out == ""
     assert len(told.err.splitlines()) == 1
     assert said in told.err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("usual", "other", "column", "units"),
+    [
+        ("L [mm]", "L [kN]", "L", "mm, cm, m"),
+        ("H0 [mm]", "H0 [%]", "H0", "mm, cm, m"),
+        ("Ntot [kN]", "Ntot [MPa]", "Ntot", "N, kN"),
+        ("Vmax,+ [kN]", "Vmax,+ [mm]", "Vmax,+", "N, kN"),
+    ],
+)
+def test_units_of_another_kind_are_one_line(
+    usual: str, other: str, column: str, units: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A length in kN was read as one in km, and 39 mm as a load of 0.039 N."""
+    folder = write_folder(tmp_path / "walls", GRANITE, heads=HEADS.replace(usual, other))
+    assert command(["validate", "--data", str(folder), "--out", str(tmp_path / "out"), *QUICK]) == 2
+    unit = other.partition("[")[2].rstrip("]")
+    said = f"runningbond: tests.csv, line 2: {column} = '{unit}': must have a unit, one of {units}\n"
+    assert capsys.readouterr().err == said
     assert not (tmp_path / "out").exists()
 
 
