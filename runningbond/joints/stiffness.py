@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runningbond.scene import JointMaterial, Mortar, Scene, SceneError, Stiffness, table_of
+from runningbond.scene import Indices, JointMaterial, Mortar, Scene, SceneError, Stiffness, table_of
 
 GIVES = 2.0
 """Least motion that counts as a collapse, in what the springs of all joints give under that load.
@@ -56,15 +56,36 @@ def stiffest(material: JointMaterial) -> float:
 
 
 def block_compliance(scene: Scene) -> float:
-    """Share of the blocks in the compliance of a column of blocks and joints, k_n h / (k_n h + E).
+    """Share of the blocks in the compliance of columns of blocks and joints: of one material each, k_n h / (k_n h + E).
 
-    Zero where the scene leaves out either stiffness and blocks are taken as rigid.
+    Of several it is Σ l h / E over Σ l (h / E + 1 / k_n), of bed joints of length l and the blocks of height h on them;
+    of all joints where none is one. Blocks without a modulus are rigid; zero where joints have no stiffness.
     """
-    if scene.block.young is None or scene.joint.elasticity is None:
+    beds = _beds(scene)
+    materials = [scene.joint_materials[k] for k in np.unique(scene.material_of_joint[beds])]
+    if not materials or any(each.elasticity is None for each in materials):
         return 0.0
-    height = scene.bond.height if scene.bond else scene.lowest_block
-    softer = joint_stiffness(scene.joint).normal * height
-    return softer / (softer + scene.block.young)
+    normal = np.array([joint_stiffness(each).normal if each in materials else np.inf for each in scene.joint_materials])
+    young = np.array([np.inf if each.young is None else each.young for each in scene.block_materials])
+    low, high = scene.blocks.boxes
+    block, length = _upper(scene)[beds], scene.joints.length[beds]
+    softer = float(length @ ((high - low)[block, 1] / young[scene.material_of_block[block]]))
+    return softer / (softer + float(length @ (1 / normal[scene.material_of_joint[beds]])))
+
+
+def _beds(scene: Scene) -> Indices:
+    """Bed joints under blocks, or all joints where there is none; those inside blocks and under a beam aside."""
+    joints = scene.joints
+    between = ~joints.inner & ~scene.is_beam[_upper(scene)]
+    flat = between & joints.is_bed
+    return np.flatnonzero(flat if flat.any() else between)
+
+
+def _upper(scene: Scene) -> Indices:
+    """The higher one of the two blocks of each joint."""
+    block = scene.joints.block
+    a, b = scene.blocks.centroid[block, 1].T
+    return np.asarray(np.where(a > b, *block.T))
 
 
 def stiffness_note(overlap: float, collapse: float, size: float, stiffness: float, force_unit: float) -> str:

@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from runningbond.joints.stiffness import block_compliance
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
@@ -32,10 +34,12 @@ def asks_others(scene: Scene, settings: Mapping[str, Any]) -> bool:
 
     Where supports or a beam are led, or the ground moves, there is no bracket of loads to compare.
     """
-    moduli = [each.young for each in scene.block_materials if each.young is not None]
+    materials = [scene.block_materials[k] for k in np.unique(scene.material_of_block[scene.wall & ~scene.is_beam])]
+    moduli = [each.young for each in materials if each.young is not None]
     if not moduli or scene.is_led or scene.history or any(settings.get(key, of) != of for key, of in USUAL.items()):
         return False
-    return block_compliance(scene.with_block(young=min(moduli))) > SOFT
+    softest = tuple(replace(each, young=min(moduli)) for each in scene.block_materials)
+    return block_compliance(replace(scene, block_materials=softest)) > SOFT
 
 
 def beside_others(outcome: Outcome, rigid_blocks: Solver, finer_mesh: Solver) -> Outcome:

@@ -406,6 +406,51 @@ def test_give_of_a_column_is_that_of_its_joints_and_blocks() -> None:
     assert block_compliance(scene) == pytest.approx(block / (joint + block), rel=1e-12)
 
 
+BRICK, MORTAR = {"density": 1800.0, "young": 3e9}, {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+ALL = [[-9, -9], [9, 9]]
+
+
+@pytest.mark.parametrize(
+    "described",
+    [
+        {"block": BRICK, "joint": MORTAR},
+        {"block": BRICK | {"young": 1e12}, "joint": MORTAR, "materials": {"brick": BRICK}},
+        {"block": BRICK, "joint": MORTAR | {"normal_stiffness": 1e7}, "joints": {"lime": MORTAR}},
+    ],
+)
+def test_compliance_is_that_of_the_materials_that_are_assigned(described: dict[str, Any]) -> None:
+    """One wall in three descriptions: what stands in [block] and [joint], and is of no block or joint, counts not."""
+    assign = [{"block": name, "box": ALL} for name in described.get("materials", {})]
+    assign += [{"joint": name, "box": ALL} for name in described.get("joints", {})]
+    for more in ({}, {"beam": {"height": 0.1, "mass": 10.0, "force": [0, -1e3]}}):
+        scene = panel(**described, assign=assign, **more)
+        assert block_compliance(scene) == pytest.approx(0.06 / 3e9 / (1 / 1e10 + 0.06 / 3e9), rel=1e-9)
+
+
+def test_compliance_of_several_materials_is_a_mean_over_bed_joints() -> None:
+    """Two courses of bricks under two of stiff blocks, the lowest bed twice as soft; head joints do not count."""
+    stone = {"density": 1800.0, "young": 1e11}
+    soft = MORTAR | {"normal_stiffness": 5e9}
+    assign = [
+        {"block": "stone", "box": [[-9, 0.12], [9, 9]]},
+        {"joint": "soft", "box": [[-9, -0.01], [9, 0.01]]},
+        {"joint": "weak", "orientation": "head"},
+    ]
+    scene = panel(
+        wall__height=0.24,
+        block=BRICK,
+        joint=MORTAR,
+        materials={"stone": stone},
+        joints={"soft": soft, "weak": MORTAR | {"normal_stiffness": 1e6}},
+        assign=assign,
+    )
+    blocks, joints = 2 * 0.06 / 3e9 + 2 * 0.06 / 1e11, 1 / 5e9 + 3 / 1e10
+    assert block_compliance(scene) == pytest.approx(blocks / (blocks + joints), rel=1e-9)
+    rigid = scene.with_block(young=None)
+    assert block_compliance(rigid) == pytest.approx(2 * 0.06 / 1e11 / (2 * 0.06 / 1e11 + joints), rel=1e-9)
+    assert block_compliance(scene.with_joint(elasticity=None)) == 0.0
+
+
 def glued(**changes: Any) -> Scene:
     point = {"kind": "point", "at": [0.4, 0.35], "force": [1.0, 0.0]}
     return courses(

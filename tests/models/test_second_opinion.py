@@ -75,6 +75,18 @@ def test_published_blocks_are_stiff_and_stone_between_thin_mortar_is_soft() -> N
         assert not asks_others(wall, {"cells": 2})
 
 
+def test_blocks_are_as_soft_as_those_that_the_wall_has() -> None:
+    """A modulus that no block of the wall has asks nobody; one that some have does, wherever it is described."""
+    changes: dict[str, Any] = {"wall__thickness": 0.25, "joint": {"friction": 0.6}, "load__live": {"kind": "lateral"}}
+    changes["joint"] |= {"normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    for default, other, box, soft in ((2e9, 1e12, 9, False), (1e12, 2e9, 9, True), (1e12, 2e9, 0.4, True)):
+        blocks: dict[str, Any] = {"block": {"density": 2000.0, "young": default}}
+        blocks["materials"] = {"other": {"density": 2000.0, "young": other}}
+        assign = [{"block": "other", "box": [[-9, -9], [box, box]]}]
+        wall = courses([[1, 1], [0.5, 1, 0.5]], width=0.4, height=0.4, assign=assign, **blocks, **changes)
+        assert asks_others(wall, {}) is soft
+
+
 def test_a_coarse_mesh_that_leads_a_soft_wall_astray_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """55 blocks of 10 GPa, contacts 20 mm in: one cell in half a block ends 3 % above rigid blocks, three do not."""
     wall = published_scene("wall-w4").with_joint(inset=0.02).with_block(young=1e10)
