@@ -173,6 +173,16 @@ def test_pieces_of_the_ground_are_on_a_layer_of_its_own(name: str, tmp_path: Pat
     assert multiplier(scene) > 0
 
 
+def test_a_plinth_on_a_layer_that_means_the_ground_is_told(tmp_path: Path) -> None:
+    """It is held, and the wall stands on it: what no one would see in an answer."""
+    plinth, soil = closed([box(-50, -60, 450, 0)], "Base"), closed([box(-500, -90, 900, -60)], "ground")
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(BRICKS), plinth, soil, ground=False), "mm")
+    assert len(drawing.grounds) == 2
+    assert drawing.notes == ("ground: all that lies on layers Base and ground is ground, 2 outlines",)
+    plain = read_drawing(dxf(tmp_path / "plain.dxf", closed(BRICKS), soil, ground=False), "mm")
+    assert not any(note.startswith("ground") for note in plain.notes)
+
+
 def test_without_such_a_layer_the_lowest_outline_is_the_ground_and_is_said_to_be(tmp_path: Path) -> None:
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed([*BRICKS, box(-500, -50, 900, 0)]), ground=False), "mm")
     assert (len(drawing.blocks), len(drawing.grounds)) == (7, 1)

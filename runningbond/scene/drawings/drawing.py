@@ -152,12 +152,14 @@ def _units_note(space: ModelSpace, units: str) -> list[str]:
 def _without_ground(
     outlines: list[Array], layers: list[str], path: str, passed_over: str
 ) -> tuple[list[Array], list[str], list[Array], list[str]]:
-    """Blocks with their layers, pieces of the ground, and a note where the ground had to be guessed."""
+    """Blocks with their layers, pieces of the ground, and a note where it had to be guessed, or lies on several layers."""
     if len(outlines) < 2:
         what = f"holds {len(outlines)} closed outlines{passed_over}; it needs the ground and at least one block"
         raise SceneError(KEY, what, path)
     ground = [k for k, layer in enumerate(layers) if layer.lower() in GROUND_LAYERS]
-    notes = []
+    notes, own = list[str](), list(dict.fromkeys(layers[k] for k in ground))
+    if len(own) > 1:  # of a ground and a base, say, the second may be meant for a plinth, which is a stone
+        notes.append(f"ground: all that lies on layers {' and '.join(own)} is ground, {len(ground)} outlines")
     if not ground:
         middle = np.array([outline[:, 1].mean() for outline in outlines])
         ground = [int(middle.argmin())]
