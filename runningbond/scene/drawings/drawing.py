@@ -152,7 +152,7 @@ def _units_note(space: ModelSpace, units: str) -> list[str]:
 def _without_ground(
     outlines: list[Array], layers: list[str], path: str, passed_over: str
 ) -> tuple[list[Array], list[str], list[Array], list[str]]:
-    """Blocks with their layers, pieces of the ground, and a note where it had to be guessed, or lies on several layers."""
+    """Blocks with their layers, pieces of the ground, and notes where it was guessed, or lies on several layers."""
     if len(outlines) < 2:
         what = f"holds {len(outlines)} closed outlines{passed_over}; it needs the ground and at least one block"
         raise SceneError(KEY, what, path)
