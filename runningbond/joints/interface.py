@@ -95,6 +95,7 @@ def any_points(
     damage, slipped, seat, crushed = history[DAMAGE], history[SLIPPED], history[SEAT], history[CRUSHED]
     k_t, tension, shear, friction, flexibility = of[1], of[2], of[3], of[4], of[5]
     first, last, per_slip = of[6], of[7], of[8]
+    is_strong = tension > 0.0 or shear > 0.0  # what is dry has nothing to lose
     curve = (of[9], of[10], of[11], of[12], of[13])
     cap = (of[14], of[15], of[16], of[17])
     crushes, cap_shear, sudden, exponential = of[14] < math.inf, of[15], of[18] > 0.0, of[19] > 0.0
@@ -103,7 +104,7 @@ def any_points(
         jump_n = opening[i] + seat[i]
         before = damage[i]
         after, sheared = before, slipped[i] * per_slip
-        if before < 1.0 and (jump_n > first or sheared > 0.0):
+        if is_strong and before < 1.0 and (jump_n > first or sheared > 0.0):
             torn = max(0.0, (jump_n - first) / (last - first))
             after = max(before, damage_at(math.sqrt(torn * torn + sheared * sheared), exponential))
         sound = 1.0 - after
