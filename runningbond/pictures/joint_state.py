@@ -17,6 +17,8 @@ NORMALITY = 1e-4
 AT_THE_LIMIT = 1e-3
 """Shear below the strength, relative to it, that counts as sliding."""
 
+ROUNDING = 1e-6
+"""Traction, relative to the wall's largest, that is none: a joint that bears nothing has what programs leave of it."""
 
 CRUSHED = 0.01
 """Plastic closure below which a joint is not said to be crushed, in elastic closures at its compressive strength."""
@@ -74,13 +76,15 @@ def states_under_load(
 
     A point is open where it has opened farther than tension can stretch it, and crushed where it has closed for good
     as far as at its compressive strength, and by a part of what is elastic. Joints of the scene need a stiffness.
+    One that neither bears nor opens by more than rounding sticks.
     """
     friction, tension, shear = wall_cones(scene, points.joint)
     stiffness, _ = wall_stiffness(scene, points.joint)
     sound = 1 - damage
     strength = sound * shear + friction * np.maximum(0.0, sound * tension - normal)
-    opens = opening > np.where(damage < 1, tension / stiffness, 0.0) * (1 + 1e-9)
-    slides = np.abs(tangential) >= (1 - AT_THE_LIMIT) * strength
+    none = ROUNDING * float(np.abs([normal, tangential]).max(initial=0.0))
+    opens = opening > np.where(damage < 1, tension / stiffness, 0.0) * (1 + 1e-9) + none / stiffness
+    slides = (np.abs(tangential) >= (1 - AT_THE_LIMIT) * strength) & (np.hypot(normal, tangential) > none)
     cap, peak = wall_caps(scene, points.joint)
     crushed = closure > np.maximum(peak, CRUSHED * cap / stiffness)
     kinds = [JointState.OPEN, JointState.CRUSHED, JointState.SLIDE, JointState.DEBONDED]

@@ -396,6 +396,17 @@ def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
     assert np.abs(arrays(grids[-1].GetPointData())["velocity [m/s]"]).max() > 1e-4
 
 
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+def test_joints_that_bear_nothing_neither_slide_nor_open(model: str) -> None:
+    """Head joints of rigid blocks in courses under their weight, of which programs leave 1e-12 Pa and 1e-21 m."""
+    scene = courses([[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]], 0.4, 0.2, **STIFF)
+    recorder: Any = MotionRecorder(scene, None) if model == "dem-dynamic" else StaticRecorder(scene, None)
+    recorder.finish(run_model(model, scene, 0.1, recorder))
+    rest = recorder.frames[0]
+    assert rest.multiplier == 0.0
+    assert (rest.state == JointState.STICK).all()
+
+
 def test_states_of_rest_are_recorded_as_they_are_found(tmp_path: Path) -> None:
     """The loads and displacements of the series are those of the curve, and every state stands in equilibrium.
 
