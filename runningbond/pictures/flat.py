@@ -136,9 +136,10 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
     mechanism = mechanism_shape(scene, outcome)
     shape = mechanism or undeformed_shape(scene)
     key = mechanism_key([shape])
-    lines, largest = resultants(shape, outcome)
+    lines, largest, beside = resultants(shape, outcome)
     if len(lines) and mechanism and scene.block_size > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
-        key.append(Line2D([], [], color=THRUST, lw=0.8, label=f"force ≤ {readable(largest, 'N')}"))
+        label = f"force ≤ {readable(largest, 'N')}" + (f", {beside} too far off" if beside else "")
+        key.append(Line2D([], [], color=THRUST, lw=0.8, label=label))
     else:
         lines = lines[:0]
     return shape, mechanism_caption(scene, outcome, key, drawn=mechanism is not None), lines

@@ -15,9 +15,10 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from PIL import Image
 
+from dem.static import dem_static
 from runningbond.limit import limit
 from runningbond.pictures.captions import to_png, to_svg
-from runningbond.pictures.deformed_shape import DeformedShape
+from runningbond.pictures.deformed_shape import DeformedShape, undeformed_shape
 from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of
 from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import JointState
@@ -125,7 +126,8 @@ def test_forces_run_through_their_centres_of_pressure_and_balance_the_wall() -> 
     outcome = limit(scene)
     shape = mechanism_shape(scene, outcome)
     assert shape is not None
-    (line,), largest = resultants(shape, outcome)
+    (line,), largest, beside = resultants(shape, outcome)
+    assert not beside
     weight = float(scene.mass[scene.wall].sum()) * 9.81
     assert largest == pytest.approx(weight * np.hypot(1, 0.5), rel=1e-6)
     assert line.mean(axis=0) == pytest.approx([0.2, 0.0], abs=1e-6)
@@ -136,6 +138,27 @@ def test_forces_run_through_their_centres_of_pressure_and_balance_the_wall() -> 
     assert "force ≤" in texts(figure_of(scene, outcome))
     assert "force ≤" not in texts(figure_of(panel(), limit(panel())))
     assert not len(resultants(shape, replace(outcome, force=np.zeros((0, 2))))[0])
+
+
+def test_where_joints_pull_forces_pass_beside_them() -> None:
+    """Two blocks of 0.4 × 0.2 m, glued: λ moves the resultant of what is above a joint by λ times its centre's height.
+
+    That of nearly equal pulls and pressures is far away, of equal ones at no place at all.
+    """
+    glue = {"cohesion": 2e4, "tensile_strength": 1e4, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    scene = courses([[1], [1]], width=0.4, height=0.2, joint={"friction": 0.6, **glue})
+    outcome = dem_static(scene)
+    assert outcome.lower is not None
+    lines, _, beside = resultants(undeformed_shape(scene), outcome)
+    assert lines.mean(axis=1)[:, 0] == pytest.approx([0.2 + 0.2 * outcome.lower, 0.2 + 0.1 * outcome.lower], rel=1e-6)
+    assert not beside
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    for pull in (99.0, 100.0):
+        couple = replace(outcome, force=np.array([[pull, 0.0], [-100.0, 30.0], [-50.0, 0.0], [-50.0, 0.0]]))
+        lines, _, beside = resultants(shape, couple)
+        assert (len(lines), beside) == (1, 1)
+        assert "1 too far off" in texts(figure_of(scene, couple))
 
 
 def test_a_hinge_is_marked_where_a_block_turns() -> None:
