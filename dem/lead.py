@@ -23,6 +23,15 @@ REGULAR = 1e-6
 """Share of the elastic stiffness by which the tangent of a first guess is made regular."""
 
 
+def reaction(system: StaticSystem, state: StaticState) -> float:
+    """λ, of a drive its reaction along its first move [N]; of supports that settle the share of the dead load there."""
+    equations, jump = system.equilibrium, system.support_jump
+    if jump is None:
+        return equations.live_unit * state.multiplier
+    work = float((jump[:, : len(state.force)] * state.force.T).sum() + jump[0, len(state.force) :] @ state.pull)
+    return -work * equations.force_unit * system.length_unit / reaction_unit(equations.scene)
+
+
 @dataclass(frozen=True, eq=False)
 class Lead:
     """What leads a wall: the beam's drive, or the supports with a share of their settlement."""
@@ -95,12 +104,8 @@ class Lead:
         return state.multiplier if self.settles else state.displacement - self.origin.displacement
 
     def force(self, state: StaticState) -> float:
-        """Reaction of the drive along its first move [N], or of the supports against theirs, as a share."""
-        system, jump = self.system, self.system.support_jump
-        if jump is None:
-            return system.equilibrium.live_unit * state.multiplier
-        work = float((jump[:, : len(state.force)] * state.force.T).sum() + jump[0, len(state.force) :] @ state.pull)
-        return -work * system.equilibrium.force_unit * system.length_unit / reaction_unit(self.scene)
+        """As of `reaction`."""
+        return reaction(self.system, state)
 
     def onward(self, before: StaticState, now: StaticState, value: float) -> Array:
         """Unknowns ahead, if the wall goes on as in its last step."""

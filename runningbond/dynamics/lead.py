@@ -168,12 +168,12 @@ class Lead:
     def go(self, way: Way, speed: float) -> State:
         """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
         state = self.start.copy()
-        self.observe(self.run, state, 0.0)
         (self._settle if self.settles else self._drive)(way, state, speed)
         return state
 
     def _drive(self, way: Way, state: State, speed: float) -> None:
         run, at = self.run, 0.0
+        self.observe(run, state, 0.0)
         # At finite displacements blocks knock at one another all along, which means over rows leave out.
         knock = run.system.contacts is not None
         self.note(way, state, 0.0, 0.0)
@@ -230,6 +230,7 @@ class Lead:
         run, given = self.run, self.run.given(state)
         motion, far, _ = run.system.carried
         self.note(way, state, 0.0, self.share(state, 0.0, self.criteria.interval, given))
+        self.observe(run, state, way.rows[-1].force)
         rows = 2 * SOFT
         stage = rows / (STAGES * speed * run.dt * _pace(rows).sum())
         windows = max(1, int(stage / (rows * WINDOW)))

@@ -44,8 +44,7 @@ def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Instant]) -> O
     """
     if not states or any(len(state.motion) != len(scene.blocks) for state in states):
         return outcome
-    led = scene.is_led and len(outcome.curve) == len(states)
-    loads = outcome.curve[:, 1] if led else np.array([state.multiplier for state in states])
+    loads = np.array([state.multiplier for state in states])
     way = np.arange(float(len(states))) if scene.history else distances(scene, [state.motion for state in states])
     even = [int(np.abs(way - x).argmin()) for x in np.linspace(way[0], way.max(), MOMENTS)]
     chosen = np.unique([*even, int(loads.argmax())])

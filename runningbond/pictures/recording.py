@@ -1,10 +1,12 @@
 """Observers that keep a run for ParaView: every load that was borne, then the fall, each moment as it comes."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from dem.lead import reaction
 from dem.pushover import LoadPath, StaticState
 from dem.rigid_system import contact_points
 from fem_interface.modal_wall import ModalWall
@@ -95,8 +97,7 @@ class StaticRecorder(SeriesRecorder):
         opening, slip = rigid_jumps(scene.blocks, points, motion)
         normal, tangential = (equations.force_unit * state.force / points.area[:, None]).T
         kinds = states_under_load(scene, points, opening, normal, tangential, np.zeros(len(points)))
-        load = equations.live_unit * state.multiplier
-        self.keep(Frame(load, motion, opening, slip, normal, tangential, kinds))
+        self.keep(Frame(reaction(system, state), motion, opening, slip, normal, tangential, kinds))
 
 
 class MotionRecorder(SeriesRecorder):
@@ -113,11 +114,14 @@ class MotionRecorder(SeriesRecorder):
         self._moments: list[tuple[int, Frame]] = []
         self._stride = 1
         self._fall: tuple[float, list[tuple[int, Frame]]] = (np.nan, [])
+        self._led = math.inf  # steps at the last look at a wall that is led
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Look at a run: keep the state if it is at rest, or else remember it for a while."""
         self._turn_to(run.system.source)
-        if multiplier != self._multiplier:
+        if run.led:
+            self._follow_way(state)
+        elif multiplier != self._multiplier:
             self._next_load(multiplier)
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
         if run.led or self._calm == CALM:
@@ -136,6 +140,11 @@ class MotionRecorder(SeriesRecorder):
         self._wall = wall
         triangles = Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
         self._begin(Discretisation(wall.scene, wall.elements.points, triangles))
+
+    def _follow_way(self, state: State) -> None:
+        if state.steps < self._led:  # the way's first state, and anew on each slower one; the dead load's rest is it
+            self._series.clear()
+        self._led = state.steps
 
     def _next_load(self, multiplier: float) -> None:
         if multiplier == 0.0 and len(self._series):  # the search begins anew, more slowly

@@ -376,10 +376,11 @@ def test_every_key_is_taken_and_what_is_not_read_is_named() -> None:
 
 
 def test_recorded_supports_move_with_the_wall() -> None:
+    """The load of a frame is the share of the dead load that they bear then, as in the curve."""
     scene = wall(PORTAL, ground_moves(1.8, 3.0, (0.0, -0.01)))
     recorder = StaticRecorder(scene, None)
     outcome = run_model("dem-static", scene, observe=recorder)
-    assert len(recorder.frames) == len(outcome.curve)
+    assert [frame.multiplier for frame in recorder.frames] == pytest.approx(outcome.curve[:, 1])
     assert recorder.frames[-1].motion[3] == pytest.approx([0.0, -0.01, 0.0])
     assert recorder.frames[-1].motion[1, 1] == pytest.approx(-0.01, rel=1e-3)
 

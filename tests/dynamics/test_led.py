@@ -543,6 +543,19 @@ def test_a_recorder_keeps_the_way_that_counts() -> None:
     assert moved[-1] == pytest.approx(0.001, rel=1e-6)
 
 
+@pytest.mark.parametrize("model", MODELS)
+def test_frames_of_a_settlement_are_of_the_share_that_its_support_bears(model: Any) -> None:
+    """Half of the block's weight at rest, the same as the rows of the curve from there on."""
+    live = {"kind": "settlement", "box": [[0.12, -1.0], [1.0, 0.0]], "by": [0, -1e-3]}
+    scene = block(load__live=live)
+    recorder = MotionRecorder(scene, None)
+    outcome = model(scene, observe=recorder)
+    recorder.finish(outcome)
+    loads = [frame.multiplier for frame in recorder.frames]
+    assert loads[0] == pytest.approx(0.5, rel=1e-3)
+    assert loads == pytest.approx(outcome.curve[:, 1])
+
+
 @pytest.mark.parametrize(
     ("force", "expected"),
     [([1.0, 2.0, 3.0], False), ([1.0, 3.0, 2.0], True), ([2.0, 3.0, 3.001], True), ([0.0, 0.0, 0.0], True)],
