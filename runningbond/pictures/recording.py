@@ -20,6 +20,7 @@ from runningbond.pictures.time_series import MAX_FRAMES, TimeSeries
 from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import Outcome
 from runningbond.results.mechanism import rigid_jumps
+from runningbond.results.reactions import AT_REST
 from runningbond.results.store import RECORD
 from runningbond.scene import Array, Scene
 
@@ -157,10 +158,15 @@ class MotionRecorder(SeriesRecorder):
         """Write the fall under the load that brought the wall down, and end the series."""
         if self._moments:
             self._fall = (self._multiplier, self._moments)
-        if self._fall[0] == outcome.upper:
+        if self._fall[0] == self._load_of_fall(outcome):
             for _, frame in self._fall[1]:
                 self.keep(frame)
         super().finish(outcome)
+
+    def _load_of_fall(self, outcome: Outcome) -> float | None:
+        """The load under which the wall fell: that of the curve's end, for what breaks takes the bracket beyond it."""
+        rests = outcome.curve_columns().get(AT_REST, np.ones(0))
+        return float(outcome.curve[-1, 1]) if len(rests) and rests[-1] == 0 else None
 
     def _frame(self, run: Run, state: State, multiplier: float) -> Frame:
         """The moment of a run."""
@@ -200,6 +206,10 @@ class ResponseRecorder(MotionRecorder):
             if len(self._moments) > MAX_FRAMES:
                 self._moments, self._spacing = self._moments[::2], 2 * self._spacing
             self._next = state.time + self._spacing
+
+    def _load_of_fall(self, outcome: Outcome) -> float | None:
+        """The upper scale: the curve has all that were tried."""
+        return outcome.upper
 
 
 def motion_recorder(scene: Scene, folder: Path | None) -> MotionRecorder:

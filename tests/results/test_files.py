@@ -396,6 +396,24 @@ def test_a_run_is_recorded_up_to_its_fall(tmp_path: Path) -> None:
     assert np.abs(arrays(grids[-1].GetPointData())["velocity [m/s]"]).max() > 1e-4
 
 
+def test_the_fall_of_a_wall_whose_joints_break_is_recorded_though_its_bracket_ends_beyond(tmp_path: Path) -> None:
+    """The load of the fall is that of the curve's end; the bracket goes on by the last step."""
+    soft = {**BRITTLE, "cohesion": 2e4, "tensile_strength": 1e4, "fracture_energy_1": 10.0, "fracture_energy_2": 50.0}
+    scene = courses([[1], [1]], width=0.2, height=0.2, joint=soft)
+    recorder = MotionRecorder(scene, tmp_path)
+    outcome = run_model("dem-dynamic", scene, 0.05, recorder)
+    recorder.finish(outcome)
+    assert outcome.status == "collapse"
+    fell = outcome.curve[-1, 1]
+    assert outcome.upper is not None
+    assert fell < outcome.upper
+    grids = [read_grid(path) for path in frame_files(tmp_path, "blocks")]
+    loads = np.array([arrays(grid.GetFieldData())["multiplier"][0] for grid in grids])
+    assert 1 < (loads == fell).sum() <= 13
+    assert loads[-1] == fell
+    assert np.abs(arrays(grids[-1].GetPointData())["velocity [m/s]"]).max() > 1e-4
+
+
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
 def test_joints_that_bear_nothing_neither_slide_nor_open(model: str) -> None:
     """Head joints of rigid blocks in courses under their weight, of which programs leave 1e-12 Pa and 1e-21 m."""
