@@ -11,6 +11,7 @@ from runningbond.contacts.rigid_sides import (
     RigidSides,
     gather_sharp,
     gather_sides,
+    in_space,
     reframe_sharp,
     scatter_sides,
     turn_out,
@@ -94,6 +95,20 @@ class RigidContacts:
         at = position_of(self.points(contacts)[0], self._key_of_point)
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])  # and it is open as far at least
         return np.column_stack([values, lost])[:, at]  # -1, of those that are none, is the last
+
+    def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
+        """As of `ContactSearch`; a point along two sides pulls as its shares at the two ends would."""
+        ends = contacts.geometry(self.outline)
+        gather_sides(motion, ends, *np.zeros((2, len(contacts))))
+        if not self._points:
+            pull, shear = turn_out.py_func(*force, ends.out)
+            return in_space(pull, shear, ends.contact[:, 2:])
+        pairs, share, along = contacts.pairs, (self._rule.nodes[:, None] + 1) / 2, np.zeros_like(force)
+        for end, part in enumerate((1 - share, share)):
+            at = np.tile(pairs[:, end], self._points)
+            pull, shear = turn_out.py_func(*force, ends.out[at])
+            along += np.repeat(part, len(pairs)) * in_space(pull, shear, ends.contact[at, 2:])
+        return along
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`."""

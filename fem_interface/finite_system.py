@@ -14,7 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from runningbond.contacts.materials import ContactMaterials
-from runningbond.contacts.rigid_sides import turn_out
+from runningbond.contacts.rigid_sides import in_space, turn_out
 from runningbond.contacts.search import Contacts, facing_sides, find_contacts, position_of, resting
 from runningbond.dynamics import (
     BlockSystem,
@@ -209,6 +209,14 @@ class DeformableContacts:
         lost = np.array([contacts.margin, 0.0, 0.0, 0.0, 0.0, 0.0])
         part = np.where(np.arange(6)[:, None] // 2 == 1, share, 1.0)
         return np.column_stack([values, lost])[:, at] * part  # -1, of those that are none, is the last
+
+    def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
+        """As of `ContactSearch`."""
+        geometry = self.geometry(contacts)
+        gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
+        contact = geometry.contact
+        pull, shear = turn_out.py_func(*force, contact[:, 7])
+        return in_space(pull, shear * contact[:, 6], contact[:, 2:4])
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`."""

@@ -128,6 +128,11 @@ class JointElements:
         along = (self.points.position * self.points.tangent).sum(axis=1)
         return np.lexsort((along, np.tile(self.element, len(self.weights))))
 
+    def sides(self, displacement: Array) -> Array:
+        """Displacements of the points on sides a and b, ``(2, np, 2)`` [m], from those of the nodes ``(nn, 2)``."""
+        ends = displacement[self.nodes].reshape(-1, 2, 2, 2)  # element by element, of both sides, at both ends
+        return np.asarray(np.einsum("pek,eskd->sped", self.weights, ends).reshape(2, -1, 2))
+
     def arranged(self, order: Indices) -> "JointElements":
         """The same elements ``(ne,)`` in another order."""
         points = self.points.part((np.arange(len(self.weights))[:, None] * len(order) + order).ravel())

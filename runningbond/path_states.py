@@ -22,13 +22,14 @@ class PathState:
     Parameters
     ----------
     multiplier
-        λ.
+        λ; where a support settles, the share of the dead load that it bears.
     motion : (nb, 3) float
         Displacement of each block's centroid [m] and rotation [rad] since the wall was built.
     force : (np, 2) float
-        Normal and tangential force of each joint point [N], tension positive.
+        Normal and tangential force of each joint point [N], tension positive: of the side that bears, where blocks have
+        turned against each other.
     opening, slip : (np,) float
-        Jumps of the joint points [m].
+        Jumps of the joint points [m]; at finite displacements along the normal and the tangent that turn with block a.
     velocity : (nb, 3) float
         Of the centroid [m/s] and of rotation [rad/s]; zero at rest.
     damage : (np,) float

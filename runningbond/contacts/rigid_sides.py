@@ -139,6 +139,12 @@ def turn_out(pull: float, shear: float, out: float) -> tuple[float, float]:
     return pull * (1.0 - abs(out)), shear + pull * out
 
 
+def in_space(pull: Array, shear: Array, normal: Array) -> Array:
+    """Forces ``(2, n)`` along x and y, of normal and tangential ones ``(n,)`` of contacts with normals ``(n, 2)``."""
+    nx, ny = normal.T
+    return np.array([pull * nx - shear * ny, pull * ny + shear * nx])
+
+
 @kernel
 def gather_sides(motion: Array, geometry: RigidSides, opening: Array, slip: Array) -> None:
     """Opening and slip ``(np,)`` of the ends of facing sides, from motions ``(3 nb,)``."""

@@ -10,7 +10,7 @@ from runningbond.scene import Array, Indices, Mask, Unsigned
 
 from .near import near_sides, reaches, resting_ends
 from .outline import FLAT, Outline, side_pair
-from .rigid_sides import Placed, RigidSides, gather_sides
+from .rigid_sides import Placed, RigidSides, gather_sides, in_space
 
 FASTEST_OPENING = math.sqrt(5)
 """Most by which an opening changes, in ways of the corner (`sharp_opening`)."""
@@ -97,8 +97,7 @@ class Contacts:
         force : (2, n) float
             Its normal and tangential force [N].
         """
-        (x, y, nx, ny), (pull, shear) = contact.T, force
-        fx, fy = pull * nx - shear * ny, pull * ny + shear * nx
+        (x, y), (fx, fy) = contact[:, :2].T, in_space(force[0], force[1], contact[:, 2:])
         b, a = outline.blocks.owner[self.ends[:, 4:].astype(np.int64)].T
         total = np.zeros((len(outline.blocks), 3))
         for block, sense in ((a, 1.0), (b, -1.0)):

@@ -350,6 +350,15 @@ class Run:
         values = np.vstack([jumps, self.interface.area * tractions, *broken])
         return values if search is None else search.at_joints(contacts_of(state), values)
 
+    def pulls_at_joints(self, state: State) -> Array:
+        """What b exerts on a at joints' points at finite displacements, ``(2, np)`` [N], along x and y in space."""
+        search = self.system.contacts
+        if search is None:
+            raise TypeError("at small displacements forces have the directions of the undeformed joints")
+        pulls = search.pulls(contacts_of(state), state.motion, np.array(self.forces(state)))
+        none = np.zeros_like(pulls)
+        return search.at_joints(contacts_of(state), np.vstack([none, pulls, none]))[2:4]
+
     def resultants(self, state: State, multiplier: float) -> Array:
         """Resultants of contacts and loads on each body of a rig, moments about the origin, ``(n, 3)`` [N, N, N m]."""
         system, live, search = self.system, self.system.live.copy(), self.system.contacts

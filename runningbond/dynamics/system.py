@@ -121,6 +121,12 @@ class ContactSearch(Protocol):
         That is openings and slips [m], normal and tangential forces [N], damage, and plastic closure [m].
         """
 
+    def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
+        """What block b of each point exerts on a after a motion ``(nd,)``, ``(2, np)`` [N], along x and y in space.
+
+        It is that of the points' normal and tangential forces ``(2, np)`` [N].
+        """
+
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """Forces on each body and their moments about the origin after a motion ``(nd,)``, ``(n, 3)`` [N, N, N m].
 

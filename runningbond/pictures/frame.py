@@ -42,9 +42,9 @@ class Frame:
     motion : (nb, 3) float
         Displacement of each block's centroid [m] and rotation [rad], for a mechanism per motion of the fastest corner.
     opening, slip : (np,) float
-        Jumps [m].
+        Jumps [m], along the normal and the tangent that turn with block a.
     normal, tangential : (np,) float
-        Tractions [Pa], tension positive.
+        Tractions [Pa], tension positive, along the normal and the tangent of the side that bears.
     state : (np,) int
         A `JointState` each.
     velocity : (nb, 3) float
@@ -57,6 +57,8 @@ class Frame:
         σ_x, σ_y, τ_xy of those triangles [Pa]; empty without them.
     time
         Since the motion of the ground began [s]; None where there is none.
+    traction : (np, 2) float
+        Tractions along x and y [Pa], tension positive; empty where they have the directions of undeformed joints.
     finite
         Whether blocks turn by their rotation, and not to first order.
     """
@@ -73,6 +75,7 @@ class Frame:
     displacement: Array = field(default_factory=lambda: np.zeros((0, 2)))
     stress: Array = field(default_factory=lambda: np.zeros((0, 3)))
     time: float | None = None
+    traction: Array = field(default_factory=lambda: np.zeros((0, 2)))
     finite: bool = False
 
     def __post_init__(self) -> None:

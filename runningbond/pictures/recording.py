@@ -19,7 +19,7 @@ from runningbond.pictures.style import DRAWN
 from runningbond.pictures.time_series import MAX_FRAMES, TimeSeries
 from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import Outcome
-from runningbond.results.mechanism import rigid_jumps
+from runningbond.results.mechanism import carried, rigid_jumps, rotated, turned, turned_frames
 from runningbond.results.reactions import AT_REST
 from runningbond.results.store import RECORD
 from runningbond.scene import Array, Scene
@@ -177,11 +177,49 @@ class MotionRecorder(SeriesRecorder):
         # Where blocks may crack, the motion of whole blocks is one thing; here each piece is a block.
         motion, velocity = run.system.motion_of_bodies(state.motion), run.system.motion_of_bodies(state.velocity)
         finite = run.system.contacts is not None
-        frame = Frame(multiplier, motion, opening, slip, normal, tangential, kinds, velocity, damage, finite=finite)
+        displacement, traction, stress = np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3))
+        if self._wall is not None:
+            displacement, stress = self._wall.displacement(state.motion), stresses(self._wall, state.motion)
+        if finite:
+            displacement = self._far_displacement(displacement, motion)
+            opening, slip = self._far_jumps(displacement, motion)
+            traction = run.pulls_at_joints(state).T / wall.points.area[:, None]
+        return Frame(
+            multiplier,
+            motion,
+            opening,
+            slip,
+            normal,
+            tangential,
+            kinds,
+            velocity,
+            damage,
+            displacement,
+            stress,
+            traction=traction,
+            finite=finite,
+        )
+
+    def _far_displacement(self, displacement: Array, motion: Array) -> Array:
+        """Displacements of nodes ``(nn, 2)`` [m] at finite displacements, whose deformations turn with their blocks."""
         if self._wall is None:
-            return frame
-        displacement = self._wall.displacement(state.motion)
-        return replace(frame, displacement=displacement, stress=stresses(self._wall, state.motion))
+            return displacement
+        blocks, block, at = self._wall.scene.blocks, self._wall.mesh.block, self._wall.mesh.points
+        own = displacement - carried(blocks, block, at, motion)
+        return turned(blocks, block, at, motion) + rotated(own, motion[block, 2])
+
+    def _far_jumps(self, displacement: Array, motion: Array) -> tuple[Array, Array]:
+        """Opening and slip ``(np,)`` [m] at finite displacements.
+
+        Those of the law are where blocks have come to along the sides that touch, and none where these have parted.
+        """
+        scene, points = self.discretisation.scene, self.discretisation.points
+        if self._wall is None:
+            a, b = (turned(scene.blocks, side, points.position, motion) for side in points.block.T)
+        else:
+            a, b = self._wall.elements.sides(displacement)
+        normal, tangent = turned_frames(points, motion)
+        return ((b - a) * normal).sum(axis=1), ((b - a) * tangent).sum(axis=1)
 
 
 class ResponseRecorder(MotionRecorder):

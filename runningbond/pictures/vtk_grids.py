@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from runningbond.results.mechanism import carried, turned
+from runningbond.results.mechanism import carried, turned, turned_frames
 from runningbond.scene import Array, Blocks, Indices, Scene
 
 from .deformed_shape import DeformedShape, course_numbers, crushed_ends, farthest_motion, outer_edges, series_scale
@@ -58,8 +58,6 @@ class GridBuilder:
             owner = np.empty(len(triangles.points), dtype=np.int64)
             owner[triangles.corners.ravel()] = np.repeat(block, 3)
             points = self._near(triangles.points, owner)
-            if frame.finite:
-                displacement = _turned_with_blocks(blocks, owner, triangles.points, frame)
             grid = _grid(points, [(TRIANGLE, triangles.corners.ravel(), np.full(len(block), 3))])
         velocity = carried(blocks, owner, points, frame.velocity)
         if frame.finite:  # the arms are those of where blocks are
@@ -90,19 +88,20 @@ class GridBuilder:
         lines, quads = corner + np.arange(2), corner + np.arange(2, 6)
         grid = _grid(points.position[at], [(LINE, lines.ravel(), np.full(n, 2)), (QUAD, quads.ravel(), np.full(n, 4))])
 
-        jump, traction = (
-            along[:, None] * points.normal + across[:, None] * points.tangent
-            for along, across in ((frame.opening, frame.slip), (frame.normal, frame.tangential))
-        )
+        still = points.normal, points.tangent
+        normal, tangent = turned_frames(points, frame.motion) if frame.finite else still
+        jump = frame.opening[:, None] * normal + frame.slip[:, None] * tangent
+        traction = frame.normal[:, None] * normal + frame.tangential[:, None] * tangent
+        if len(frame.traction):
+            traction = frame.traction
         # Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
         a, b = (_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T)
-        apart = b - a if frame.finite else jump
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
         _add(
             grid.point_data,
             {
-                DISPLACEMENT: _in_space(((a + b - apart) / 2)[at] + share[:, None] * apart[at]),
-                "normal": _in_space(points.normal[at]),
+                DISPLACEMENT: _in_space(((a + b - jump) / 2)[at] + share[:, None] * jump[at]),
+                "normal": _in_space(normal[at]),
                 "jump [m]": _in_space(jump[at]),
                 "opening [m]": frame.opening[at],
                 "slip [m]": frame.slip[at],
@@ -170,14 +169,6 @@ def _motion_of_supports(scene: Scene, blocks: Grid) -> Array:
 def _moved(blocks: Blocks, block: Indices, at: Array, frame: Frame) -> Array:
     """Displacements ``(n, 2)`` [m] of points of rigid blocks."""
     return (turned if frame.finite else carried)(blocks, block, at, frame.motion)
-
-
-def _turned_with_blocks(blocks: Blocks, block: Indices, at: Array, frame: Frame) -> Array:
-    """Displacements ``(n, 2)`` [m] of nodes, whose own one turns with their blocks."""
-    own = frame.displacement - carried(blocks, block, at, frame.motion)
-    cosine, sine = np.cos(frame.motion[block, 2]), np.sin(frame.motion[block, 2])
-    own = np.column_stack([cosine * own[:, 0] - sine * own[:, 1], sine * own[:, 0] + cosine * own[:, 1]])
-    return np.asarray(turned(blocks, block, at, frame.motion) + own)
 
 
 def _templates(blocks: Blocks) -> Indices:

@@ -35,6 +35,18 @@ def turned(blocks: Blocks, block: Indices, at: Array, motion: Array) -> Array:
     return np.column_stack([u + less * arm[:, 0] - sine * arm[:, 1], v + sine * arm[:, 0] + less * arm[:, 1]])
 
 
+def turned_frames(points: JointPoints, motion: Array) -> tuple[Array, Array]:
+    """Normals and tangents ``(np, 2)`` of joint points, which turn with their block a in a motion ``(nb, 3)``."""
+    spin = motion[points.block[:, 0], 2]
+    return rotated(points.normal, spin), rotated(points.tangent, spin)
+
+
+def rotated(vectors: Array, angle: Array) -> Array:
+    """Vectors ``(n, 2)`` turned by angles ``(n,)`` [rad]."""
+    (x, y), cosine, sine = vectors.T, np.cos(angle), np.sin(angle)
+    return np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
+
+
 def rigid_jumps(blocks: Blocks, points: JointPoints, motion: Array) -> tuple[Array, Array]:
     """Opening and slip [m] of joint points between rigid blocks that move by ``(nb, 3)``, two ``(np,)``."""
     a, b = (carried(blocks, side, points.position, motion) for side in points.block.T)

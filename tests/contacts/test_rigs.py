@@ -185,6 +185,24 @@ def test_frames_of_a_rig_show_its_joints(model: str, strength: float | None) -> 
     assert outcome.force[:, 0].sum() == pytest.approx(-4e4, rel=0.02)
 
 
+@pytest.mark.parametrize(("model", "strength"), [("dem-dynamic", None), ("dem-dynamic", 1e12), ("fem", None)])
+def test_tractions_of_frames_balance_a_wall_that_has_turned(model: str, strength: float | None) -> None:
+    """A block that leans by 5° on its toe is held up by the ground, and held back by what the drive takes.
+
+    The side that bears there is the ground's, whose normal has not turned.
+    """
+    joint: dict[str, Any] = {"joint__compressive_strength": strength} if strength else {}
+    drive = {"displacement": [0.05, 0], "at": 0.6}
+    scene = rig(**joint, block={"density": 1000.0, "young": 1e12}, beam__drive=drive)
+    recorder = MotionRecorder(scene, None)
+    outcome = run_model(model, scene, observe=recorder, displacements="finite")
+    frame, points = recorder.frames[-1], recorder.discretisation.points
+    assert frame.motion[0, 2] == pytest.approx(-0.08, abs=0.01)
+    ground = (points.block == 2).any(axis=1)
+    held = (frame.traction * points.area[:, None])[ground].sum(axis=0)
+    assert held == pytest.approx([-outcome.curve[-1, 1], 2e4], rel=0.01, abs=20.0)
+
+
 def test_pushed_the_other_way_a_wall_does_the_same() -> None:
     changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "inner_joint": GLUE}
     outcomes = [

@@ -22,6 +22,7 @@ from runningbond.pictures.style import DRAWN
 from runningbond.pictures.time_series import MACRO, frame_files, times_shown
 from runningbond.pictures.vtk_grids import DISPLACEMENT, GridBuilder
 from runningbond.results import Outcome
+from runningbond.results.mechanism import turned
 from runningbond.scene import Scene, scene_from_dict
 from tests.walls import courses, panel
 
@@ -103,6 +104,30 @@ def test_blocks_that_topple_keep_their_shape(model: str) -> None:
     for point, way in zip(response.points, response.displacement.transpose(1, 2, 0), strict=True):
         here = moved[np.hypot(*(rest - point).T) < 1e-9]
         assert here[0] == pytest.approx([np.interp(frame.time, response.time, each) for each in way], abs=2e-3)
+
+
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+def test_jumps_are_displacements_of_b_less_those_of_a_however_far_these_turn(model: str) -> None:
+    """Of a tower from its rest to a fall, in space and along a normal that turns with a, to the 10 µm of blocks."""
+    scene = tower()
+    recorder = ResponseRecorder(scene, None)
+    respond(model, scene, 2.0, observe=recorder, rows=2000, after=0.3)
+    recorder.finish(Outcome(scene.title, model, "undecided", upper=2.0))
+    points, frames = recorder.discretisation.points, recorder.frames
+    assert np.abs(frames[0].slip).max() < 1e-6
+    assert np.abs(frames[-1].motion[:, 2]).min(initial=1.0, where=~scene.fixed) > 0.3
+    for frame in frames:
+        a, b = (turned(scene.blocks, side, points.position, frame.motion) for side in points.block.T)
+        spin = frame.motion[points.block[:, 0], 2]
+        normal = np.column_stack([-np.sin(spin), np.cos(spin)]) * points.normal[:, 1:]  # all joints are beds
+        assert frame.opening == pytest.approx(((b - a) * normal).sum(axis=1), abs=1e-5)
+        grid = GridBuilder(recorder.discretisation).joints(frame)
+        place, shown, along = (
+            np.asarray(each)[:, :2] for each in (grid.points, grid.point_data["jump [m]"], grid.point_data["normal"])
+        )
+        assert (shown * along).sum(axis=1) == pytest.approx(np.asarray(grid.point_data["opening [m]"]), abs=1e-12)
+        for at, jump in zip(points.position, b - a, strict=True):
+            assert np.abs(shown[(place == at).all(axis=1)] - jump).max() < 1e-5
 
 
 def test_the_shape_of_a_fall_is_one_that_can_be_seen() -> None:
