@@ -35,7 +35,8 @@ DAMAGE, SLIPPED = HISTORY.index("damage"), HISTORY.index("slipped")
 NEVER = 1e30
 """Opening [m] at which a joint that is perfectly plastic in opening ends to soften.
 
-Damage on the way there is small, but must not vanish when it is squared; that of slip without end must.
+Damage on the way there is small, but must not vanish when it is squared: numbers as small as that take a processor a
+hundred cycles. Of slip without end there is none.
 """
 
 
@@ -50,7 +51,7 @@ def softening_constants(material: JointMaterial) -> tuple[float, ...]:
     cohesion = shear + friction * tension
     first = tension / k_n
     last = max(_end_of_softening(material.fracture_energy_1, tension, NEVER), first * (1 + 1e-9))
-    return *sound, first, last, 1 / _end_of_softening(material.fracture_energy_2, cohesion, NEVER**9)
+    return *sound, first, last, 1 / _end_of_softening(material.fracture_energy_2, cohesion, math.inf)
 
 
 def _end_of_softening(energy: float | None, strength: float, never: float) -> float:
