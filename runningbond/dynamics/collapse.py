@@ -20,9 +20,10 @@ enough it does not.
 """
 
 DRAGGED = 50_000
-"""Steps after which a wall that neither rests nor falls is damped so that it is not dragged on.
+"""Steps after which a wall that neither rests nor falls, and does not get on steadily, is damped not to be dragged on.
 
-Contacts that slip without an end may shake for as long, and local damping drags on what drifts while it shakes.
+Contacts that slip without an end may shake for as long, and local damping drags on what drifts while it shakes. What
+speeds up all the same is left alone: damping that is combined takes more of a fall that rings.
 """
 
 Verdict: TypeAlias = Literal["stable", "collapse", "undecided"]
@@ -78,10 +79,10 @@ def hold_load(
     start, given = state.motion.copy(), run.given(state)
     detector = CollapseDetector(elastic=sudden or run.system.weightless)
     halfway = start
-    calm, late = 0, criteria.dragged / criteria.interval
+    calm, late, drags_less = 0, criteria.dragged / criteria.interval, False
     for look in range(criteria.budget // criteria.interval):
-        if late <= look < late + 1:
-            run = run.drifting
+        if look >= late and not detector.steady and not drags_less:
+            run, drags_less = run.drifting, True
         run.hold(state, multiplier, criteria.interval, given=given)
         observe(run, state, multiplier)
         calm = calm + 1 if run.unbalanced(state) < criteria.rest else 0
@@ -131,6 +132,11 @@ class CollapseDetector:
     def marks(self) -> int:
         """Marks that were passed, each twice as far as the one before."""
         return len(self._passed)
+
+    @property
+    def steady(self) -> bool:
+        """Whether it had not slowed over the last half of its way."""
+        return self._steady > 0
 
     def goes_on(self, moved: float, steps: int) -> bool:
         """Whether a wall that has moved so far after so many steps is in collapse."""

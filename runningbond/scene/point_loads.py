@@ -112,8 +112,12 @@ class LineLoad(Action):
         if len(blocks) == 0:
             what = f"runs at ({middle}) along no block that can move"
             raise SceneError("load.live.from", what, list(self.start))
-        inwards = (scene.blocks.centroid[blocks] - at) @ np.array(self.force)
-        pressed = blocks[inwards > 1e-6 * np.abs(inwards).max()]
+        run, force = np.subtract(self.end, self.start), np.array(self.force)
+        normal = np.array([-run[1], run[0]]) / np.hypot(*run)
+        across = float(normal @ force)
+        ahead = at + 3 * scene.blocks.tolerance * np.sign(across) * normal
+        within = np.isin(blocks, scene.blocks.containing(ahead))
+        pressed = blocks[within & (abs(across) > 1e-6 * float(np.hypot(*force)))]
         if len(pressed) != 1:
             what = f"is at ({middle}) on more than one block, and presses on neither alone; move the line into one"
             raise SceneError("load.live.from", what, list(self.start))

@@ -17,7 +17,20 @@ from runningbond.limit import limit
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.results import Outcome
 from runningbond.results.store import load_scene, save_outcome
-from runningbond.scene import Action, Body, Forces, Lateral, Load, PointLoad, Scene, SceneError
+from runningbond.scene import (
+    Action,
+    BlockMaterial,
+    Body,
+    Forces,
+    JointMaterial,
+    Lateral,
+    LineLoad,
+    Load,
+    PointLoad,
+    Scene,
+    SceneError,
+    build_scene,
+)
 from tests.walls import courses, panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
@@ -186,3 +199,36 @@ def test_a_line_load_is_cut_at_the_joints_to_the_last_digit(ends: tuple[float, f
     run, middle = (high - low) * on, (high + low) / 2 - scene.blocks.centroid[:, 0]
     expected = np.column_stack([20.0 * run, -100.0 * run, -100.0 * run * middle - 20.0 * run * 0.03])
     assert load == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize("along", [0.0, 800.0, -3000.0, 1e5])
+def test_a_line_load_in_a_bed_joint_is_on_the_block_that_its_part_across_presses_on(along: float) -> None:
+    """However inclined it is, as a hair below the joint; inclined ones went to the course above and below by turns."""
+    borne = []
+    for y in (0.12, 0.1199):
+        line = {"kind": "line", "force": [along, -1000.0], "from": [0.1, y], "to": [0.9, y]}
+        scene = panel(load__live=[line])
+        forces = scene.load.live[0].forces(scene)
+        borne.append([np.bincount(forces.block, part, len(scene.blocks)) for part in forces.force.T])
+    assert borne[0] == pytest.approx(np.array(borne[1]), rel=1e-9, abs=1e-9)
+
+
+def test_a_line_load_along_a_joint_presses_on_neither_side() -> None:
+    """Nor does it by rounding."""
+    for low, high in ((0.005, 0.055), (0.01, 0.03)):
+        live = {"kind": "line", "from": [0.24, low], "to": [0.24, high], "force": [1e-13, -1000.0]}
+        with pytest.raises(SceneError, match="presses on neither alone"):
+            limit(panel(load__live=[live]))
+
+
+@pytest.mark.parametrize(("force", "block"), [(-1e3, 0), (1e3, 1)])
+def test_a_line_load_on_a_block_that_is_not_convex_is_on_the_side_that_it_presses_on(force: float, block: int) -> None:
+    """An L, whose centroid lies above the joint with a small block in its corner."""
+    outlines = [
+        np.array([[0, 0], [1, 0], [1, 0.2], [0.3, 0.2], [0.3, 1], [0, 1]]),
+        np.array([[0.3, 0.2], [1, 0.2], [1, 0.4], [0.3, 0.4]]),
+    ]
+    line = LineLoad((0.4, 0.2), (0.9, 0.2), (0.0, force))
+    load = Load((0.0, -9.81), (Lateral(),), (line,))
+    scene = build_scene("L", outlines, thickness=0.1, block=BlockMaterial(1800.0), joint=JointMaterial(0.6), load=load)
+    assert np.unique(line.parts(scene)[0]).tolist() == [block]
