@@ -508,7 +508,7 @@ def _refuse_floating_blocks(scene: Scene) -> None:
     held = np.union1d(np.flatnonzero(scene.fixed), scene.pins.block[scene.pins.direction.any(axis=1)])
     floating = ~np.isin(component, component[held])
     if floating.any():
-        remedy = "is a floating block: nothing joins it to the support"
+        remedy = "is a floating block: no joint joins it to the support"
         raise SceneError(scene.blocks.name(int(np.argmax(floating))), remedy + _gap_to(scene, floating))
 
 
