@@ -152,7 +152,7 @@ def frequencies(scene: Scene, count: int, springs: Array) -> Array:
                 row[3 * body : 3 * body + 3] = sense * np.array([*direction, turn])
             stiffness += area * spring * np.outer(row, row)
     inertia = np.repeat(mass * blocks.area, 3)
-    inertia[2::3] = (mass * blocks.polar_moment)[:]
+    inertia[2::3] = mass * blocks.polar_moment
     free = np.flatnonzero(np.repeat(~scene.fixed, 3))
     square = eigh(stiffness[np.ix_(free, free)], np.diag(inertia[free]), eigvals_only=True)
     return np.asarray(np.sqrt(square[:count]) / (2 * np.pi))
