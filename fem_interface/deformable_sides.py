@@ -7,9 +7,9 @@ sharp, rests on a facet of the other. Points inside a side, its nodes and others
 one's facets too, once they are farther from its corners than half-way to the next point, where the ends of the overlap
 bear for them.
 
-Tractions are forces on the two facets at the point where they touch: on their blocks' rigid coordinates as they are,
-so that linear and angular momentum are kept to rounding, and on their nodes with the share of the displacement that
-the jumps have in them, turned back into the block's frame and projected on its modes.
+Tractions are forces on the two facets at the point where they touch, and so on the two nodes of each, with the same
+resultant and the same moment: where the nodes are, they act on their blocks' rigid coordinates, so that linear and
+angular momentum are kept to rounding; turned back into the block's frame, they are projected on its modes.
 """
 
 import math

@@ -221,9 +221,8 @@ def stands_under_dead_load(system: Equilibrium) -> bool | None:
 def is_self_locking(scene: Scene) -> bool:
     """Whether admissible joint forces balance any multiple of a scene's live load."""
     system = equilibrium(scene).with_crushing().under_live_load()
-    if system.crushing is None and is_large(
-        system
-    ):  # a bound is proved in seconds, where HiGHS takes minutes to find no such forces
+    # Of a large wall a bound is proved in seconds, where HiGHS takes minutes to find no such forces.
+    if system.crushing is None and is_large(system):
         state = _proved(system)
         if state is not None and state.forces.status == "optimal":
             return False
