@@ -193,7 +193,7 @@ class Wall:
             if not isinstance(name, str):
                 raise SceneError("with_", 'takes keys by their full names, "joint.friction"', name)
             nested = value
-            for part in reversed(name.split(".")):
+            for part in reversed(_path(name, self._description)):
                 nested = {part: nested}
             nested_changes.append(nested)
         for name, value in tables.items():
@@ -381,6 +381,16 @@ def _changed(description: dict[str, Any], changes: Iterable[Mapping[str, Any]]) 
             given.add(name)
         description = _merged(description, change)
     return description
+
+
+def _path(name: str, table: Mapping[str, Any]) -> list[str]:
+    """Keys that a full name leads through; those that are there already are whole, with the dots they have."""
+    known = [key for key in table if f"{name}.".startswith(f"{key}.")]
+    key = max(known, key=len, default=name.partition(".")[0])
+    if key == name:
+        return [key]
+    inner = table.get(key)
+    return [key, *_path(name[len(key) + 1 :], inner if isinstance(inner, Mapping) else {})]
 
 
 def _leaves(table: Mapping[str, Any], name: str = "") -> Iterator[tuple[str, Any]]:

@@ -81,6 +81,17 @@ def test_a_copy_is_changed_and_the_wall_is_not() -> None:
     assert wall.description["joint"]["friction"] == 0.6
 
 
+def test_names_with_dots_are_whole_in_full_names() -> None:
+    materials = {"oak": {"density": 700.0}, "oak.1": {"density": 800.0}}
+    wall = rb.Wall.running_bond(**PANEL).with_({"materials": materials, "assign": [{"block": "oak.1", "blocks": [0]}]})
+    heavier = wall.with_({"materials.oak.1.density": 900.0, "materials.elm.density": 600.0})
+    assert heavier.scene.mass[0] == pytest.approx(900 / 800 * wall.scene.mass[0])
+    changed = {"oak": {"density": 700.0}, "oak.1": {"density": 900.0}, "elm": {"density": 600.0}}
+    assert heavier.description["materials"] == changed
+    with pytest.raises(rb.SceneError, match="friction"):
+        wall.with_({"joint.friction.": 0.7}).scene  # noqa: B018
+
+
 def test_none_takes_a_key_out() -> None:
     wall = rb.Wall.running_bond(**PANEL).with_({"joint.friction": None, "joint.friction_angle": 45.0})
     assert wall.scene.joint.friction == pytest.approx(1.0)
