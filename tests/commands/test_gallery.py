@@ -7,19 +7,22 @@ from pathlib import Path
 import pytest
 
 from runningbond.commands.command_line import command
+from tests.at_length import at_length
 
 FOLDER = Path(__file__).parents[2] / "examples" / "walls"
 PAGE = (FOLDER / "README.md").read_text()
 RUNS = re.findall(r"^\$ runningbond (run \S+ --model (\S+))\n(.*)\n +(.*)\n", PAGE, re.MULTILINE)
+SLOW = [run for run in RUNS if ("facade" in run[0] and run[1] != "limit") or run[1] in ("dem-dynamic", "fem")]
+QUICK = [run for run in RUNS if run not in SLOW]
 
 
-@pytest.mark.parametrize(("line", "model", "head", "answer"), RUNS, ids=[run[0] for run in RUNS])
+@pytest.mark.parametrize(
+    ("line", "model", "head", "answer"), [*QUICK, *at_length(*SLOW)], ids=[run[0] for run in (*QUICK, *SLOW)]
+)
 def test_a_wall_prints_what_its_page_says(
     line: str, model: str, head: str, answer: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Limit analysis to its digits; what follows a path to its own bracket, for friction remembers the last bit."""
-    if "facade" in line and model != "limit":
-        pytest.skip("ten seconds and more")
     monkeypatch.chdir(FOLDER.parents[1])
     assert command([*line.split(), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)

@@ -31,6 +31,8 @@ from runningbond.compare.table import corrected_homo
 from runningbond.models import MODELS, Model, run_model
 from runningbond.results import Outcome, load_outcome
 from runningbond.scene import Scene, SceneError
+from tests.at_length import at_length
+from tests.fem_interface.walls import MORTAR
 from tests.walls import content, courses, panel, write_toml
 
 FAST = ["panel-04", "panel-08", "wall-w3", "point-load-quarter"]
@@ -42,8 +44,12 @@ CONTRACT = ["scene", "model", "status", "multiplier", "lower", "upper", "dofs", 
 
 
 @pytest.mark.parametrize("model", MODELS)
-def test_json_is_one_object_with_the_keys_of_the_contract(model: str, capfd: pytest.CaptureFixture[str]) -> None:
-    assert command(["run", "panel-04", "--model", model, "--json"]) == 0
+def test_json_is_one_object_with_the_keys_of_the_contract(
+    model: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    wall = content(wall__length=0.48, wall__height=0.24, joint__mortar=MORTAR, block__young=1e10, block__poisson=0.2)
+    path = str(write_toml(wall, tmp_path / "wall.toml"))
+    assert command(["run", path, "--model", model, "--json"]) == 0
     printed = capfd.readouterr()
     found = json.loads(printed.out)
     assert list(found) == CONTRACT
@@ -228,7 +234,7 @@ def start(out: Path, *arguments: str) -> "subprocess.Popen[str]":
     )
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("how", [signal.SIGKILL, *at_length(signal.SIGINT)])
 def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_path: Path) -> None:
     """Stopped after its first result, by Ctrl-C or by force, in the middle of one that takes half a minute."""
     models, walls = ["limit", "dem-static"], ["panel-04", "wall-w3"]
@@ -254,7 +260,7 @@ def test_an_interrupted_campaign_goes_on_where_it_was(how: signal.Signals, tmp_p
     assert {Path(*cell) for cell in campaign.reused} == {path for path in kept if path.parts[0] in scenes}
 
 
-@pytest.mark.parametrize("work", [0.1, 2.0])
+@pytest.mark.parametrize("work", [2.0, *at_length(0.1)])
 def test_ctrl_c_with_tasks_waiting_says_one_thing(work: float, tmp_path: Path) -> None:
     """More tasks than the workers' queue takes, while workers load and when each is at a task: the hint and no more."""
     process = start(tmp_path, "--models", "fem", "--jobs", "2", "--fresh")
@@ -452,7 +458,9 @@ def no_file_may_grow() -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
 
 
-@pytest.mark.parametrize("line", ["compare panel-04 --models limit --out", "run panel-04 --model limit --out"])
+@pytest.mark.parametrize(
+    "line", ["compare panel-04 --models limit --out", *at_length("run panel-04 --model limit --out")]
+)
 def test_where_no_file_may_grow_that_is_one_line(line: str, tmp_path: Path) -> None:
     """`ulimit -f 0`: found out before anything is computed; and the exit code is right if nothing can be said."""
     words = [SCRIPT, *line.split(), str(tmp_path)]

@@ -15,6 +15,7 @@ from runningbond.compare import published_scene
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state
 from runningbond.limit.search import search
 from runningbond.scene import Scene, scene_from_dict
+from tests.at_length import at_length
 from tests.walls import content
 
 PANELS = [(h, b, a) for h in (0.72, 1.44, 2.88) for b, a in ((0.24, 0.06), (0.12, 0.06), (0.06, 0.06), (0.06, 0.24))]
@@ -74,7 +75,7 @@ USUAL = NONASSOCIATED | {3: (0.2591, 0.3098), 9: (0.4208, 0.4259), 12: (0.0662, 
 """What that finds, of `make compare`."""
 
 
-@pytest.mark.parametrize("row", [2, 4, *(pytest.param(row, marks=pytest.mark.long) for row in (1, 5, 6))])
+@pytest.mark.parametrize("row", [4, *at_length(1, 2, 5, 6)])
 def test_true_friction_on_small_panels(row: int) -> None:
     outcome = limit_nonassociated(published_scene(f"panel-{row:02d}"), programs=SHORT)
     low, high = NONASSOCIATED[row]
@@ -104,7 +105,7 @@ def test_both_ends_of_a_certified_interval_are_loads_that_drive_the_mechanism() 
             assert abs(forces.tangential - at_limit)[slides].max() < 1e-8 * scale
 
 
-@pytest.mark.parametrize("row", [9, pytest.param(12, marks=pytest.mark.long)])
+@pytest.mark.parametrize("row", at_length(9, 12))
 def test_true_friction_on_tall_panels_lies_inside_the_certified_interval(row: int) -> None:
     """By a short search; the usual one finds loads beyond both ends (`USUAL`)."""
     low, high = {9: (0.423, 0.4265), 12: (0.066, 0.118)}[row]  # of 12 to the associated bound

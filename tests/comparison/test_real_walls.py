@@ -10,6 +10,7 @@ import pytest
 
 from runningbond.models import run_model
 from runningbond.scene import Array, Scene, read_scene, scene_from_dict
+from tests.at_length import at_length
 from tests.walls import content, write_toml
 
 EVERY = ("limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem")
@@ -46,7 +47,7 @@ def check(scene: Scene, exact: float, models: tuple[str, ...] = EVERY, sharp: fl
 
 
 @pytest.mark.parametrize("side", ["right", "left"])
-@pytest.mark.parametrize(("friction", "height"), [(0.4, 1.0), (2.0, 1.6)])
+@pytest.mark.parametrize(("friction", "height"), [(0.4, 1.0), *at_length((2.0, 1.6))])
 def test_a_block_on_a_tilting_plane_slides_at_phi_and_topples_at_its_diagonal(
     side: str, friction: float, height: float
 ) -> None:
@@ -92,7 +93,7 @@ def test_live_loads_share_one_multiplier() -> None:
     check(scene, weight * 0.5 / (weight * 0.75 + 5e3))
 
 
-@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("side", [1, *at_length(-1)])
 def test_a_lintel_of_oak_on_two_piers_of_stone(side: int) -> None:
     """Both piers turn and lift the lintel by as much: F h = (P + L / 2 · 2) w with piers of weight P."""
     width, height, span, depth = 0.5, 2.0, 3.0, 0.3
@@ -164,7 +165,7 @@ def least_of_all_four_hinges(scene: Scene, loaded: int) -> float:
     return best
 
 
-@pytest.mark.parametrize("loaded", [1, 3, 5])
+@pytest.mark.parametrize("loaded", [3, *at_length(1, 5)])
 def test_an_arch_under_a_load_that_moves_over_it(loaded: int, tmp_path: Path) -> None:
     scene = arch(tmp_path, loaded)
     exact = least_of_all_four_hinges(scene, loaded)

@@ -35,6 +35,7 @@ from runningbond.scene import (
     build_scene,
     scene_from_dict,
 )
+from tests.at_length import at_length
 from tests.fem_interface.walls import MORTAR
 from tests.walls import panel
 
@@ -146,7 +147,9 @@ def test_a_stiff_tie_shortens_the_time_step_as_a_spring_does() -> None:
 FORCE, DISPLACEMENT = {"force": [1, 0]}, {"displacement": [0.002, 0]}
 
 
-@pytest.mark.parametrize(("model", "drive"), [(dem_dynamic, FORCE), (dem_dynamic, DISPLACEMENT), (fem, DISPLACEMENT)])
+@pytest.mark.parametrize(
+    ("model", "drive"), [(dem_dynamic, FORCE), (dem_dynamic, DISPLACEMENT), *at_length((fem, DISPLACEMENT))]
+)
 @pytest.mark.parametrize("condition", ["level", "free"])
 def test_a_pier_rocks_in_double_bending_under_a_level_beam_and_as_a_cantilever_under_a_free_one(
     model: Any, condition: str, drive: dict[str, Any]
@@ -179,7 +182,7 @@ SNAPS = {
 }
 
 
-@pytest.mark.parametrize("way", [1e-3, 2e-2, 0.3])
+@pytest.mark.parametrize("way", [1e-3, 2e-2, *at_length(0.3)])
 def test_a_joint_that_snaps_bears_its_strength_however_long_the_way(way: float) -> None:
     """c A of a joint without weight, whose force rises over 0.08 mm and falls over 2 mm; rows are up to 1.5 mm long."""
     beam = {"height": 0.1, "mass": 100.0, "condition": "fixed-height", "drive": {"displacement": [way, 0], "at": 0.1}}
@@ -218,7 +221,7 @@ def test_what_sets_a_wall_in_motion_is_not_its_strength() -> None:
     brackets(dem_dynamic(scene, 0.03), (weight * 0.2 + above * 0.4) / 0.8, 0.03)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_a_wall_that_gives_way_while_it_shakes_bears_no_more_than_limit_analysis(model: Any) -> None:
     """A door between two piers, pushed at a beam: limit analysis has one load by either flow rule."""
     door = {"from": [0.4, 0.0], "to": [0.8, 0.8], "lintel": {"height": 0.2, "bearing": 0.2}}
@@ -271,7 +274,7 @@ def test_a_thin_beam_does_not_say_how_far_a_collapse_is() -> None:
     assert thin.block_sizes.min() == none.block_sizes.min()
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_a_sliding_block_goes_round_a_loop_of_its_friction(model: Any) -> None:
     """± μ N, and 4 μ N u for each round of amplitude u, the ledger closing in the run."""
     path = [0.001, -0.001, 0.001, -0.001]
@@ -404,7 +407,7 @@ def test_a_lintel_turns_on_the_settling_pier_and_loads_it_by_its_lever(
     assert moved[1:] == pytest.approx([-turn * 0.3, -turn], rel=1e-2)
 
 
-@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
 def test_what_stops_does_not_shake_friction_loose(model: Any) -> None:
     """A lintel slides on its left pier, held by the right one, which turns about its toe with the ground.
 
@@ -584,7 +587,7 @@ def test_a_support_that_turns_from_under_a_wall_is_bridged_though_its_pivot_bear
     assert "bridges the support" in outcome.message
 
 
-@pytest.mark.parametrize("model", [dem_static, *MODELS])
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
 @pytest.mark.parametrize("sinks", [1e-9, 1e-7])
 def test_a_support_that_still_sheds_load_elastically_is_no_answer(model: Any, sinks: float) -> None:
     """Half a panel's ground sinks by less than closes its joints: the share falls, hardly or by a tenth, to the end."""

@@ -10,6 +10,7 @@ from fem_interface.fracture import fractured
 from fem_interface.model import fem, fem_pushover
 from runningbond.limit import limit
 from runningbond.scene import Mortar
+from tests.at_length import at_length
 from tests.walls import courses
 
 WIDTH, HEIGHT, THICKNESS, DENSITY, GRAVITY = 0.5, 1.0, 0.4, 2000.0, 9.81
@@ -45,7 +46,7 @@ def borne_by_springs(energy: float, count: int = 200) -> float:
 
 
 @pytest.mark.parametrize(("model", "off"), [(dem_dynamic, 0.03), (fem, 0.02)])
-@pytest.mark.parametrize("energy", [1.0, 10.0])
+@pytest.mark.parametrize("energy", [10.0, *at_length(1.0)])
 def test_mortar_tears_from_its_edge_on(model: Any, off: float, energy: float) -> None:
     """Both ends alone would bear as much as a plastic joint, 1.7 to 2.5 times as much."""
     exact, scene = borne_by_springs(energy), stone(energy)
@@ -61,7 +62,7 @@ def test_mortar_tears_from_its_edge_on(model: Any, off: float, energy: float) ->
 def test_mortar_tears_from_its_edge_on_at_finite_displacements_too() -> None:
     """However coarse the mesh: contacts at the nodes of one cell in half a block would bear half as much again."""
     exact = borne_by_springs(10.0)
-    for cells in (1, 3, 8):
+    for cells in (1, 3):
         assert fem_pushover(stone(10.0), 2e-3, cells=cells, modes=3)[:, 2].max() == pytest.approx(exact, rel=0.015)
 
 

@@ -258,6 +258,7 @@ def strut(inner: dict[str, Any], cracks: Cracks) -> tuple[float, dict[str, Array
     return outcome.curve[-1, 1], dict(zip(outcome.path_columns, outcome.path.T, strict=True))
 
 
+@pytest.mark.long
 def test_a_wall_under_a_beam_that_stays_level_cracks_between_its_triangles() -> None:
     """As whole blocks where they are strong; weak ones bear less. The beam neither turns nor rises, and so N grows."""
     whole, _ = strut(STRONG, "joints")

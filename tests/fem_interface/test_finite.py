@@ -25,6 +25,7 @@ from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.law import OPENING_BEFORE
 from runningbond.joints.softening import DAMAGE
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
+from tests.at_length import at_length
 from tests.contacts.test_finite_displacement import check_energy_of_a_fall, check_sliding
 from tests.dynamics.test_dynamics import GRAVITY
 from tests.limit.test_limit import pile, rectangle
@@ -303,7 +304,7 @@ def test_materials_without_a_stiffness_are_refused() -> None:
 # --- one block -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cells", [1, 2])
+@pytest.mark.parametrize("cells", [2, *at_length(1)])
 def test_a_stiff_block_loses_resistance_as_the_tangent(cells: int) -> None:
     """E = 1e12: λ(θ) = tan(α − θ) within 1 % of tan α until it stands on its corner."""
     scene = panel(
@@ -333,8 +334,7 @@ def test_a_stiff_block_loses_resistance_as_the_tangent(cells: int) -> None:
 # --- blocks that find new places -----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("inset", [0.0, 0.02])
-@pytest.mark.parametrize("cells", [1, 2])
+@pytest.mark.parametrize(("cells", "inset"), [(1, 0.02), (2, 0.0), *at_length((1, 0.0), (2, 0.02))])
 def test_a_block_slides_from_one_block_onto_the_next_of_the_course(cells: int, inset: float) -> None:
     """Pushed at a constant speed it resists λ = μ all the way, drops by nothing, and its weight changes hands.
 
@@ -460,6 +460,7 @@ def smoothed(curve: Array, at: list[float]) -> Array:
     return np.asarray(np.interp(at, curve[:, 0], np.convolve(curve[:, 2], np.ones(21) / 21, "same")))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("modes", [3, pytest.param("all", marks=pytest.mark.long)])
 def test_a_wall_of_deformable_blocks_falls_as_one_of_rigid_blocks(modes: ModeCount) -> None:
     """W1 past its peak, with corners rounded at 20 mm: within 1 %, with three modes and with all of them."""

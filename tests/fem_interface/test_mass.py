@@ -24,6 +24,7 @@ from runningbond.dynamics.controls import ramp
 from runningbond.dynamics.vibrations import elastic_stiffness
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.scene import Array, Scene, SceneError
+from tests.at_length import at_length
 from tests.limit.test_limit import rectangle
 from tests.walls import panel
 
@@ -35,11 +36,6 @@ SLOWLY = 0.2
 
 HELD = 2e-3 * (1 + 1e-6)
 """Part of a frequency that mass scaling may take."""
-
-
-def at_length(*values: float) -> list[Any]:
-    """Values that are tried where there are minutes."""
-    return [pytest.param(value, marks=pytest.mark.long) for value in values]
 
 
 def of_stiffness(name: str, young: float) -> Scene:
@@ -121,7 +117,7 @@ def test_mass_scaling_keeps_the_first_twenty_frequencies_of_walls_of_ten_blocks_
     assert _largest_slowing(scene) < HELD
 
 
-@pytest.mark.parametrize("young", [1e10, 1e11, 1e12])
+@pytest.mark.parametrize("young", [1e11, *at_length(1e10, 1e12)])
 def test_large_walls_lose_little_though_nobody_looks(monkeypatch: pytest.MonkeyPatch, young: float) -> None:
     """Panel-07, of 588 blocks: a quarter of what scaling may take at most."""
     monkeypatch.setattr("fem_interface.mass_scaling.LARGE", 0)
@@ -129,7 +125,7 @@ def test_large_walls_lose_little_though_nobody_looks(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("young", [2e9, 1e10, 1e12])
-@pytest.mark.parametrize(("piers", "courses"), [(2, 1), (6, 1), (8, 1), (3, 2), (20, 2), (2, 70)])
+@pytest.mark.parametrize(("piers", "courses"), [(2, 1), (6, 1), (8, 1), (3, 2), (20, 2), *at_length((2, 70))])
 def test_mass_scaling_keeps_the_lowest_frequencies_of_equal_piers(piers: int, courses: int, young: float) -> None:
     """Each of which comes as often as there are piers; of walls of less than ten blocks, two thirds of the rigid ones'.
 
@@ -202,12 +198,14 @@ def test_statics_do_not_feel_the_mass(young: float) -> None:
 @pytest.mark.parametrize(
     ("scene", "highest"),
     [
-        (wall(1e11, wall__height=0.36), 0.5),
         (of_stiffness("wall-w1", 1e10), 0.54),
-        pytest.param(of_stiffness("wall-w1", 1e11), 0.54, marks=pytest.mark.long),
-        pytest.param(of_stiffness("panel-04", 1e11), 0.075, marks=pytest.mark.long),
+        *at_length(
+            (wall(1e11, wall__height=0.36), 0.5),
+            (of_stiffness("wall-w1", 1e11), 0.54),
+            (of_stiffness("panel-04", 1e11), 0.075),
+        ),
     ],
-    ids=["2 x 6 bricks", "wall-w1, 10 GPa", "wall-w1, 100 GPa", "panel-04, 100 GPa"],
+    ids=["wall-w1, 10 GPa", "2 x 6 bricks", "wall-w1, 100 GPa", "panel-04, 100 GPa"],
 )
 def test_mass_scaling_leaves_a_pushed_wall_where_it_is(scene: Scene, highest: float) -> None:
     """Displacement under loads that grow slowly to 85 % of collapse, joints open and slid: as without it, to 0.2 %.

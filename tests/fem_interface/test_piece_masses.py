@@ -157,6 +157,7 @@ def test_statics_do_not_feel_heavier_pieces() -> None:
     assert np.abs(state.motion[moving] - exact).max() < 1e-6 * np.abs(exact).max()
 
 
+@pytest.mark.long
 def test_a_wall_that_cracks_bears_what_it_does_with_pieces_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """Its force all along, to 3e-3 of the largest, which is far less than where it stays whole; in far fewer steps."""
     drive = {"displacement": [2e-4, 0], "rate": 2e-3, "at": 0.24}

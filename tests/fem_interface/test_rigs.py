@@ -16,6 +16,7 @@ from fem_interface.node_outline import node_outline
 from runningbond.dynamics import Carried, Run, State
 from runningbond.models import run_model
 from runningbond.scene import Scene, SceneError
+from tests.at_length import at_length
 from tests.contacts.test_rigs import GLUE, column, force_at, rig
 
 STONE = {"density": 1000.0, "young": 1e10, "poisson": 0.2}
@@ -26,7 +27,7 @@ def stone(courses: int = 1, length: float = 0.4, height: float = 0.6, **changes:
     return rig(courses, length, height, block=STONE, **changes)
 
 
-@pytest.mark.parametrize("line", ["moving", "fixed"])
+@pytest.mark.parametrize("line", ["moving", *at_length("fixed")])
 def test_a_rocking_block_takes_what_its_force_allows(line: str) -> None:
     """As a rigid one does (`tests.contacts.test_rigs`), but for what it gives way itself: at small drifts only."""
     b, at, n, d = 0.2, 0.6, 2e4, 0.04
@@ -65,12 +66,12 @@ def test_blocks_with_three_modes_are_rigid_ones() -> None:
 @pytest.mark.parametrize(
     ("far", "strength"),
     [
-        (0.02, {"compressive_strength": 1e6}),
         (0.02, {"compressive_strength": 1e6, "inset": 0.03}),
         (0.002, {"cohesion": 4e5, "tensile_strength": 1e5, "fracture_energy_1": 10.0, "fracture_energy_2": 10.0}),
+        *at_length((0.02, {"compressive_strength": 1e6})),
     ],
 )
-@pytest.mark.parametrize("cells", [1, 4])
+@pytest.mark.parametrize("cells", [1, *at_length(4)])
 def test_what_crushes_and_softens_is_spread_along_joints(far: float, strength: dict[str, float], cells: int) -> None:
     """As along the joint of a rigid block, however fine the mesh: its nodes alone would bear 20 and 43 % more."""
     joint = {"friction": 0.9, "normal_stiffness": 1e10, "shear_stiffness": 4e9}

@@ -22,6 +22,7 @@ def bracket(result: rb.Result) -> tuple[float, float]:
     return -np.inf if lower is None else lower, np.inf if upper is None else upper
 
 
+@pytest.mark.long
 def test_joints_that_are_polished_bear_less_than_rough_ones() -> None:
     """Blocks that slide and rock before they fall lose friction on the way: wall W2 falls earlier."""
     names = example("own_law", run=True)

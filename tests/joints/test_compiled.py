@@ -48,6 +48,7 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.long
 def test_a_kernel_closed_over_another_is_found_by_the_next_process(tmp_path: Path) -> None:
     """Two processes, two laws in one loop: the second compiles neither anew, and gets each right."""
     program = """

@@ -3,6 +3,7 @@
 import io
 from pathlib import Path
 
+import pytest
 from matplotlib.text import Annotation
 
 from runningbond.laboratory.cards import card
@@ -13,6 +14,7 @@ from runningbond.laboratory.predictions import predict, scenes_of
 PIXEL = 1.0
 
 
+@pytest.mark.long
 def test_card_draws_the_motion_of_the_model_nearest_to_the_test_and_cuts_no_words(tmp_path: Path) -> None:
     """Not that of the dearest, nor of one that knows no way; J4D is tall, and its title was cut."""
     walls = [wall for wall in read_folder(SHIPPED[1]) if wall.name == "J4D"]

@@ -15,6 +15,7 @@ from runningbond.limit.found import Search
 from runningbond.limit.neighbourhood import neighbourhood
 from runningbond.limit.search import search
 from runningbond.scene import Array, Scene
+from tests.at_length import at_length
 from tests.limit.test_search import rubble
 
 CERTIFIED = {"wall-w2": 0.557416, "wall-w4": 0.263736, "panel-04": 0.0892857}
@@ -38,7 +39,7 @@ def found_in_w2() -> CoarseSearch:
     return looked
 
 
-@pytest.mark.parametrize("name", CERTIFIED)
+@pytest.mark.parametrize("name", ["wall-w4", "panel-04", *at_length("wall-w2")])
 def test_parts_hold_the_lowest_certificate_of_small_walls(name: str) -> None:
     scene = published_scene(name)
     looked = coarse(scene)
@@ -114,7 +115,7 @@ def unbalanced(system: Equilibrium, certificate: Certificate) -> Array:
     return np.asarray(balance - forces.multiplier * system.live - system.dead)
 
 
-@pytest.mark.parametrize("seed", [3, 10, 11])
+@pytest.mark.parametrize("seed", [3, *at_length(10, 11)])
 def test_a_wall_and_its_mirrored_shuffled_and_scaled_images_are_searched_alike(seed: int) -> None:
     """By as many programs, and by two workers too, for glued equations have lost their last bits."""
     images = (rubble(seed), rubble(seed, mirrored=True, shuffled=1), rubble(seed, shuffled=2, size=2.7))
@@ -145,6 +146,7 @@ def test_larger_walls_are_searched_in_parts_first(points: int, parts: bool, monk
     assert [(each.starts, each.most, len(each.found.certificates) > 0) for each in looked] == [(1, None, True)] * parts
 
 
+@pytest.mark.long
 def test_a_search_ends_once_it_has_cost_so_much() -> None:
     """What programs over parts cost is counted by their freedoms: thousands of them as a few hundred of the wall's."""
     scene = published_scene("wall-w2")

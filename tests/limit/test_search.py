@@ -98,6 +98,7 @@ def test_a_coarse_panel_of_upright_blocks_loses_half_its_load() -> None:
     assert outcome.upper == pytest.approx(0.1391, abs=5e-5)
 
 
+@pytest.mark.long
 def test_a_search_ends_after_so_many_programs() -> None:
     """And after the round in which they were solved; what it found by then is among what a longer one finds."""
     scene = published_scene("wall-w4")

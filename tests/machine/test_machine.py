@@ -21,6 +21,7 @@ from runningbond.pictures.offscreen import why_not_drawn
 from runningbond.pictures.recording import StaticRecorder
 from runningbond.pictures.time_series import frame_files
 from runningbond.results import Outcome, StoreError, load_outcome, make_folder, save_outcome, write_atomically
+from tests.at_length import at_length
 from tests.walls import courses
 
 from .commands import COMMANDS, COMPARE, MESH, RENDER, TITLE, WALL, Command
@@ -56,6 +57,7 @@ def test_a_mesh_broken_off_is_written_whole_when_asked_for_again(how: signal.Sig
     assert trial.message == ("runningbond: interrupted; every file is whole, or as it was before" if how == 2 else "")
 
 
+@pytest.mark.long
 def test_pictures_broken_off_are_drawn_when_asked_for_again(home: Path) -> None:
     if why_not_drawn():
         pytest.skip("nothing can be drawn here")
@@ -245,7 +247,7 @@ def test_ctrl_c_after_the_last_case_does_not_wait_for_idle_workers(tmp_path: Pat
     assert process.returncode == 130, told
 
 
-@pytest.mark.parametrize("seconds", [2.0, 2.2, 2.4])
+@pytest.mark.parametrize("seconds", [2.2, *at_length(2.0, 2.4)])
 def test_ctrl_c_within_linear_programs_ends_with_the_exit_code_of_interruptions(seconds: float, tmp_path: Path) -> None:
     """HiGHS leaves threads behind that abort a process which ends as usual."""
     scene = find_scene("point-load-2").read_text().replace('"corners"', '"pinned-corners"')

@@ -87,6 +87,7 @@ def test_blocks_are_as_soft_as_those_that_the_wall_has() -> None:
         assert asks_others(wall, {}) is soft
 
 
+@pytest.mark.long
 def test_a_coarse_mesh_that_leads_a_soft_wall_astray_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """55 blocks of 10 GPa, contacts 20 mm in: one cell in half a block ends 3 % above rigid blocks, three do not."""
     wall = published_scene("wall-w4").with_joint(inset=0.02).with_block(young=1e10)

@@ -8,11 +8,19 @@ from dem.stiffness_update import resultant_wall
 from runningbond.compare import published_scene
 from runningbond.limit import elastic_displacement
 from runningbond.models import run_model
+from tests.at_length import at_length
 from tests.walls import panel
 
 
-@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
-@pytest.mark.parametrize(("stiffness", "said"), [(1e6, True), (1e9, False)])
+@pytest.mark.parametrize(
+    ("model", "stiffness", "said"),
+    [
+        ("dem-static", 1e6, True),
+        ("dem-static", 1e9, False),
+        ("dem-dynamic", 1e9, False),
+        *at_length(("dem-dynamic", 1e6, True)),
+    ],
+)
 def test_joints_soft_in_shear_are_told(model: str, stiffness: float, said: bool) -> None:
     """Slip λ ρ g H / k_s of a course adds up over the height: to 0.2 of one with 1 MPa/m, to nothing with 1 GPa/m."""
     joint = {"friction": 0.6, "normal_stiffness": 2e10, "shear_stiffness": stiffness}
@@ -26,7 +34,7 @@ def test_what_slips_far_at_rest_is_not_soft() -> None:
     assert "too soft" not in run_model("dem-static", published_scene("point-load-4"), 0.05).message
 
 
-@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", *at_length("fem")])
 @pytest.mark.parametrize(("count", "height", "stiffness"), [(20, 1.0, 1e9), (40, 0.25, 1e9), (40, 1.0, 1.04e11)])
 def test_a_slender_stack_falls_when_it_overturns_and_not_as_it_sways(
     model: str, count: int, height: float, stiffness: float
@@ -61,7 +69,7 @@ def test_what_a_wall_gives_is_the_motion_of_its_joints_resultants(name: str) -> 
     assert elastic_displacement(scene, 0.3) == pytest.approx(farthest, rel=1e-9)
 
 
-@pytest.mark.parametrize("stiffness", [1e9, 1e10, 1e12])
+@pytest.mark.parametrize("stiffness", [1e9, *at_length(1e10, 1e12)])
 def test_a_slender_pier_bears_as_much_on_soft_joints(stiffness: float) -> None:
     """Sixty courses, which sway by two heights of a block on the softest; above `limit` nothing stands."""
     pier = rb.Wall.running_bond(

@@ -392,6 +392,7 @@ def test_numbers_are_those_that_assign_knows_and_stand_in_their_blocks() -> None
     assert np.flatnonzero(again.material_of_block == 1).tolist() == np.flatnonzero(plain.part_of == 137).tolist()
 
 
+@pytest.mark.long
 def test_numbers_can_be_read_in_a_wall_of_two_thousand_blocks() -> None:
     """The sheet grows until they can, up to five columns wide."""
     scene = scene_from_dict(large())

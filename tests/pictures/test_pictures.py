@@ -34,6 +34,7 @@ from runningbond.results import Outcome, load_outcome, save_outcome
 from runningbond.results.mechanism import carried
 from runningbond.results.outcome import number
 from runningbond.scene import Scene
+from tests.at_length import at_length
 from tests.walls import content, courses, panel, write_toml
 
 
@@ -420,7 +421,7 @@ def test_a_machine_that_cannot_draw_says_so_and_keeps_the_numbers(
 
 
 @drawing
-@pytest.mark.parametrize("display", ["", ":77"])
+@pytest.mark.parametrize("display", ["", *at_length(":77")])
 def test_drawing_needs_no_display(display: str) -> None:
     """With DISPLAY empty, or naming a screen that is not there."""
     assert (

@@ -9,6 +9,7 @@ from runningbond.response.ground import Ground
 from runningbond.response.resting import VISCOUS
 from runningbond.scene import Array, BlockMaterial, History, JointMaterial, Load, Scene, Stiffness, build_scene
 from runningbond.scene.history import pulse
+from tests.at_length import at_length
 from tests.limit.test_limit import rectangle
 
 from .housner import GRAVITY
@@ -103,7 +104,7 @@ def test_blocks_may_start_in_opposite_senses() -> None:
     assert lower > 10 > -3 > upper
 
 
-@pytest.mark.parametrize("pair", [SLENDER, FLAT, ALIKE])
+@pytest.mark.parametrize("pair", [SLENDER, FLAT, *at_length(ALIKE)])
 def test_a_ground_accelerated_slowly_starts_the_pattern_of_statics(pair: TwoBlocks) -> None:
     """An acceleration that grows for 3 s and stays: 3 % below it all stand, 3 % above the pattern's blocks fall."""
     least, pattern = least_acceleration(pair)

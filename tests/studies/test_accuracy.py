@@ -60,6 +60,7 @@ def test_error_is_the_distance_from_the_interval(low: float, width: float, value
     assert error(4 * value, (4 * low, 4 * high)) == result
 
 
+@pytest.mark.long
 def test_errors_of_panels_are_from_the_interval_that_limit_analysis_certifies() -> None:
     wall = accuracy_walls()["panel-04"]
     certified = ask("collapse", "limit-nonassociated", wall.scene, {})

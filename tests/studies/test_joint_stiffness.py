@@ -13,6 +13,7 @@ from runningbond.joints.stiffness import EPSILON, SOFT, STIFF
 from runningbond.models import run_model
 from runningbond.studies.stability.joint_stiffness import OVERLAP, at_rest, condition, overlap, wall
 from runningbond.studies.stability.joint_stiffness import stiffness_note as said_in
+from tests.at_length import at_length
 
 EXACT = 0.58558
 """λ of W1 with joints inset by 20 mm, certified by linear programs."""
@@ -33,7 +34,7 @@ def test_the_conditioning_of_the_static_equations_does_not_depend_on_the_stiffne
 
 
 @pytest.mark.parametrize("normal", [1e9, 1e11])
-@pytest.mark.parametrize("model", [dem_static, dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
 def test_inside_the_window_nothing_is_said_and_the_multiplier_stays(model: Model, normal: float) -> None:
     outcome = model(wall(normal))
     assert outcome.status == "collapse"
@@ -42,7 +43,7 @@ def test_inside_the_window_nothing_is_said_and_the_multiplier_stays(model: Model
 
 
 @pytest.mark.parametrize(("normal", "deep"), [(1e7, "1.1 %"), (1e6, "11 %")])
-@pytest.mark.parametrize("model", [dem_static, dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
 def test_soft_joints_are_said_so(model: Model, normal: float, deep: str) -> None:
     """Blocks sink into each other by a per cent of their size and more; λ hardly minds, but another wall's might."""
     outcome = model(wall(normal))
@@ -51,7 +52,7 @@ def test_soft_joints_are_said_so(model: Model, normal: float, deep: str) -> None
     assert f"joints are too soft: blocks overlap by {deep} of their size" in outcome.message
 
 
-@pytest.mark.parametrize("model", [dem_static, dem_dynamic, fem])
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic, *at_length(fem)])
 def test_a_wall_that_sinks_into_itself_is_not_said_to_fall(model: Model) -> None:
     """It gives by its own size, and stands: what counts as a fall is more than what its springs give."""
     outcome = model(wall(1e5))
@@ -80,7 +81,7 @@ def test_rounding_in_too_stiff_joints_is_said() -> None:
     assert "joints are too stiff" in dem_static(wall(1e18)).message
 
 
-@pytest.mark.parametrize("name", ["panel-04", "wall-w3", "point-load-quarter"])
+@pytest.mark.parametrize("name", ["panel-04", "wall-w3", *at_length("point-load-quarter")])
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
 def test_nothing_is_said_of_published_walls(name: str, model: str) -> None:
     assert not said_in(run_model(model, published_scene(name), 0.05).message)

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from runningbond.commands.command_line import command
 from runningbond.studies import Chart, Part, Row, Rows, Study
 from runningbond.studies.stability import EXPERIMENTS
+from tests.at_length import at_length
 
 THREE = EXPERIMENTS[:3]
 
@@ -143,7 +144,7 @@ main(["stability", "--out", sys.argv[2]])
 """
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long), signal.SIGKILL])
+@pytest.mark.parametrize("how", [signal.SIGINT, *at_length(signal.SIGTERM, signal.SIGKILL)])
 def test_a_command_stopped_in_the_middle_goes_on_where_it_was(how: signal.Signals, tmp_path: Path) -> None:
     def start(pace: str) -> "subprocess.Popen[str]":
         line = [sys.executable, "-c", STOPPED_IN_THE_SECOND, pace, str(tmp_path / "result")]

@@ -50,6 +50,7 @@ def result() -> dict[tuple[str, int], Row]:
     return {(wall, steps): measure(wall, 0.5, steps) for wall in WALLS for steps in INCREMENTS}
 
 
+@pytest.mark.long
 def test_no_wall_is_borne_to_the_collapse_load_of_the_robust_variant(result: dict[tuple[str, int], Row]) -> None:
     """A load below the one that limit analysis allows, which `dem_static` bears."""
     for (wall, _), row in result.items():

@@ -27,6 +27,7 @@ from runningbond.studies.stability.time_step import (
     run_beyond,
 )
 from runningbond.studies.walls import bonded
+from tests.at_length import at_length
 from tests.walls import courses, panel
 
 MORTAR = {"young": 1e9, "poisson": 0.2, "thickness": 0.01}
@@ -87,12 +88,12 @@ def test_one_mass_grows_at_the_exact_rate(omega_dt: float, exact: float) -> None
     assert mass_row(GROWTH, omega_dt)["measured"] == pytest.approx(exact, abs=1e-6)
 
 
-@pytest.mark.parametrize("alpha", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("alpha", [0.5, *at_length(0.2, 0.8)])
 def test_local_damping_moves_the_edge(alpha: float) -> None:
     assert mass_row(LOCAL, alpha)["measured"] == pytest.approx(2 / math.sqrt(1 + alpha), rel=1e-3)
 
 
-@pytest.mark.parametrize("ratio", [0.05, 0.3, 1.0])
+@pytest.mark.parametrize("ratio", [0.3, *at_length(0.05, 1.0)])
 def test_viscous_damping_moves_the_edge(ratio: float) -> None:
     """Of the joints, as a run has it."""
     theory = 2 * (math.sqrt(1 + ratio**2) - ratio)

@@ -27,6 +27,7 @@ from runningbond.studies.stability.verdict import (
     sweep,
 )
 from runningbond.studies.walls import SLIDING, TOPPLING, W1, W2, known_wall
+from tests.at_length import at_length
 
 
 def swept(wall: str, criterion: str, values: tuple[float, ...]) -> Rows:
@@ -35,7 +36,7 @@ def swept(wall: str, criterion: str, values: tuple[float, ...]) -> Rows:
     return {PART: [case | {"value": value} | search(wall, criterion, value) for value in values]}
 
 
-@pytest.mark.parametrize("wall", [SLIDING, pytest.param(TOPPLING, marks=pytest.mark.long), W1])
+@pytest.mark.parametrize("wall", [SLIDING, *at_length(TOPPLING, W1)])
 @pytest.mark.parametrize("criterion", [REST, FAR, INTERVAL])
 def test_the_suites_criteria_stand_on_a_plateau(wall: str, criterion: str) -> None:
     """Half and twice each of them find the same λ, which is the one known."""
