@@ -174,7 +174,8 @@ def predict(
     Walls whose scenes differ in their titles alone are computed once, and answer alike. Parameters and errors as of
     `runningbond.campaigns.run_tasks`.
     """
-    cells = [(wall, rung) for rung in rungs for wall in sorted(walls, key=lambda wall: not wall.is_cyclic)]
+    # The dearest first, or they would be left to one core in the end.
+    cells = [(wall, rung) for rung in reversed(rungs) for wall in sorted(walls, key=lambda wall: not wall.is_cyclic)]
     reasons = {
         (wall.name, rung.name): rung.leaves_out(scenes[wall.name, rung.name], is_cyclic=wall.is_cyclic)
         for wall, rung in cells
