@@ -2,8 +2,10 @@
 
 import multiprocessing
 import multiprocessing.resource_tracker
+import os
 import signal
 import threading
+import time
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -14,6 +16,9 @@ from joblib.externals.loky.backend import resource_tracker as loky_tracker
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from .tasks import Answer, Task
+
+PATIENCE = 1.0
+"""Seconds after which a process looks whether its parent is still there."""
 
 
 def side_by_side(tasks: Sequence[Task]) -> Iterator[Answer]:
@@ -77,10 +82,25 @@ def _processes(jobs: int, tasks: int) -> Iterator[None]:
             tracker.ensure_running()  # its start unblocks what `side_by_side` blocks (loky's until joblib 1.6)
     # More processes than cores or tasks take memory and gain nothing; joblib takes one for none.
     n_jobs = min(cpu_count() if jobs < 0 else min(jobs, max(2, cpu_count())), max(2, tasks))
-    # Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say.
-    ignore = partial(signal.signal, signal.SIGINT, signal.SIG_IGN)
-    with parallel_config(backend="loky", n_jobs=n_jobs, initializer=ignore), _quiet_kill():
+    with parallel_config(backend="loky", n_jobs=n_jobs, initializer=partial(begin, os.getpid())), _quiet_kill():
         yield
+
+
+def begin(parent: int) -> None:
+    """Leave what ends a process that has just started to its parent, of that number; end with it, however it ends.
+
+    Ctrl-C reaches every process of the terminal; only the parent, which ends the others, has something to say. One
+    that is killed says nothing, and its processes would go on to the end of their tasks.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_after, args=(parent,), daemon=True).start()
+
+
+def _end_after(parent: int) -> None:
+    """End this process once it has another parent; on Windows it keeps the number of the one it had."""
+    while os.getppid() == parent:
+        time.sleep(PATIENCE)
+    os._exit(1)
 
 
 @contextmanager

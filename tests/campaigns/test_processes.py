@@ -1,5 +1,11 @@
 """Tasks side by side on one machine."""
 
+import os
+import signal
+import subprocess
+import sys
+
+import psutil
 import pytest
 from joblib import effective_n_jobs
 
@@ -17,3 +23,24 @@ def test_no_more_processes_are_started_than_there_are_cores_and_tasks(
     monkeypatch.setattr(processes, "cpu_count", lambda: cores)
     with processes._processes(jobs, tasks):
         assert effective_n_jobs(None) == started
+
+
+WORKER = """
+import os, time
+from runningbond.campaigns.processes import begin
+begin(os.getppid())
+print(os.getpid(), flush=True)
+time.sleep(60)
+"""
+PARENT = "import subprocess, sys; subprocess.run([sys.executable, '-c', sys.argv[1]])"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a process of Windows keeps the number of its parent")
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGKILL])
+def test_a_process_ends_with_its_parent_however_that_is_ended(how: signal.Signals) -> None:
+    """A script with a sweep that was ended left two processes, which went on computing."""
+    with subprocess.Popen([sys.executable, "-c", PARENT, WORKER], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None
+        worker = psutil.Process(int(parent.stdout.readline()))
+        parent.send_signal(how)
+    worker.wait(timeout=20)
