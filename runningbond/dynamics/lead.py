@@ -285,6 +285,12 @@ def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0)
     return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, least)
 
 
+def still_sheds(curve: Array) -> bool:
+    """Whether supports have shed load since their way ``(n, 2)`` last turned round, and not taken it up again."""
+    share = last_leg(curve)[:, 1]
+    return bool(share[-1] <= share[0])
+
+
 def failing(curve: Array) -> int:
     """The row of a curve of a drive ``(n, 2)`` in which a wall is seen to fail.
 

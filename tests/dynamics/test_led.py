@@ -600,6 +600,19 @@ def test_a_support_that_still_sheds_load_elastically_is_no_answer(model: Any, si
     assert 0.4 < outcome.upper < 0.5
 
 
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic])
+def test_a_support_that_comes_back_takes_up_load_and_bears_no_less_than_where_it_ends(model: Any) -> None:
+    """Half a panel's ground sinks and comes back to where it was: beyond, it would bear more, up to its own share."""
+    live = {"kind": "settlement", "box": [[0.72, -1.0], [3.0, 0.0]], "by": [0, -1e-6], "path": [1, 0]}
+    outcome = model(panel(joint__mortar=MORTAR, block__young=1e12, block__poisson=0.2, load__live=live))
+    assert outcome.status == "undecided", outcome.message
+    assert "still takes up load" in outcome.message
+    assert " 0 m" in outcome.message
+    assert outcome.upper is None
+    assert outcome.lower == pytest.approx(outcome.curve[-1, 1], abs=0.02)
+    assert outcome.curve[-1, 1] > outcome.curve[:, 1].min()
+
+
 def test_works_to_and_fro_are_no_small_sum_to_miss_a_share_of() -> None:
     """A block over ground that rises and goes back twice: the ground that is left bears what it did.
 
