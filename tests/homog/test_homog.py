@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from homog import StrengthDomain, crack_slope, elastic_moduli, homog, lateral_multiplier
+from homog.model import deviation
 from runningbond.limit import limit
 from runningbond.scene import Bond, JointMaterial, SceneError
 from tests.walls import courses, panel
@@ -171,3 +172,20 @@ def test_walls_of_ever_finer_blocks_come_to_bear_what_the_continuum_does(frictio
         assert blocks is not None
         apart.append(blocks / continuum - 1)
     assert 0 < apart[1] < min(0.07, 0.67 * apart[0])
+
+
+@pytest.mark.parametrize(("width", "height"), [(0.24, 0.06), (0.2, 0.1), (0.15, 0.15), (0.1, 0.2), (0.06, 0.24)])
+@pytest.mark.parametrize(("blocks", "courses"), [(3, 3), (7, 4), (9, 10)])
+@pytest.mark.parametrize("friction", [0.4, 0.6])
+def test_the_message_has_the_size_of_what_it_is_off(
+    width: float, height: float, blocks: int, courses: int, friction: float
+) -> None:
+    """Panels beside those that were measured: the limit load of their blocks is where the message says."""
+    size = {"length": blocks * width, "height": courses * height, "block_width": width, "block_height": height}
+    scene = panel(joint__friction=friction, **{f"wall__{key}": value for key, value in size.items()})
+    estimate, exact = homog(scene), limit(scene).multiplier
+    assert estimate.multiplier is not None
+    assert exact is not None
+    least, most = deviation(Bond(width, height), blocks * width, courses * height)
+    assert f"off by {100 * least:.3g} to {100 * most:+.3g} % of their limit load" in estimate.message
+    assert least - 0.01 <= estimate.multiplier / exact - 1 <= most + 0.01

@@ -1,0 +1,67 @@
+"""How far `homog` is off the limit load of blocks: panels of six textures, seven slendernesses, coarse and fine bond.
+
+Prints a Markdown table, a row for blocks that are no taller than wide or taller, and for the fewer of courses and of
+blocks in a course: how many panels, and the least, middle and largest deviation from `limit`. `homog.model.OFF` holds
+what it prints.
+
+    python benchmarks/studies/homogenised.py
+"""
+
+import argparse
+import itertools
+
+import numpy as np
+
+from homog import homog
+from homog.model import FINENESS
+from runningbond.limit import limit
+from runningbond.scene import Scene, scene_from_dict
+
+TEXTURES = (6.0, 4.0, 2.0, 1.0, 0.5, 0.25)
+SLENDERNESSES = (1 / 3, 0.5, 1.0, 2.0, 3.0, 6.0, 12.0)
+BLOCKS = (2, 3, 5, 8, 12, 16, 24)
+FRICTIONS = (0.3, 0.5, 0.7, 1.0)
+
+
+def panel(texture: float, blocks: int, courses: int, friction: float) -> Scene:
+    """A panel of blocks 0.24 m wide, pushed sideways by its weight."""
+    width, height = 0.24, 0.24 / texture
+    size = {"length": blocks * width, "height": courses * height}
+    return scene_from_dict(
+        {
+            "title": "panel",
+            "wall": {"block_width": width, "block_height": height, "thickness": 0.12, **size},
+            "block": {"density": 1800.0},
+            "joint": {"friction": friction},
+            "support": {"kind": "base"},
+            "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+        }
+    )
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--most", type=int, default=1500, help="blocks of the largest panel")
+    most = parser.parse_args().most
+    deviations: dict[tuple[bool, int], list[float]] = {}
+    for texture, slenderness, blocks, friction in itertools.product(TEXTURES, SLENDERNESSES, BLOCKS, FRICTIONS):
+        courses = round(slenderness * blocks * texture)
+        if courses < FINENESS[0] or blocks * courses > most:
+            continue
+        scene = panel(texture, blocks, courses, friction)
+        estimate, exact = homog(scene).multiplier, limit(scene).multiplier
+        if estimate is None or exact is None:
+            raise ValueError(f"{texture}, {blocks} x {courses}, {friction}: no answer")
+        row = texture < 1, int(np.searchsorted(FINENESS, min(blocks, courses), side="right")) - 1
+        deviations.setdefault(row, []).append(estimate / exact - 1)
+    print("| blocks | fewer of courses and blocks in one | panels | least | middle | largest |")
+    print("|---|---|---|---|---|---|")
+    for (tall, k), found in sorted(deviations.items()):
+        shape = "taller than wide" if tall else "no taller than wide"
+        low, middle, high = np.quantile(found, [0, 0.5, 1])
+        print(f"| {shape} | from {FINENESS[k]} | {len(found)} | {low:+.1%} | {middle:+.1%} | {high:+.1%} |")
+
+
+if __name__ == "__main__":
+    main()
