@@ -62,6 +62,8 @@ def reaction_note(scene: Scene, share: float) -> str:
     """A share of the dead load as the force on a moving support."""
     weight = reaction_unit(scene) / largest_displacement(scene)
     where = ", as if where it moves most" if scene.settlement and scene.settlement.rotation_angle else ""
+    if abs(share) <= NOTHING:
+        return f"the support bears nothing of a dead load of {weight:.6g} N against its motion"
     if share < 0:
         return f"the support has to be driven along its motion with {-share * weight:.6g} N{where}"
     return f"the support bears {share * weight:.6g} N of a dead load of {weight:.6g} N against its motion{where}"

@@ -346,6 +346,20 @@ def test_ground_that_turns_about_the_corner_that_bears_brings_nothing_down() -> 
     assert limit(scene).status == "unbounded"
 
 
+@pytest.mark.parametrize("clockwise", [-1.0, 1.0])
+def test_ground_that_turns_about_the_middle_of_a_wall_neither_bears_it_nor_is_driven(clockwise: float) -> None:
+    """All of it turns under a symmetric wall, whose weight does no work: what rounding leaves is no force."""
+    scene = on_moving(
+        [rectangle(0.1 * WIDTH, y, WIDTH, HEIGHT / 3) for y in (0, HEIGHT / 3, 2 * HEIGHT / 3)],
+        ((-1, -1), (2, 0.1)),
+        rotation_angle=clockwise,
+        about=(0.6 * WIDTH, 0.0),
+    )
+    outcome = limit(scene)
+    assert outcome.multiplier == pytest.approx(0.0, abs=1e-12)
+    assert "the support bears nothing of a dead load" in outcome.message
+
+
 @BOTH
 def test_ground_that_is_lifted_has_to_be_driven(model: str) -> None:
     """Under one end of a block: λ = −(b/2) / b, for it turns about its other end."""
