@@ -11,18 +11,26 @@ from tests.at_length import at_length
 
 FOLDER = Path(__file__).parents[2] / "examples" / "walls"
 PAGE = (FOLDER / "README.md").read_text()
-RUNS = re.findall(r"^\$ runningbond (run \S+ --model (\S+))\n(.*)\n +(.*)\n", PAGE, re.MULTILINE)
+RUNS = re.findall(r"^\$ runningbond (run \S+ --model (\S+))\n(.*)\n +(.*)\n +(.*)\n", PAGE, re.MULTILINE)
 SLOW = [run for run in RUNS if ("facade" in run[0] and run[1] != "limit") or run[1] in ("dem-dynamic", "fem")]
 QUICK = [run for run in RUNS if run not in SLOW]
 
 
 @pytest.mark.parametrize(
-    ("line", "model", "head", "answer"), [*QUICK, *at_length(*SLOW)], ids=[run[0] for run in (*QUICK, *SLOW)]
+    ("line", "model", "head", "answer", "message"),
+    [*QUICK, *at_length(*SLOW)],
+    ids=[run[0] for run in (*QUICK, *SLOW)],
 )
 def test_a_wall_prints_what_its_page_says(
-    line: str, model: str, head: str, answer: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    line: str,
+    model: str,
+    head: str,
+    answer: str,
+    message: str,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    """Limit analysis to its digits; what follows a path to its own bracket, for friction remembers the last bit."""
+    """Limit analysis to its digits and words; what follows a path to its bracket, for friction remembers."""
     monkeypatch.chdir(FOLDER.parents[1])
     assert command([*line.split(), "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
@@ -30,6 +38,8 @@ def test_a_wall_prints_what_its_page_says(
     status, *numbers = re.split(r"[:,] \S+ ", answer.replace("\u00a0", " "))
     assert printed["status"] == status
     written = [float(number) for number in numbers]
+    if model == "limit":
+        assert printed["message"] == message
     slack = 1e-5 if model.startswith("limit") else 0.01
     assert [printed[key] for key in ("multiplier", "lower", "upper")] == pytest.approx(written, rel=slack)
 
