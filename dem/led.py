@@ -8,15 +8,15 @@ along the way. The whole way is gone through again in steps half as long until i
 The answer is the largest reaction of a beam's drive along its first move, or the share of the dead load that supports
 bear at the settlement asked for. It is one of a collapse if a mechanism has formed: if over the last tenth of the way
 it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still sheds
-load, or takes it up on a way back, where the way ends, and the answer bounds the collapse from one side only. A wall at
-rest on a support that bears nothing any more bridges it.
+or takes up load, where the way ends, and the answer bounds the collapse from one side only. A wall at rest on a
+support that bears nothing any more bridges it.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.dynamics.lead import LITTLE, formed, still_sheds
+from runningbond.dynamics.lead import LITTLE, formed, shedding
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
@@ -166,8 +166,8 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
     what += f", in {len(run.states) - 1} steps" + (f" and in {len(runs[-2].states) - 1}" if len(runs) > 1 else "")
     what += "; small displacements" + _notes(lead, outcome)
-    sheds = lead.settles and still_sheds(outcome.curve)
-    so_far = replace(outcome, lower=None if sheds else lower, upper=upper if sheds else None)
+    falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
+    so_far = replace(outcome, lower=None if falls else lower, upper=upper if falls else None)
     if run.stopped and not run.fell:
         return replace(so_far, message=f"no answer: at {at} it neither rested nor fell; {what}")
     supports, last = Supports(lead.scene, lead.system.equilibrium.points), run.states[-1]
@@ -188,8 +188,7 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     ended = outcome.curve[-1, 0] if lead.settles else outcome.curve[:, 0].max()
     reached = f"{number(answers[-1])} at {ended:.4g} m"
     if lead.settles:
-        still = "sheds load" if sheds else "takes up load"
-        message = f"no answer: the support still {still} where its settlement ends, it bears {reached}; {what}"
+        message = f"no answer: the support still {changes} where its settlement ends, it bears {reached}; {what}"
         return replace(so_far, message=message)
     if is_self_locking(lead.scene):
         message = f"self-locking: the drive takes {reached}, and joint forces balance any multiple of it; {what}"

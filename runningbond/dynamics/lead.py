@@ -285,10 +285,15 @@ def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0)
     return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, least)
 
 
-def still_sheds(curve: Array) -> bool:
-    """Whether supports have shed load since their way ``(n, 2)`` last turned round, and not taken it up again."""
-    share = last_leg(curve)[:, 1]
-    return bool(share[-1] <= share[0])
+def shedding(curve: Array) -> tuple[bool, str]:
+    """Whether the share on a support falls where a way ends, and what that is called: it may be negative.
+
+    Where it changes no more over the last part, by the whole leg.
+    """
+    value, share = last_leg(curve).T
+    late = share[value >= (1 - LAST) * value.max()]
+    first, last = late[0] if abs(late[-1] - late[0]) > STILL else share[0], share[-1]
+    return bool(last <= first), "sheds load" if abs(last) <= abs(first) else "takes up load"
 
 
 def failing(curve: Array) -> int:

@@ -3,8 +3,8 @@
 The whole way is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
 along its first move, or the share of the dead load that supports bear at the settlement asked for. It is one of a
 collapse if a mechanism has formed: if over the last tenth of the way it has changed by less than the tolerance, or the
-wall falls. Else the wall still hardens, or the support still sheds load, or takes it up on a way back, where the way
-ends. A wall at rest on a support that bears nothing any more bridges it.
+wall falls. Else the wall still hardens, or the support still sheds or takes up load, where the way ends. A wall at
+rest on a support that bears nothing any more bridges it.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import put_on_dead_load
-from .lead import BEAM, LITTLE, Lead, Way, formed, still_sheds
+from .lead import BEAM, LITTLE, Lead, Way, formed, shedding
 from .run import CALMING, Observer, Run, Unstable
 
 LEAST_STEPS, UNHURRIED, UNHURRIED_FAR = 20_000, 20, 2
@@ -173,11 +173,10 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, settles=lead.settles):
-        sheds = lead.settles and still_sheds(outcome.curve)
-        support = f"the support still {'sheds load' if sheds else 'takes up load'}"
-        still = support if lead.settles else "the wall still hardens"
+        falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
+        still = f"the support still {changes}" if lead.settles else "the wall still hardens"
         message = f"no answer: {still} at the displacement asked for, {at}: {number(way.answer)}; {what}"
-        bounds = (None, most) if sheds else (least, None)
+        bounds = (None, most) if falls else (least, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if _spread(lead, ways) > tolerance and not _rate(lead.scene):
         return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")

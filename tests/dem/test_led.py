@@ -246,6 +246,22 @@ def test_portal_whose_pier_goes_to_and_fro_ends_as_if_it_had_gone_there_at_once(
     assert outcome.curve[-1, 0] == pytest.approx(0.01 * path[-1])
 
 
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic])
+@pytest.mark.parametrize(("by", "path"), [(-1e-6, (-1.0,)), (1e-6, (1.0,))])
+def test_a_pier_that_is_hardly_lifted_takes_up_load_and_bounds_its_mechanism_on_the_side_it_comes_from(
+    model: Callable[[Scene], Outcome], by: float, path: tuple[float, ...]
+) -> None:
+    """Its share goes from a half towards (.625 + 1) / 3, negative against a lift: what it reached is short of that."""
+    outcome = model(wall(PORTAL, replace(ground_moves(1.8, 3.0, (0.0, by)), path=path)))
+    assert outcome.status == "undecided"
+    assert "still takes up load" in outcome.message
+    reached, mechanism = outcome.curve[-1, 1], -np.sign(by) * (0.625 + 1) / 3
+    assert 0.5 < abs(reached) < abs(mechanism)
+    assert outcome.lower is None or outcome.lower <= mechanism
+    assert outcome.upper is None or outcome.upper >= mechanism
+    assert (outcome.lower is None) != (outcome.upper is None)
+
+
 def test_block_over_a_cut_in_its_ground_leans_on_what_stays() -> None:
     """1 m long, cut at .4 m: pivots there, R (1 − .4) = W (.5 − .4); with the other part R .4 = 0, it bridges it."""
     block = [rectangle(0, 0, 1, 1)]
