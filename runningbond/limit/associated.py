@@ -19,7 +19,7 @@ from .crushed import beyond_note, crushed, crushing_note, without_crushing
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .moving_support import JAMMED, support_verdict
-from .proved import is_large, proved, resting_forces, tolerance_of
+from .proved import CLOSE, STOP, falls_at_rest, is_large, proved, resting_forces, tolerance_of
 from .remarks import remarks
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
@@ -191,7 +191,12 @@ def _proved(system: Equilibrium) -> LimitState | None:
     """What the interior point's answer for a large wall proves; None if that is not enough."""
     dead = system.under_dead_load()
     resting = resting_forces(dead)
+    if resting is None and falls_at_rest(dead):
+        return LimitState(system, ForceSolution.none("infeasible"), rests=False)
     state = LimitState(system, proved(system, resting), rests=None if resting is None else True)
+    if _wants_more(state):
+        # A vertex costs hours where the interior point's last iterations cost seconds.
+        state = _narrower(state, replace(state, forces=proved(system, resting, STOP[CLOSE])))
     if state.forces.status == "optimal":
         return state if state.sound else None
     if state.forces.status == "budget":
@@ -201,6 +206,21 @@ def _proved(system: Equilibrium) -> LimitState | None:
     if state.forces.status == "unbounded" and _balances_any_multiple(system):
         return replace(state, locks=True)
     return None
+
+
+def _wants_more(state: LimitState) -> bool:
+    """Whether a very large wall's interior point stopped before it proved a bracket that is believed."""
+    if tolerance_of(state.system) == CLOSE:
+        return False
+    return state.forces.status == "numerical" or (state.forces.status == "optimal" and not state.sound)
+
+
+def _narrower(first: LimitState, second: LimitState) -> LimitState:
+    """The second of two answers, the bracket of the first where the second was interrupted before it had one."""
+    interrupted = second.forces.status == "budget" and first.forces.status == "optimal"
+    if interrupted and first.admissible:
+        return replace(first, forces=replace(first.forces, status="budget"))
+    return second
 
 
 def stands_under_dead_load(system: Equilibrium) -> bool | None:

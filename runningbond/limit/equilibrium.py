@@ -139,10 +139,13 @@ class Equilibrium:
             found[self.crushing.ends[0]] = self.crushing.dissipation(self.crushed_jumps(motion))
         return found
 
+    def dissipated(self, motion: Array) -> float:
+        """Largest power of admissible forces of joints and ties on a mechanism ``(nd,)``."""
+        return float(self.dissipation(motion).sum() + self.tie_yield @ self.elongation(motion).clip(min=0.0))
+
     def kinematic_multiplier(self, motion: Array) -> float:
         """Multiplier at which a mechanism's loads do the work that its joints and ties dissipate, in scaled units."""
-        dissipated = self.dissipation(motion).sum() + self.tie_yield @ self.elongation(motion).clip(min=0.0)
-        return float((dissipated - self.dead @ motion) / (self.live @ motion))
+        return float((self.dissipated(motion) - self.dead @ motion) / (self.live @ motion))
 
     def in_forces_of(self, unit: float) -> "Equilibrium":
         """The same equations, forces measured in so many of what counts as 1 here."""

@@ -31,8 +31,11 @@ CLOSE, WIDE, WIDEST = 1e-6, 1e-4, 1e-2
 STOP = {CLOSE: 1e-9, WIDE: 3e-7, WIDEST: 2e-5}
 """Relative tolerance of the interior point that leads to such a bracket."""
 
-ROUGH = 1e-4
-"""Relative tolerance with which forces of a wall at rest are looked for; they need not be extreme."""
+ROUGH, FINE = 1e-4, 1e-6
+"""Relative tolerances with which forces of a wall at rest are looked for, in turn; they need not be extreme."""
+
+OVERTURNED = 1e-6
+"""Share of a dead load's power, of all blocks without their signs, that it has to have left to prove a fall."""
 
 
 def resting_forces(system: Equilibrium) -> Array | None:
@@ -41,21 +44,39 @@ def resting_forces(system: Equilibrium) -> Array | None:
     They prove that the wall stands.
     """
     program = force_program(system, coulomb(system.strength), "zero")
+    for tolerance in (ROUGH, FINE):
+        point = interior_point(program, tolerance)
+        found = balanced(program, point, None) if point.status == "optimal" else None
+        if found is not None or point.status == "infeasible":
+            return found
+    return None
+
+
+def falls_at_rest(system: Equilibrium) -> bool:
+    """Whether a mechanism was found on which the dead load does more work than joints and ties can dissipate.
+
+    It proves that no admissible forces balance that load.
+    """
+    program = force_program(system, coulomb(system.strength), "zero")
     point = interior_point(program, ROUGH)
-    if point.status != "optimal":
-        return None
-    return balanced(program, point, None)
+    motion = admissible(program, point) if point.status == "infeasible" else None
+    if motion is None:
+        return False
+    power, gained = float(np.abs(system.dead) @ np.abs(motion)), float(system.dead @ motion)
+    return system.dissipated(motion) < gained - OVERTURNED * power
 
 
-def proved(system: Equilibrium, resting: Array | None) -> ForceSolution:
+def proved(system: Equilibrium, resting: Array | None, tolerance: float | None = None) -> ForceSolution:
     """Solve the associated limit analysis; the status is ``optimal`` for exact forces and mechanism only.
 
     Ctrl-C leaves those that are near by then, if any are, and the status is ``budget``. `resting` are forces of
-    the same system before its live load (`Equilibrium.under_dead_load`).
+    the same system before its live load (`Equilibrium.under_dead_load`), `tolerance` that of the interior point, from
+    `STOP` by the wall's size where it is not given.
     """
+    tolerance = STOP[tolerance_of(system)] if tolerance is None else tolerance
     forces = coulomb(system.strength)
     program = force_program(system, forces)
-    point = interior_point(program, STOP[tolerance_of(system)], unfinished=True)
+    point = interior_point(program, tolerance, unfinished=True)
     if point.status in ("infeasible", "unbounded"):
         return ForceSolution.none(point.status, point.iterations)
     within = None if resting is None else loaded(system, program, resting)

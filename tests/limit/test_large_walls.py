@@ -19,7 +19,7 @@ from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociate
 from runningbond.limit.associated import is_self_locking, judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
 from runningbond.limit.interior_point import interior_point
-from runningbond.limit.proved import CLOSE, is_large, proved, resting_forces
+from runningbond.limit.proved import CLOSE, STOP, WIDE, is_large, proved, resting_forces
 from runningbond.limit.repair import ROUNDING, admissible, balanced
 from runningbond.scene import Scene
 from tests.walls import panel
@@ -84,9 +84,6 @@ def test_the_interior_point_s_repaired_bracket_holds_the_simplex_s_multiplier(
     state = limit_state(system)
     exact = state.system.load(solve_forces(state.system, coulomb(state.system.strength)).multiplier)
 
-    def unasked(*_: object, **__: object) -> None:
-        pytest.fail("HiGHS was asked")
-
     monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
     outcome = limit(scene)
     assert outcome.status == "collapse"
@@ -113,6 +110,74 @@ def test_verdicts_are_those_of_highs(changes: dict[str, Any], status: str) -> No
     assert limit(scene).status == status
     system = equilibrium(scene).under_live_load()
     assert judge(LimitState(system, solve_forces(system, coulomb(system.strength))))[0] == status
+
+
+def unasked(*_: object, **__: object) -> None:
+    pytest.fail("HiGHS was asked")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"support__kind": "corners"},
+        {"wall__opening": [{"from": [0.5, 0.0], "to": [2.4, 0.6]}], "joint__friction": 0.1},
+        {"load__gravity": [1.02, -9.81], "joint__friction": 0.1},
+        {"load__gravity": [2.5, -9.81], "joint": {"friction": 0.1, "cohesion": 500.0}},
+    ],
+)
+def test_a_mechanism_proves_that_a_large_wall_falls_at_rest(
+    changes: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """HiGHS looks for forces that are not there for minutes on 2000 blocks, and for hours on 10 000."""
+    system = equilibrium(panel(**{**SIZE, **changes})).under_live_load()
+    assert judge(LimitState(system, solve_forces(system, coulomb(system.strength))))[0] == "infeasible"
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    assert limit(system.scene).status == "infeasible"
+
+
+@pytest.mark.parametrize("friction", [0.102, 0.1042])
+def test_a_large_wall_falls_at_rest_where_gravity_leans_beyond_friction(
+    friction: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By a fifth of a percent of it on either side: 1.02 / 9.81 is 0.10398."""
+    changes = {"load__gravity": [1.02, -9.81], "load__live": {"kind": "lateral"}, "joint__friction": friction}
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    assert limit(panel(**SIZE, **changes)).status == ("infeasible" if friction < 1.02 / 9.81 else "collapse")
+
+
+def test_an_interior_point_that_stopped_too_early_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of very large walls it is asked for less; where that is not enough, for more, and HiGHS is not."""
+    scene = wall("dry")
+    exact = limit(scene).multiplier
+    assert exact is not None
+    monkeypatch.setattr("runningbond.limit.proved.VERY_LARGE", 1)
+    monkeypatch.setitem(STOP, WIDE, 1e-2)
+    system = equilibrium(scene).under_live_load()
+    first = LimitState(system, proved(system, resting_forces(system.under_dead_load())))
+    assert first.admissible
+    assert not first.sound
+    monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
+    outcome = limit(scene)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower - 1e-6 <= exact <= outcome.upper + 1e-6
+    assert outcome.upper <= outcome.lower * (1 + WIDE)
+
+
+def test_ctrl_c_as_the_interior_point_goes_on_leaves_what_it_had(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = wall("dry")
+    exact = limit(scene).multiplier
+    assert exact is not None
+    monkeypatch.setattr("runningbond.limit.proved.VERY_LARGE", 1)
+    monkeypatch.setitem(STOP, WIDE, 1e-2)
+    interrupt_at(1, monkeypatch, program=2)
+    outcome = limit(scene)
+    assert outcome.status == "undecided"
+    assert "interrupted" in outcome.message
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert 0.5 * exact < outcome.lower <= exact <= outcome.upper < 1.5 * exact
 
 
 def test_what_the_repair_leaves_is_exact_from_a_rough_interior_point() -> None:
