@@ -145,13 +145,19 @@ def test_a_large_wall_falls_at_rest_where_gravity_leans_beyond_friction(
     assert limit(panel(**SIZE, **changes)).status == ("infeasible" if friction < 1.02 / 9.81 else "collapse")
 
 
-def test_an_interior_point_that_stopped_too_early_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of very large walls it is asked for less; where that is not enough, for more, and HiGHS is not."""
+def stopped_too_early(monkeypatch: pytest.MonkeyPatch) -> tuple[Scene, float]:
+    """A wall whose interior point is asked for less than its bracket needs, and its multiplier."""
     scene = wall("dry")
     exact = limit(scene).multiplier
     assert exact is not None
     monkeypatch.setattr("runningbond.limit.proved.VERY_LARGE", 1)
     monkeypatch.setitem(STOP, WIDE, 1e-2)
+    return scene, exact
+
+
+def test_an_interior_point_that_stopped_too_early_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of very large walls it is asked for less; where that is not enough, for more, and HiGHS is not."""
+    scene, exact = stopped_too_early(monkeypatch)
     system = equilibrium(scene).under_live_load()
     first = LimitState(system, proved(system, resting_forces(system.under_dead_load())))
     assert first.admissible
@@ -166,11 +172,7 @@ def test_an_interior_point_that_stopped_too_early_goes_on(monkeypatch: pytest.Mo
 
 
 def test_ctrl_c_as_the_interior_point_goes_on_leaves_what_it_had(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = wall("dry")
-    exact = limit(scene).multiplier
-    assert exact is not None
-    monkeypatch.setattr("runningbond.limit.proved.VERY_LARGE", 1)
-    monkeypatch.setitem(STOP, WIDE, 1e-2)
+    scene, exact = stopped_too_early(monkeypatch)
     interrupt_at(1, monkeypatch, program=2)
     outcome = limit(scene)
     assert outcome.status == "undecided"
