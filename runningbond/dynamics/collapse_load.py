@@ -15,7 +15,7 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
-from .dead_load import can_break
+from .dead_load import keeps_what_it_does
 from .inertia import beam_note
 from .led import UNACCOUNTED, collapse_of_led
 from .load_stepping import LoadSteps, load_steps
@@ -160,7 +160,7 @@ def _search(
 ) -> LoadSteps:
     """Bring the load up, and count as a collapse nothing that an `elastic` displacement [m] at a bound may be."""
     sizes = scene.block_sizes[run.system.owner]
-    tolerance = tolerance / 2 if can_break(run) else tolerance  # the bracket is wider by its last step
+    tolerance = tolerance / 2 if run.interface.law.can_break else tolerance  # the bracket is wider by its last step
     criteria = replace(criteria, collapse=np.maximum(criteria.collapse, GIVES * elastic))
     # The first steps of a weightless wall may be millionths of what brings it down.
     most = max(LARGEST_LOAD * first, BEYOND_BOUND * (bound or 0.0))
@@ -212,7 +212,7 @@ def _judge(
 ) -> Outcome:
     """Outcome of a search."""
     if result.borne is None:
-        if result.verdict == "collapse" and above and not can_break(run):
+        if result.verdict == "collapse" and above and not keeps_what_it_does(run):
             message = "collapses under its dead load as it was put on, though forces exist that balance it"
             return replace(outcome, message=message)
         if result.verdict == "collapse":
@@ -227,7 +227,7 @@ def _judge(
         return _never_fallen(outcome, result, is_self_locking)
     motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(_fall(run, result, result.fallen)))
     # A load that grows by a step overshoots to twice it at most, and what breaks stays broken.
-    overshoot = result.upper - result.lower if can_break(run) else 0.0
+    overshoot = result.upper - result.lower if run.interface.law.can_break else 0.0
     upper = result.upper + overshoot
     outcome = replace(outcome, lower=result.lower, upper=upper, motion=motion)
     lost = run.unaccounted(result.fallen)

@@ -39,18 +39,18 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
     Unstable
         As of `hold_load`.
     """
-    state, breaks = State.at_rest(run.system), can_break(run)
-    verdict = settle(run, state, 0.0, criteria, no_observer if breaks else observe, sudden=True)
+    state, keeps = State.at_rest(run.system), keeps_what_it_does(run)
+    verdict = settle(run, state, 0.0, criteria, no_observer if keeps else observe, sudden=True)
     # What has fallen may have no contacts left to be broken.
-    if _is_broken(run, state) or (breaks and verdict == "collapse"):
+    if _is_broken(run, state) or (keeps and verdict == "collapse"):
         return _slowly(run, criteria, observe, state.steps)
-    for _ in range(CALM if breaks else 0):  # observers take a wall to be at rest that is so at as many looks
+    for _ in range(CALM if keeps else 0):  # observers take a wall to be at rest that is so at as many looks
         observe(run, state, 0.0)
     return UnderDeadLoad(state, verdict, state.steps, state.steps)
 
 
-def can_break(run: Run) -> bool:
-    """Whether joints lose strength or are crushed, so that forces that balance a load need not be there for it."""
+def keeps_what_it_does(run: Run) -> bool:
+    """Whether joints may be damaged or crushed for good, by a load that would not do so had it come slowly."""
     law = run.interface.law.law
     return law.damage is not None or PLASTIC_CLOSURE in law.history
 

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from runningbond.scene import Array, JointMaterial
+from runningbond.scene import Array, JointMaterial, Mask
 
 from .closure import Curve, closure_at, closure_curve, pressure_at, stiffness_at, stored_at
 from .compiled import kernel
@@ -17,7 +17,7 @@ from .coulomb import PLASTIC_SLIP, work_of_slip
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
 from .dry_points import CRUSHED, SEAT, SLIPPED, dry_points, dry_within, is_beyond
 from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
-from .softening import DAMAGE, damage_at, softening_constants, way_to
+from .softening import DAMAGE, damage_at, softening_constants, way_to, weakens_in_fracture
 from .softening import HISTORY as SOFTENING_HISTORY
 from .sound_points import are_sound, can_be_sound, sound_points
 
@@ -32,12 +32,20 @@ CURVE = 9
 
 STIFFEST = CURVE + 4
 
+SOFTENS_CRUSHED = CURVE + 8
+"""Number of 1 / κ_s of the cap: zero where it stays as strong however far it is crushed."""
+
 
 def interface_constants(material: JointMaterial) -> tuple[float, ...]:
     """Constants of `interface_kernel`: of softening, closure and crushing; whether that is sudden, and that curved."""
     curve, exponential = closure_curve(material), material.softening == "exponential"
     flags = float(breaks_suddenly(material, curve)), float(exponential)
     return *softening_constants(material), *curve, *crushing_cap(material), *flags
+
+
+def weakens(constants: Array) -> Mask:
+    """Whether materials of some constants ``(ns, n)`` lose strength, in fracture or in crushing."""
+    return np.asarray(weakens_in_fracture(constants) | (constants[:, SOFTENS_CRUSHED] > 0))
 
 
 def curve_of(points: KernelLaw) -> tuple[Array, ...]:
@@ -211,4 +219,5 @@ INTERFACE = Law(
     damage="damage",
     stiffest=STIFFEST,
     closed=closed_under,
+    weakens=weakens,
 )

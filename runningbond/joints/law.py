@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from runningbond.scene import Array, JointMaterial, SceneError, Unsigned
+from runningbond.scene import Array, JointMaterial, Mask, SceneError, Unsigned
 
 from .mohr_coulomb import PointStrength, truncated_cone
 from .point_law import PointLaw
@@ -61,6 +61,9 @@ class Law:
     closed
         ``closed(points, pressure)``: elastic closure ``(np,)`` [m] and tangent normal stiffness ``(np,)`` [Pa/m] under
         a pressure [Pa], not negative, of a law whose points have a `PLASTIC_CLOSURE`; None for another, of k_n.
+    weakens
+        ``weakens(constants)``: whether points of materials lose strength in what they do, ``(ns,)``, from the
+        materials' constants ``(ns, n_constants)``; None where all do of a law that knows damage, and none of another.
     """
 
     name: str
@@ -73,6 +76,7 @@ class Law:
     response: Callable[[PointStrength, Array, Array], PointLaw] | None = field(default=None, compare=False)
     stiffest: int = 0
     closed: Callable[["KernelLaw", Array], tuple[Array, Array]] | None = None
+    weakens: Callable[[Array], Mask] | None = None
 
     def __post_init__(self) -> None:
         if self.history[:4] != COMMON_ROWS:
@@ -86,7 +90,7 @@ class Law:
         from .compiled import identity_of
 
         kernel = getattr(self.kernel, "py_func", self.kernel)
-        functions = (kernel, self.constants, self.stored, self.cone, self.response, self.closed)
+        functions = (kernel, self.constants, self.stored, self.cone, self.response, self.closed, self.weakens)
         return self.name, self.history, self.damage, self.stiffest, *map(identity_of, functions)
 
     def row(self, name: str) -> int:
@@ -155,6 +159,12 @@ class KernelLaw:
     def tension(self) -> Array:
         """Largest tension of each point, ``(np,)`` [Pa]."""
         return self.of_points(2)
+
+    @property
+    def can_break(self) -> bool:
+        """Whether any point loses strength in what it does, so that a load it has borne may be too much for it."""
+        weakens = self.law.weakens
+        return self.law.damage is not None if weakens is None else bool(weakens(self.constants).any())
 
     def normal_tangent(self, pressure: Array) -> Array:
         """Stiffness of closed points against more or less of a pressure ``(np,)`` [Pa], not negative; [Pa/m]."""

@@ -19,7 +19,7 @@ import math
 
 import numpy as np
 
-from runningbond.scene import Array, JointMaterial
+from runningbond.scene import Array, JointMaterial, Mask
 
 from .compiled import kernel
 from .coulomb import HISTORY as PLASTIC_HISTORY
@@ -59,6 +59,12 @@ def _end_of_softening(energy: float | None, strength: float, never: float) -> fl
     if energy is None:
         return never
     return max(2 * energy / strength if strength > 0 else 0.0, 1e-15)
+
+
+def weakens_in_fracture(constants: Array) -> Mask:
+    """Whether materials of some constants ``(ns, n)`` have a strength, and an energy after which it is gone."""
+    tension, shear, last, per_slip = constants[:, [2, 3, 7, 8]].T
+    return np.asarray(((tension > 0) | (shear > 0)) & ((last < NEVER) | (per_slip > 0)))
 
 
 def stored_by_secant(points: KernelLaw, opening: Array, normal: Array, tangential: Array) -> Array:
@@ -140,6 +146,13 @@ def softening_kernel(
 
 
 SOFTENING = Law(
-    "softening", softening_constants, softening_kernel, HISTORY, stored_by_secant, damage="damage", response=PointLaw
+    "softening",
+    softening_constants,
+    softening_kernel,
+    HISTORY,
+    stored_by_secant,
+    damage="damage",
+    response=PointLaw,
+    weakens=weakens_in_fracture,
 )
 """Models that solve for rest follow no softening: to them its joints are perfectly plastic."""

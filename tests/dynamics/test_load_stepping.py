@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
 from runningbond.dynamics import U_CRIT, Criteria, LoadSteps, Run, State, collapse_by_steps, load_steps, settle
 from runningbond.dynamics.collapse import Verdict
@@ -271,3 +272,14 @@ def test_the_mechanism_is_the_motion_of_the_fall_though_a_later_rest_went_farthe
             scene, "", BLOCK, 0.005, points=points, point_order=order, is_self_locking=lambda: False
         )
     assert outcome.motion[0] == pytest.approx([1.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize("energy", [None, 50.0])
+def test_only_joints_that_lose_strength_are_said_to_break(energy: float | None) -> None:
+    """What is crushed, however far, bears as much as before; a step that overshoots takes no load from it."""
+    crushing = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9, "joint__compressive_strength": 1e5}
+    size = {"wall__length": 0.24, "wall__height": 0.48, "wall__block_height": 0.48}
+    softening = {} if energy is None else {"joint__compressive_fracture_energy": energy}
+    outcome = dem_dynamic(panel(**size, **crushing, **softening), 0.02)
+    assert outcome.status == "collapse", outcome.message
+    assert ("joints that break" in outcome.message) is (energy is not None)

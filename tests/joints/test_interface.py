@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -371,3 +372,27 @@ def test_a_corner_on_the_flank_of_the_cap_shears_off_without_pressure() -> None:
         _, tangential, histories = follow(law(strong), np.full(2, opening), np.array([1e-2, 2e-2]))
         assert tangential[-1] == pytest.approx(STRENGTH / 3, rel=1e-6)
         assert histories[SEAT, -1] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("changes", "breaks"),
+    [
+        ({}, False),
+        ({"cohesion": 3e5, "tensile_strength": 2e5}, False),
+        ({"compressive_strength": STRENGTH}, False),
+        ({"compressive_strength": STRENGTH, "peak_closure": 9e-5}, False),
+        ({"closure": CLOSING}, False),
+        ({"fracture_energy_1": 20.0, "fracture_energy_2": 20.0}, False),  # dry: nothing to lose
+        ({"cohesion": 3e5, "tensile_strength": 2e5, "fracture_energy_1": 0.0}, True),
+        ({"cohesion": 3e5, "tensile_strength": 0.0, "fracture_energy_1": 20.0}, True),
+        ({"compressive_strength": STRENGTH, "compressive_fracture_energy": ENERGY}, True),
+    ],
+)
+def test_joints_break_that_lose_strength(changes: dict[str, Any], breaks: bool) -> None:
+    """Beside one that crushes and closes for ever as strong, which does not make others break."""
+    dry = JointMaterial(0.75, elasticity=Stiffness(K_N, K_T))
+    other = replace(dry, compressive_strength=STRENGTH, closure=CLOSING)
+    material = replace(dry, **changes)
+    assert kernel_law([material], np.zeros(1, dtype=np.int64)).can_break is breaks
+    assert kernel_law([material, other], np.arange(2)).can_break is breaks
+    assert not kernel_law([material, other], np.ones(1, dtype=np.int64)).can_break
