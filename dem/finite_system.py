@@ -52,7 +52,7 @@ class RigidContacts:
         self._gather = gather_sides if self.outline.radius.any() else gather_sharp
         self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
         self._scene, self._mass = scene, held_masses(scene)
-        self._reframes = scene.history is not None and self._gather is gather_sharp
+        self._reframes = (scene.history is not None or scene.is_led) and self._gather is gather_sharp
         undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
         self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 

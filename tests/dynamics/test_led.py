@@ -642,3 +642,19 @@ def test_works_to_and_fro_are_no_small_sum_to_miss_a_share_of() -> None:
     assert moved.outcome.curve[-1, 1] == pytest.approx(-0.4, rel=1e-6)
     assert moved.upper == pytest.approx(-0.4, rel=0.01)
     assert "the other way" not in moved.message
+
+
+@pytest.mark.parametrize("to", [1.0, -1.0])
+def test_a_bonded_pier_whose_pressed_corner_passes_that_of_the_beam_makes_up_no_energy(to: float) -> None:
+    """Its side takes over from the beam's where corners lie deep in each other: it shook there without end."""
+    size = {"length": 0.2, "height": 0.4, "block_width": 0.2, "block_height": 0.4, "thickness": 0.1}
+    joint = {"friction": 0.75, "cohesion": 1e6, "tensile_strength": 3e5, "fracture_energy_1": 50.0}
+    joint |= {"fracture_energy_2": 100.0, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
+    drive = {"displacement": [[0.0, 0.03 * to]], "rate": 0.01}
+    beam = {"height": 0.1, "condition": "level", "force": [0, -N], "drive": drive}
+    scene = panel(wall=size, joint=joint, beam=beam, load__live=None, block__density=2000.0)
+    outcome = dem_dynamic(scene, displacements="finite")
+    assert outcome.status == "collapse", outcome.message
+    moved, force = outcome.curve.T
+    before, after = (abs(moved) > 0.0288) & (abs(moved) < 0.0294), abs(moved) > 0.0297
+    assert force[after].max() < 1.002 * force[before].mean()
