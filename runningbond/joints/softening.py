@@ -63,7 +63,7 @@ def _end_of_softening(energy: float | None, strength: float, never: float) -> fl
 
 def weakens_in_fracture(constants: Array) -> Mask:
     """Whether materials of some constants ``(ns, n)`` have a strength, and an energy after which it is gone."""
-    tension, shear, last, per_slip = constants[:, [2, 3, 7, 8]].T
+    _, _, tension, shear, _, _, _, last, per_slip = constants[:, :9].T  # as in `softening_constants`
     return np.asarray(((tension > 0) | (shear > 0)) & ((last < NEVER) | (per_slip > 0)))
 
 
