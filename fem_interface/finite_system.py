@@ -194,7 +194,7 @@ class DeformableContacts:
         """The interface on contacts of blocks with some masses and viscosities, whose ω² [1/s²] is near a guess."""
         law, geometry = self._materials.law(contacts), self.geometry(contacts)
         bound = _frequency_squared(list(_blocks_on(self.blocks, scaled, contacts, geometry, law)), guess)
-        reframe = reframe_deformable if self.blocks.scene.history or self.blocks.scene.is_led else keep_frames
+        reframe = reframe_deformable if self.blocks.scene.history else keep_frames
         kernels = gather_deformable, scatter_deformable
         return Interface(law, contacts.area, *kernels, geometry, bound, reframe=reframe)
 
