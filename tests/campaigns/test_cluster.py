@@ -118,7 +118,7 @@ def test_a_killed_worker_changes_nothing(client: Any, tmp_path: Path) -> None:
         "wall": panel(wall__length=0.48, wall__height=0.24, joint__mortar=MORTAR),
         "stack": courses([[1], [1]], width=0.2, height=0.2, joint__mortar=MORTAR),
     }
-    models = ["homog", "limit", "dem-dynamic"]
+    models = ["homog", "limit", "limit-nonassociated", "dem-dynamic"]
     here, there, note = tmp_path / "here", tmp_path / "there", tmp_path / "note"
     expected = table(run_campaign(scenes, models, folder=here, jobs=1))
     kept = {path.parent.relative_to(here).parts for path in here.glob("*/*/outcome.json")}

@@ -80,7 +80,7 @@ def test_blocks_that_are_apart_do_not_press_on_each_other(
     margin=st.floats(0.005, 0.2),
 )
 @example(at=(-0.405, -0.092), turned=(2.183, -0.8605), step=(-0.958, 0.232, 0.802, 0.643, -0.466, -0.863), margin=0.149)
-@settings(max_examples=100)
+@settings(max_examples=200)
 @pytest.mark.parametrize("inset", [0.0, 0.02])
 def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
     inset: float, at: tuple[float, float], turned: tuple[float, float], step: tuple[float, ...], margin: float

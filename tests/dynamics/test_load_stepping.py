@@ -229,7 +229,7 @@ def test_a_wall_that_never_answers_costs_two_budgets() -> None:
 
 
 @given(st.data(), st.sampled_from([0.0005, 0.005, 0.05, 0.5]))
-@settings(max_examples=150)
+@settings(max_examples=300)
 def test_a_search_ends_whatever_the_answers(data: st.DataObject, tolerance: float) -> None:
     """Each load that is tried lies inside the bracket so far, which never widens."""
     lower, upper = 0.0, float("inf")

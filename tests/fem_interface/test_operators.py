@@ -44,7 +44,7 @@ def course_patterns(draw: st.DrawFn) -> list[list[float]]:
     cells=st.sampled_from([1, 2]),
     on=st.sampled_from(["elements", "joints"]),
 )
-@settings(max_examples=15, derandomize=True)
+@settings(max_examples=30, derandomize=True)
 def test_rigid_motions_open_joints_as_rigid_blocks_do(
     pattern: list[list[float]], inset: float, cells: int, on: Literal["elements", "joints"]
 ) -> None:

@@ -158,7 +158,7 @@ FRICTION = st.one_of(st.just(0.0), st.floats(1e-3, 3))
 
 
 @given(width=st.floats(0.02, 5), height=st.floats(0.02, 5), friction=FRICTION, n=st.integers(1, 6))
-@settings(max_examples=25)
+@settings(max_examples=60)
 def test_a_stack_slides_at_mu_or_topples_at_b_over_nh(width: float, height: float, friction: float, n: int) -> None:
     """n equal blocks b × h: λ = min(μ, b / (n h)), with or without dilatancy."""
     scene = pile([rectangle(0, i * height, width, height) for i in range(n)], friction)

@@ -215,9 +215,9 @@ def test_a_block_that_turns_round_slowly_near_its_balance_does_not_stand_there(s
 def test_what_the_ground_does_depends_neither_on_rows_nor_on_samples_between() -> None:
     """A record at 50 Hz, and the same straight lines at 1 kHz; however many rows are asked for.
 
-    To 0.3 % of the largest drift after a second of impacts; rows are at the time steps nearest to their times.
+    To 0.3 % of the largest drift after two seconds of impacts; rows are at the time steps nearest to their times.
     """
-    time, finer = np.arange(0.0, 1.001, 0.02), np.linspace(0.0, 1.0, 1001)
+    time, finer = np.arange(0.0, 2.001, 0.02), np.linspace(0.0, 2.0, 2001)
     values = 4.0 * np.random.default_rng(1).standard_normal(len(time))
     records = [(time, values), (finer, np.interp(finer, time, values))]
     coarse, fine = (History(t, np.column_stack([x, np.zeros(len(t))])) for t, x in records)
