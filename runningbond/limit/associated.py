@@ -190,8 +190,8 @@ def _solved(system: Equilibrium) -> LimitState:
 def _proved(system: Equilibrium) -> LimitState | None:
     """What the interior point's answer for a large wall proves; None if that is not enough."""
     dead = system.under_dead_load()
-    resting = resting_forces(dead)
-    if resting is None and falls_at_rest(dead):
+    resting, point = resting_forces(dead)
+    if resting is None and falls_at_rest(dead, point):
         return LimitState(system, ForceSolution.none("infeasible"), rests=False)
     state = LimitState(system, proved(system, resting), rests=None if resting is None else True)
     if _wants_more(state):
@@ -258,7 +258,7 @@ def _balances_any_multiple(system: Equilibrium) -> bool:
     if system.crushing is not None:
         others, rays = without_crushing(dry, system.crushing)
         return solve_forces(others, rays, "zero").status == "optimal"
-    if is_large(system) and resting_forces(dry) is not None:
+    if is_large(system) and resting_forces(dry)[0] is not None:
         return True
     return solve_forces(dry, coulomb(dry.strength), "zero").status == "optimal"
 

@@ -12,7 +12,7 @@ from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
 from .force_program import Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
-from .interior_point import interior_point
+from .interior_point import InteriorPoint, interior_point
 from .kinematics import movable_freedoms
 from .repair import admissible, balanced
 
@@ -38,27 +38,26 @@ OVERTURNED = 1e-6
 """Share of a dead load's power, of all blocks without their signs, that it has to have left to prove a fall."""
 
 
-def resting_forces(system: Equilibrium) -> Array | None:
+def resting_forces(system: Equilibrium) -> tuple[Array | None, InteriorPoint]:
     """Forces, unknowns of a `force_program`, that balance the dead load strictly within all bounds; None if not found.
 
-    They prove that the wall stands.
+    They prove that the wall stands. Beside them is the interior point that they were made of, or would have been.
     """
     program = force_program(system, coulomb(system.strength), "zero")
     for tolerance in (ROUGH, FINE):
         point = interior_point(program, tolerance)
         found = balanced(program, point, None) if point.status == "optimal" else None
         if found is not None or point.status == "infeasible":
-            return found
-    return None
+            break
+    return found, point
 
 
-def falls_at_rest(system: Equilibrium) -> bool:
-    """Whether a mechanism was found on which the dead load does more work than joints and ties can dissipate.
+def falls_at_rest(system: Equilibrium, point: InteriorPoint) -> bool:
+    """Whether the interior point of `resting_forces` is a mechanism on which joints dissipate less than the load does.
 
-    It proves that no admissible forces balance that load.
+    It proves that no admissible forces balance the dead load.
     """
     program = force_program(system, coulomb(system.strength), "zero")
-    point = interior_point(program, ROUGH)
     motion = admissible(program, point) if point.status == "infeasible" else None
     if motion is None:
         return False
