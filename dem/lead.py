@@ -33,7 +33,7 @@ def reaction(system: StaticSystem, state: StaticState) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class Lead:
+class StaticLead:
     """What leads a wall: the beam's drive, or the supports with a share of their settlement."""
 
     system: StaticSystem

@@ -23,7 +23,7 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import number
 from runningbond.results.reactions import COME_FREE
 
-from .lead import Lead
+from .lead import StaticLead
 from .pushover import NOISE, LoadPath, StaticState, state_of
 from .relaxation import Rest
 
@@ -48,7 +48,7 @@ class Run:
         return self.stopped is not None and self.stopped.verdict == "fall"
 
 
-def _run(path: LoadPath, lead: Lead, share: float) -> Run:
+def _run(path: LoadPath, lead: StaticLead, share: float) -> Run:
     states = [path.rests[0]]
     for value, turns in lead.stops(share):
         result = _hold(path, lead, states, value, turns)
@@ -61,7 +61,7 @@ def _run(path: LoadPath, lead: Lead, share: float) -> Run:
     return Run(states, None, value)
 
 
-def _hold(path: LoadPath, lead: Lead, states: list[StaticState], value: float, turns: bool) -> Rest:
+def _hold(path: LoadPath, lead: StaticLead, states: list[StaticState], value: float, turns: bool) -> Rest:
     """Hold a value after some states, the first one of a leg where the way `turns`, until the wall rests or falls."""
     now = states[-1]
     if not turns:
@@ -71,7 +71,7 @@ def _hold(path: LoadPath, lead: Lead, states: list[StaticState], value: float, t
     return path.hold(lead.elastically(now, value), now.plastic_slip, lead.control(value))
 
 
-def _closer(path: LoadPath, lead: Lead, run: Run, turns: bool) -> Run:
+def _closer(path: LoadPath, lead: StaticLead, run: Run, turns: bool) -> Run:
     """A run that ended in a fall, with the states between its last rest and there."""
     states, fall, aim = [*run.states], run.stopped, run.aim
     for _ in range(HALVINGS):
@@ -88,7 +88,7 @@ def _closer(path: LoadPath, lead: Lead, run: Run, turns: bool) -> Run:
 
 
 def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: float) -> Outcome:
-    """Lead a wall from rest under its dead load through the displacements of its scene.
+    """StaticLead a wall from rest under its dead load through the displacements of its scene.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
     first_step
         Load, in units of `Equilibrium`, that the first elastic step is worth.
     """
-    lead = Lead(path.system, path.rests[0], first_step)
+    lead = StaticLead(path.system, path.rests[0], first_step)
     runs: list[Run] = []
     answers: list[float] = []
     for k in range(RUNS):
@@ -124,17 +124,17 @@ def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: f
     return _judge(_arrays(outcome, lead, runs[-1]), lead, runs, answers, tolerance)
 
 
-def _spread(lead: Lead, answers: list[float]) -> float:
+def _spread(lead: StaticLead, answers: list[float]) -> float:
     """Width of a bracket, relative to its larger end."""
     return (max(answers) - min(answers)) / max(*map(abs, answers), _least(lead))
 
 
-def _least(lead: Lead) -> float:
+def _least(lead: StaticLead) -> float:
     """Force below which a bracket need not be relatively narrow."""
     return LITTLE if lead.settles else NOISE * lead.system.equilibrium.live_unit
 
 
-def _arrays(outcome: Outcome, lead: Lead, run: Run) -> Outcome:
+def _arrays(outcome: Outcome, lead: StaticLead, run: Run) -> Outcome:
     """Curve, forces at the answer and motion there: of a settlement the whole shape, of a drive how it moves."""
     system, states = lead.system, run.states
     value, force = np.array([(lead.value(state), lead.force(state)) for state in states]).T
@@ -159,7 +159,7 @@ def _arrays(outcome: Outcome, lead: Lead, run: Run) -> Outcome:
     )
 
 
-def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], tolerance: float) -> Outcome:
+def _judge(outcome: Outcome, lead: StaticLead, runs: list[Run], answers: list[float], tolerance: float) -> Outcome:
     """Verdict on some runs."""
     run, (lower, upper) = runs[-1], (min(answers[-2:]), max(answers[-2:]))
     at = f"{lead.metre * abs(run.aim):.4g} m"
@@ -197,7 +197,7 @@ def _judge(outcome: Outcome, lead: Lead, runs: list[Run], answers: list[float], 
     return replace(so_far, message=message)
 
 
-def _notes(lead: Lead, outcome: Outcome) -> str:
+def _notes(lead: StaticLead, outcome: Outcome) -> str:
     """What there is to say of a cyclic drive, and of its rate."""
     drive = lead.scene.drive
     if lead.settles or drive is None:

@@ -40,7 +40,7 @@ from .static_system import Control, StaticSystem, static_system, with_late_pins
 FIRST_STEP = 0.03
 """First load, in units of `Equilibrium`."""
 
-U_CRIT = 0.05
+FALLEN = 0.05
 """Motion of a block that is a fall unless it slows down, in heights of the lowest block."""
 
 BUDGET = 20_000
@@ -61,7 +61,7 @@ def dem_static(
     tolerance: float = 0.01,
     *,
     first_step: float = FIRST_STEP,
-    collapse: float = U_CRIT,
+    collapse: float = FALLEN,
     budget: int = BUDGET,
     past: int = PAST,
     observe: StaticObserver = no_observer,

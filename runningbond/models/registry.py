@@ -220,12 +220,12 @@ def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
     """What is to be said where joints give more than what counts as `collapse` [heights of a block]."""
     if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.upper:
         return ""
-    from dem.static import U_CRIT
+    from dem.static import FALLEN
 
     if "block.young" not in model.reads:
         scene = scene.with_block(young=None)
     moved = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
-    if moved <= (U_CRIT if collapse is None else collapse):
+    if moved <= (FALLEN if collapse is None else collapse):
         return ""
     share = f"{100 * moved:.2g} % of a block's height"
     return f"joints are too soft: the wall gives by {share} elastically, beyond small displacements"
