@@ -59,7 +59,7 @@ def with_coupled_masses(wall: ModalWall, system: BlockSystem) -> BlockSystem:
         Its blocks, with modes as `mass_scaling` has them.
     """
     scene, moving = wall.scene, np.isfinite(wall.mass)
-    more = scene.is_led or scene.settlement or len(system.ties) or len(system.late)
+    more = scene.is_led or len(system.ties) or len(system.late)
     rigid = (wall.stiffness == 0)[moving]
     if more or (~scene.fixed).sum() > LARGEST or rigid.all() or not rigid.any():
         return system
@@ -85,7 +85,7 @@ def _coupled(wall: ModalWall, system: BlockSystem, K: Array, square: float) -> B
     # |d_i d_j| ≤ (w_i d_i² / w_j + w_j d_j² / w_i) / 2, with weights that make each term count the same.
     weight = np.sqrt(np.maximum(np.diag(joints), np.diag(joints).max() * GROUND))
     summed = weight * (np.abs(joints) @ (1 / weight))
-    mass, viscosity = system.mass.copy(), np.zeros_like(system.mass)
+    mass = system.mass.copy()
     mass[moving] = wall.mass[moving]
     mass[moving[deformed]] += ROOM * (own[deformed] + (1 + 1 / RIGID) * summed) / square
     viscosity = modal_viscosity(wall.stiffness, mass, DAMPING)

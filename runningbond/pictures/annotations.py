@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from runningbond.scene import Array
 
-from .deformed_shape import DeformedShape, Extent
+from .deformed_shape import DeformedShape, Extent, around
 from .loads import LoadDrawing
 from .numbers import block_numbers
 from .sketch import Sketch
@@ -98,16 +98,11 @@ def _room(
         sketches = (sketch_around(shape, share * point, numbers=numbers, thrust=thrust) for shape in shapes)
         extents = [sketch.extent for sketch in sketches]
         floor = (*extent[:2], min(extent[2], base - 1.2 * UNIT * share * point), extent[3])
-        shown = _around([floor, *(one for one in extents if one)])
+        shown = around([floor, *(one for one in extents if one)])
         needed = metres_of_point(shown, size)
         if needed <= point * (1 + 1e-12) or point > HOPELESS * least:
             return Room(shown, share * point, share)
         point += max(1.3 * (needed - point), 0.002 * point)
-
-
-def _around(extents: Sequence[Extent]) -> Extent:
-    lefts, rights, bottoms, tops = zip(*extents, strict=True)
-    return min(lefts), max(rights), min(bottoms), max(tops)
 
 
 def metres_of_point(extent: Extent, size: tuple[float, float]) -> float:

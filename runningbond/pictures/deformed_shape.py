@@ -188,10 +188,15 @@ def undeformed_shape(scene: Scene) -> DeformedShape:
     return DeformedShape.of_rigid_blocks(scene, at_rest, np.zeros(len(scene.joints), np.int64), 0.0)
 
 
+def around(extents: Sequence[Extent]) -> Extent:
+    """The smallest extent that several are within."""
+    lefts, rights, bottoms, tops = zip(*extents, strict=True)
+    return min(lefts), max(rights), min(bottoms), max(tops)
+
+
 def common_extent(shapes: Sequence[DeformedShape]) -> Extent:
     """What shows all of several shapes of a wall."""
-    lefts, rights, bottoms, tops = zip(*(shape.extent for shape in shapes), strict=True)
-    return min(lefts), max(rights), min(bottoms), max(tops)
+    return around([shape.extent for shape in shapes])
 
 
 def farthest_motion(displacement: Array) -> float:

@@ -161,7 +161,8 @@ def _pieces(angle: float) -> int:
 
 def spline_points(spline: Any) -> Array:
     """Points along an ezdxf B-spline, ``(n, 3)``, as many between all its knots, close enough for `SAGITTA`."""
-    knots = np.unique(np.clip(spline.knots(), *_domain(spline)))
+    knots = np.array(spline.knots())
+    knots = np.unique(np.clip(knots, knots[spline.order - 1], knots[-spline.order]))
     pieces = 2
     while True:
         t = np.interp(np.arange(2 * pieces * (len(knots) - 1) + 1) / (2 * pieces), np.arange(len(knots)), knots)
@@ -171,8 +172,3 @@ def spline_points(spline: Any) -> Array:
         if pieces >= 512 or off.max() <= SAGITTA * length / max(1, len(knots) - 1):
             return np.asarray(points[::2])
         pieces *= 2
-
-
-def _domain(spline: Any) -> tuple[float, float]:
-    knots = spline.knots()
-    return knots[spline.order - 1], knots[-spline.order]
