@@ -63,8 +63,7 @@ class RigidContacts:
 
     def interface_on(self, contacts: Contacts, system: BlockSystem | None = None) -> Interface:
         """The interface of the blocks on contacts."""
-        ends = contacts.geometry(self.outline)
-        gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
+        ends = contacts.gathered(self.outline, contacts.motion)
         if not self._points:
             law = self._materials.law(contacts)
             frequencies = self._frequencies(ends, law.stiffest, law.shear_stiffness)
@@ -98,8 +97,7 @@ class RigidContacts:
 
     def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`; a point along two sides pulls as its shares at the two ends would."""
-        ends = contacts.geometry(self.outline)
-        gather_sides(motion, ends, *np.zeros((2, len(contacts))))
+        ends = contacts.gathered(self.outline, motion)
         if not self._points:
             pull, shear = turn_out.py_func(*force, ends.out)
             return in_space(pull, shear, ends.contact[:, 2:])
@@ -112,8 +110,7 @@ class RigidContacts:
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`."""
-        ends = contacts.geometry(self.outline)
-        gather_sides(motion, ends, *np.zeros((2, len(contacts))))
+        ends = contacts.gathered(self.outline, motion)
         if self._points:
             pairs, share = contacts.pairs, (self._rule.nodes[:, None] + 1) / 2
             along, force = force.reshape(2, self._points, -1), np.zeros((2, len(contacts)))
@@ -126,8 +123,7 @@ class RigidContacts:
         """Key of the contact's point at each of `contact_points` on the undeformed wall."""
         contacts, points = self.undeformed, contact_points(self._scene)
         key, _ = self.points(contacts)
-        ends = contacts.geometry(self.outline)
-        gather_sides(contacts.motion, ends, *np.zeros((2, len(contacts))))
+        ends = contacts.gathered(self.outline, contacts.motion)
         at, joint = ends.contact[:, :2], contacts.joint
         if self._points:
             pairs, share = contacts.pairs, (self._rule.nodes[:, None, None] + 1) / 2

@@ -87,6 +87,12 @@ class Contacts:
             np.zeros(len(self), dtype=bool),
         )
 
+    def gathered(self, outline: Outline, motion: Array) -> RigidSides:
+        """The arrays of `geometry` as `gather_sides` leaves them after a motion ``(3 nb,)``."""
+        sides = self.geometry(outline)
+        gather_sides(motion, tuple(sides), *np.zeros((2, len(self))))  # plain, as in the steps: compiled once
+        return sides
+
     def resultants(self, outline: Outline, contact: Array, force: Array) -> Array:
         """Resultants on each block, moments about the origin, ``(nb, 3)`` [N, N, N m].
 
@@ -174,7 +180,7 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
 def jumps(outline: Outline, contacts: Contacts, motion: Array) -> Array:
     """Opening and slip of contacts after a motion ``(3 nb,)``, ``(2, n)`` [m]."""
     opening_and_slip = np.zeros((2, len(contacts)))
-    gather_sides(motion, contacts.geometry(outline), *opening_and_slip)
+    gather_sides(motion, tuple(contacts.geometry(outline)), *opening_and_slip)
     return opening_and_slip
 
 
