@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigh
-from scipy.sparse import diags_array
+from scipy.sparse import csr_array, diags_array
 from scipy.sparse.linalg import eigsh
 
 from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, put_on_dead_load
@@ -95,14 +95,13 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     count = min(count, len(moving))
     if not closed.any():
         raise SceneError("load.gravity", "closes no joint: a wall that is not pressed together does not vibrate")
-    if len(moving) <= max(DENSE, 3 * count):
-        square, vectors = eigh(scaled.toarray())
-    else:
-        shift = -(LOOSE**2) * float(scaled.diagonal().max())
-        square, vectors = eigsh(scaled.tocsc(), k=min(count + 6, len(moving) - 1), sigma=shift, which="LM")
-        order = np.argsort(square)
-        square, vectors = square[order], vectors[:, order]
-    held = square > LOOSE**2 * float(scaled.diagonal().max())
+    least, sought = LOOSE**2 * float(scaled.diagonal().max()), count
+    while True:  # there may be any number of loose motions, which are slower than all others
+        square, vectors = _slowest(scaled, sought, -least)
+        held = square > least
+        if held.sum() >= count or len(square) == len(moving):
+            break
+        sought *= 2
     loose = int((~held).sum())
     square, vectors = square[held][:count], vectors[:, held][:, :count]
     modes = np.zeros((len(square), len(system.mass)))
@@ -111,3 +110,15 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     share = (modes @ ground.T) ** 2 / ground.sum(axis=1)
     shape = np.array([system.motion_of_blocks(mode) for mode in modes])
     return Vibration(np.sqrt(square) / (2 * np.pi), shape.reshape(len(square), -1, 3), share, loose)
+
+
+def _slowest(scaled: csr_array, count: int, shift: float) -> tuple[Array, Array]:
+    """Eigenvalues of a symmetric matrix, ascending, and eigenvectors: all of a small one, else more than the `count`.
+
+    None is below the `shift`.
+    """
+    if scaled.shape[0] <= max(DENSE, 3 * count):
+        return eigh(scaled.toarray())
+    square, vectors = eigsh(scaled.tocsc(), k=count + 6, sigma=shift, which="LM")
+    order = np.argsort(square)
+    return square[order], vectors[:, order]

@@ -12,7 +12,8 @@ from dem.rigid_system import contact_points, rigid_system
 from fem_interface.model import fem_vibration
 from runningbond.dynamics import Criteria, Run, put_on_dead_load
 from runningbond.response import Vibration
-from runningbond.scene import Array, Closure, Scene, Stiffness, scene_from_dict
+from runningbond.scene import Array, Closure, JointMaterial, Scene, Stiffness, scene_from_dict
+from runningbond.studies.walls import boxes
 from tests.walls import content
 
 THICKNESS, DENSITY = 0.12, 1800.0
@@ -45,6 +46,16 @@ def test_all_mass_goes_along_with_the_ground() -> None:
     found = dem_vibration(stack(3, 0.4, 0.2, 1e9, 1e9), 9)
     assert found.loose == 0
     assert found.share.sum(axis=0) == pytest.approx([1.0, 1.0], rel=1e-9)
+
+
+def test_grains_that_hardly_bear_leave_a_stack_its_vibrations() -> None:
+    """90 of 2 µm beside it, pressed by less than `PRESSED`: 270 loose motions, slower than all of the stack's."""
+    tower = [(0.0, float(k), 0.5, 1.0) for k in range(4)]
+    grains = [(1.0 + 0.001 * k, 0.0, 2e-6, 2e-6) for k in range(90)]
+    joint = JointMaterial(0.6, elasticity=Stiffness(1e9, 4e8))
+    alone, beside = (dem_vibration(boxes(*tower, *some, joint=joint), 5) for some in ([], grains))
+    assert (alone.loose, beside.loose) == (0, 270)
+    assert beside.frequency == pytest.approx(alone.frequency, rel=1e-6)
 
 
 def timoshenko(length: float, depth: float, stiff: tuple[float, float], number: int) -> float:
