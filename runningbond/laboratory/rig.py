@@ -76,9 +76,17 @@ def _scene_of(wall: MeasuredWall, features: Features) -> Scene:
     if not isinstance(beam, dict) or "drive" not in beam:
         raise SceneError(f"{wall.scene_file.name}: beam.drive", "is missing; a tested wall is pushed at its beam")
     scene = scene_from_dict(tables, folder=wall.scene_file.parent, default_title=wall.name)
-    if features.driven or scene.drive is None:
+    if scene.drive is None or (features.driven and scene.drive.path):
         return scene
-    # A force pushes to the side that the wall is pushed to first: it may bear less there than on the other one.
+    for key, remedy, is_wrong in (
+        ("beam.drive.force", "must be horizontal", scene.drive.force[1] != 0),
+        ("load.live", "must be left out", len(scene.load.live) > 1),
+    ):
+        if is_wrong:
+            told = f"{remedy}; λ is the force that a tested wall is pushed with"
+            raise SceneError(f"{wall.scene_file.name}: {key}", told)
+    # A force pushes to the side that the wall is pushed to first: it may bear less there than on the other one. It is
+    # of 1 N whatever the file has, so that λ is the wall's strength in newtons.
     side = math.copysign(1.0, scene.drive.force[0])
     at = {} if scene.drive.at is None else {"at": scene.drive.at}
     tables["beam"] = beam | {"drive": {"force": [side, 0]} | at}

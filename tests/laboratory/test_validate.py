@@ -13,7 +13,7 @@ from runningbond.laboratory import read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import Features, scene_of
 from runningbond.results import Outcome
-from runningbond.scene import Drive
+from runningbond.scene import Drive, SceneError
 from tests.walls import write_toml
 
 from .folders import GRANITE, HEADS, SANDSTONE, write_folder
@@ -156,6 +156,34 @@ def test_limit_analysis_pushes_to_the_side_that_a_wall_is_pushed_to_first(
     write_toml(tables, folder / "left.toml")
     (wall,) = read_folder(folder)
     assert scene_of(wall, Features(driven=False)).drive == Drive((-1.0, 0.0), drive.get("at"))
+
+
+@pytest.mark.parametrize("features", [Features(), Features(driven=False)])
+def test_strength_is_in_newtons_whatever_the_force_of_a_drive(features: Features, tmp_path: Path) -> None:
+    """A drive of 1 kN made λ kilonewtons, which were scored as newtons, by all models but limit analysis."""
+    folder = write_folder(tmp_path / "walls", "right,,,,,,,,,,,5,,R")
+    tables = leaning(1)
+    tables["beam"]["drive"] = {"force": [1000, 0], "at": 0.7}
+    write_toml(tables, folder / "right.toml")
+    (wall,) = read_folder(folder)
+    assert scene_of(wall, features).drive == Drive((1.0, 0.0), 0.7)
+
+
+@pytest.mark.parametrize(
+    ("force", "live", "said"),
+    [([1, -1], {}, "beam.drive.force: must be horizontal"), ([1, 0], {"live": {"kind": "lateral"}}, "load.live: must")],
+)
+def test_a_tested_wall_whose_multiplier_is_no_strength_is_refused(
+    force: list[float], live: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    folder = write_folder(tmp_path / "walls", "right,,,,,,,,,,,5,,R")
+    tables = leaning(1)
+    tables["beam"]["drive"] = {"force": force}
+    tables["load"] |= live
+    write_toml(tables, folder / "right.toml")
+    (wall,) = read_folder(folder)
+    with pytest.raises(SceneError, match=f"right.toml: {said}"):
+        scene_of(wall, Features())
 
 
 @pytest.mark.parametrize(
