@@ -24,7 +24,7 @@ ARRIVED = 0.99
 """Part of the path's way after which a wall has been followed to its end."""
 
 FOLLOWED, INAPPLICABLE = "followed", "inapplicable"
-"""Statuses beside those of outcomes: the wall was taken along the whole path and still hardened; a model refuses it."""
+"""Statuses beside those of outcomes: the wall was taken along the whole path without an answer; a model refuses it."""
 
 
 @dataclass(frozen=True, eq=False)
