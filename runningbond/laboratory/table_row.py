@@ -41,12 +41,17 @@ class TableRow:
             raise SceneError(
                 f"{path.name}, line {line}", f"must have {len(heads)} entries, as its heads; has {len(cells)}"
             )
-        entries = {}
+        entries: dict[str, tuple[str, str]] = {}
         for head, cell in zip(heads, cells, strict=False):
             parts = HEAD.match(head.strip().lstrip("\ufeff"))
             assert parts is not None  # it matches any text
             name = parts[1].casefold()
-            entries[name] = (cell.strip(), parts[2] or USUAL.get(name, ""))
+            entry = (cell.strip(), parts[2] or USUAL.get(name, ""))
+            before = entries.get(name, ("", ""))
+            if name and entry[0] and before[0] and entry != before:
+                what = f"is in another column as well, as {' '.join(before).strip()}; leave one of them empty"
+                raise SceneError(f"{path.name}, line {line}: {parts[1]}", what, " ".join(entry).strip())
+            entries[name] = entry if entry[0] or not before[0] else before
         return cls(path, line, entries)
 
     @property

@@ -314,6 +314,24 @@ def test_folder_that_is_none_or_holds_two_tables_or_bytes_is_refused(tmp_path: P
         read_folder(tmp_path)
 
 
+def with_column(folder: Path, head: str, cell: str) -> Path:
+    """A folder with the granite wall, whose table has one column more."""
+    write_folder(folder, f"{GRANITE},{cell}", heads=f"{HEADS},{head}")
+    return folder
+
+
+def test_two_columns_of_one_name_that_differ_are_refused(tmp_path: Path) -> None:
+    """The last one counted, whatever the other had."""
+    with pytest.raises(SceneError, match=r"tests.csv, line 2: L = '1.5 m': is in another column as well, as 1000 mm;"):
+        read_folder(with_column(tmp_path, "L [m]", "1.5"))
+
+
+@pytest.mark.parametrize(("head", "cell"), [("L [m]", ""), ("L [mm]", "1000")])
+def test_a_column_of_the_same_name_that_is_empty_or_alike_changes_nothing(head: str, cell: str, tmp_path: Path) -> None:
+    (wall,) = read_folder(with_column(tmp_path, head, cell))
+    assert wall.row.number("L") == 1.0
+
+
 def test_scene_of_its_own_without_a_drive_is_refused(tmp_path: Path) -> None:
     folder = write_folder(tmp_path, GRANITE)
     (folder / "WS.175.toml").write_text("[wall]\n")
