@@ -129,6 +129,16 @@ def test_a_gap_that_takes_a_joint_away_is_said_and_what_would_close_it(tmp_path:
     assert read_drawing(path, "mm", heal=2e-4).notes == ("heal: nothing to close", note)
 
 
+def test_a_gap_that_healing_leaves_open_is_not_said_to_be_closed_by_less_of_it(tmp_path: Path) -> None:
+    """A side of 0.2 mm, beyond the end of the edge that it is to lie on; of 4 mm it was said that 0.7 mm would do."""
+    lower = [(999.3, 397.2), (603.0, 604.3), (498.3, 360.1), (556.2, 0.0), (999.5, 0.0), (999.5, 397.3)]
+    upper = [(999.4, 398.4), (999.4, 737.7), (606.9, 737.8), (603.3, 605.4)]
+    path = dxf(tmp_path / "wall.dxf", closed([lower, upper, [(0, -300), (1500, -300), (1500, 0), (0, 0)]]))
+    *_, note = read_drawing(path, "mm", heal=4e-3).notes
+    assert note.startswith("a gap of 0.00065 m between block 0")
+    assert note.endswith("leaves no joint there; wall.heal = 0.004 leaves it open; draw the corners there anew")
+
+
 def test_a_wide_gap_is_meant() -> None:
     apart = [[(x, y + (40 if k >= 5 else 0)) for x, y in o] for k, o in enumerate(BRICKS)]
     assert missed_joints(metres([*BRICKS, GROUND])) == missed_joints(metres([*apart, GROUND])) == ""

@@ -93,7 +93,7 @@ def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness
         joined, note = healed([*blocks, *grounds], heal)
         blocks, grounds = joined[: len(blocks)], joined[len(blocks) :]
         notes += [note] if note else []
-    missed = missed_joints([*blocks, *grounds])
+    missed = missed_joints([*blocks, *grounds], heal or 0.0)
     return Drawing(blocks, tuple(layers), grounds, (*notes, missed) if missed else tuple(notes))
 
 

@@ -184,8 +184,16 @@ def _step(touches: _Touches, nodes: Array, apart: Array, length: float) -> Array
     return np.asarray(spsolve(matrix, -(system.T @ apart))).reshape(-1, 2)
 
 
-def missed_joints(polygons: Sequence[Array]) -> str:
-    """Say what the widest gap is that keeps facing edges from a joint, where there is one too small to be meant."""
+def missed_joints(polygons: Sequence[Array], healed: float = 0.0) -> str:
+    """Say what the widest gap is that keeps facing edges from a joint, where there is one too small to be meant.
+
+    Parameters
+    ----------
+    polygons : list of (n, 2) float
+        Blocks and ground, counter-clockwise [m].
+    healed
+        Gaps up to this were to be closed [m].
+    """
     blocks = Blocks.from_polygons(polygons)
     start = blocks.vertices
     stop = start[blocks.successor]
@@ -212,4 +220,7 @@ def missed_joints(polygons: Sequence[Array]) -> str:
     enough = np.ceil(1.1 * gap[k] / unit) * unit
     first, second = sorted((int(blocks.owner[a[k]]), int(blocks.owner[b[k]])))
     between = f"{blocks.name(first)} and {blocks.name(second)}"
-    return f"a gap of {gap[k]:.2g} m between {between} leaves no joint there; [wall] heal = {enough:.2g} would close it"
+    remedy = f"[wall] heal = {enough:.2g} would close it"
+    if gap[k] <= healed:  # a corner beside an edge's end has neither a corner to meet nor an edge to lie on
+        remedy = f"{KEY} = {healed:.2g} leaves it open; draw the corners there anew"
+    return f"a gap of {gap[k]:.2g} m between {between} leaves no joint there; {remedy}"
