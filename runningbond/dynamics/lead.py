@@ -41,6 +41,13 @@ LAST = 0.1
 STILL = 1e-6
 """Change of a share that counts as none, beside the tolerance's part of all its change."""
 
+FALLEN = 0.5
+"""Size, in blocks, by which all of the dead load has come down, or what would do as much work, once a wall falls; and
+part of that work, less what damping takes, which is in motion then."""
+
+LAG = 5e-3
+"""Part of that work which one time step may do: velocities are half a step behind, and the ledger misses half of it."""
+
 LITTLE = 0.01
 """Share of the dead load below which a reaction need not be relatively accurate."""
 
@@ -181,7 +188,7 @@ class Lead:
         given, motions = run.given(state), [state.motion.copy()]
         peaks = Peaks(way.best, self.longest / (ROWS * speed * run.dt))
         for goal in self.goals.tolist():
-            if goal == at:
+            if goal == at or way.verdict != "stable":
                 continue
             n = max(LEAST_ROWS, round(ROWS * abs(goal - at) / self.longest))
             pace = _pace(n, peaks.windows)
@@ -202,6 +209,9 @@ class Lead:
                 motions.append(middle.motion)
                 if (k + 1) % SEEN == 0:
                     self.observe(run, state, way.rows[-1].force)
+                if self._falls(state):
+                    way.verdict = "collapse"
+                    break
             at = goal
             self.note(way, state, self.moved(state), way.rows[-1].force)
             motions.append(state.motion.copy())
@@ -214,6 +224,24 @@ class Lead:
             motions.insert(peak.row, peak.state.motion)
         row = failing(way.curve)
         way.motion = motions[row] - motions[max(0, row - SEEN)]
+
+    def _falls(self, state: State) -> bool:
+        """Whether the dead load has come down far, and most of its work is in motion: what is led does little of any.
+
+        A beam that nothing bears any more would be followed through the wall and the ground.
+        """
+        run, system = self.run, self.run.system
+        given = run.dead_work(state) - run.dead_work(self.start)
+        if given <= max(FALLEN * self._work_of_a_block, run.dt * float(system.dead @ state.velocity) / LAG):
+            return False
+        return system.kinetic_energy(state.velocity) > FALLEN * (1 - run.local) * given
+
+    @cached_property
+    def _work_of_a_block(self) -> float:
+        """Work of the dead load [J] where all that moves comes down by the size of a block."""
+        system = self.run.system
+        load = np.where(np.isfinite(system.mass), system.dead, 0.0)[system.rigid[:, :2]]
+        return float(np.hypot(*load.T).sum() * self.scene.block_size)
 
     def _gathered(self, state: State) -> float:
         """Momentum along the drive of all bodies but the one driven, and what damping takes as they gather it [N s]."""

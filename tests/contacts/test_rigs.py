@@ -206,6 +206,25 @@ def test_tractions_of_frames_balance_a_wall_that_has_turned(model: str, strength
     assert held == pytest.approx([-outcome.curve[-1, 1], 2e4], rel=0.01, abs=20.0)
 
 
+@pytest.mark.parametrize("displacements", ["small", "finite"])
+def test_a_beam_whose_wall_has_been_crushed_falls_and_is_followed_no_further(displacements: Any) -> None:
+    """0.98 of what the joint bears in pressure and a push: it is crushed to nothing, and nothing bears the beam."""
+    joint: dict[str, Any] = {"joint__compressive_strength": 1e6, "joint__compressive_fracture_energy": 500.0}
+    scene = rig(
+        height=0.25,
+        **joint,
+        beam__condition="level",
+        beam__force=[0, -0.98 * 1e6 * 0.4 * 0.2],
+        beam__drive={"displacement": [[0.0, 1e-3]], "at": 0.25, "rate": 1e-3},
+    )
+    outcome = dem_dynamic(scene, displacements=displacements)
+    assert outcome.status == "collapse", outcome.message
+    assert "the wall falls beyond" in outcome.message
+    assert "last rest" not in outcome.message
+    assert outcome.curve[-1, 0] < 5e-4
+    assert -10.0 < column(outcome, "beam uplift [m]")[-1] < -0.1
+
+
 def test_pushed_the_other_way_a_wall_does_the_same() -> None:
     changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "inner_joint": GLUE}
     outcomes = [
