@@ -284,6 +284,13 @@ class Lead:
             self.observe(run, state, bears)
 
 
+def turns_round(goals: Array) -> bool:
+    """Whether a way from zero to some goals ``(n,)``, one after the other, ever comes back."""
+    ways = np.sign(np.diff(goals, prepend=0.0))
+    ways = ways[ways != 0]
+    return bool((ways != ways[:1]).any())
+
+
 def last_leg(curve: Array) -> Array:
     """The rows of a way's curve ``(n, 2)`` since it last turned round, its displacement counted from there."""
     ways = np.sign(np.diff(curve[:, 0]))

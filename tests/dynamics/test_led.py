@@ -17,7 +17,7 @@ from meshing import wall_mesh
 from runningbond import Wall
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.dynamics.lead import formed
+from runningbond.dynamics.lead import formed, turns_round
 from runningbond.dynamics.ties import tie_rows
 from runningbond.joints import joint_stiffness
 from runningbond.limit import limit
@@ -566,6 +566,14 @@ def test_frames_of_a_settlement_are_of_the_share_that_its_support_bears(model: A
 def test_a_mechanism_has_formed_where_the_force_no_longer_grows(force: list[float], expected: bool) -> None:
     x: Array = np.array([0.0, 0.5, 1.0])
     assert formed(np.column_stack([x, force]), 0.01, settles=False) == expected
+
+
+@pytest.mark.parametrize(
+    ("goals", "expected"),
+    [([1.0], False), ([0.0, 1.0], False), ([0.0, -1.0, -2.0], False), ([1.0, 0.0], True), ([0.0, 1.0, -1.0], True)],
+)
+def test_a_way_that_begins_at_zero_or_goes_on_never_goes_the_other_way(goals: list[float], expected: bool) -> None:
+    assert turns_round(np.array(goals)) == expected
 
 
 @pytest.mark.parametrize("model", [dem_static, *MODELS])
