@@ -123,12 +123,23 @@ class LoadDrawing:
 
     def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
         size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
-        self._force(self.shape.drawn_at(at, block), unit_vector(np.array(force)), size, colour, name)
+        direction = unit_vector(np.array(force))
+        ahead, behind = self._inside(at + 0.5 * self.a * direction), self._inside(at - 0.5 * self.a * direction)
+        self._force(self.shape.drawn_at(at, block), direction, size, colour, name, pulls=behind and not ahead)
 
-    def _force(self, tip: Array, direction: Array, text: str, colour: str, name: str, *, both: bool = False) -> None:
-        """An arrow to a point, or from it where it would else run through the wall, and its size beside it."""
+    def _force(
+        self,
+        tip: Array,
+        direction: Array,
+        text: str,
+        colour: str,
+        name: str,
+        *,
+        both: bool = False,
+        pulls: bool = False,
+    ) -> None:
+        """An arrow to a point, or from it where it pulls, which else ran through the wall; its size beside it."""
         a = self.a
-        pulls = self._inside(tip - 0.5 * a * direction) and not self._inside(tip + 0.5 * a * direction)
         tip = tip + 2.2 * a * direction if pulls else tip
         tail = tip - 2.2 * a * direction
         for other in self.alone:
@@ -148,6 +159,7 @@ class LoadDrawing:
         self.sketch.label(text, [*spots, end] if abs(direction[1]) > 0.5 else [end, *spots], colour)
 
     def _inside(self, at: Array) -> bool:
+        """Whether a point lies in the undeformed wall: which side of a face is outside does not change as it moves."""
         found = self.scene.blocks.containing(at)
         return bool(self.scene.wall[found].any())
 
@@ -164,7 +176,7 @@ class LoadDrawing:
         along_it = zip(np.array(load.start) + places[:, None] * run, of, strict=True)
         tips = np.array([self.shape.drawn_at(*end) for end in along_it])
         text = times_lambda(readable(math.hypot(*load.force), "N/m"), live=live)
-        middle = tips.mean(axis=0)
+        middle = np.add(load.start, load.end) / 2
         is_shear = abs(along @ direction) > 0.97
         away = np.array([-along[1], along[0]]) if is_shear else -direction
         beyond, before = self._inside(middle + 0.5 * a * away), self._inside(middle - 0.5 * a * away)

@@ -374,6 +374,27 @@ def test_in_a_mechanism_the_beam_and_the_ground_are_where_they_move_to() -> None
     assert min(level) < -0.1
 
 
+@pytest.mark.parametrize(
+    "load",
+    [point(2.0, 0.9, 1.0, 0.0), {"kind": "line", "from": [2.0, 0.75], "to": [2.0, 1.0], "force": [100.0, 0.0]}],
+    ids=["point", "line"],
+)
+def test_in_a_mechanism_loads_pull_from_the_face_that_moves_with_them(load: dict[str, Any]) -> None:
+    """A course slides out to the right: arrows begin at its end, and do not run through it."""
+    scene = scene_from_dict(wall(2.0, 1.0, load={"gravity": 9.81, "live": load}))
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[scene.wall & (scene.blocks.centroid[:, 1] > 0.75), 0] = 1.0
+    figure = figure_of(scene, Outcome("", "limit", "collapse", 0.5, motion=motion))
+    blocks = [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
+    end = max(path.vertices[:, 0].max() for one in blocks for path in one.get_paths())
+    pulls = [one for one in figure.axes[0].get_children() if isinstance(one, FancyArrowPatch)]
+    assert pulls
+    for arrow in pulls:
+        tail, tip = arrow._path_original.vertices
+        assert tail[0] == pytest.approx(end, abs=1e-9)
+        assert tip[0] > tail[0]
+
+
 def test_numbers_are_those_that_assign_knows_and_stand_in_their_blocks() -> None:
     """Of blocks that may crack both halves have one number, in the middle of the whole."""
     plain, cracked = scene_from_dict(facade()), scene_from_dict(SCENES["cracked"]())
