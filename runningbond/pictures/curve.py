@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 (CURVE, _, _, FALL, _), BAND = CHART_COLOURS, "#f2c879"
 """Colours of states at rest, of a fall, and of the bracket."""
 
+LABEL = 0.08
+"""Share of the height above the level to which a share of the dead load falls that its label takes below."""
+
 SEEN = 0.04
 """Share of the axis below which the displacement at half the peak is not seen, and the axis is bent into a log one."""
 
@@ -43,11 +46,11 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     if outcome.multiplier is not None:
         axes.axhline(outcome.multiplier, color=DARK, lw=0.8, ls="--")
     answer, bracket = multiplier_text(scene, outcome)
-    level = max((x for x in (outcome.upper, outcome.multiplier, outcome.lower) if x is not None), default=load.max())
+    levels = [x for x in (outcome.lower, outcome.multiplier, outcome.upper) if x is not None] or [load.max()]
     axes.annotate(
         f"{answer}  {bracket}".strip(),
-        (0.02, level),
-        (0, -2 if scene.settlement else 2),  # a share falls to its level
+        (0.02, min(levels) if scene.settlement else max(levels)),
+        (0, -4 if scene.settlement else 4),  # a share falls to its level; states lie on it
         va="top" if scene.settlement else "baseline",
         xycoords=("axes fraction", "data"),
         textcoords="offset points",
@@ -59,7 +62,10 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     _draw_states(axes, scene, outcome)
     _bend(axes, moved, load)
     bottom = min(0.0, 1.12 * load.min())
-    axes.set_ylim(bottom, max(-0.05 * bottom, 1.12 * max(load.max(), level)) or 1.0)
+    top = max(-0.05 * bottom, 1.12 * max(load.max(), *levels)) or 1.0
+    if scene.settlement:
+        bottom = min(bottom, min(levels) - LABEL * (top - min(levels)))
+    axes.set_ylim(bottom, top)
     displacement, load_axis = curve_quantities(scene)
     axes.set_xlabel(f"{displacement} [mm]", fontsize=TYPE + 1)
     axes.set_ylabel(load_axis, fontsize=TYPE + 1)

@@ -1,5 +1,7 @@
 """Charts: curves of walls pushed to and fro, and brackets without a collapse."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.colors import same_color
@@ -8,8 +10,10 @@ from matplotlib.figure import Figure
 from runningbond.pictures.charts import bracket
 from runningbond.pictures.curve import curve_figure
 from runningbond.results import Outcome
-from runningbond.scene import Array
+from runningbond.scene import Array, scene_from_dict
 from tests.walls import panel
+
+from .scenes import settling_portal
 
 
 def curve(moved: Array, load: Array) -> Figure:
@@ -28,6 +32,21 @@ def test_a_wall_pushed_to_and_fro_has_even_axes_with_all_of_its_curve() -> None:
     axes = figure.axes[0]
     assert axes.get_xscale() == "linear"
     assert axes.get_ylim()[0] < -1.05
+
+
+@pytest.mark.parametrize("share", [0.13, 0.0, -0.17])
+def test_the_label_of_a_settlement_hides_neither_its_curve_nor_the_axis(share: float) -> None:
+    """It is below the bracket, on whose lower bound the states of the curve may lie, and above the axis."""
+    loads = np.array([0.25, share, share, share])
+    outcome = Outcome("wall", "dem-static", "collapse", share, share, share + 0.01)
+    outcome = replace(outcome, curve=np.column_stack([[0.0, 1e-4, 1e-3, 1e-2], loads]))
+    figure = curve_figure(scene_from_dict(settling_portal()), outcome)
+    figure.draw_without_rendering()
+    axes = figure.axes[0]
+    label = axes.texts[0].get_window_extent()
+    radius = axes.lines[-1].get_markersize() / 2 * figure.dpi / 72
+    assert label.y1 < axes.transData.transform((0.0, share))[1] - radius
+    assert label.y0 > axes.get_window_extent().y0
 
 
 @pytest.mark.parametrize(("status", "inside"), [("collapse", "red"), ("undecided", "white")])
