@@ -71,7 +71,8 @@ class DeformedShape:
     def of_rigid_blocks(cls, scene: Scene, motion: Array, state: Indices, multiplier: float) -> "DeformedShape":
         """Blocks that move by ``(nb, 3)`` [m, m, rad], displacements made visible.
 
-        States are those of joints ``(nj,)`` or of their ends ``(nj, 2)``.
+        The largest is that of the wall or, where these move farther, of its supports. States are those of joints
+        ``(nj,)`` or of their ends ``(nj, 2)``.
         """
         blocks, joints = scene.blocks, scene.joints
         own = scene.wall[blocks.owner]
@@ -91,7 +92,7 @@ class DeformedShape:
             moved,
             joint_states(state.reshape(len(faces), -1)),
             multiplier,
-            visible_scale(scene.size, farthest_motion(displacement)),
+            visible_scale(scene.size, farthest_motion(np.concatenate([displacement, moved.reshape(-1, 2)]))),
             motion=motion,
             crushed=crushed_ends(state),
         )

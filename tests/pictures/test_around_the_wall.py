@@ -21,8 +21,9 @@ from matplotlib.text import Text
 from runningbond.pictures.captions import to_png, to_svg
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.labels import Label, Spot, place_labels
+from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.quantities import counted, millimetres, pair, readable
-from runningbond.pictures.style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
+from runningbond.pictures.style import BEAM, BLOCK_COLOURS, DARK, DEAD, DRAWN, HELD, JOINT_COLOURS, MOTION
 from runningbond.results import Outcome
 from runningbond.scene import Action, Array, Forces, Scene, scene_from_dict
 
@@ -393,6 +394,16 @@ def test_in_a_mechanism_loads_pull_from_the_face_that_moves_with_them(load: dict
         tail, tip = arrow._path_original.vertices
         assert tail[0] == pytest.approx(end, abs=1e-9)
         assert tip[0] > tail[0]
+
+
+def test_a_support_that_moves_farther_than_its_wall_is_drawn_to_move_no_farther_than_walls_are() -> None:
+    """A wall bridges it, and follows by a thousandth."""
+    portal = scene_from_dict(settling_portal())
+    down = portal.support_motion / 0.02
+    down[portal.wall, 1] = -1e-3
+    shape = mechanism_shape(portal, Outcome("", "limit", "collapse", 0.4, motion=down))
+    assert shape is not None
+    assert shape.scale * np.abs(shape.face_displacement).max() == pytest.approx(DRAWN * portal.size)
 
 
 def test_numbers_are_those_that_assign_knows_and_stand_in_their_blocks() -> None:
