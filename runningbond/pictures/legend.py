@@ -64,9 +64,9 @@ def strength(material: JointMaterial) -> str:
     """What a joint can bear, in a line."""
     cohesion = f", c = {_stress(material.cohesion)}" if material.cohesion else ""
     tension = f", fₜ = {_stress(material.tensile_strength)}" if material.tensile_strength else ""
-    crushing = f", f_m = {_stress(material.compressive_strength)}" if material.compressive_strength else ""
+    crushing = f", fₘ = {_stress(material.compressive_strength)}" if material.compressive_strength else ""
     energy = material.fracture_energy_1
-    toughness = f", G_I = {readable(energy, 'J/m²')}" if energy else ""
+    toughness = f", G₁ = {readable(energy, 'J/m²')}" if energy else ""
     return f"tan φ = {material.friction:.3g}{cohesion}{tension}{crushing}{toughness}"
 
 

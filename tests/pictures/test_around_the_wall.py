@@ -28,7 +28,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Action, Array, Forces, Scene, scene_from_dict
 
 from ..scene.test_loads import Wind
-from .scenes import SCENES, facade, large, line, on_a_step, point, settling_portal, wall
+from .scenes import MORTAR, SCENES, facade, large, line, on_a_step, point, settling_portal, wall
 
 
 @dataclass(frozen=True)
@@ -282,6 +282,12 @@ def test_joints_have_the_colour_of_their_material(drawn: Any) -> None:
     assert "mortar joints (bed): tan φ = 0.75, c = 0.1 MPa,\nfₜ = 0.05 MPa" in said
     assert "dry joints (head): tan φ = 0.4" in said
     assert not [text for text in said if text.startswith("joints")]
+
+
+def test_strengths_of_joints_have_their_symbols_with_indices() -> None:
+    strengths = {"cohesion": 3e5, "tensile_strength": 1e5, "compressive_strength": 8e6, "fracture_energy_1": 20.0}
+    said = [text.get_text() for text in words(figure_of(scene_from_dict(wall(2.0, 1.0, joint=MORTAR | strengths))))]
+    assert "joints: tan φ = 0.75, c = 0.3 MPa, fₜ = 0.1 MPa,\nfₘ = 8 MPa, G₁ = 20 J/m²" in said
 
 
 def test_a_tie_runs_from_plate_to_plate_and_to_its_anchor(drawn: Any) -> None:
