@@ -8,12 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .captions import show_extent, to_png
-from .deformed_shape import DeformedShape, common_extent
+from .deformed_shape import DeformedShape, Extent, common_extent
 from .flat import line_width, mechanism_key, paint_mechanism
 
 WIDTH, NARROWEST, TALLEST, DPI = 7.2, 5.4, 9.6, 250  # of a plate: that of a page, the least; height [in]; dots an inch
 TITLES, LINE = 0.85, 0.11  # height of its titles and its key, and of a line under a wall [in]
 LETTER, GAP = 0.06, 0.1  # width of a letter, and of a gap between walls [in]
+LOWEST, HIGHEST = 0.3, 3.0  # height of a row, in widths of its walls: labels fit in it, and it leaves room for others
 
 
 class PlateRow(NamedTuple):
@@ -25,8 +26,13 @@ class PlateRow(NamedTuple):
 
 
 def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> bytes:
-    """Draw a plate as PNG; each row's extent shows all of its shapes."""
-    extents = [common_extent(row.shapes) for row in rows]
+    """Draw a plate as PNG."""
+    return to_png(plate_figure(title, columns, rows), DPI)
+
+
+def plate_figure(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> Figure:
+    """The figure of a plate; each row's extent shows all of its shapes."""
+    extents = [_with_air(common_extent(row.shapes)) for row in rows]
     below = LINE * max(2, *(text.count("\n") + 1 for row in rows for text in row.captions)) + 0.08
     ratios = [(top - bottom) / (right - left) for left, right, bottom, top in extents]
     room = TALLEST - TITLES - below * len(rows)
@@ -48,7 +54,15 @@ def draw_plate(title: str, columns: Sequence[str], rows: Sequence[PlateRow]) -> 
     handles = mechanism_key([shape for row in rows for shape in row.shapes])
     looks = {"ncols": len(handles), "frameon": False, "fontsize": 7, "handlelength": 1.6}
     figure.legend(handles=handles, loc="outside lower center", **looks)
-    return to_png(figure, DPI)
+    return figure
+
+
+def _with_air(extent: Extent) -> Extent:
+    """An extent around another, neither lower nor higher than a row may be."""
+    left, right, bottom, top = extent
+    width, height = right - left, top - bottom
+    aside, above = max(0.0, height / HIGHEST - width) / 2, max(0.0, LOWEST * width - height) / 2
+    return left - aside, right + aside, bottom - above, top + above
 
 
 def _write(axes: Axes, x: float, y: float, text: str, **style: Any) -> None:

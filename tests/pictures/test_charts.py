@@ -1,6 +1,7 @@
-"""Charts: curves of walls pushed to and fro, and brackets without a collapse."""
+"""Charts and plates: curves of walls pushed to and fro, brackets without a collapse, walls of any shape in rows."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -9,11 +10,13 @@ from matplotlib.figure import Figure
 
 from runningbond.pictures.charts import bracket
 from runningbond.pictures.curve import curve_figure
+from runningbond.pictures.deformed_shape import undeformed_shape
+from runningbond.pictures.plate import PlateRow, plate_figure
 from runningbond.results import Outcome
 from runningbond.scene import Array, scene_from_dict
 from tests.walls import panel
 
-from .scenes import settling_portal
+from .scenes import settling_portal, wall
 
 
 def curve(moved: Array, load: Array) -> Figure:
@@ -56,3 +59,17 @@ def test_a_bracket_without_a_collapse_is_hollow(status: str, inside: str) -> Non
     last = axes.lines[-1]
     assert same_color(last.get_color(), inside)
     assert axes.lines[0].get_linewidth() == (4 if status == "collapse" else 2 * last.get_linewidth())
+
+
+def test_no_words_of_a_plate_overlap_however_long_or_tall_its_walls_are() -> None:
+    """A row is neither so low that its label meets the captions, nor so high that it leaves the others no room."""
+    sizes = {"garden wall": (24.0, 0.5), "chimney": (1.0, 24.0), "panel": (2.0, 1.0)}
+    scenes = {name: scene_from_dict(wall(*size)) for name, size in sizes.items()}
+    rows = [PlateRow(name, [undeformed_shape(scene)], ["λ = 0.6000"]) for name, scene in scenes.items()]
+    figure = plate_figure("Mechanisms", ["limit"], rows)
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for axes in figure.axes for text in (*axes.texts, axes.title) if text.get_text()]
+    for one, other in combinations(boxes, 2):
+        assert min(min(one.x1, other.x1) - max(one.x0, other.x0), min(one.y1, other.y1) - max(one.y0, other.y0)) <= 0
+    low, high = (figure.axes[k].get_position().height for k in (0, 1))
+    assert high <= 10.01 * low
