@@ -218,16 +218,15 @@ class LoadDrawing:
         tip = middle - reach * direction
         if load.height is not None and abs(direction[0]) > 0.5:
             tip[1] = at[1]
-        edge = self.shape.drawn_at(np.clip(tip, low, high), number)
-        tip = self.shape.drawn_at(tip, number)
         text, colour, name, both = self._drive_text(beam, load, live)
         if not low[1] <= at[1] <= high[1]:
             aside = np.array([-math.copysign(1.2 * self.a, direction[0]), 0.0])
-            tip = np.array([edge[0], tip[1]]) + aside
-            shoulder = np.array([edge[0], middle[1]])
-            self.sketch.line("beam", [shoulder, shoulder + aside, tip], lw=1.8)
-            self._height(tip, at[1] - self.low[1], -math.copysign(1.0, direction[0]))
-        self._force(tip, direction, text, colour, name, both=both)
+            shoulder, tip = np.array([tip[0], middle[1]]), tip + aside
+            arm = [self.shape.drawn_at(each, number) for each in (shoulder, shoulder + aside, tip)]
+            self.sketch.line("beam", arm, lw=1.8)
+            if not self.shape.displacement.any():  # what has moved is no longer as high
+                self._height(tip, at[1] - self.low[1], -math.copysign(1.0, direction[0]))
+        self._force(self.shape.drawn_at(tip, number), direction, text, colour, name, both=both)
 
     def _height(self, at: Array, height: float, side: float) -> None:
         """The height of a point above the base of the wall, as a dimension."""

@@ -402,6 +402,22 @@ def test_in_a_mechanism_loads_pull_from_the_face_that_moves_with_them(load: dict
         assert tip[0] > tail[0]
 
 
+def test_in_a_mechanism_the_arm_of_a_drive_stays_on_its_beam_and_its_height_is_left_out() -> None:
+    beam = {"height": 0.25, "mass": 500.0, "drive": {"displacement": [0.01, 0.0], "at": 2.0}}
+    scene = scene_from_dict(wall(2.0, 1.0, beam=beam, load={"gravity": 9.81}))
+    assert scene.beam is not None
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[scene.beam.block] = [0.5, 0.5, -0.2]
+    figure = figure_of(scene, Outcome("", "limit", "collapse", 1e5, motion=motion))
+    (moved,) = named(figure, "beam", Patch)
+    corners = moved.get_xy()[:-1]
+    one, other = corners[np.argsort(corners[:, 0])[:2]]
+    (arm,) = named(figure, "beam", Line2D)
+    assert arm.get_xydata()[0] == pytest.approx((one + other) / 2, abs=1e-9)
+    assert named(figure_of(scene), "dimension", Line2D)
+    assert not named(figure, "dimension", Line2D)
+
+
 def test_a_support_that_moves_farther_than_its_wall_is_drawn_to_move_no_farther_than_walls_are() -> None:
     """A wall bridges it, and follows by a thousandth."""
     portal = scene_from_dict(settling_portal())
