@@ -124,7 +124,8 @@ class LoadDrawing:
     def _point(self, at: Array, block: Indices, force: tuple[float, float], live: bool, colour: str, name: str) -> None:
         size = "P" if live and is_force(self.scene) else times_lambda(readable(math.hypot(*force), "N"), live=live)
         direction = unit_vector(np.array(force))
-        ahead, behind = self._inside(at + 0.5 * self.a * direction), self._inside(at - 0.5 * self.a * direction)
+        within = at + 0.02 * (self.scene.blocks.centroid[block].mean(axis=0) - at)  # else of a corner all is outside
+        ahead, behind = (self._inside(within + side * 0.5 * self.a * direction) for side in (1, -1))
         self._force(self.shape.drawn_at(at, block), direction, size, colour, name, pulls=behind and not ahead)
 
     def _force(

@@ -418,6 +418,15 @@ def test_in_a_mechanism_the_arm_of_a_drive_stays_on_its_beam_and_its_height_is_l
     assert not named(figure, "dimension", Line2D)
 
 
+@pytest.mark.parametrize("rise", [-0.01, 0.0, 0.01])
+def test_a_force_pulls_at_a_corner_from_outside(rise: float) -> None:
+    """Behind the corner, a little above the horizontal, there is nothing of the wall."""
+    load = {"gravity": 9.81, "live": point(2.0, 1.0, 1.0, rise)}
+    figure = figure_of(scene_from_dict(wall(2.0, 1.0, load=load)))
+    (arrow,) = [one for one in figure.axes[0].get_children() if isinstance(one, FancyArrowPatch)]
+    assert arrow._path_original.vertices[0] == pytest.approx([2.0, 1.0])
+
+
 def test_a_support_that_moves_farther_than_its_wall_is_drawn_to_move_no_farther_than_walls_are() -> None:
     """A wall bridges it, and follows by a thousandth."""
     portal = scene_from_dict(settling_portal())
