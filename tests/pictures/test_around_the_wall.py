@@ -393,8 +393,8 @@ def test_in_a_mechanism_loads_pull_from_the_face_that_moves_with_them(load: dict
     motion[scene.wall & (scene.blocks.centroid[:, 1] > 0.75), 0] = 1.0
     figure = figure_of(scene, Outcome("", "limit", "collapse", 0.5, motion=motion))
     blocks = [one for one in figure.axes[0].collections if isinstance(one, PolyCollection)]
-    end = max(path.vertices[:, 0].max() for one in blocks for path in one.get_paths())
-    pulls = [one for one in figure.axes[0].get_children() if isinstance(one, FancyArrowPatch)]
+    end = max(np.asarray(path.vertices)[:, 0].max() for one in blocks for path in one.get_paths())
+    pulls = named(figure, "live load", FancyArrowPatch)
     assert pulls
     for arrow in pulls:
         tail, tip = arrow._path_original.vertices
@@ -423,7 +423,7 @@ def test_a_force_pulls_at_a_corner_from_outside(rise: float) -> None:
     """Behind the corner, a little above the horizontal, there is nothing of the wall."""
     load = {"gravity": 9.81, "live": point(2.0, 1.0, 1.0, rise)}
     figure = figure_of(scene_from_dict(wall(2.0, 1.0, load=load)))
-    (arrow,) = [one for one in figure.axes[0].get_children() if isinstance(one, FancyArrowPatch)]
+    (arrow,) = named(figure, "live load", FancyArrowPatch)
     assert arrow._path_original.vertices[0] == pytest.approx([2.0, 1.0])
 
 
