@@ -1,6 +1,6 @@
 """A wall in Python: the tables of a scene file, checked like one, changed by copies, run and drawn."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from os.path import relpath
 from pathlib import Path
@@ -158,8 +158,8 @@ class Wall:
                 raise SceneError(key, f"is not a key of a wall{suggestion(key, [*table_of, *WHOLE])}", value)
             named = {"kind": value} if key in ("support", "live") and isinstance(value, str) else value
             tables.append({table_of[key]: {key: named}} if key in table_of else {key: named})
-        given = {key: value for key, value in wall.items() if value is not None}
-        description = _changed({"title": title, "wall": given, **DEFAULTS}, tables)
+        given = {"wall": {key: value for key, value in wall.items() if value is not None}}
+        description = _changed({"title": title, "wall": {}, **DEFAULTS}, [given, *tables])
         beam, load = (description.get(name) for name in ("beam", "load"))
         is_moved = (isinstance(beam, Mapping) and "drive" in beam) or (isinstance(load, Mapping) and "history" in load)
         if is_moved and not any("live" in named for table in tables if isinstance(named := table.get("load"), Mapping)):
@@ -372,15 +372,25 @@ def _as_in_a_file(value: Any) -> Any:
 
 
 def _changed(description: dict[str, Any], changes: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """A description with nested tables put in; a key that two of them have is refused by a `SceneError`."""
-    given: set[str] = set()
+    """A description with nested tables put in, in whatever order; a key that two of them have is refused."""
+    together: dict[str, Any] = {}
     for change in changes:
-        for name, value in _leaves(change):
-            if name in given:
-                raise SceneError(name, "is given twice; give it once", value)
-            given.add(name)
-        description = _merged(description, change)
-    return description
+        together = _together(together, change)
+    return _merged(description, together)
+
+
+def _together(one: Mapping[str, Any], other: Mapping[str, Any], name: str = "") -> dict[str, Any]:
+    """The keys of two nested tables; one that both have is refused by a `SceneError`."""
+    together = dict(one)
+    for key, value in other.items():
+        before, full_name = together.get(key), f"{name}{key}"
+        if key not in together:
+            together[key] = value
+        elif isinstance(before, Mapping) and isinstance(value, Mapping):
+            together[key] = _together(before, value, f"{full_name}.")
+        else:
+            raise SceneError(full_name, "is given twice; give it once", value)
+    return together
 
 
 def _path(name: str, table: Mapping[str, Any]) -> list[str]:
@@ -393,21 +403,12 @@ def _path(name: str, table: Mapping[str, Any]) -> list[str]:
     return [key, *_path(name[len(key) + 1 :], inner if isinstance(inner, Mapping) else {})]
 
 
-def _leaves(table: Mapping[str, Any], name: str = "") -> Iterator[tuple[str, Any]]:
-    """Full names and values of the keys in nested tables."""
-    for key, value in table.items():
-        if isinstance(value, Mapping):
-            yield from _leaves(value, f"{name}{key}.")
-        else:
-            yield f"{name}{key}", value
-
-
 def _merged(old: Mapping[str, Any], new: Mapping[str, Any], name: str = "") -> dict[str, Any]:
     """A table with the keys of another one put in or, where they are None, taken out."""
     merged = dict(old)
     for key, value in new.items():
         before, full_name = merged.get(key), f"{name}{key}"
-        if isinstance(value, Mapping) and "kind" not in value:
+        if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material of that name
             if isinstance(before, list):
                 raise SceneError(full_name, "is a list, which is changed as a whole", before)
             merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, f"{full_name}.")

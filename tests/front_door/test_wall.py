@@ -107,6 +107,27 @@ def test_a_table_of_another_kind_takes_the_place_of_the_old_one() -> None:
     assert isinstance(rb.read("panel-01").with_({"load.live": {"kind": "lateral"}}).description["load"]["live"], dict)
 
 
+def test_changes_are_the_same_in_whatever_order() -> None:
+    """A direction stays beside the kind of its load, whichever is named first."""
+    wall = rb.Wall.running_bond(**PANEL)
+    kind, direction = {"load.live": {"kind": "tilt"}}, {"load.live.direction": "left"}
+    turned = {"kind": "tilt", "direction": "left"}
+    assert wall.with_({**kind, **direction}).description["load"]["live"] == turned
+    assert wall.with_({**direction, **kind}).description["load"]["live"] == turned
+    assert wall.with_(direction, load={"live": {"kind": "tilt"}}).description["load"]["live"] == turned
+    beamed = wall.with_({"beam": {"height": 0.2}})
+    for changes in ({"beam": None, "beam.mass": 5.0}, {"beam.mass": 5.0, "beam": None}):
+        with pytest.raises(SceneError, match="beam.*: is given twice"):
+            beamed.with_(changes)
+
+
+def test_a_material_may_be_called_kind() -> None:
+    materials = {"kind": {"density": 700.0}, "oak": {"density": 600.0}}
+    wall = rb.Wall.running_bond(**PANEL, materials=materials)
+    heavier = wall.with_({"materials.kind.density": 800.0})
+    assert heavier.description["materials"] == {"kind": {"density": 800.0}, "oak": {"density": 600.0}}
+
+
 REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"density": -1.0}, "block.density = -1.0: must be a number above 0"),
     ({"friction": -0.1}, "joint.friction = -0.1: must be a number at least 0"),
@@ -210,6 +231,7 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
             "joint.friction = 0.4: is given",
         ),
         (lambda _: rb.Wall.running_bond(**PANEL, joint={"friction": 0.4}), "joint.friction = 0.4: is given twice"),
+        (lambda _: rb.Wall.running_bond(**PANEL, wall={"length": 0.96}), "wall.length = 0.96: is given twice"),
         (
             lambda _: rb.Wall.running_bond(**PANEL, live="tilt", load={"live": {"kind": "tilt"}}),
             "load.live.kind = 'tilt': is",
