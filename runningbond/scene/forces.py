@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Array, Indices, frozen
+from .errors import SceneError
 
 if TYPE_CHECKING:
     from .wall import Scene
@@ -45,9 +46,14 @@ class Forces:
         at: ArrayLike = (),
         force: ArrayLike = (),
     ) -> "Forces":
-        """Forces on a scene's blocks; an acceleration or a moment may be one for all of them."""
-        nb, block = len(scene.blocks), frozen(block, np.int64)
+        """Forces on a scene's blocks; an acceleration or a moment may be one for all of them.
+
+        Blocks that the scene has not, and points that are nowhere, are refused by a `SceneError`.
+        """
+        nb, block = len(scene.blocks), _numbers(block, len(scene.blocks))
         at, force = (np.broadcast_to(np.reshape(x, (-1, 2)), (len(block), 2)) for x in (at, force))
+        if not np.isfinite(at).all():
+            raise SceneError("load.live.at", "must be finite", at.tolist())
         return cls(
             frozen(np.broadcast_to(acceleration, (nb, 2))),
             frozen(np.broadcast_to(moment, nb)),
@@ -77,6 +83,14 @@ class Forces:
     def at_points_alone(self) -> bool:
         """Whether they act at points only."""
         return not self.acceleration.any() and not self.moment.any()
+
+
+def _numbers(block: ArrayLike, count: int) -> Indices:
+    """Numbers of blocks ``(n,)``; others than those of `count` blocks, as a mask's, are refused."""
+    numbers = np.reshape(block, -1)
+    if len(numbers) and not (numbers.dtype.kind in "iu" and numbers.min() >= 0 and numbers.max() < count):
+        raise SceneError("load.live.block", f"must be numbers of blocks, 0 … {count - 1}", block)
+    return frozen(numbers, np.int64)
 
 
 @dataclass(frozen=True, eq=False)

@@ -481,11 +481,19 @@ def _check(scene: Scene) -> None:
             continue
         with keys_of(key, "load.live"):
             forces = load.forces(scene)
-        size = sum(float(np.abs(part).sum()) for part in (forces.acceleration, forces.moment, forces.force))
-        if not 0 < size < np.inf:
-            raise SceneError(key, "must put finite forces on the blocks, not all of them zero", load)
+        _check_forces(scene, key, load, forces)
     if len(scene.load.live) > 1 and _cancel(scene):
         raise SceneError("load.live", "must not cancel out on every block: nothing is multiplied by λ")
+
+
+def _check_forces(scene: Scene, key: str, load: Action, forces: object) -> None:
+    """Refuse what are no forces, and those that are not finite or leave all that moves alone."""
+    if not isinstance(forces, Forces):
+        raise SceneError(f"{key}: {type(load).__name__}.forces", "must return Forces", forces)
+    moves = ~scene.fixed
+    parts = forces.acceleration[moves], forces.moment[moves], forces.force[moves[forces.block]]
+    if not 0 < sum(float(np.abs(part).sum()) for part in parts) < np.inf:
+        raise SceneError(key, "must put finite forces on the blocks, not all of them zero on those that move", load)
 
 
 def _cancel(scene: Scene) -> bool:

@@ -160,6 +160,19 @@ class Moments(Action):
         return Forces.on(scene, moment=self.moment)
 
 
+@dataclass(frozen=True)
+class Push(Action):
+    """A push of 1 N to the right on some blocks, at a point; or what is given, by mistake, in place of forces."""
+
+    block: Any
+    at: tuple[float, float] = (0.0, 0.0)
+    given: Any = ()
+
+    def forces(self, scene: Scene) -> Forces:
+        """The push, unless something else is given."""
+        return Forces.on(scene, block=self.block, at=self.at, force=(1.0, 0.0)) if self.given == () else self.given
+
+
 @pytest.mark.parametrize(
     ("live", "said"),
     [
@@ -174,6 +187,12 @@ class Moments(Action):
         ({"kind": "body"}, "load.live.acceleration: is missing"),
         (Moments(0.0), "load.live = Moments(moment=0.0): must put finite forces on the blocks, not all of them zero"),
         (Moments(float("nan")), "must put finite forces on the blocks"),
+        (Push([78]), "must put finite forces on the blocks, not all of them zero on those that move"),
+        ([DOWN, Push([79])], "load.live[1].block = [79]: must be numbers of blocks, 0 … 78"),
+        (Push(-1), "load.live.block = -1: must be numbers of blocks, 0 … 78"),
+        (Push([True, False]), "load.live.block = [True, False]: must be numbers of blocks, 0 … 78"),
+        (Push([0], (float("nan"), 0.0)), "load.live.at = [[nan, 0.0]]: must be finite"),
+        (Push([0], given=None), "load.live: Push.forces: must return Forces"),
     ],
 )
 def test_loads_that_are_none(live: Any, said: str) -> None:
