@@ -79,7 +79,7 @@ class Wall:
         if not isinstance(description, Mapping):
             raise SceneError("description", "must be a mapping of the tables of a scene file", description)
         self._description: dict[str, Any] = _as_in_a_file(description)
-        self.folder = path_of("folder", folder)
+        self.folder = path_of("folder", folder).absolute()  # whichever folder is the current one later
         self.scene  # noqa: B018 - built at once, so that what is wrong is said where it is written
 
     @classmethod

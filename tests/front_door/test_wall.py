@@ -13,6 +13,7 @@ from runningbond.compare.published import PUBLISHED, published_scene
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.schema import scene_schema
 from runningbond.wall import WHOLE
+from tests.scene.drafting import BRICKS, closed, dxf, tables
 
 PANEL: dict[str, Any] = {
     "length": 1.44,
@@ -119,6 +120,22 @@ def test_changes_are_the_same_in_whatever_order() -> None:
     for changes in ({"beam": None, "beam.mass": 5.0}, {"beam.mass": 5.0, "beam": None}):
         with pytest.raises(SceneError, match="beam.*: is given twice"):
             beamed.with_(changes)
+
+
+def test_a_drawing_is_looked_up_where_it_was_whatever_the_current_folder_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two folders each have a drawing of one name: a copy of the first's wall is of the first's drawing."""
+    walls = []
+    for name, bricks in (("one", BRICKS), ("two", BRICKS[:2])):
+        (tmp_path / name).mkdir()
+        monkeypatch.chdir(tmp_path / name)
+        dxf(Path("wall.dxf"), closed(bricks))
+        walls.append(rb.Wall.from_dict(tables()))
+    copies = [wall.with_({"joint.friction": 0.5}) for wall in walls]
+    assert [wall.scene.wall.sum() for wall in copies] == [7, 2]
+    copies[0].to_toml("copy.toml")
+    assert same(rb.read("copy.toml").scene, copies[0].scene)
 
 
 def test_a_material_may_be_called_kind() -> None:
