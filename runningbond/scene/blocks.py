@@ -53,14 +53,14 @@ class Blocks:
     @cached_property
     def owner(self) -> Indices:
         """Block of each vertex and of the edge that starts there, ``(nv,)``."""
-        return np.repeat(np.arange(len(self)), np.diff(self.first))
+        return frozen(np.repeat(np.arange(len(self)), np.diff(self.first)), np.int64)
 
     @cached_property
     def successor(self) -> Indices:
         """Vertex at the far end of the edge that starts at each vertex, ``(nv,)``."""
         following = np.arange(1, len(self.vertices) + 1)
         following[self.first[1:] - 1] = self.first[:-1]
-        return following
+        return frozen(following, np.int64)
 
     @cached_property
     def _local(self) -> tuple[Array, Array, Array]:
@@ -75,14 +75,14 @@ class Blocks:
     @cached_property
     def area(self) -> Array:
         """Area of each block, ``(nb,)`` [m²]."""
-        return np.add.reduceat(self._local[2], self.first[:-1]) / 2
+        return frozen(np.add.reduceat(self._local[2], self.first[:-1]) / 2)
 
     @cached_property
     def centroid(self) -> Array:
         """Centroid of each block, ``(nb, 2)`` [m]."""
         here, there, cross = self._local
         moment = np.add.reduceat((here + there) * cross[:, None], self.first[:-1], axis=0)
-        return self.vertices[self.first[:-1]] + moment / (6 * self.area[:, None])
+        return frozen(self.vertices[self.first[:-1]] + moment / (6 * self.area[:, None]))
 
     @cached_property
     def polar_moment(self) -> Array:
@@ -91,8 +91,7 @@ class Blocks:
         square = (here**2 + here * there + there**2).sum(axis=1) * cross
         about_origin = np.add.reduceat(square, self.first[:-1]) / 12
         arm = self.centroid - self.vertices[self.first[:-1]]
-        moment: Array = about_origin - self.area * (arm**2).sum(axis=1)
-        return moment
+        return frozen(about_origin - self.area * (arm**2).sum(axis=1))
 
     @cached_property
     def tolerance(self) -> float:
@@ -103,7 +102,7 @@ class Blocks:
     def boxes(self) -> tuple[Array, Array]:
         """Lower and upper corner of the bounding box of each block, two ``(nb, 2)`` [m]."""
         low, high = (extreme.reduceat(self.vertices, self.first[:-1]) for extreme in (np.minimum, np.maximum))
-        return low, high
+        return frozen(low), frozen(high)
 
     def extent(self, block: int | Mask | slice = slice(None)) -> tuple[Array, Array]:
         """Lower and upper corner of the bounding box of all or some blocks, two ``(2,)`` [m]."""
@@ -117,7 +116,7 @@ class Blocks:
         reflex = np.logical_or.reduceat(turn < -CONTACT_TOLERANCE * scale, self.first[:-1])
         # A polygon that winds twice has only left turns, and yet crosses itself.
         twice = np.add.reduceat(np.arctan2(turn, along), self.first[:-1]) > 3 * np.pi
-        return ~(reflex | twice)
+        return frozen(~(reflex | twice), np.bool_)
 
     @property
     def _turns(self) -> tuple[Array, Array, Array]:

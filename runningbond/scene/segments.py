@@ -42,13 +42,13 @@ class Joints:
     def length(self) -> Array:
         """Length of each joint, ``(nj,)`` [m]."""
         run = self.ends[:, 1] - self.ends[:, 0]
-        return np.hypot(run[:, 0], run[:, 1])
+        return frozen(np.hypot(run[:, 0], run[:, 1]))
 
     @cached_property
     def is_bed(self) -> Mask:
         """Whether each joint lies flatter than 45°, ``(nj,)``."""
         run = np.abs(self.ends[:, 1] - self.ends[:, 0])
-        return np.asarray(run[:, 0] > run[:, 1], dtype=np.bool_)
+        return frozen(run[:, 0] > run[:, 1], np.bool_)
 
 
 def find_joints(blocks: Blocks) -> Joints:

@@ -138,7 +138,7 @@ class Scene:
         is_beam = np.zeros(len(self.blocks), dtype=np.bool_)
         if self.beam is not None and self.beam.block is not None:
             is_beam[self.beam.block] = True
-        return is_beam
+        return frozen(is_beam, np.bool_)
 
     @property
     def masonry(self) -> Mask:
@@ -161,7 +161,7 @@ class Scene:
         density = np.array([material.density for material in self.block_materials])[self.material_of_block]
         if self.beam is not None:
             density[self.beam.block] = self.beam.mass / (self.thickness * self.blocks.area[self.beam.block])
-        return density
+        return frozen(density)
 
     @cached_property
     def inertial_density(self) -> Array:
@@ -184,12 +184,12 @@ class Scene:
         density = self.density.copy()
         if self.beam is not None:
             density[self.beam.block] = np.maximum(density[self.beam.block], least)
-        return density
+        return frozen(density)
 
     @cached_property
     def mass(self) -> Array:
         """Mass of each block, ``(nb,)`` [kg]."""
-        return self.density * self.thickness * self.blocks.area
+        return frozen(self.density * self.thickness * self.blocks.area)
 
     @cached_property
     def settlement(self) -> Settlement | None:
@@ -209,7 +209,7 @@ class Scene:
     @cached_property
     def support_motion(self) -> Array:
         """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``: that of moving supports."""
-        return np.zeros((len(self.blocks), 3)) if self.settlement is None else self.settlement.motion(self)
+        return frozen(np.zeros((len(self.blocks), 3)) if self.settlement is None else self.settlement.motion(self))
 
     @cached_property
     def late_pins(self) -> Pins:
@@ -262,7 +262,7 @@ class Scene:
         pitch = self.bond.width if self.bond else float((high - low)[0])
         x, y = (self.blocks.centroid - low).T
         column = np.rint(x / (SAME_COLUMN * (high - low).max()))
-        return np.lexsort((y, column, np.rint(4 * x / pitch) % 4))
+        return frozen(np.lexsort((y, column, np.rint(4 * x / pitch) % 4)), np.int64)
 
     @property
     def block_size(self) -> float:

@@ -138,6 +138,17 @@ def test_a_drawing_is_looked_up_where_it_was_whatever_the_current_folder_is(
     assert same(rb.read("copy.toml").scene, copies[0].scene)
 
 
+def test_what_models_see_cannot_be_changed_in_place() -> None:
+    """The next run would be of another wall."""
+    scene = rb.Wall.running_bond(**PANEL).scene
+    seen = {"mass": scene.mass, "density": scene.density, "area": scene.blocks.area}
+    seen |= {"centroid": scene.blocks.centroid, "boxes": scene.blocks.boxes[0], "length": scene.joints.length}
+    for name, values in seen.items():
+        with pytest.raises(ValueError, match="read-only"):
+            values *= 9.81
+        assert not values.flags.writeable, name
+
+
 def test_a_material_may_be_called_kind() -> None:
     materials = {"kind": {"density": 700.0}, "oak": {"density": 600.0}}
     wall = rb.Wall.running_bond(**PANEL, materials=materials)
