@@ -5,6 +5,8 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .campaigns import ctrl_c_passed_on, run_campaign
 from .campaigns.fingerprint import fingerprint
 from .models import TOLERANCE, Model, find_model
@@ -57,7 +59,8 @@ def sweep(
         remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
         raise SceneError("changes", remedy, changes)
     for key, values in changes.items():
-        if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
+        is_single = isinstance(values, (str, bytes, Mapping)) or (isinstance(values, np.ndarray) and not values.ndim)
+        if is_single or not isinstance(values, Iterable):
             raise SceneError(key, "must be a list of the values that it is to take", values)
     cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
     scenes: dict[str, Scene] = {}

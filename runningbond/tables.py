@@ -27,7 +27,7 @@ def _column(values: Sequence[Any]) -> Any:
     """Numbers as numbers, None among them as not a number; anything else as it is."""
     if isinstance(values, np.ndarray):
         return values
-    if all(value is None or isinstance(value, (bool, int, float, np.generic)) for value in values):
+    if all(value is None or isinstance(value, (bool, int, float, np.number, np.bool_)) for value in values):
         return np.array([np.nan if value is None else value for value in values])
     column = np.empty(len(values), dtype=object)
     column[:] = values

@@ -149,12 +149,18 @@ def test_a_model_of_ones_own_may_be_swept(tmp_path: Path) -> None:
         assert np.asarray(table["multiplier"]) == pytest.approx([0.2, 0.3])
 
 
+def test_a_word_of_numpy_that_is_left_out_is_none() -> None:
+    """Or what pandas has for it, and not a word."""
+    table = rb.sweep(WALL, {"title": [np.str_("a"), None]}, "limit", jobs=1)
+    assert [isinstance(title, str) for title in table["title"]] == [True, False]
+
+
 def test_an_unknown_model_is_refused_at_once() -> None:
     with pytest.raises(rb.SceneError, match='did you mean "limit"?'):
         rb.sweep(WALL, {"joint.friction": [0.3]}, "limt")
 
 
-@pytest.mark.parametrize("value", [0.4, "base", {"kind": "base"}])
+@pytest.mark.parametrize("value", [0.4, "base", {"kind": "base"}, np.array(0.4)])
 def test_values_are_a_list(value: Any) -> None:
     with pytest.raises(rb.SceneError, match="must be a list of the values"):
         rb.sweep(WALL, {"support.kind": value}, "limit")
