@@ -10,6 +10,7 @@ from functools import partial
 from typing import Literal, TypeAlias
 
 import numpy as np
+import shapely
 from scipy.sparse import coo_array, csr_array
 
 from meshing import WallMesh
@@ -97,9 +98,12 @@ class PassedOn(Action):
         )
 
     def _bearing(self, scene: Scene, block: int, at: Array) -> Indices:
-        """The pieces that bear a force on a block: those that touch its point, or a block that is whole, anywhere."""
+        """The pieces that bear a force on a block: those that touch its point, or else the nearest."""
         own = np.flatnonzero(self.owner == block)
-        return own if len(own) == 1 else np.intersect1d(own, scene.blocks.containing(at))
+        touched = np.intersect1d(own, scene.blocks.containing(at))
+        if len(touched):
+            return touched
+        return own[[int(np.argmin(shapely.distance(shapely.Point(at), scene.blocks.shapes(own))))]]
 
 
 def added_compliance(parts: Pieces) -> float:

@@ -21,8 +21,10 @@ from runningbond.dynamics.lead import Lead
 from runningbond.joints.law import FRICTION_WORK
 from runningbond.joints.softening import DAMAGE
 from runningbond.scene import (
+    Action,
     Array,
     BlockMaterial,
+    Forces,
     Indices,
     JointMaterial,
     Load,
@@ -166,6 +168,24 @@ def test_loads_on_pieces_have_the_resultant_of_their_block(make: Any, loads: Any
     state.motion = np.where(np.isfinite(system.mass), (system.dead + 0.4 * system.live) / system.mass, 0.0)
     accelerated = run.system.motion_of_blocks(state.motion)[~scene.fixed]
     assert accelerated == pytest.approx(np.tile([0.4 * 9.81, -9.81, 0.0], (len(accelerated), 1)), abs=1e-10)
+
+
+class Bracket(Action):
+    """A force of one's own on the first block, at a point beside the wall."""
+
+    def forces(self, scene: Scene) -> Forces:
+        """1 N to the right, at the end of an arm."""
+        return Forces.on(scene, block=[0], at=(-0.1, 0.05), force=(1.0, 0.0))
+
+
+def test_a_force_beside_a_block_is_on_one_of_its_pieces() -> None:
+    """It has the same resultant on the whole wall; it was on none of them."""
+    scene = wall(STRONG, load__live=Bracket())
+    found = pieces(scene, wall_mesh(scene, 2), "blocks")
+    force, at = found.scene.live_forces.force, found.scene.live_forces.at
+    assert force.tolist() == [[1.0, 0.0]]
+    assert at.tolist() == [[-0.1, 0.05]]
+    assert found.owner[found.scene.live_forces.block].tolist() == [0]
 
 
 def test_blocks_move_as_wholes_where_their_pieces_do() -> None:
