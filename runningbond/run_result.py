@@ -7,7 +7,7 @@ from warnings import warn
 import numpy as np
 
 from .joints import listed_points, wall_points
-from .models import Model, find_model, run_model
+from .models import Model, check_parameters, find_model, run_model
 from .path_states import PathState, collected
 from .pictures.captions import to_png, to_svg
 from .pictures.curve import curve_figure, draw_curve
@@ -145,6 +145,7 @@ class Result:
 def run_wall(wall: Wall, model: str | Model, tolerance: float, states: bool, parameters: dict[str, Any]) -> Result:
     """Run a model on a wall, as `Wall.run` says."""
     model = find_model(model)
+    check_parameters(model, parameters)  # of which some may be named as `run_model` names its own
     for line in plausibility.warnings(wall.scene):
         warn(line, stacklevel=3)
     recorder = model.observer(wall.scene, None) if states and model.observer else None

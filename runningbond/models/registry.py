@@ -4,7 +4,7 @@ A model of one's own is one more `Model`: put into `MODELS`, or handed to `run_m
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
@@ -163,6 +163,14 @@ def check_tolerance(tolerance: float, key: str = "tolerance") -> None:
         raise SceneError(key, "must be a number above 0 and below 1", tolerance)
 
 
+def check_parameters(model: Model, parameters: Mapping[str, Any]) -> None:
+    """Refuse settings by names that a model does not have."""
+    for name, value in parameters.items():
+        if name not in model.parameters:
+            own = ", ".join(model.parameters) or "none"
+            raise SceneError(f"model {model.name}: {name}", f"is not a parameter of it; it has {own}", value)
+
+
 def run_model(
     model: str | Model,
     scene: Scene,
@@ -192,10 +200,7 @@ def run_model(
     """
     model = find_model(model)
     check_tolerance(tolerance)
-    for name, value in parameters.items():
-        if name not in model.parameters:
-            own = ", ".join(model.parameters) or "none"
-            raise SceneError(f"model {model.name}: {name}", f"is not a parameter of it; it has {own}", value)
+    check_parameters(model, parameters)
     model.check(scene)
     if model in _EVERY_MODEL:
         check_settings(model.name, scene, parameters)

@@ -271,6 +271,8 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
         (lambda wall: wall.run("fem", cells=1.5), "cells = 1.5: must be a whole number, at least 1"),
         (lambda wall: wall.run("fem", cells=True), "cells = True: must be a whole number, at least 1"),
         (lambda wall: wall.run("fem", cells="2"), "cells = '2': must be a whole number, at least 1"),
+        (lambda wall: wall.run("fem", scene=3), "model fem: scene = 3: is not a parameter of it"),
+        (lambda wall: wall.run("limit", observe=print), "model limit: observe"),
         (lambda wall: rb.sweep(wall, {"joint.friction": [0.4]}, "limit", folder=3), "folder = 3: must be a path"),  # type: ignore[arg-type]
         (lambda wall: rb.Wall.from_dict(wall.description, 3), "folder = 3: must be a path"),  # type: ignore[arg-type]
         (lambda wall: wall.draws("dem-static", 2, folder=3), "folder = 3: must be a path"),
