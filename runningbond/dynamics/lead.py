@@ -41,9 +41,11 @@ LAST = 0.1
 STILL = 1e-6
 """Change of a share that counts as none, beside the tolerance's part of all its change."""
 
-FALLEN = 0.5
-"""Size, in blocks, by which all of the dead load has come down, or what would do as much work, once a wall falls; and
-part of that work, less what damping takes, which is in motion then."""
+COME_DOWN = 0.5
+"""Sizes of a block by which all of the dead load has come down, or what would do as much work, once a wall falls."""
+
+IN_MOTION = 0.5
+"""Part of that work, less what damping takes, which is in motion then."""
 
 LAG = 5e-3
 """Part of that work which one time step may do: velocities are half a step behind, and the ledger misses half of it."""
@@ -232,9 +234,9 @@ class Lead:
         """
         run, system = self.run, self.run.system
         given = run.dead_work(state) - run.dead_work(self.start)
-        if given <= max(FALLEN * self._work_of_a_block, run.dt * float(system.dead @ state.velocity) / LAG):
+        if given <= max(COME_DOWN * self._work_of_a_block, run.dt * float(system.dead @ state.velocity) / LAG):
             return False
-        return system.kinetic_energy(state.velocity) > FALLEN * (1 - run.local) * given
+        return system.kinetic_energy(state.velocity) > IN_MOTION * (1 - run.local) * given
 
     @cached_property
     def _work_of_a_block(self) -> float:
