@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runningbond.scene import Action, Array, GivenForces, Indices, JointMaterial, Scene, SceneError
-from runningbond.scene.arrays import components, frozen
+from runningbond.scene.arrays import components
 from runningbond.scene.ranges import Range, suggestion
 
 SEED = 20
@@ -149,7 +149,7 @@ def _carried(scene: Scene, drawn: Scene) -> Scene:
         there = moved(forces.block, forces.at)
         if not forces.moment.any() and np.array_equal(there, forces.at):
             return load
-        return GivenForces(replace(forces, at=frozen(there)))
+        return GivenForces(replace(forces, at=there))
 
     live, dead = (tuple(map(on_blocks, loads)) for loads in (scene.load.live, scene.load.dead))
     return replace(

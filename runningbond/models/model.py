@@ -85,6 +85,11 @@ class Model:
     marker: str = "*"
     line: str | tuple[int, tuple[int, ...]] = "-"  # and its pushover curve
 
+    def __post_init__(self) -> None:
+        for field in ("reads", "parameters", "takes"):
+            if isinstance(value := getattr(self, field), str):
+                raise TypeError(f"{field} of a model must be several words, not {value!r}")
+
     def check(self, scene: Scene) -> None:
         """Refuse, by name, a scene with what this model does not know of."""
         for key in scene.extras:

@@ -35,6 +35,11 @@ class Forces:
     at: Array
     force: Array
 
+    def __post_init__(self) -> None:
+        for name in ("acceleration", "moment", "at", "force"):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+        object.__setattr__(self, "block", frozen(self.block, np.int64))
+
     @classmethod
     def on(
         cls,
@@ -54,13 +59,7 @@ class Forces:
         at, force = (np.broadcast_to(np.reshape(x, (-1, 2)), (len(block), 2)) for x in (at, force))
         if not np.isfinite(at).all():
             raise SceneError("load.live.at", "must be finite", at.tolist())
-        return cls(
-            frozen(np.broadcast_to(acceleration, (nb, 2))),
-            frozen(np.broadcast_to(moment, nb)),
-            block,
-            frozen(at),
-            frozen(force),
-        )
+        return cls(np.broadcast_to(acceleration, (nb, 2)), np.broadcast_to(moment, nb), block, at, force)
 
     def __add__(self, other: "Forces") -> "Forces":
         joined = (np.concatenate([getattr(each, name) for each in (self, other)]) for name in ("block", "at", "force"))

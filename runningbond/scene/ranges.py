@@ -36,8 +36,7 @@ class Range:
         """A value as a number of the range; any other is refused under its key."""
         number = _finite(value)
         if number is None or not (self.least <= number <= self.most and self.above < number < self.below):
-            infinite = isinstance(value, float) and not math.isfinite(value) and "finite" not in str(self)
-            raise SceneError(key, f"must be {self}{', finite' * infinite}", value)
+            raise SceneError(key, f"must be {self}{_beyond(value, str(self))}", value)
         return number
 
 
@@ -97,6 +96,15 @@ def suggestion(word: object, options: list[str]) -> str:
     """What a misspelt word may have been meant to be."""
     likely = difflib.get_close_matches(word, options, n=1) if isinstance(word, str) else []
     return f'; did you mean "{likely[0]}"?' if likely else ""
+
+
+def _beyond(value: object, words: str) -> str:
+    """What else is asked of a float that no double's product holds; `words` may have said so."""
+    if not isinstance(value, float) or _finite(value) is not None:
+        return ""
+    if math.isfinite(value):
+        return f", of a size from {SMALLEST:g} to {1 / SMALLEST:g}"
+    return ", finite" if "finite" not in words else ""
 
 
 def _finite(value: object) -> float | None:

@@ -142,6 +142,12 @@ def test_what_models_see_cannot_be_changed_in_place() -> None:
     """The next run would be of another wall."""
     scene = rb.Wall.running_bond(**PANEL).scene
     seen = {"mass": scene.mass, "density": scene.density, "area": scene.blocks.area}
+    for kind, forces in (("dead", scene.dead_forces), ("live", scene.live_forces)):
+        seen |= {
+            f"{kind} acceleration": forces.acceleration,
+            f"{kind} moment": forces.moment,
+            f"{kind} force": forces.force,
+        }
     seen |= {"centroid": scene.blocks.centroid, "boxes": scene.blocks.boxes[0], "length": scene.joints.length}
     for name, values in seen.items():
         with pytest.raises(ValueError, match="read-only"):

@@ -72,6 +72,12 @@ def test_what_is_no_model_or_no_outcome_is_told() -> None:
         run_model(Model("mine", "a number", lambda scene, tolerance: 0.3, DRY), panel())  # type: ignore[arg-type, return-value]
 
 
+def test_a_model_does_not_read_the_letters_of_a_word() -> None:
+    for name in ("reads", "parameters", "takes"):
+        with pytest.raises(TypeError, match=f"{name} of a model must be several words, not 'joint.friction'"):
+            Model("mine", "a number", print, **{"reads": DRY, name: "joint.friction"})  # type: ignore[arg-type]
+
+
 def test_dead_loads_that_are_no_weights_are_told_of_where_the_ground_tilts() -> None:
     dead = {"kind": "point", "at": [0.0, 0.72], "force": [0, -100]}
     for tilted, loads in ((True, {"kind": "tilt"}), (False, {"kind": "lateral"})):

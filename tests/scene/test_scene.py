@@ -258,6 +258,7 @@ def test_tensile_strength_is_the_apex_unless_given() -> None:
 
 MATERIALS: list[tuple[Callable[[], Any], str]] = [
     (lambda: BlockMaterial(-1.0), "block.density = -1.0: must be a number above 0"),
+    (lambda: BlockMaterial(1e200), "block.density = 1e+200: must be a number above 0, of a size from 1e-100 to 1e+100"),
     (lambda: BlockMaterial(1.0, math.inf), "block.young = inf: must be a number above 0"),
     (lambda: BlockMaterial(1.0, 1.0, 0.6), "block.poisson = 0.6: must be a number above -1 and at most 0.5"),
     (lambda: JointMaterial(math.nan), "joint.friction = nan: must be a number at least 0"),
