@@ -48,11 +48,12 @@ class Peaks:
     start
         Where the way begins.
     steps
-        Steps of a row.
+        Steps of a row, whole but for rounding.
     """
 
     def __init__(self, start: State, steps: float) -> None:
-        levels = max(1, int(np.log2(max(1.0, steps / WINDOW_STEPS))))
+        # Four windows stay four where a time step's last bit makes 199.999 steps of 200.
+        levels = max(1, int(np.log2(max(1.0, round(steps) / WINDOW_STEPS))))
         self.windows = 2**levels  # of the shortest kind in a row
         self._peaks = [Peak(start) for _ in range(levels + 1)]
         # Force and inertia times steps, and steps, up to the end of each window of the row.
