@@ -121,7 +121,7 @@ class CoarseSearch:
             if self.found.dry < DRY and self.found.starts < min(self.starts, STARTS):
                 rng = np.random.default_rng([2, number])
                 pressure = (associated if number % 2 == 0 else best.least).pressure
-                pressure = pressure * np.exp(rng.normal(size=len(pressure)))
+                pressure = pressure * rng.lognormal(size=len(pressure))
                 self._start(pressure, WEIGHTS[number % len(WEIGHTS)], associated if number % 4 < 2 else None)
                 number += 1
             elif is_worth(left, self.found.lowest):

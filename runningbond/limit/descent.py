@@ -110,4 +110,4 @@ def is_lower(multiplier: float, than: float) -> bool:
 
 def random_weights(n: int, rng: np.random.Generator) -> Array:
     """Random positive weights ``(n,)`` of very different size."""
-    return np.exp(rng.normal(0.0, 2.0, n))
+    return rng.lognormal(0.0, 2.0, n)

@@ -72,7 +72,7 @@ def _from_sequences(
 ) -> Iterator[Certificate]:
     """Certificates of sequences that start from pressures ``(np,)``, and near them, and those below."""
     for k in range(sequences):
-        start = pressure * np.exp(NEARBY * rng.normal(size=len(pressure))) if k else pressure
+        start = pressure * rng.lognormal(0.0, NEARBY, len(pressure)) if k else pressure
         for each in short_sequence(descent, start, WEIGHTS[k % len(WEIGHTS)]):
             yield each
             yield from descent.below(each.motion, each.least, rng)

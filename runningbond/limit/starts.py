@@ -115,11 +115,11 @@ class Start:
 
     def _scattered(self, system: Equilibrium, pressure: Array, rng: np.random.Generator) -> Array:
         """Pressures ``(np,)`` beside others, everywhere or, as often, near one block."""
-        scatter = rng.uniform(*SCATTER) * rng.normal(size=len(pressure))
+        factor = rng.lognormal(0.0, rng.uniform(*SCATTER), len(pressure))
         if self.place is not None and rng.random() < LOCAL:
             distance = distances(system, self.place, self.place[[rng.integers(len(self.place))]])
-            scatter[distance > rng.uniform(*RADIUS)] = 0.0
-        return np.asarray(pressure * np.exp(scatter))
+            factor[distance > rng.uniform(*RADIUS)] = 1.0
+        return pressure * factor
 
     def _base(self, rng: np.random.Generator) -> Certificate:
         """The lowest certificate or, as often, another one, rather a low than a high one."""
@@ -174,7 +174,7 @@ class Start:
         state = descent.programs.corner(coulomb(system.strength), weights, load, PIVOTS)
         if state.status == "optimal":
             return state.pressure
-        return self.associated.pressure * np.exp(rng.normal(size=len(weights))) if bounded else weights
+        return self.associated.pressure * rng.lognormal(size=len(weights)) if bounded else weights
 
 
 def first_sequence(descent: Descent, pressure: Array, found: Search) -> Iterator[Certificate]:
