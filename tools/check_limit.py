@@ -148,6 +148,8 @@ class Wall:
         """A load per length: between two corners on it, it is on the block that it presses on."""
         run, total = end - start, np.zeros((self.n, 3))
         length = float(np.hypot(*run))
+        across = np.array([-run[1], run[0]]) / length
+        inwards = math.copysign(1.0, across @ force) * across
         cuts = [0.0, 1.0]
         for outline in self.outlines:
             for a, b in zip(outline, np.roll(outline, -1, axis=0), strict=True):
@@ -160,8 +162,8 @@ class Wall:
         for low, high in pairwise(ordered):
             middle = start + (low + high) / 2 * run
             here = self.holding(middle) if high - low > 1e-12 else []
-            if here:
-                block = max(here, key=lambda k: float((self.centre[k] - middle) @ force))
+            ahead = middle + 3 * self.gap * inwards
+            for block in here if len(here) == 1 else [k for k in here if holds(self.outlines[k], ahead, self.gap)]:
                 total += self.on_blocks(block, middle, (high - low) * length * force)
         return total
 
@@ -325,9 +327,16 @@ class Result:
         self.settlement = max(np.hypot(*wall.moved(self.support, side, ends[1]).T).max() for side in ends[0].T)
         self.weight = float(np.hypot(*self.dead[~wall.fixed, :2].sum(axis=0)))
         self.crushing = wall.crushing if self.dilatant else {}
+        self.nothing = 0.0 if self.dead[~wall.fixed].any() else self._nothing()
         self.uncrushed = ~np.isin(np.arange(len(wall.at)) // 2, list(self.crushing))
         self.inner = self._inner()
         self._follow()
+
+    def _nothing(self) -> float:
+        """Force that counts as none of a wall without weight, which may bear nothing at all: rounding is all it has."""
+        caps = [traction.cap for traction in self.crushing.values()]
+        strengths = [*self.wall.tension, *self.wall.cohesion, *caps, *self.scene.ties.yield_force]
+        return MOST * max(np.abs(self.live).max(), *strengths)
 
     def _inner(self) -> np.ndarray:
         """What joints, ties and pins do to each block ``(nb, 3)``; a joint pulls its blocks together by its force."""
@@ -364,7 +373,7 @@ class Result:
         given = self.dead if self.settles else self.dead + self.multiplier * self.live
         unbalanced = np.abs((self.inner + given)[free])
         parts = (self.normal, self.tangential, self.pull, given[free, :2])
-        self.largest = max(float(np.abs(part).max(initial=0.0)) for part in parts)
+        self.largest = max(self.nothing, *(float(np.abs(part).max(initial=0.0)) for part in parts))
         beyond = np.abs(self.tangential) - self.shear - wall.friction * self.pressure
         found = {
             "unbalanced force": unbalanced[:, :2].max(),
@@ -427,7 +436,8 @@ class Result:
             moving = np.abs(self.support).max(axis=1) > 0
             work = float((self.inner * self.support)[moving].sum())
             found["share of the support"] = abs(work / (self.settlement * self.weight) - here)
-        unit = abs(by_dead / by_live) + abs(spent / by_live) + abs(here) or 1.0
+        least = self.nothing / float(np.abs(self.live).max(initial=0.0) or 1.0)
+        unit = max(abs(by_dead / by_live) + abs(spent / by_live) + abs(here), least) or 1.0
         backwards = by_live >= 0 if self.settles else by_live <= 0
         return {name: value / unit for name, value in found.items()} | {"a load against the motion": float(backwards)}
 

@@ -104,7 +104,8 @@ class LimitState:
         outside = strength.violation(normal, tangential) / np.hypot(1.0, strength.friction)
         beyond = np.maximum(-forces.tie, forces.tie - system.tie_yield)
         parts = (forces.pressure, tangential, forces.tie, system.dead)
-        largest = max(abs(multiplier), *(np.abs(part).max(initial=0.0) for part in parts)) or 1.0
+        # Of a wall without weight that bears nothing all forces are rounding.
+        largest = max(ZERO, abs(multiplier), *(np.abs(part).max(initial=0.0) for part in parts))
         fastest = np.abs(motion).max(initial=0.0)
         spent = normal * opening + tangential * slip
         longer = system.elongation(motion)

@@ -111,6 +111,34 @@ def test_a_mirrored_scene_has_the_mirrored_answer(seed: int) -> None:
     assert (one.multiplier or 0.0) == pytest.approx(two.multiplier or 0.0, rel=1e-7, abs=1e-9)
 
 
+@pytest.mark.parametrize("lean", [-2.0, 0.0, 2.0])
+def test_the_checker_has_leaning_loads_in_joints_on_the_blocks_they_press_on(lean: float, tmp_path: Path) -> None:
+    """A floor under a beam loads the course below however far it leans; the beam's middle lies far along it."""
+    floor = {"kind": "line", "from": [0.5, 0.35], "to": [0.8, 0.35], "force": [1e3 * lean, -1e3]}
+    beam = {"height": 0.2, "mass": 10.0}
+    scene = courses([[1, 1], [0.5, 1, 0.5]], beam=beam, load__dead=[floor], joint__cohesion=1e5)
+    outcome = run_model("limit", scene)
+    assert outcome.status == "collapse"
+    _proved(outcome, scene, tmp_path)
+
+
+@pytest.mark.parametrize("joint", [{}, {"compressive_strength": 2e5, "cap_shear": 2.0}], ids=["dry", "that crush"])
+@pytest.mark.parametrize("live", [[-1.3, -0.6], [2.2, -0.9], [0.0, 1.0]])
+def test_a_dry_wall_without_weight_is_proved_to_bear_nothing(
+    live: list[float], joint: dict[str, float], tmp_path: Path
+) -> None:
+    """Nothing presses its joints together: λ is 0, and all forces are rounding."""
+    loads = {"gravity": 0.0, "live": {"kind": "body", "acceleration": live}}
+    material = {"friction": 0.385, "inset": 0.007} | joint
+    patterns: list[list[list[float]]] = [[[0.5, 1, 1, 1, 0.5], [1, 1, 1, 1]], [[1, 1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]]]
+    for pattern in patterns:
+        scene = courses(pattern, load=loads, joint=material)
+        outcome = run_model("limit", scene)
+        assert outcome.status == "collapse", outcome.message
+        assert outcome.multiplier == pytest.approx(0.0, abs=1e-9)
+        _proved(outcome, scene, tmp_path)
+
+
 @pytest.mark.parametrize("array", ["force", "pull", "motion", "multiplier"])
 def test_the_checker_sees_what_is_wrong(array: str, tmp_path: Path) -> None:
     """A force, a pull or a motion that is a thousandth off, a multiplier that is: run as a script, it ends with 1."""
