@@ -1,10 +1,15 @@
-"""The dead load put on a wall: at once, and slowly where that breaks joints that the load itself would not break."""
+"""The dead load put on a wall: at once, and slowly where that breaks joints that the load itself would not break.
+
+Preloads of ties come with it.
+"""
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from runningbond.joints.law import PLASTIC_CLOSURE
+from runningbond.scene import Array
 
 from .collapse import CALM, Criteria, Verdict, settle
 from .controls import ramp
@@ -13,6 +18,9 @@ from .state import State
 
 ELASTIC = 1 / 4
 """Part of the dead load that is put on at once where all of it is too much: it overshoots to half."""
+
+TURNS = 200
+"""Turns in which ties are tightened to the rest of their preloads meanwhile."""
 
 GROWTH_TIMES = 4
 """Times in which the rest of it grows, in times that the wall takes to rest under that part."""
@@ -64,11 +72,22 @@ def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int) -> Und
     """Put on a part of the dead load at once, and the rest evenly."""
     state, system = State.at_rest(run.system), run.system
     growing = run.of_system(replace(system, dead=np.zeros_like(system.dead), live=system.dead, rig=None))
+    shares = np.linspace(ELASTIC, 1.0, (TURNS if len(system.ties) else 1) + 1)
+    _tighten(run, state, (ELASTIC - 1.0) * system.ties.slack)
     verdict = settle(growing, state, ELASTIC, criteria, sudden=True)
     rest = state.steps
     if verdict == "stable":
-        ramp(growing, state, ELASTIC, 1.0, GROWTH_TIMES * rest)
+        for before_turn, share in pairwise(shares.tolist()):
+            ramp(growing, state, before_turn, share, max(1, GROWTH_TIMES * rest // (len(shares) - 1)))
+            _tighten(run, state, (share - before_turn) * system.ties.slack)
         # The ledger has the dead load do its whole work.
         state.turned += state.external - float(system.dead @ state.motion)
         verdict = settle(run, state, 0.0, criteria, observe)
     return UnderDeadLoad(state, verdict, rest, before + state.steps)
+
+
+def _tighten(run: Run, state: State, by: Array) -> None:
+    """Shorten ties by so much each ``(nt,)`` [m], in place; the ledger has their preloads do their whole work."""
+    before = run.ledger(state).ties
+    state.stretch -= by
+    state.absorbed += before - run.ledger(state).ties

@@ -288,18 +288,19 @@ class Run:
     def unaccounted(self, state: State, least: float = 0.0, since: State | None = None) -> float:
         """Share of the work of the loads, or of a least one [J], that the energy ledger misses, all or since a state.
 
-        Works of the dead and of the live load each count: where a slender wall topples they nearly cancel.
+        Works of the dead and of the live load each count, for where a slender wall topples they nearly cancel, and so
+        does what ties have given of the energy that preloads put into them.
         """
-        residual, dead, live = self._works(state)
+        residual, *works = self._works(state)
         if since is not None:
-            residual, dead, live = np.subtract((residual, dead, live), self._works(since))
-        work = max(abs(dead) + abs(live), least)
+            residual, *works = np.subtract((residual, *works), self._works(since))
+        work = max(float(np.abs(works).sum()), least)
         return float(abs(residual) / work) if work else 0.0
 
-    def _works(self, state: State) -> tuple[float, float, float]:
-        """What the ledger misses, and works of the dead and of the live load [J]."""
+    def _works(self, state: State) -> tuple[float, float, float, float]:
+        """What the ledger misses, and works of the dead load, of the live one and of preloads [J]."""
         ledger, dead = self.ledger(state), self.dead_work(state)
-        return ledger.residual, dead, ledger.external - dead
+        return ledger.residual, dead, ledger.external - dead, min(0.0, ledger.ties)
 
     def dead_work(self, state: State) -> float:
         """Work of the dead load [J]."""

@@ -35,7 +35,8 @@ class State:
     # (1,) largest energy that was supplied at any look at it [J]
     supplied: Array = field(default_factory=lambda: np.zeros(1))
     stretch: Array = field(default_factory=lambda: np.zeros(0))  # (nt,) plastic elongation of the ties [m]
-    # work spent on earlier contacts, and on their viscosity or that of modes that are held since [J]
+    # work spent on earlier contacts, and on their viscosity or that of modes that are held since, or that preloads of
+    # ties did not do, for they came slowly [J]
     friction: float = 0.0
     absorbed: float = 0.0
 

@@ -30,6 +30,11 @@ class TieRows(NamedTuple):
     def __len__(self) -> int:
         return len(self.constants)
 
+    @property
+    def slack(self) -> Array:
+        """Elongation of each that takes its preload away, ``(nt,)`` [m]."""
+        return np.asarray(self.constants[:, PRELOAD] / self.constants[:, STIFFNESS])
+
     def elongation(self, motion: Array) -> Array:
         """Elongation of each tie in a motion ``(nd,)``, ``(nt,)`` [m]."""
         return np.array([self.share[entries] @ motion[self.freedom[entries]] for entries in self._entries()])

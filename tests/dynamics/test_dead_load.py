@@ -16,7 +16,7 @@ STRESS = DENSITY * GRAVITY * HEIGHT
 MODELS = (dem_dynamic, fem)
 
 
-def block(gravity: tuple[float, float], height: float = HEIGHT, **joint: float) -> Scene:
+def block(gravity: tuple[float, float], height: float = HEIGHT, tie: Any = (), **joint: float) -> Scene:
     """A block as wide as 0.2 m that its weight [m/s²] and its live load draw the same way."""
     size = {"block_width": 0.2, "block_height": height, "thickness": 0.1, "courses": [[1]]}
     live = {"kind": "body", "acceleration": list(gravity)}
@@ -26,6 +26,7 @@ def block(gravity: tuple[float, float], height: float = HEIGHT, **joint: float) 
         "joint": {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8, **joint},
         "support": {"kind": "base"},
         "load": {"gravity": list(gravity), "live": live},
+        "tie": list(tie),
     }
     return scene_from_dict(tables)
 
@@ -34,6 +35,15 @@ def hanging(share: float) -> Scene:
     strength = STRESS / share
     energies = {"fracture_energy_1": 1e-4, "fracture_energy_2": 1e-4}
     return block((0.0, GRAVITY), cohesion=strength, tensile_strength=strength, **energies)
+
+
+def pulled(share: float) -> Scene:
+    """The weight and a long soft bar, which pulls with three times as much, take a share of the strength."""
+    strength, weight = 4 * STRESS / share, STRESS * 0.2 * 0.1
+    energies = {"fracture_energy_1": 1e-3, "fracture_energy_2": 1e-3}
+    size = {"area": 1e-6, "young": 1e5, "yield": 10 * weight, "preload": 3 * weight}
+    bar = {"from": [0.1, 0.1], "to": [0.1, 10.0], **size}
+    return block((0.0, GRAVITY), tie=[bar], cohesion=strength, tensile_strength=strength, **energies)
 
 
 def sheared(share: float) -> Scene:
@@ -64,6 +74,23 @@ def test_what_the_weight_leaves_of_a_strength_is_borne(model: Any, wall: Any, sh
 
 
 @pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("share", [0.6, 0.9, 0.97])
+def test_what_a_preload_and_the_weight_leave_of_a_strength_is_borne(model: Any, share: float) -> None:
+    """Put on at once, a bar's preload tears a joint off at half of what it bears."""
+    assert is_bracketed(model(pulled(share)), 4 * (1 / share - 1))
+
+
+def test_what_preloads_give_is_work_that_the_ledger_is_measured_by() -> None:
+    """A bar that pulls a block off its base against nearly all of the live load does nearly all the work there is."""
+    strength, weight = 1e5, STRESS * 0.2 * 0.1
+    size = {"area": 1e-6, "young": 1e5, "yield": 1e4, "preload": 15 * weight}
+    bar = {"from": [0.1, 0.1], "to": [0.1, 10.0], **size}
+    energies = {"fracture_energy_1": 1.0, "fracture_energy_2": 1.0}
+    scene = block((0.0, GRAVITY), tie=[bar], cohesion=strength, tensile_strength=strength, **energies)
+    assert is_bracketed(dem_dynamic(scene), strength / STRESS - 16)
+
+
+@pytest.mark.parametrize("model", MODELS)
 @pytest.mark.parametrize("wall", [hanging, crushed])
 def test_a_weight_beyond_the_strength_is_not_borne(model: Any, wall: Any) -> None:
     assert model(wall(1.02)).status == "infeasible"
@@ -80,6 +107,17 @@ def test_weight_and_live_load_count_alike(model: Any) -> None:
     for lower, upper in more:
         assert lower <= first[1] * 1.002
         assert first[0] <= upper * 1.002
+
+
+def test_the_ledger_has_a_preload_that_grows_do_all_of_its_work() -> None:
+    """What it does not do, for it came slowly, is as good as damped; an elastic bar ends unstretched."""
+    scene = pulled(0.9)
+    run = quasi_static_run(scene)
+    state = put_on_dead_load(run, Criteria(collapse=0.05 * scene.block_size)).state
+    assert run.system.ties.force(state.motion, state.stretch) == pytest.approx(scene.ties.preload, rel=1e-4)
+    assert abs(state.stretch) == pytest.approx(0.0, abs=1e-9 * run.system.ties.slack[0])
+    assert state.absorbed > 0
+    assert run.unaccounted(state) < 1e-3
 
 
 def test_a_load_that_grows_does_half_of_its_work() -> None:
