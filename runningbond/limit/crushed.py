@@ -138,8 +138,9 @@ class InnerProgram:
         *normal, shear = (np.bincount(known.owner, part * shares, n) for part in known.forces)
         pressure, tangential = solution.pressure.copy(), solution.tangential.copy()
         pressure[ends] = system.strength.tension[ends] - normal
-        most = (system.strength.shear + system.strength.friction * pressure)[ends]
-        tangential[ends] = shear * most / np.maximum(most.sum(axis=0), np.finfo(float).tiny)
+        # A joint that nothing presses may be pulled at, by rounding.
+        most = (system.strength.shear + system.strength.friction * pressure)[ends].clip(min=0.0)
+        tangential[ends] = shear * (most / np.maximum(most.sum(axis=0), np.finfo(float).tiny))
         return replace(solution, pressure=pressure, tangential=tangential, motion=self.mechanism(multipliers))
 
     def mechanism(self, multipliers: Array) -> Array:

@@ -514,6 +514,18 @@ def test_the_checker_sees_what_crushes_too_little_or_too_late(array: str, tmp_pa
     assert not check(tmp_path)
 
 
+def test_joints_that_nothing_presses_take_no_shear() -> None:
+    """Without weight, most of a wall bears nothing: rounding that pulls at a joint was divided by next to nothing."""
+    system = equilibrium(courses([[1, 1], [0.5, 1, 0.5]], joint={"friction": 0.7, "compressive_strength": 1e5}))
+    system = system.with_crushing()
+    assert system.crushing is not None
+    program = InnerProgram(system, system.crushing, first_resultants(system.crushing))
+    rounding = 1e-16 * np.random.default_rng(1).normal(size=len(program.arguments()["c"]))
+    forces = program.solution("optimal", rounding, np.zeros(system.freedoms), 0)
+    assert abs(forces.pressure).max() < 1e-12
+    assert abs(forces.tangential).max() < 1e-12
+
+
 def test_forces_at_the_ends_are_what_points_without_a_cap_might_carry() -> None:
     scene = crushing_panel("cohesive and tied")
     system, force = equilibrium(scene), limit(scene).force / equilibrium(scene).force_unit
