@@ -50,7 +50,9 @@ def block(writer: Any, node: nodes.math_block) -> None:
 
 
 def write_font(app: Sphinx, failure: Exception | None) -> None:
-    """Write the font beside the pages."""
+    """Write the font beside the pages, where there are any: a second error would hide what the build failed of."""
+    if failure:
+        return
     wanted = subset.Options(flavor="woff", layout_features=["*"], notdef_outline=True)
     with subset.load_font(str(files("ziamath.fonts") / "STIXTwoMath-Regular.ttf"), wanted) as font:
         subsetter = subset.Subsetter(wanted)

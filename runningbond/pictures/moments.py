@@ -20,7 +20,7 @@ from .inline import UNITS, WIDTH, hexadecimal
 from .style import AT_REST, DRAWN, FASTEST
 
 MOMENTS = 8
-"""Most moments that an outcome keeps, besides that of the largest load."""
+"""Most moments that an outcome keeps unless more are asked for, besides that of the largest load."""
 
 CHART = (16.0, 8.0, 296.0, 108.0)
 """Left, top, width and height of the small chart of loads over displacements."""
@@ -36,17 +36,17 @@ class Instant(Protocol):
     def motion(self) -> Array: ...  # noqa: D102
 
 
-def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Instant]) -> Outcome:
-    """The outcome with some of the states that it came by, in their order.
+def with_moments(scene: Scene, outcome: Outcome, states: Sequence[Instant], most: int = MOMENTS) -> Outcome:
+    """The outcome with up to `most` of the states that it came by, and that of the largest load, in their order.
 
-    They are evenly apart by how far the wall has gone, in time where its ground moves, and that of the largest load.
+    They are evenly apart by how far the wall has gone, in time where its ground moves.
     None are kept where blocks have cracked into pieces that the scene does not know.
     """
     if not states or any(len(state.motion) != len(scene.blocks) for state in states):
         return outcome
     loads = np.array([state.multiplier for state in states])
     way = np.arange(float(len(states))) if scene.history else distances(scene, [state.motion for state in states])
-    even = [int(np.abs(way - x).argmin()) for x in np.linspace(way[0], way.max(), MOMENTS)]
+    even = [int(np.abs(way - x).argmin()) for x in np.linspace(way[0], way.max(), most)]
     chosen = np.unique([*even, int(loads.argmax())])
     kept = np.concatenate([states[i].motion for i in chosen])
     return replace(outcome, moments=kept, moment_loads=loads[chosen])

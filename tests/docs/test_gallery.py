@@ -9,6 +9,8 @@ import pytest
 
 GALLERY = Path(__file__).parents[2] / "docs" / "gallery"
 EXAMPLES = sorted(GALLERY.glob("*/*.py"))
+FOLLOWED = ("dem", "fem", "limit-nonassociated")
+"""What an example names that follows a wall or searches for long."""
 
 
 def name(path: Path) -> str:
@@ -21,8 +23,14 @@ def test_there_are_thirty_short_ones() -> None:
         assert len(path.read_text(encoding="utf-8").splitlines()) <= 30, name(path)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("path", EXAMPLES, ids=name)
+def takes_seconds(path: Path) -> bool:
+    return any(word in path.read_text(encoding="utf-8") for word in FOLLOWED)
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(x, id=name(x), marks=[pytest.mark.long] if takes_seconds(x) else []) for x in EXAMPLES],
+)
 def test_an_example_runs_and_draws(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import matplotlib.pyplot as plt
 

@@ -9,14 +9,12 @@ import runningbond as rb
 
 wall = rb.Wall.running_bond(
     length=2.4,
-    height=2.0,
+    course_heights=[0.4, 0.4, 0.3, 0.3, 0.2, 0.2, 0.2],
     block_width=0.6,
-    block_height=0.2,
     thickness=0.4,
     density=1800.0,
     friction=0.6,
     title="wall on a plinth",
-    wall={"block_height": None, "course_heights": [0.4, 0.4, 0.3, 0.3, 0.2, 0.2, 0.2]},
     materials={"granite": {"density": 2700.0}},
     assign=[{"block": "granite", "box": [[0.0, 0.0], [2.4, 0.8]]}],
 )
