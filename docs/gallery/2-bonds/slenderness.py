@@ -12,7 +12,7 @@ import runningbond as rb
 
 panel = rb.read("panel-06")
 heights = [0.48 * k for k in range(1, 8)]
-walls = [panel.with_({"wall.height": height}) for height in heights]
+walls = [panel.with_({"wall.height": height}, title=f"H/L = {height / 1.44:.3g}") for height in heights]
 
 figure, axes = plt.subplots()
 for model, marker in (("limit", "o-"), ("homog", "s--")):

@@ -2,7 +2,7 @@
 A façade of two storeys
 =======================
 
-Door, windows, lintels of oak and granite, a floor and a roof that load it: a scene file of a hundred lines
+Door, windows, lintels of oak and granite, a floor and a roof that load it: a scene file of eighty lines
 (``examples/walls/facade.toml``, on the page of :doc:`six walls </walls>`).
 """
 

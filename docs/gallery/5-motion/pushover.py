@@ -10,8 +10,7 @@ import runningbond as rb
 
 result = rb.read("wall-w1").run("dem-static")
 print(f"{result.lower:.4f} … {result.upper:.4f}")
-axes = result.plot("curve")
-axes.set_xscale("log")
+result.plot("curve")
 
 # %%
 # How it falls: forces in the joints as thin lines.

@@ -22,5 +22,5 @@ for k, each in enumerate(axes):
         arm = scene.blocks.polygon(int(b)) - scene.blocks.centroid[b]
         turned = arm + motion[b, 2] * np.column_stack([-arm[:, 1], arm[:, 0]])
         each.add_patch(Polygon(scene.blocks.centroid[b] + motion[b, :2] + turned, fc="#b8c7d9", ec="0.3", lw=0.5))
-    each.set(aspect="equal", xlim=(-0.25, 1.0), ylim=(-0.1, 1.7), title=f"{vibration.frequency[k]:.0f} Hz")
+    each.set(aspect="equal", xlim=(-0.25, 1.7), ylim=(-0.1, 3.1), title=f"{vibration.frequency[k]:.0f} Hz")
     each.axis("off")
