@@ -20,5 +20,5 @@ for scale in (0.75, 1.5):
     response = pier.respond("dem-dynamic", scale=scale)
     stood = response.fallen == 0
     axes.plot(response.time[stood], response.displacement[stood, 0, 0], label=f"{scale} × 0.4 g: {response.verdict}")
-axes.set(xlabel="time [s]", ylabel="displacement of the top [m]", title="A pier of four blocks under a sine pulse")
+axes.set(xlabel="time [s]", ylabel="displacement of the top [m]", title="A pier of four courses under a sine pulse")
 axes.legend()
