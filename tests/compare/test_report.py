@@ -199,6 +199,7 @@ def test_an_outcome_keeps_the_first_the_last_and_the_largest_load() -> None:
     assert found.moment_loads[:, 0].max() == 0.5
     far = distances(scene, found.moments.reshape(len(found.moment_loads), -1, 3))
     assert (far[0], far[-1]) == pytest.approx((1e-3, 2.048))
+    assert len(with_moments(scene, Outcome("", "fem", "undecided"), states, most=3).moment_loads) == 4
     pieces = [State(0.0, np.zeros((3, 3)))]
     assert not len(with_moments(scene, Outcome("", "fem", "undecided"), pieces).moments)
 
