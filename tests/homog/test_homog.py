@@ -1,6 +1,7 @@
 """Closed forms of running bond as a continuum."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -133,6 +134,19 @@ def test_model_reads_the_panel_from_its_geometry() -> None:
 def test_model_says_which_assumption_a_scene_breaks(changes: dict[str, object], reason: str) -> None:
     with pytest.raises(SceneError, match=reason):
         homog(panel(**changes))
+
+
+def test_materials_that_are_named_count_where_they_are_used() -> None:
+    """All blocks of granite, on joints of one other kind: the panel of those alone; of two kinds it is refused."""
+    everywhere: list[dict[str, Any]] = [{"joint": "rough", "between": ["*", each]} for each in ("*", "ground")]
+    everywhere.append({"block": "granite", "box": [[-1.0, -1.0], [9.0, 9.0]]})
+    changes: dict[str, Any] = {"materials": {"granite": {"density": 2600.0}}, "joints": {"rough": {"friction": 0.75}}}
+    rough = panel(**changes, assign=everywhere)
+    assert homog(rough).multiplier == homog(panel(joint__friction=0.75)).multiplier
+    assert homog(panel(**changes)).multiplier == homog(panel()).multiplier
+    for assigned in (everywhere[1:2], [{"block": "granite", "box": [[0.0, 0.0], [9.0, 0.06]]}]):
+        with pytest.raises(SceneError, match="one material of blocks and one of joints"):
+            homog(panel(**changes, assign=assigned))
 
 
 @pytest.mark.parametrize("pattern", [[[1, 1, 1], [1, 1, 1]], [[1, 1], [0.5, -1, 0.5], [1, 1]], [[1, 2], [2, 1]]])
