@@ -82,7 +82,8 @@ class Settlement(Action):
 
     def moving(self, scene: "Scene") -> Mask:
         """Fixed blocks that move, ``(nb,)``."""
-        low, high = np.array(self.box)
+        # What only touches the box, or has its middle on a side of it, stays, whatever the last bit of a sum of sizes.
+        low, high = np.array(self.box) + [[scene.blocks.tolerance], [-scene.blocks.tolerance]]
         centre = scene.blocks.centroid
         bottom, top = (ends[:, 1] for ends in scene.blocks.boxes)
         inside = (centre[:, 0] > low[0]) & (centre[:, 0] < high[0]) & (bottom < high[1]) & (top > low[1])

@@ -376,6 +376,7 @@ def build_scene(
         [*(names[k] for k in material[: len(polygons)]), *[BEAM] * (beam is not None), *[GROUND] * number_of_grounds],
         [layers[int(k)] for k in owner] if layers else (),
         assignments,
+        blocks.tolerance,
         None if beam is None else (len(polygons), beam.joint or joint.name),
     )
     block_materials, material, no_blocks = _in_use(block_materials, material)

@@ -70,6 +70,29 @@ def test_bed_and_head_joints_apart() -> None:
     assert names_of_joints(scene) == ["mortar" if dx > dy else "dust" for dx, dy in run]
 
 
+@pytest.mark.parametrize(("height", "courses"), [(0.1, 3), (0.2, 3), (0.2, 6), (0.3, 3), (0.7, 3)])
+def test_joints_on_the_border_of_a_box_are_in_it_from_either_side(height: float, courses: int) -> None:
+    """Three courses of 0.1 m end at 0.30000000000000004 m, and the box of who counts them at 0.3."""
+    size = {"length": 1.2, "height": round(8 * height, 9), "block_width": 0.3, "block_height": height, "thickness": 0.1}
+    level = round(courses * height, 9)
+    for box in ([[0, level], [2, 9]], [[0, 0], [2, level]]):
+        scene = assigned({"joint": "dust", "box": box}, wall=size)
+        on = np.flatnonzero((np.abs(scene.joints.ends[:, :, 1] - level) < 1e-9).all(axis=1))
+        assert len(on)
+        assert {names_of_joints(scene)[joint] for joint in on} == {"dust"}
+
+
+@pytest.mark.parametrize(("width", "number"), [(0.1, 1), (0.2, 1), (0.2, 3), (0.4, 1), (0.4, 6)])
+def test_blocks_with_their_middle_on_the_border_of_a_box_are_in_it_from_either_side(width: float, number: int) -> None:
+    size = {"length": round(8 * width, 9), "height": 0.3, "block_width": width, "block_height": 0.1, "thickness": 0.1}
+    middle = round((number + 0.5) * width, 9)
+    for box in ([[middle, 0], [9, 1]], [[0, 0], [middle, 1]]):
+        scene = assigned({"block": "oak", "box": box}, wall=size)
+        on = np.flatnonzero(scene.wall & (np.abs(scene.blocks.centroid[:, 0] - middle) < 1e-9))
+        assert len(on) == 2
+        assert {names_of_blocks(scene)[block] for block in on} == {"oak"}
+
+
 def test_joints_by_the_pair_of_their_blocks() -> None:
     """Either way round, "*" for any block, and "ground" for what the wall stands on."""
     oak = {"block": "oak", "box": [[0, 0.1], [1.44, 0.2]]}

@@ -7,6 +7,7 @@ import pytest
 
 from runningbond.models import run_model
 from runningbond.scene import Scene, scene_from_dict
+from tests.walls import panel
 
 from .drafting import box as box_of
 from .drafting import closed, dxf, tables
@@ -39,3 +40,16 @@ def test_a_box_a_hair_beside_an_edge_of_the_ground_is_at_that_edge(off: float, t
 @pytest.mark.parametrize("at", [0.3, 0.5, 0.7, 0.1 + 0.2])
 def test_rounding_of_units_cuts_no_sliver(at: float, tmp_path: Any) -> None:
     assert len(piers(tmp_path, at, at).blocks) == 4
+
+
+@pytest.mark.parametrize("width", [0.1, 0.2, 0.3, 0.4, 0.6, 0.7])
+def test_a_block_with_its_middle_on_a_side_of_a_box_stays_on_whichever_side(width: float) -> None:
+    """Of eight that are held, the second to the seventh in turn, counted in decimal numbers."""
+    size = {"length": round(8 * width, 9), "height": 0.6, "block_width": width, "block_height": 0.3, "thickness": 0.1}
+    for number in range(1, 7):
+        middle, moving = round((number + 0.5) * width, 9), []
+        for box in ([[-1, -1], [middle, 0.3]], [[middle, -1], [9, 0.3]]):
+            live = {"kind": "settlement", "box": box, "by": [0, -1e-3]}
+            scene = panel(wall=size, support__kind="fixed-first-course", load__live=live)
+            moving.append(int(scene.support_motion.any(axis=1).sum()))
+        assert moving == [number, 7 - number]
