@@ -41,6 +41,9 @@ LAST = 0.1
 STILL = 1e-6
 """Change of a share that counts as none, beside the tolerance's part of all its change."""
 
+SAME = 1e-9
+"""Part of a way by which rounding may set places apart that are one."""
+
 COME_DOWN = 0.5
 """Sizes of a block by which all of the dead load has come down, or what would do as much work, once a wall falls."""
 
@@ -171,8 +174,10 @@ class Lead:
         """The points of the left and of the right toe."""
         (left, bottom), (right, top) = self.scene.blocks.extent(self.scene.masonry)
         x, y = self.points.position.T
-        low = y <= (bottom + top) / 2
-        return low & (x <= left + (right - left) / 4), low & (x >= right - (right - left) / 4)
+        # Joints at half the height, and points at the quarters, are of a toe, whatever the last bit of a sum of sizes.
+        reach = self.scene.blocks.tolerance
+        low, width = y <= (bottom + top) / 2 + reach, (right - left) / 4 + reach
+        return low & (x <= left + width), low & (x >= right - width)
 
     def go(self, way: Way, speed: float) -> State:
         """Go through the way, at a largest speed [m/s, or settlements/s], to the state at its end."""
@@ -263,7 +268,7 @@ class Lead:
         self.observe(run, state, way.rows[-1].force)
         rows = 2 * SOFT
         stage = rows / (STAGES * speed * run.dt * _pace(rows).sum())
-        windows = max(1, int(stage / (rows * WINDOW)))
+        windows = windows_of_stage(stage)
         pace = _pace(rows, windows).ravel()
         steps = max(1, round(stage / len(pace)))
         # Small at first on each leg, where reactions change most.
@@ -284,6 +289,12 @@ class Lead:
             self.note(way, state, far * settled, bears)
             way.best = state.copy()
             self.observe(run, state, bears)
+
+
+def windows_of_stage(steps: float) -> int:
+    """Windows of one speed in each row of a stage of so many steps, whole but for rounding."""
+    # Four windows stay four where a time step's last bit makes 1999.999 steps of 2000.
+    return max(1, round(steps) // (2 * SOFT * WINDOW))
 
 
 def turns_round(goals: Array) -> bool:
@@ -339,10 +350,11 @@ def failing(curve: Array) -> int:
     Where the force has first fallen to `LOSS` of its largest on the way farther; else the farthest one.
     """
     moved, force = curve.T
-    onward = np.append(True, moved[1:] > np.maximum.accumulate(moved)[:-1])
+    same = SAME * np.abs(moved).max()  # an amplitude that comes again is no farther than before, but for rounding
+    onward = np.append(True, moved[1:] > np.maximum.accumulate(moved)[:-1] + same)
     top = int(force.argmax())
     fallen = top + np.flatnonzero(onward[top:] & (force[top:] <= LOSS * force[top]))
-    return int(fallen[0]) if len(fallen) else int(moved.argmax())
+    return int(fallen[0]) if len(fallen) else int(np.argmax(moved >= moved.max() - same))
 
 
 def _pace(rows: int, windows: int = 1) -> Array:

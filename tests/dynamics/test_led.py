@@ -1,5 +1,6 @@
 """Ties, beams and supports that move, by the two models in motion, against what statics says."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,10 +18,10 @@ from meshing import wall_mesh
 from runningbond import Wall
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.dynamics.lead import formed, turns_round
+from runningbond.dynamics.lead import Lead, formed, turns_round, windows_of_stage
 from runningbond.dynamics.peaks import Peaks
 from runningbond.dynamics.ties import tie_rows
-from runningbond.joints import joint_stiffness
+from runningbond.joints import joint_stiffness, wall_points
 from runningbond.limit import limit
 from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
@@ -201,6 +202,33 @@ def test_windows_do_not_depend_on_the_last_bit_of_a_time_step(steps: float) -> N
     """That of the joint above differs with the processor: two windows of a row miss 0.2 % of its strength, unseen."""
     state = State.at_rest(rigid_system(under_beam("free", {"displacement": [1e-3, 0]})))
     assert Peaks(state, steps).windows == 4
+
+
+@pytest.mark.parametrize("steps", [2000.0, np.nextafter(2000.0, 0.0), np.nextafter(2000.0, np.inf)])
+def test_stages_of_a_settlement_do_not_depend_on_the_last_bit_of_a_time_step(steps: float) -> None:
+    """Of a support that changes its speed three times in a row, not four, the bracket is half as wide, or twice."""
+    assert windows_of_stage(steps) == 4
+
+
+@pytest.mark.parametrize(("width", "height", "courses"), [(0.1, 0.1, 2), (0.1, 0.3, 4), (0.3, 0.1, 14), (0.7, 0.7, 14)])
+def test_toes_of_a_symmetric_wall_are_each_others_mirror_images(width: float, height: float, courses: int) -> None:
+    """Joint points lie at the quarters of its length, and those of the joint at half its height are of both toes."""
+    size = {"block_width": width, "block_height": height, "length": 4 * width, "height": courses * height}
+    beam = {"height": 0.1, "condition": "free", "force": [0, -N], "drive": {"displacement": [1e-3, 0]}}
+    scene = panel(wall=size | {"thickness": 0.1}, joint__mortar=MORTAR, load__live=None, beam=beam)
+    points = wall_points(scene)
+    nothing: Any = None
+    toes: list[Array] = []
+    for moved in (-1.0, 1.0):
+        broken = []
+        for crushed in np.eye(len(points)):
+            run: Any = SimpleNamespace(at_joints=lambda _, crushed=crushed: (*np.zeros((5, len(crushed))), crushed))
+            broken.append(Lead(scene, run, nothing, nothing, nothing, points).broken_toe(nothing, moved) > 0)
+        toes.append(points.position[broken] / [4 * width, courses * height])
+    left, right = (sorted(map(tuple, np.round(places, 6).tolist())) for places in (toes[0], toes[1] * [-1, 1] + [1, 0]))
+    assert left == right
+    all_of_it = points.position / [4 * width, courses * height] <= [0.25 + 1e-6, 0.5 + 1e-6]
+    assert len(left) == all_of_it.all(axis=1).sum()
 
 
 def test_what_sets_a_wall_in_motion_is_not_its_strength() -> None:

@@ -376,3 +376,11 @@ def test_wall_fails_where_its_force_has_fallen_or_at_the_end(
     moved: tuple[float, ...], force: tuple[float, ...], row: int
 ) -> None:
     assert failing(np.column_stack([moved, force]).astype(float)) == row
+
+
+@pytest.mark.parametrize("again", [1.0, np.nextafter(1.0, 0.0), np.nextafter(1.0, 2.0), 1 - 1e-12, 1 + 1e-12])
+@pytest.mark.parametrize("falls", [9.0, 5.0])
+def test_an_amplitude_that_comes_again_is_no_farther(again: float, falls: float) -> None:
+    """The second time is as far as the first but for rounding, whether the wall bears as much then or half of it."""
+    curve = np.column_stack([[0, 1, -1, again, 0], [0, 10, -10, falls, 0]])
+    assert failing(curve) == 1
