@@ -96,7 +96,8 @@ def deviation(bond: Bond, length: float, height: float) -> tuple[float, float]:
     >>> deviation(Bond(0.24, 0.06), length=1.44, height=0.72)
     (-0.646, 0.0)
     """
-    across = min(round(length / bond.width), round(height / bond.height))
+    # Panels are whole in half blocks; seven and a half count as seven, whatever the last bit of a length.
+    across = min(round(2 * length / bond.width) / 2, round(height / bond.height))
     return OFF[bond.height > bond.width * (1 + 1e-9)][max(0, int(np.searchsorted(FINENESS, across, side="right")) - 1)]
 
 

@@ -203,3 +203,14 @@ def test_the_message_has_the_size_of_what_it_is_off(
     least, most = deviation(Bond(width, height), blocks * width, courses * height)
     assert f"off by {100 * least:.3g} to {100 * most:+.3g} % of their limit load" in estimate.message
     assert least - 0.01 <= estimate.multiplier / exact - 1 <= most + 0.01
+
+
+@pytest.mark.parametrize("width", [0.24, 0.3, 0.35, 0.6, 0.7, 1.1])
+@pytest.mark.parametrize("blocks", [3.5, 7.5, 15.5])
+def test_the_message_does_not_depend_on_the_unit_of_length(width: float, blocks: float) -> None:
+    """Half blocks at the ends count for none, whatever the last bit of a sum of sizes."""
+    fewer = deviation(Bond(width, width / 4), np.floor(blocks) * width, 20 * width)
+    for unit in (0.1, 1.0, 10.0):
+        size = [round(x, 10) * unit for x in (blocks * width, 20 * width, width, width / 4)]
+        wall = dict(zip(("wall__length", "wall__height", "wall__block_width", "wall__block_height"), size, strict=True))
+        assert f"off by {100 * fewer[0]:.3g} to {100 * fewer[1]:+.3g} %" in (homog(panel(**wall)).message or "")
