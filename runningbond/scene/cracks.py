@@ -12,6 +12,9 @@ import shapely
 from .arrays import Array, Indices
 from .polygons import outer_corners, polygonal_parts
 
+SAME = 1e-6
+"""Part of a width by which a block may be wider and still count as of it."""
+
 NEAR = 0.01
 """Distance of the axis from a corner, in widths of its block, within which that cracks there."""
 
@@ -22,7 +25,9 @@ def cut_in_half(polygons: Sequence[Array], widest: float) -> tuple[list[Array], 
     What is not convex may fall into more than two pieces. Those left of the line come before those right of it, from
     the bottom up, in the order of their blocks, and with them the block of each, ``(n_pieces,)``.
     """
-    pieces = [_halves(polygon) if np.ptp(polygon[:, 0]) > widest else [polygon] for polygon in polygons]
+    # What an opening leaves of a block may be as wide, and wider by the last bit of a sum of sizes.
+    least = widest * (1 + SAME)
+    pieces = [_halves(polygon) if np.ptp(polygon[:, 0]) > least else [polygon] for polygon in polygons]
     return list(chain(*pieces)), np.repeat(np.arange(len(pieces)), [len(cut) for cut in pieces])
 
 

@@ -308,3 +308,15 @@ def test_geometry_of_no_wall_is_refused_in_a_line(changes: dict[str, Any], said:
         scene_from_dict(content(**(SIZE | changes)))
     assert said in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("unit", [0.1, 1.0, 10.0, 100.0])
+def test_three_quarters_of_a_block_beside_an_opening_stay_whole_in_whatever_unit(unit: float) -> None:
+    """They are as wide as what may stay whole, and were cut or not by the last bit of their width."""
+    size = {"length": 0.8, "height": 1.2, "block_width": 0.2, "block_height": 0.2, "thickness": 0.1}
+    hole = {"from": [round(0.25 * unit, 9), round(0.2 * unit, 9)], "to": [round(0.45 * unit, 9), round(0.6 * unit, 9)]}
+    wall = {key: round(value * unit, 9) for key, value in size.items()} | {"opening": [hole]}
+    scene = panel(wall=wall, inner_joint={"friction": 0.7, "cohesion": 1e5, "tensile_strength": 1e4})
+    halves = scene.joints.block[scene.joints.inner]
+    low, high = scene.blocks.boxes
+    assert (high[halves[:, 1], 0] - low[halves[:, 0], 0] > 0.8 * 0.2 * unit).all()
