@@ -28,12 +28,6 @@ LOCAL, VISCOUS = 0.5, 0.1
 MOVING, CALMING = 0.2, 0.8
 """Local damping α of what moves far: less than at rest, for it drags; and more while it comes to rest before that."""
 
-DIGITS = 9
-"""Digits that are kept of a largest frequency squared, far more than time steps ask for.
-
-A library's last ones differ from machine to machine, and blocks that bounce tell the last one of a time step.
-"""
-
 Observer: TypeAlias = Callable[["Run", State, float], None]
 """Looks at a run, its state and the multiplier, now and then, and changes none of them."""
 
@@ -125,7 +119,7 @@ class Run:
         """Go on with an interface, on contacts."""
         self.interface, self._contacts = interface, contacts
         bound, closer = (
-            float(f"{self.system.ties.frequency_squared(square, self.system.mass):.{DIGITS}g}")
+            self.system.ties.frequency_squared(square, self.system.mass)
             for square in (interface.frequency_squared, interface.closer or interface.frequency_squared)
         )
         self.safe_step = stable_step(closer, self.viscous * math.sqrt(closer / bound), self.local)
