@@ -71,6 +71,7 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     axes.set_ylabel(load_axis, fontsize=TYPE + 1)
     axes.set_title("\n".join([*wall_title(outcome.scene), outcome.model]), fontsize=TYPE + 2, parse_math=False)
     axes.tick_params(labelsize=TYPE)
+    axes.ticklabel_format(axis="y", useMathText=True)  # × 10⁷, not 1e7
     bare(axes)
 
 
