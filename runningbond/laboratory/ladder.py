@@ -15,7 +15,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import suggestion
 
-from .rig import Features
+from .rig import Features, pressed
 
 PUSHED = Features(driven=False)
 FORMULAS = ("rocking", "sliding")
@@ -56,20 +56,14 @@ def by_hand(scene: Scene) -> dict[str, float]:
     if beam is None or beam.drive is None:
         raise SceneError("beam.drive", "is missing; the formulas are of walls that are pushed at a beam")
     (left, bottom), (right, _) = scene.blocks.extent(scene.wall)
-    length, pressed = right - left, _pressed(scene)
+    length, force = right - left, pressed(scene)
     height = scene.blocks.centroid[beam.block, 1] - bottom if beam.drive.at is None else beam.drive.at
     # A beam that does not turn bends the wall doubly: it presses on one corner of its top.
     lever = length / (2 * height) if beam.condition == "free" else length / height
-    return dict(zip(FORMULAS, (pressed * lever, _sliding(scene, pressed)), strict=True))
+    return dict(zip(FORMULAS, (force * lever, _sliding(scene, force)), strict=True))
 
 
-def _pressed(scene: Scene) -> float:
-    """Force that presses on the wall from above [N]: the beam and its load, and the dead loads on the wall."""
-    weight = 0.0 if scene.beam is None else -scene.beam.mass * scene.load.gravity[1]
-    return float(weight - scene.dead_forces.force[:, 1].sum())
-
-
-def _sliding(scene: Scene, pressed: float) -> float:
+def _sliding(scene: Scene, force: float) -> float:
     """N tan φ + c L t [N] of the bed along which that is least; of several materials each has its share of N."""
     joints, tolerance = scene.joints, scene.blocks.tolerance
     (x0, y0), (x1, y1) = joints.ends[:, 0].T, joints.ends[:, 1].T
@@ -84,7 +78,7 @@ def _sliding(scene: Scene, pressed: float) -> float:
         share, material = length[bed], scene.material_of_joint[bed]
         if share.sum() >= WHOLE * longest:
             mean = float(friction[material] @ share / share.sum())
-            found.append(pressed * mean + float(cohesion[material] @ share) * scene.thickness)
+            found.append(force * mean + float(cohesion[material] @ share) * scene.thickness)
     return min(found)
 
 

@@ -3,11 +3,13 @@
 import math
 import re
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from runningbond.joints import joint_stiffness
-from runningbond.scene import Scene, SceneError, Stiffness, scene_from_dict
+from runningbond.scene import JointMaterial, Scene, SceneError, Stiffness, scene_from_dict
 from runningbond.scene.file import read_description
+from runningbond.scene.materials import CAP_SHEAR
 
 from .measured import MeasuredWall
 from .stones import SHARE, SHEAR_ENERGIES, SPLITTING_ENERGY, UNIT_WEIGHT, Stone, find_stone
@@ -28,6 +30,15 @@ MOST_BLOCKS = 5000
 
 LEAST_BEAM = 0.2
 """Least height of the beam [m] where the actuator's height does not give it; of no influence, for it is stiff."""
+
+
+SOUND: dict[str, Any] = {
+    "compressive_strength": None,
+    "compressive_fracture_energy": None,
+    "cap_shear": CAP_SHEAR,
+    "peak_closure": 0.0,
+}
+"""What a joint that does not crush says of crushing."""
 
 
 @dataclass(frozen=True)
@@ -56,26 +67,22 @@ class Features:
 
 def scene_of(wall: MeasuredWall, features: Features) -> Scene:
     """The scene of a wall, with some of its features."""
-    scene = _scene_of(wall, features)
+    if wall.scene_file is None:
+        scene = scene_from_dict(_tables(wall, features))
+    else:
+        scene = _simplified(_read(wall, wall.scene_file, features), features)
     return scene if features.parts == 1 else _stiffened(scene, features.parts)
 
 
-def _scene_of(wall: MeasuredWall, features: Features) -> Scene:
-    if wall.scene_file is None:
-        return scene_from_dict(_tables(wall, features))
-    tables = read_description(wall.scene_file)
+def _read(wall: MeasuredWall, path: Path, features: Features) -> Scene:
+    """The scene of a wall's own file, with cracks where it splits, along its path or pushed by a force of 1 N."""
+    tables = read_description(path)
     if not features.splits:
         tables.pop("inner_joint", None)
-    joint = tables.get("joint", {})
-    if not features.crushes:
-        for key in ("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure"):
-            joint.pop(key, None)
-    if not features.closes:
-        joint.pop("closure", None)
     beam = tables.get("beam", {})
     if not isinstance(beam, dict) or "drive" not in beam:
-        raise SceneError(f"{wall.scene_file.name}: beam.drive", "is missing; a tested wall is pushed at its beam")
-    scene = scene_from_dict(tables, folder=wall.scene_file.parent, default_title=wall.name)
+        raise SceneError(f"{path.name}: beam.drive", "is missing; a tested wall is pushed at its beam")
+    scene = scene_from_dict(tables, folder=path.parent, default_title=wall.name)
     if scene.drive is None or (features.driven and scene.drive.path):
         return scene
     for key, remedy, is_wrong in (
@@ -84,13 +91,40 @@ def _scene_of(wall: MeasuredWall, features: Features) -> Scene:
     ):
         if is_wrong:
             told = f"{remedy}; λ is the force that a tested wall is pushed with"
-            raise SceneError(f"{wall.scene_file.name}: {key}", told)
+            raise SceneError(f"{path.name}: {key}", told)
     # A force pushes to the side that the wall is pushed to first: it may bear less there than on the other one. It is
     # of 1 N whatever the file has, so that λ is the wall's strength in newtons.
     side = math.copysign(1.0, scene.drive.force[0])
     at = {} if scene.drive.at is None else {"at": scene.drive.at}
     tables["beam"] = beam | {"drive": {"force": [side, 0]} | at}
-    return scene_from_dict(tables, folder=wall.scene_file.parent, default_title=wall.name)
+    return scene_from_dict(tables, folder=path.parent, default_title=wall.name)
+
+
+def _simplified(scene: Scene, features: Features) -> Scene:
+    """The scene without joints that crush, or that close, where these are not asked for."""
+    (left, _), (right, _) = scene.blocks.extent(scene.masonry)
+    pressure = max(pressed(scene), 0.0) / ((right - left) * scene.thickness)
+    materials = scene.joint_materials
+    if not features.crushes:
+        materials = tuple(replace(each, **SOUND) for each in materials)
+    if not features.closes:
+        materials = tuple(_as_stiff_as_under(pressure, each) for each in materials)
+    return replace(scene, joint_materials=materials)
+
+
+def _as_stiff_as_under(pressure: float, material: JointMaterial) -> JointMaterial:
+    """A joint that does not close, as stiff as one that does is under a pressure [Pa]."""
+    if material.closure is None:
+        return material
+    stiffness = joint_stiffness(material)
+    normal = min(stiffness.normal + material.closure.growth * pressure, material.closure.stiffest)
+    return replace(material, closure=None, elasticity=Stiffness(normal, stiffness.shear))
+
+
+def pressed(scene: Scene) -> float:
+    """Force that presses on the wall from above [N]: the beam and its load, and the dead loads on the wall."""
+    weight = 0.0 if scene.beam is None else -scene.beam.mass * scene.load.gravity[1]
+    return float(weight - scene.dead_forces.force[:, 1].sum())
 
 
 def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:

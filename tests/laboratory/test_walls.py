@@ -1,19 +1,22 @@
 """Rows of tables become scenes: facts of the campaigns, and one line for what is wrong."""
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from runningbond.joints import joint_stiffness
 from runningbond.laboratory import SHIPPED, MeasuredWall, read_folder
 from runningbond.laboratory.folder import DATA
-from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.ladder import LADDER, Rung
 from runningbond.laboratory.measured import growing, turning_points
 from runningbond.laboratory.predictions import scenes_of
-from runningbond.laboratory.rig import Features, scene_of, vertical_load
+from runningbond.laboratory.rig import Features, _tables, scene_of, vertical_load
 from runningbond.laboratory.stones import STONES
 from runningbond.scene import Closure, SceneError, Stiffness
+from tests.walls import write_toml
 
 from .folders import CURVE, GRANITE, HEADS, SANDSTONE, write_folder
 
@@ -185,6 +188,36 @@ def test_scene_of_its_own_is_taken_instead_of_the_row(tmp_path: Path) -> None:
     assert pushed is not None
     assert pushed.drive is not None
     assert pushed.drive.path == ()
+
+
+RUNGS = [rung for rung in LADDER.values() if not rung.features.deformable]
+
+
+@pytest.mark.parametrize("rung", RUNGS, ids=lambda rung: rung.name)
+def test_a_row_written_as_a_scene_file_is_predicted_as_the_row(rung: Rung, tmp_path: Path) -> None:
+    """Joints that close were as stiff as without pressure where they were not to close."""
+    wall = one(tmp_path)
+    file = write_toml(_tables(wall, ALL), tmp_path / "WS.175.toml")
+    row, own = scene_of(wall, rung.features), scene_of(replace(wall, scene_file=file), rung.features)
+    for mine, theirs in zip(own.joint_materials, row.joint_materials, strict=True):
+        assert replace(theirs, elasticity=mine.elasticity) == mine
+        assert vars(joint_stiffness(mine)) == pytest.approx(vars(joint_stiffness(theirs)))
+    assert own.drive == row.drive
+
+
+@pytest.mark.parametrize("rung", RUNGS, ids=lambda rung: rung.name)
+def test_joints_of_every_material_have_the_features_that_are_asked_for(rung: Rung, tmp_path: Path) -> None:
+    """`limit` crushed the toe of a wall whose lowest bed is a named material, as `limit-crushing` does."""
+    wall = one(tmp_path)
+    tables = _tables(wall, ALL)
+    tables["joints"] = {"foot": tables["joint"] | {"peak_closure": 1e-4, "cap_shear": 4.0}}
+    tables["assign"] = [{"joint": "foot", "between": ["ground", "*"]}]
+    scene = scene_of(replace(wall, scene_file=write_toml(tables, tmp_path / "WS.175.toml")), rung.features)
+    foot = next(each for each in scene.joint_materials if each.name == "foot")
+    assert (foot.compressive_strength, foot.peak_closure, foot.cap_shear) == (
+        (73e6, 1e-4, 4.0) if rung.features.crushes else (None, 0.0, 9.0)
+    )
+    assert (foot.closure is not None) == rung.features.closes
 
 
 def test_unit_in_the_head_of_a_column_counts(tmp_path: Path) -> None:
