@@ -5,6 +5,7 @@ import io
 import math
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -82,25 +83,32 @@ def _wall(folder: Path, name: str, row: TableRow) -> MeasuredWall:
     files = {ending: folder / f"{name}{ending}" for ending in (".csv", ".toml", "-cracks.png")}
     there = {ending: path if path.is_file() else None for ending, path in files.items()}
     curve = read_curve(there[".csv"]) if there[".csv"] else np.zeros((0, 2))
-    if len(curve) and np.nanmax(curve[:, 0]) < -SWING * np.nanmin(curve[:, 0]):  # pushed to the negative side alone
-        curve = -curve
     if len(curve) and np.nansum(curve[:, 0] * curve[:, 1]) <= 0:
         raise SceneError(f"{name}.csv", "has its forces against its displacements; change the sign of one of them")
     if there["-cracks.png"] and not there["-cracks.png"].read_bytes().startswith(PNG):
         raise SceneError(there["-cracks.png"].name, "is no PNG picture")
-    printed = [row.optional(column) for column in ("Vmax,+", "Vmax,-")]
-    peaks = tuple(value for value in printed if value is not None) or _peaks(curve)
     said = re.split(r"[,;/+&]", row.text("from test report: failure type"))
     modes = tuple(mode.strip().upper() for mode in said if mode.strip())
-    return MeasuredWall(name, row, curve, peaks, modes, there[".toml"], there["-cracks.png"])
+    printed = [row.optional(column) for column in ("Vmax,+", "Vmax,-")]
+    peaks = tuple(value for value in printed if value is not None)
+    wall = MeasuredWall(name, row, curve, peaks, modes, there[".toml"], there["-cracks.png"])
+    if _is_pushed_left(wall):
+        wall = replace(wall, curve=-curve)
+    return wall if peaks else replace(wall, peaks=_peaks(wall))
 
 
-def _peaks(curve: Array) -> tuple[float, ...]:
-    """Largest forces of a curve to either side."""
-    if not len(curve):
+def _is_pushed_left(wall: MeasuredWall) -> bool:
+    """Whether a wall was pushed to the negative side, and to the other one not at all or in passing."""
+    left, right = wall.reach
+    return left * SWING > right or (left > right and not wall.is_cyclic)
+
+
+def _peaks(wall: MeasuredWall) -> tuple[float, ...]:
+    """Largest forces of a curve to either side, or to the one that the wall was pushed to."""
+    if not len(wall.curve):
         return ()
-    most, least = float(np.nanmax(curve[:, 1])), float(np.nanmin(curve[:, 1]))
-    return (most, -least) if -least > most / 2 else (most,)
+    sides = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
+    return tuple(force for force in sides if force > 0) if wall.is_cyclic else sides[:1]
 
 
 def read_curve(path: Path) -> Array:

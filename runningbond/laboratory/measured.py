@@ -12,6 +12,9 @@ from .table_row import TableRow
 SWING = 0.05
 """Displacements that turn back by less, relative to the largest, are noise of the record and no turn of the rig."""
 
+BOTH = 0.2
+"""Displacement to the lesser side, relative to that to the other, above which a wall was pushed to both."""
+
 LARGER = 1.1
 """Cycles not larger than the last one by this factor repeat it, and are left out of a prediction."""
 
@@ -59,7 +62,13 @@ class MeasuredWall:
         said = self.row.text("cyclic / monotonic").casefold()
         if said:
             return said.startswith("cyc")
-        return bool(len(self.curve) and np.nanmin(self.curve[:, 0]) < -0.2 * np.nanmax(self.curve[:, 0]))
+        return min(self.reach) > BOTH * max(self.reach)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """How far its curve goes to the negative and to the positive side [m]."""
+        moved = np.append(self.curve[:, 0], 0.0)
+        return -float(np.nanmin(moved)), float(np.nanmax(moved))
 
     @property
     def is_scored(self) -> bool:

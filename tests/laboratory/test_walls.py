@@ -14,6 +14,7 @@ from runningbond.laboratory.ladder import LADDER, Rung
 from runningbond.laboratory.measured import growing, turning_points
 from runningbond.laboratory.predictions import scenes_of
 from runningbond.laboratory.rig import Features, _tables, scene_of, vertical_load
+from runningbond.laboratory.scores import marks_of
 from runningbond.laboratory.stones import STONES
 from runningbond.scene import Closure, SceneError, Stiffness
 from tests.walls import write_toml
@@ -405,3 +406,27 @@ def test_a_curve_to_the_negative_side_may_begin_with_noise(tmp_path: Path) -> No
     curve = "displacement_mm,force_kN\n0.01,0\n-1,-30\n-10,-61\n"
     wall = read_folder(write_folder(tmp_path / "walls", GRANITE, curve=curve))[0]
     assert wall.curve[-1] == pytest.approx([0.01, 61e3])
+
+
+@pytest.mark.parametrize("kind", ["Monotonic", "Cyclic", ""])
+@pytest.mark.parametrize("passing", [0.3, 1.0, 3.0])
+def test_a_wall_is_read_as_its_mirror_image(passing: float, kind: str, tmp_path: Path) -> None:
+    """12 mm to one side under 61 kN, after some to the other: with that beyond a twentieth it depended on the side."""
+    points = [(0, 0), (passing / 2, 10), (passing, 12), (0, -1), (-2, -40), (-10, -61), (-12, -45)]
+    row, walls = GRANITE.replace("Monotonic", kind).replace(",61,", ",,"), []
+    for side in (1, -1):
+        curve = "displacement_mm,force_kN\n" + "".join(f"{side * x},{side * y}\n" for x, y in points)
+        walls += read_folder(write_folder(tmp_path / str(side), row, curve=curve))
+    marks = [marks_of(wall.curve, cyclic=wall.is_cyclic) for wall in walls]
+    assert marks[0] is not None
+    assert marks[0] == marks[1]
+    assert walls[0].is_cyclic == walls[1].is_cyclic
+    assert {walls[0].peak, walls[1].peak} == {marks[0].strength}
+    assert walls[0].is_cyclic or walls[0].path == walls[1].path == (0.012,)
+
+
+def test_a_wall_that_was_pushed_back_to_where_it_stood_was_not_pushed_to_both_sides(tmp_path: Path) -> None:
+    """A wall that slides takes as much on its way back; of one to one side the largest force there counts."""
+    curve = "displacement_mm,force_kN\n0,0\n1,50\n10,61\n9,-55\n0,-60\n"
+    wall = one(tmp_path, GRANITE.replace(",61,", ",,"))
+    assert read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))[0].peaks == wall.peaks
