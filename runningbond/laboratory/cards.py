@@ -16,7 +16,7 @@ from runningbond.scene import Array
 
 from .ladder import LADDER
 from .predictions import Prediction
-from .scores import cycle_peaks
+from .scores import cycle_ends, cycle_peaks
 from .summary import errors_by_hand, kind_of
 
 PUSHED_LEFT = ("SW.200.1",)
@@ -63,6 +63,7 @@ def _distance(prediction: Prediction) -> tuple[bool, float]:
 def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
     """Curves where there are some, and levels of those that know of a load only [mm, kN]."""
     wall = predictions[0].wall
+    ends = cycle_ends(wall.path)
     if len(wall.curve):
         line = 0.6 if wall.is_cyclic else 1.8
         axes.plot(1e3 * wall.curve[:, 0], wall.curve[:, 1] / 1e3, color=MEASURED, lw=line, label="measured", alpha=0.7)
@@ -80,9 +81,9 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
         x, y = each.curve.T
         axes.plot(1e3 * x, y / 1e3, lw=0.6 if wall.is_cyclic else 1.2, **look)
         if wall.is_cyclic:
-            _envelope(axes, each.curve, wall.path, each.rung.model.colour)
+            _envelope(axes, each.curve, ends, each.rung.model.colour)
     if wall.is_cyclic:
-        _envelope(axes, wall.curve, wall.path, MEASURED, "peaks of its cycles")
+        _envelope(axes, wall.curve, ends, MEASURED, "peaks of its cycles")
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="displacement at the actuator [mm]", ylabel="horizontal force [kN]")
     axes.set_title(f"{wall.name}" + ("" if wall.is_scored else ", shown, not scored"), fontsize=10)

@@ -18,7 +18,7 @@ from .ladder import FORMULAS, Rung, by_hand
 from .measured import MeasuredWall
 from .modes import ROCKING, SLIDING, measured_modes, predicted_mode
 from .rig import scene_of
-from .scores import Marks, cycle_peaks, energy_ratio, marks_of, ratio
+from .scores import Marks, cycle_ends, cycle_peaks, energy_ratio, marks_of, ratio
 
 ARRIVED = 0.99
 """Part of the path's way after which a wall has been followed to its end."""
@@ -140,7 +140,8 @@ class Prediction:
         """Mean of what is predicted over what was measured in the peaks of cycles."""
         if not self.wall.is_cyclic or not self.marks:
             return None
-        pairs = zip(cycle_peaks(self.curve, self.wall.path), cycle_peaks(self.wall.curve, self.wall.path), strict=False)
+        ends = cycle_ends(self.wall.path)
+        pairs = zip(cycle_peaks(self.curve, ends), cycle_peaks(self.wall.curve, ends), strict=False)
         over = [own / test for own, test in pairs if test]
         return float(np.mean(over)) if over else None
 

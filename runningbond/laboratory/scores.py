@@ -217,6 +217,13 @@ def residual(curve: Array) -> float | None:
     return max(zeros, default=None)
 
 
+def cycle_ends(path: tuple[float, ...]) -> tuple[float, ...]:
+    """Displacements of a path to which a wall is pushed; not to where it is let go back, nor to rest but for noise."""
+    return tuple(
+        goal for start, goal in pairwise((0.0, *path)) if (goal - start) * goal > 0 and abs(goal) > SWING * abs(start)
+    )
+
+
 def cycle_peaks(curve: Array, path: tuple[float, ...]) -> list[float]:
     """Force [N] of largest size on the way to each displacement of a path, as far as a curve goes along it."""
     known = curve[~np.isnan(curve).any(axis=1)]

@@ -17,6 +17,7 @@ from runningbond.laboratory.rig import Features, scene_of
 from runningbond.laboratory.scores import (
     Loop,
     backbone,
+    cycle_ends,
     cycle_peaks,
     energy_ratio,
     first_crossing,
@@ -164,6 +165,30 @@ def test_cycle_of_a_slider_dissipates_its_loop_and_leaves_what_it_slid() -> None
     assert marks.strength == pytest.approx(10.0)
     assert marks.stiffness == pytest.approx(10.0)  # of a branch, though the loop is 4 m wide
     assert cycle_peaks(loop, (3.0, -3.0, 3.0)) == pytest.approx([10, -10, 10])
+
+
+@pytest.mark.parametrize(
+    ("path", "ends"),
+    [
+        ((2.0, -2.0, 4.0, -4.0, 8.0), (2.0, -2.0, 4.0, -4.0, 8.0)),
+        ((2.0, -2.0, 4.0, -0.1), (2.0, -2.0, 4.0)),
+        ((-2.0, 2.0, -4.0, 0.1), (-2.0, 2.0, -4.0)),
+        ((2.0, -2.0, 4.0, 0.0), (2.0, -2.0, 4.0)),
+        ((5.0, 1.0, 10.0, 2.0), (5.0, 10.0)),
+    ],
+)
+def test_where_a_wall_is_let_go_back_to_is_no_end_of_a_cycle(path: tuple[float, ...], ends: tuple[float, ...]) -> None:
+    """Of a record that ends with half a loop the force near rest was one more peak, and its ratio any number."""
+    assert cycle_ends(path) == ends
+    assert cycle_peaks(elastic_plastic(10.0, 10.0, path), ends) == pytest.approx([10 * np.sign(x) for x in ends])
+
+
+def test_peaks_of_cycles_are_compared_where_walls_were_pushed_to() -> None:
+    """Curves that differ by a tenth but for the end of the record, near rest, where one bears fifty times the other."""
+    points, rest = [(0, 0), (2, 40), (-2, -40), (4, 60)], [(-0.05, -0.1), (-0.05, -5)]
+    record, own = (1e-3 * curve(*points, end) * (1, 1e6 * pace) for end, pace in zip(rest, (1, 1.1), strict=True))
+    one = replace(prediction("WS1.100", "rigid", 1.0, curve=own), wall=replace(WALLS["WS1.100"], curve=record))
+    assert one.row()["cycle_ratio"] == pytest.approx(1.1)
 
 
 def test_elastic_cycles_dissipate_nothing_whatever_the_rounding() -> None:
