@@ -43,11 +43,11 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
 
 
 def _own_code(given: Callable[..., Any]) -> bytes:
-    """The file of a user's function or class, or its compiled code where it is in none; nothing for the package's."""
+    """The file of a function or class, or its compiled code where it is in none; nothing where `code_digest` has it."""
     function: Any = getattr(given, "func", given)
     function = getattr(function, "__func__", function)
     function = function if hasattr(function, "__module__") and hasattr(function, "__qualname__") else type(function)
-    if function.__module__.split(".")[0] in {room.split(".")[0] for room in COMPUTING_ROOMS}:
+    if f"{function.__module__}.".startswith(tuple(f"{room}." for room in COMPUTING_ROOMS)):
         return b""
     if _is_in_file(function):
         return Path(inspect.getfile(function)).read_bytes()

@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from runningbond.joints.compiled import compilation
 from runningbond.models import MODELS, Model
 from runningbond.models.registry import EXTRAS, STIFFNESS
@@ -15,14 +13,10 @@ from runningbond.results import Outcome
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.ranges import suggestion
 
-from .rig import Features, pressed
+from .formulas import formula
+from .rig import Features
 
 PUSHED = Features(driven=False)
-FORMULAS = ("rocking", "sliding")
-"""Names of the two formulas that are worked out by hand."""
-
-WHOLE = 0.5
-"""Length of a bed, in lengths of the longest one, from which on a wall slides along it: openings part it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,44 +44,6 @@ class Rung:
         return "left out: a wall that rocks goes beyond small displacements" if rocks and not self.is_finite else ""
 
 
-def by_hand(scene: Scene) -> dict[str, float]:
-    """What is worked out by hand: the forces [N] of `FORMULAS`."""
-    beam = scene.beam
-    if beam is None or beam.drive is None:
-        raise SceneError("beam.drive", "is missing; the formulas are of walls that are pushed at a beam")
-    (left, bottom), (right, _) = scene.blocks.extent(scene.wall)
-    length, force = right - left, pressed(scene)
-    height = scene.blocks.centroid[beam.block, 1] - bottom if beam.drive.at is None else beam.drive.at
-    # A beam that does not turn bends the wall doubly: it presses on one corner of its top.
-    lever = length / (2 * height) if beam.condition == "free" else length / height
-    return dict(zip(FORMULAS, (force * lever, _sliding(scene, force)), strict=True))
-
-
-def _sliding(scene: Scene, force: float) -> float:
-    """N tan φ + c L t [N] of the bed along which that is least; of several materials each has its share of N."""
-    joints, tolerance = scene.joints, scene.blocks.tolerance
-    (x0, y0), (x1, y1) = joints.ends[:, 0].T, joints.ends[:, 1].T
-    flat = np.flatnonzero(np.abs(y1 - y0) <= tolerance)
-    order = flat[np.argsort(y0[flat], kind="stable")]
-    beds = np.split(order, np.flatnonzero(np.diff(y0[order]) > tolerance) + 1)
-    length = np.abs(x1 - x0)
-    longest = max(float(length[bed].sum()) for bed in beds)
-    friction, cohesion = np.array([(each.friction, each.cohesion) for each in scene.joint_materials]).T
-    found = []
-    for bed in beds:
-        share, material = length[bed], scene.material_of_joint[bed]
-        if share.sum() >= WHOLE * longest:
-            mean = float(friction[material] @ share / share.sum())
-            found.append(force * mean + float(cohesion[material] @ share) * scene.thickness)
-    return min(found)
-
-
-def _formula(scene: Scene, tolerance: float, *, what: str) -> Outcome:
-    loads = by_hand(scene)
-    load = loads.get(what, min(loads.values()))
-    return Outcome(scene.title, what, "collapse", load, load, load, message="worked out by hand")
-
-
 def _run(
     scene: Scene,
     tolerance: float,
@@ -111,7 +67,7 @@ def _run(
 
 
 def _hand(name: str, title: str) -> Rung:
-    model = Model(name, title, partial(_formula, what=name), STIFFNESS, takes=EXTRAS, colour="0.45", marker="_")
+    model = Model(name, title, partial(formula, what=name), STIFFNESS, takes=EXTRAS, colour="0.45", marker="_")
     return Rung(model, PUSHED, is_by_hand=True)
 
 

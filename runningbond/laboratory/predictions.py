@@ -14,7 +14,8 @@ from runningbond.models import TOLERANCE, Model
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
-from .ladder import FORMULAS, Rung, by_hand
+from .formulas import FORMULAS, by_hand
+from .ladder import Rung
 from .measured import MeasuredWall
 from .modes import ROCKING, SLIDING, measured_modes, predicted_mode
 from .rig import scene_of

@@ -11,6 +11,7 @@ from runningbond.scene import JointMaterial, Scene, SceneError, Stiffness, scene
 from runningbond.scene.file import read_description
 from runningbond.scene.materials import CAP_SHEAR
 
+from .formulas import pressed
 from .measured import MeasuredWall
 from .stones import SHARE, SHEAR_ENERGIES, SPLITTING_ENERGY, UNIT_WEIGHT, Stone, find_stone
 
@@ -119,12 +120,6 @@ def _as_stiff_as_under(pressure: float, material: JointMaterial) -> JointMateria
     stiffness = joint_stiffness(material)
     normal = min(stiffness.normal + material.closure.growth * pressure, material.closure.stiffest)
     return replace(material, closure=None, elasticity=Stiffness(normal, stiffness.shear))
-
-
-def pressed(scene: Scene) -> float:
-    """Force that presses on the wall from above [N]: the beam and its load, and the dead loads on the wall."""
-    weight = 0.0 if scene.beam is None else -scene.beam.mass * scene.load.gravity[1]
-    return float(weight - scene.dead_forces.force[:, 1].sum())
 
 
 def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from runningbond.compare.advice.experiment import ModelError
 from runningbond.pictures.sheet import Sheet
 from runningbond.results.outcome import two_digits
 
-from .ladder import by_hand
+from .formulas import by_hand
 from .predictions import Prediction
 
 MEDIAN, WORST, MODES, FACTOR = 0.10, 0.20, 0.80, 1.5

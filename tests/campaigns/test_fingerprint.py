@@ -1,6 +1,7 @@
 """What the digest of an outcome knows of."""
 
 import ast
+import inspect
 import sys
 from functools import partial
 from importlib import import_module
@@ -12,6 +13,7 @@ import pytest
 from numba.cloudpickle import dumps, loads
 
 from runningbond.campaigns.fingerprint import COMPUTING_ROOMS, LIBRARIES, fingerprint
+from runningbond.laboratory.ladder import LADDER
 from runningbond.models import Model
 from runningbond.results import Outcome
 from runningbond.scene import Scene
@@ -103,3 +105,15 @@ def test_code_without_a_file_is_known_by_the_names_in_it() -> None:
         exec(f"def solve(scene, tolerance): return {name}(scene.thickness, 10.0)", names)
         keys.add(fingerprint(WALL, Model("mine", "a user's own", names["solve"], frozenset()), 1e-3))
     assert len(keys) == 2
+
+
+@pytest.mark.parametrize("name", ["rocking", "rigid"])
+def test_a_model_of_the_package_that_is_in_no_room_which_computes_is_known_by_its_file(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The laboratory kept what another formula had given."""
+    model, read = LADDER[name].model, Path.read_bytes
+    before = fingerprint(WALL, model, 1e-3)
+    file = inspect.getfile(model.solve.func)  # type: ignore[attr-defined]
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + (b"changed" if str(path) == file else b""))
+    assert fingerprint(WALL, model, 1e-3) != before

@@ -10,7 +10,8 @@ import pytest
 from runningbond.dynamics.lead import TOE, failing
 from runningbond.laboratory import read_folder
 from runningbond.laboratory.folder import SHIPPED
-from runningbond.laboratory.ladder import LADDER, by_hand, find_rungs
+from runningbond.laboratory.formulas import by_hand
+from runningbond.laboratory.ladder import LADDER, find_rungs
 from runningbond.laboratory.modes import DIAGONAL, ROCKING, SLIDING, bed_slips, measured_modes, predicted_mode
 from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import Features, scene_of
