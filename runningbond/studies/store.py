@@ -1,7 +1,7 @@
 """The table of a study: a row is kept as soon as it is measured, and taken again while nothing it depends on changes.
 
 ``NAME.csv`` is written whole or not at all. Each row carries a key, the digest of all that it depends on, and a seal,
-the digest of the row itself.
+the digest of the row itself under its heads.
 """
 
 import csv
@@ -64,7 +64,7 @@ def kept_rows(study: Study, folder: Path) -> dict[Where, Row]:
     """Rows of the table that are still good; what ended in an error is tried again."""
     try:
         rows = read_csv(table_path(study, folder).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, csv.Error):
         return {}
     cases = ((where, study.entries(where), rows.get(_key(study, where))) for where in study.cases)
     return {where: case | row | case for where, case, row in cases if row is not None and FAILURE not in row}
@@ -79,7 +79,7 @@ def csv_text(study: Study, rows: dict[Where, Row]) -> str:
             case, row = study.parts[where[0]].columns, rows[where]
             entries = [_text(row.get(column), plain=column in case) for column in columns]
             cells = [where[0], *entries, _key(study, where)]
-            lines.append([*cells, _digest("\0".join(cells))[:16]])
+            lines.append([*cells, _seal(lines[0], cells)])
     return csv_lines(lines)
 
 
@@ -90,7 +90,7 @@ def read_csv(text: str) -> dict[str, Row]:
     return {
         cells[-2]: {head: _value(cell) for head, cell in zip(heads[1:-2], cells[1:-2], strict=True) if cell}
         for cells in reader
-        if len(cells) == len(heads) and cells[-1] == _digest("\0".join(cells[:-1]))[:16]
+        if len(cells) == len(heads) and cells[-1] == _seal(heads, cells[:-1])
     }
 
 
@@ -108,6 +108,11 @@ def _value(cell: str) -> object:
         return json.loads(cell)
     except ValueError:
         return cell
+
+
+def _seal(heads: Sequence[str], cells: Sequence[str]) -> str:
+    """Digest of a row and of what its entries are called."""
+    return _digest("\0".join([*heads, *cells]))[:16]
 
 
 def _digest(text: str) -> str:

@@ -117,7 +117,17 @@ def _unquoted(text: str) -> str:
     return text.replace('"', "")
 
 
-@pytest.mark.parametrize("damage", [_cut, _changed, _unquoted, lambda text: "", lambda text: "\0"])
+def _renamed(text: str) -> str:
+    return text.replace("measured,theory", "theory,measured", 1)
+
+
+def _left_open(text: str) -> str:
+    return text + '"' + "0" * csv.field_size_limit() + "\n"
+
+
+@pytest.mark.parametrize(
+    "damage", [_cut, _changed, _unquoted, _renamed, _left_open, lambda text: "", lambda text: "\0"]
+)
 def test_a_damaged_table_is_measured_anew(damage: Callable[[str], str], tmp_path: Path) -> None:
     rows = run_study(BEAMS, tmp_path)
     path = table_path(BEAMS, tmp_path)
