@@ -99,7 +99,7 @@ def _wall(folder: Path, name: str, row: TableRow) -> MeasuredWall:
 
 def _is_pushed_left(wall: MeasuredWall) -> bool:
     """Whether a wall was pushed to the negative side, and to the other one not at all or in passing."""
-    left, right = wall.reach
+    right, left = wall.reach
     return left * SWING > right or (left > right and not wall.is_cyclic)
 
 
@@ -107,8 +107,11 @@ def _peaks(wall: MeasuredWall) -> tuple[float, ...]:
     """Largest forces of a curve to either side, or to the one that the wall was pushed to."""
     if not len(wall.curve):
         return ()
-    sides = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
-    return tuple(force for force in sides if force > 0) if wall.is_cyclic else sides[:1]
+    forces = float(np.nanmax(wall.curve[:, 1])), -float(np.nanmin(wall.curve[:, 1]))
+    if not wall.is_cyclic:
+        return forces[:1]
+    least = SWING * max(wall.reach)
+    return tuple(force for force, far in zip(forces, wall.reach, strict=True) if far > least and force > 0)
 
 
 def read_curve(path: Path) -> Array:

@@ -66,9 +66,9 @@ class MeasuredWall:
 
     @property
     def reach(self) -> tuple[float, float]:
-        """How far its curve goes to the negative and to the positive side [m]."""
+        """How far its curve goes to the positive and to the negative side [m]."""
         moved = np.append(self.curve[:, 0], 0.0)
-        return -float(np.nanmin(moved)), float(np.nanmax(moved))
+        return float(np.nanmax(moved)), -float(np.nanmin(moved))
 
     @property
     def is_scored(self) -> bool:

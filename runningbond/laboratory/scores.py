@@ -67,12 +67,14 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
         curve, known = -curve, -known
     if len(known) < 2 or known[:, 1].max() <= 0:
         return None
-    sides = [backbone(known), backbone(-known)] if cyclic else [_onward(_from_rest(known))]
-    peaks = [float(side[:, 1].max()) for side in sides]
-    strength = float(np.mean([peak for peak in peaks if peak > 0]))
+    sides = _pushed(backbone(known), backbone(-known)) if cyclic else [_onward(_from_rest(known))]
+    peaks = [peak for side in sides if (peak := float(side[:, 1].max())) > 0]
+    if not peaks:
+        return None
+    strength = float(np.mean(peaks))
     force = SECANT * strength
     reach = swing(known, force) if cyclic else first_crossing(sides[0], force)
-    stiffness = (2 if cyclic else 1) * force / reach if reach else None
+    stiffness = (2 if cyclic else 1) * force / reach if reach is not None and reach > 0 else None
     side = sides[0]
     top = int(side[:, 1].argmax())
     after, borne = side[top:], LOSS * float(side[top, 1])
@@ -83,6 +85,12 @@ def marks_of(curve: Array, *, cyclic: bool) -> Marks | None:
     loss = first_crossing(after * (1, -1), -borne)
     both = (tuple(loops(curve)), residual(curve)) if cyclic else ((), None)
     return Marks(strength, stiffness, float(side[top, 0]), loss, *both)
+
+
+def _pushed(*sides: Array) -> list[Array]:
+    """Curves to the sides that a wall was pushed to: to one it was not where it came back to rest but for noise."""
+    reach = [float(side[:, 0].max()) for side in sides]
+    return [side for side, far in zip(sides, reach, strict=True) if far > SWING * max(reach)]
 
 
 def _from_rest(curve: Array) -> Array:

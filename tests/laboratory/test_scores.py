@@ -136,9 +136,27 @@ def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed()
     assert limit(scene).multiplier == pytest.approx(0.2 * pressed, rel=1e-5)
 
 
+@pytest.mark.parametrize("end", [0.0, 1e-17, -1e-17])
+def test_a_wall_that_comes_back_to_rest_was_not_pushed_to_the_other_side(end: float) -> None:
+    """A slider of 12 N to 6 m that is drawn back to rest, to the last bit: that side was in the mean at -1e-17 m."""
+    record = elastic_plastic(10.0, 12.0, (3.0, 0.0, 6.0, 0.0))
+    record[-1] = end, -8.0
+    marks = marks_of(record, cyclic=True)
+    assert marks is not None
+    assert marks.strength == 12.0
+
+
+def test_a_record_that_begins_on_the_other_side_has_no_negative_stiffness() -> None:
+    """0.3 · 100 N at -1 m, where it began."""
+    marks = marks_of(curve((-1, 30), (10, 100)), cyclic=False)
+    assert marks is not None
+    assert marks.stiffness is None
+
+
 def test_curve_that_pushes_nowhere_has_no_marks() -> None:
     assert marks_of(np.zeros((0, 2)), cyclic=False) is None
     assert marks_of(curve((0, 0), (1, -5)), cyclic=False) is None
+    assert marks_of(curve((0, 1), (1, -1), (1, 6), (2, -1)), cyclic=True) is None
 
 
 def elastic_plastic(stiffness: float, most: float, path: tuple[float, ...]) -> Array:

@@ -425,8 +425,9 @@ def test_a_wall_is_read_as_its_mirror_image(passing: float, kind: str, tmp_path:
     assert walls[0].is_cyclic or walls[0].path == walls[1].path == (0.012,)
 
 
-def test_a_wall_that_was_pushed_back_to_where_it_stood_was_not_pushed_to_both_sides(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["Monotonic", "Cyclic"])
+def test_a_wall_that_was_pushed_back_to_where_it_stood_was_not_pushed_to_both_sides(kind: str, tmp_path: Path) -> None:
     """A wall that slides takes as much on its way back; of one to one side the largest force there counts."""
     curve = "displacement_mm,force_kN\n0,0\n1,50\n10,61\n9,-55\n0,-60\n"
-    wall = one(tmp_path, GRANITE.replace(",61,", ",,"))
-    assert read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))[0].peaks == wall.peaks
+    row = GRANITE.replace("Monotonic", kind).replace(",61,", ",,")
+    assert read_folder(write_folder(tmp_path, row, curve=curve))[0].peaks == (61e3,)
