@@ -193,9 +193,10 @@ def _stiffened(scene: Scene, parts: int) -> Scene:
     inner = scene.inner_joint
     if inner is None:
         return scene
-    low, high = (corner[scene.wall] for corner in scene.blocks.boxes)
+    low, high = (corner[scene.masonry] for corner in scene.blocks.boxes)
     size = float((high - low)[:, 1].min()) / parts
-    wanted = STIFFER * (scene.block.young or 0.0) / size
+    young = max(scene.block_materials[k].young or 0.0 for k in set(scene.material_of_block[scene.masonry].tolist()))
+    wanted = STIFFER * young / size
     return with_inner_stiffness(scene, max(1.0, wanted / joint_stiffness(inner).normal))
 
 

@@ -2,6 +2,7 @@
 
 import copy
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.scene import Scene, scene_from_dict
 from runningbond.scene.file import read_description
+from tests.walls import write_toml
 
 WALLS = {wall.name: wall for wall in read_folder(SHIPPED[1])}
 HEIGHT = 0.248
@@ -72,6 +74,30 @@ def test_inner_joints_between_smaller_parts_are_stiffer(parts: int) -> None:
     assert replace(crack, elasticity=plain.elasticity) == plain
     rung: Any = LADDER["fem-cracking"]
     assert rung.features.parts == rung.model.solve.keywords["settings"]["cells"]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"beam": {"height": 0.01}},
+        {
+            "block": {"young": 1e9},
+            "materials": {"brick": {"density": 1800.0, "young": 16.7e9}},
+            "assign": [{"block": "brick", "box": [[-1, -1], [2, 2]]}],
+        },
+    ],
+)
+def test_inner_joints_are_as_stiff_beside_what_cracks(changes: dict[str, Any], tmp_path: Path) -> None:
+    """Whatever the beam, which does not, and a material that no block is of."""
+    wall = WALLS["J7D"]
+    assert wall.scene_file is not None
+    tables = copy.deepcopy(read_description(wall.scene_file))
+    for key, table in changes.items():
+        tables[key] = tables.get(key, {}) | table if isinstance(table, dict) else table
+    own = replace(wall, scene_file=write_toml(tables, tmp_path / "J7D.toml"))
+    features = LADDER["fem-cracking"].features
+    cracks = [scene_of(each, features).inner_joint for each in (wall, own)]
+    assert cracks[0] == cracks[1]
 
 
 @pytest.mark.parametrize("name", ["J4D", "J5D", "J6D", "J7D"])
