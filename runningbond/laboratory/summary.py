@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from statistics import median
 from typing import Any
 
-from runningbond.compare.advice.experiment import ModelError
+from runningbond.compare.advice.experiment import ModelError, joints_of
 from runningbond.pictures.sheet import Sheet
 from runningbond.results.outcome import two_digits
 
@@ -79,8 +79,8 @@ def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
 
 
 def kind_of(prediction: Prediction) -> str:
-    """What tables call walls of its kind, by their joints."""
-    return prediction.wall.row.text("joints").casefold() or "dry"
+    """What tables call walls of its kind, by their joints: as their table has it, else as their scene."""
+    return prediction.wall.row.text("joints").casefold() or joints_of(prediction.scene)
 
 
 def totals(predictions: Sequence[Prediction]) -> list[Total]:

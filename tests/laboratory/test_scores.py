@@ -28,7 +28,7 @@ from runningbond.laboratory.scores import (
     residual,
     swing,
 )
-from runningbond.laboratory.summary import cheapest, totals
+from runningbond.laboratory.summary import cheapest, kind_of, totals
 from runningbond.limit import limit
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, scene_from_dict
@@ -369,6 +369,13 @@ def test_totals_leave_out_sw_30_and_count_who_is_nearer_than_both_formulas() -> 
     assert limit.worst == pytest.approx(99 / 85.9 - 1)
     assert limit.median == pytest.approx((99 / 85.9 - 1 + 0.1 / 37) / 2)
     assert cheapest(totals(own)) is None  # neither knows of a stiffness
+
+
+def test_a_wall_in_mortar_is_none_of_the_dry_ones_where_its_table_says_nothing_of_its_joints() -> None:
+    for name, kind in (("J4D", "mortar"), ("WS.100", "dry")):
+        one = prediction(name, "limit", 1.0)
+        silent = replace(one.wall.row, entries={**one.wall.row.entries, "joints": ("", "")})
+        assert kind_of(replace(one, wall=replace(one.wall, row=silent))) == kind
 
 
 def test_model_that_is_none_of_the_ladder_is_refused() -> None:

@@ -79,10 +79,14 @@ def read_errors(path: Path = SHIPPED) -> list[ModelError]:
     return [ModelError(**{one.name: read[one.type](row[one.name]) for one in fields(ModelError)}) for row in rows]
 
 
+def joints_of(scene: Scene) -> str:
+    """Kind of the joints between the blocks of a scene."""
+    return MORTAR if any(each.cohesion > 0 for each in scene.joint_materials if each.name != "inner_joint") else DRY
+
+
 def error_of(model: str, scene: Scene, *, finite: bool) -> ModelError | None:
     """The error of a model on walls with such joints, and as many of a scene's features; None if none was tested."""
-    kind = MORTAR if any(each.cohesion > 0 for each in scene.joint_materials if each.name != "inner_joint") else DRY
     crushes = any(each.compressive_strength is not None for each in scene.joint_materials)
     splits = scene.inner_joint is not None
-    own = [each for each in read_errors() if (each.base, each.joints, each.finite) == (model, kind, finite)]
+    own = [each for each in read_errors() if (each.base, each.joints, each.finite) == (model, joints_of(scene), finite)]
     return max(own, key=lambda each: (each.splits == splits, each.crushes == crushes), default=None)
