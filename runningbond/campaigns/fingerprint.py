@@ -1,13 +1,17 @@
 """What an outcome was computed from, as one digest: scene, model, tolerance, code and numerical libraries."""
 
+import ast
 import hashlib
 import inspect
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import fields, is_dataclass
+from dis import get_instructions
 from functools import cache, partial
 from importlib import import_module
 from importlib.metadata import version
+from importlib.util import find_spec, resolve_name
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +27,9 @@ COMPUTING_ROOMS = (  # packages in which a change can change a number
 )
 PLAIN = (bool, int, float, complex, str, bytes, tuple, np.ndarray)
 """Values outside of code without a file that it is known by, beside its own."""
+PACKAGES = {room.partition(".")[0] for room in COMPUTING_ROOMS}
+LIBRARY_FOLDERS = {"site-packages", "dist-packages"}
+"""Where libraries lie: a user's own files lie elsewhere."""
 LIBRARIES = ("numpy", "scipy", "shapely", "numba", "scikit-fem", "gmsh", "clarabel", "highspy")
 
 
@@ -43,19 +50,64 @@ def fingerprint(scene: Scene, model: str | Model, tolerance: float) -> str:
 
 
 def _own_code(given: Callable[..., Any]) -> bytes:
-    """The file of a function or class, or its compiled code where it is in none; nothing where `code_digest` has it."""
+    """The file of a function or class and a user's files that it imports, or its compiled code where it is in none.
+
+    Nothing where `code_digest` has it.
+    """
     function: Any = getattr(given, "func", given)
     function = getattr(function, "__func__", function)
     function = function if hasattr(function, "__module__") and hasattr(function, "__qualname__") else type(function)
     if f"{function.__module__}.".startswith(tuple(f"{room}." for room in COMPUTING_ROOMS)):
         return b""
     if _is_in_file(function):
-        return Path(inspect.getfile(function)).read_bytes()
+        return _own_files(function.__module__) or Path(inspect.getfile(function)).read_bytes()
     if inspect.isclass(function):
         return repr(
             [(name, _code(getattr(x, "__code__", None))) for name, x in sorted(vars(function).items())]
         ).encode()
     return repr(_code(getattr(function, "__code__", None))).encode()
+
+
+def _own_files(module: str) -> bytes:
+    """The files of a user's module and of those that they import, each once; nothing of the package or a library."""
+    found: dict[str, bytes] = {}
+    _add_file(module, found)
+    return b"".join(found.values())
+
+
+def _add_file(module: str, found: dict[str, bytes]) -> None:
+    file = _file(module)
+    if file is not None and module not in found:
+        found[module] = file.read_bytes()
+        for name in _imported(found[module], module if file.name == "__init__.py" else module.rpartition(".")[0]):
+            _add_file(name, found)
+
+
+def _file(module: str) -> Path | None:
+    """The file of a user's module; found without loading it, so that it is the same before and after that."""
+    if module.partition(".")[0] in ("", "__main__", *sys.stdlib_module_names, *PACKAGES):
+        return None
+    spec = None
+    with suppress(ImportError, ValueError, AttributeError):  # there is none of the name, or it has no place
+        spec = find_spec(module)
+    if spec is None or not spec.has_location or not (spec.origin or "").endswith(".py"):
+        return None
+    path = Path(str(spec.origin))
+    return None if LIBRARY_FOLDERS & set(path.parts) else path
+
+
+@cache
+def _imported(source: bytes, package: str) -> tuple[str, ...]:
+    """Names of what may be modules among all that a file imports, wherever in it."""
+    names = list[str]()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            with suppress(ImportError):  # beyond the package
+                name = resolve_name("." * node.level + (node.module or ""), package)
+                names += [name, *(f"{name}.{alias.name}" for alias in node.names)]
+    return tuple(names)
 
 
 def _is_in_file(function: Any) -> bool:
@@ -68,16 +120,17 @@ def _is_in_file(function: Any) -> bool:
 
 
 def _code(code: Any) -> tuple[Any, ...]:
-    """Compiled code as what it says, that of functions within it too."""
+    """Compiled code as what it says, that of functions within it too, and a user's files that it imports."""
     if not hasattr(code, "co_code"):
         return ("", code)
-    return code.co_code, code.co_names, *map(_code, code.co_consts)
+    imported = [_own_files(each.argval) for each in get_instructions(code) if each.opname == "IMPORT_NAME"]
+    return code.co_code, code.co_names, *imported, *map(_code, code.co_consts)
 
 
 def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ()) -> None:
     """Add what something that is called was given beside its code: defaults, what it is closed over, fields, settings.
 
-    Of code in no file also the plain values and the functions that it names outside of itself.
+    Of code in no file also the plain values, the functions, and a user's modules and classes that it names.
     """
     if id(given) in seen:
         return
@@ -88,7 +141,9 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
     elif inspect.isfunction(given):
         closure, defaults = inspect.getclosurevars(given), (given.__defaults__, given.__kwdefaults__)
         outside = {} if _is_in_file(given) else closure.globals
-        named = [(name, x) for name, x in outside.items() if isinstance(x, PLAIN) or inspect.isfunction(x)]
+        named = [
+            (name, x) for name, x in outside.items() if isinstance(x, PLAIN) or inspect.isfunction(x) or _is_own(x)
+        ]
         _feed_values(
             digest, (*defaults, *sorted(closure.nonlocals.items()), *sorted(named, key=lambda pair: pair[0])), seen
         )
@@ -98,6 +153,16 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
         _feed_values(digest, tuple(sorted(getattr(given, "__dict__", {}).items())), seen)
 
 
+def _is_own(value: Any) -> bool:
+    """Whether a value is a user's module, or a class of one."""
+    return (inspect.ismodule(value) or inspect.isclass(value)) and _file(_module_of(value)) is not None
+
+
+def _module_of(value: Any) -> str:
+    """Name of a module, or of that of a class."""
+    return str(value.__name__ if inspect.ismodule(value) else value.__module__)
+
+
 def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[int, ...]) -> None:
     """Add values, and what those that are called, or say nothing of themselves, are made of."""
     for value in values:
@@ -105,7 +170,7 @@ def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[i
             _feed_values(digest, value, seen)
             continue
         if inspect.isclass(value) or inspect.ismodule(value):
-            digest.update(value.__name__.encode())
+            digest.update(value.__name__.encode() + _own_files(_module_of(value)))
             continue
         _feed(digest, value)
         if _says_nothing(value):

@@ -97,6 +97,35 @@ def test_a_users_model_is_known_by_what_it_was_given(made: Any) -> None:
     assert fingerprint(WALL, Model("mine", "a user's own", sent, frozenset()), 1e-3) == keys[0]
 
 
+@pytest.mark.parametrize(
+    "source",
+    [
+        "from helper import FACTOR\ndef solve(scene, tolerance): return FACTOR",
+        "def solve(scene, tolerance):\n    import helper\n    return helper.FACTOR",
+        "import between\ndef solve(scene, tolerance): return between.helper.FACTOR",
+    ],
+)
+@pytest.mark.parametrize("has_file", [True, False])
+def test_a_users_model_is_known_by_the_files_that_it_imports(
+    source: str, has_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sweep took what an older version of the helper had given, of a model in a module as of one in a script."""
+    (tmp_path / "between.py").write_text("import helper\n")
+    (tmp_path / "mine.py").write_text(source)
+    monkeypatch.syspath_prepend(tmp_path)
+    keys = []
+    for factor in (1.0, 1.0, 2.0):
+        (tmp_path / "helper.py").write_text(f"FACTOR = {factor}\n")
+        for name in ("mine", "between", "helper"):
+            sys.modules.pop(name, None)
+        names = vars(import_module("mine"))
+        if not has_file:
+            names = {"__name__": "__main__"}
+            exec(source, names)
+        keys.append(fingerprint(WALL, Model("mine", "a user's own", names["solve"], frozenset()), 1e-3))
+    assert keys[0] == keys[1] != keys[2]
+
+
 def test_code_without_a_file_is_known_by_the_names_in_it() -> None:
     """The same instructions and constants, of another function."""
     keys = set()
