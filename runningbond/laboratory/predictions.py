@@ -68,7 +68,7 @@ class Prediction:
         if self.outcome is None or drive is None or not drive.path:
             return np.zeros((0, 2))
         # Outcomes are positive along the first move, and so are tests to one side, whichever it was.
-        is_to_both = any(goal < 0 for goal in self.wall.path)
+        is_to_both = any(goal < 0 for goal in cycle_ends(self.wall.path))
         return np.asarray(self.outcome.curve * (np.sign(drive.force[0]) if is_to_both else 1.0))
 
     @cached_property

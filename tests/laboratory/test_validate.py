@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
+import numpy as np
 import pytest
 
 from runningbond.commands.command_line import command
 from runningbond.laboratory import read_folder
 from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import Features, scene_of
 from runningbond.results import Outcome
 from runningbond.scene import Drive, SceneError
@@ -141,6 +143,22 @@ def test_a_wall_that_is_pushed_to_the_left_is_scored_as_its_mirror_image(
     assert found[0]["V_max"] == pytest.approx(9889, rel=1e-3)
     for key in ("stiffness_ratio", "peak_displacement_ratio"):
         assert found[1][key] == pytest.approx(found[3][key], rel=0.01)
+
+
+@pytest.mark.parametrize("rest", [0.1, 0.0, -0.1])
+def test_cycles_to_the_left_are_compared_whatever_is_left_of_rest(rest: float, tmp_path: Path) -> None:
+    """Of a record that is turned round, an outcome that is positive along its first move is so already."""
+    path, points = [-2, rest, -4], [(0, 0), (-2, -4), (rest, 0), (-4, -5)]
+    curve = "displacement_mm,force_kN\n" + "".join(f"{x},{y}\n" for x, y in points)
+    folder = write_folder(tmp_path / "walls", "left,Cyclic,,,,,,,,,,,,R", curve=curve)
+    tables = leaning(-1)
+    tables["beam"]["drive"] = {"displacement": [[1e-3 * x for x in path]]}
+    write_toml(tables, folder / "left.toml")
+    (wall,) = read_folder(folder)
+    rung = LADDER["rigid"]
+    curved = Outcome("", "", "collapse", 5.5e3, curve=np.array(points) * (-1e-3, -1.1e3))
+    row = Prediction(wall, rung, scene_of(wall, rung.features), curved).row()
+    assert (row["dV"], row["cycle_ratio"]) == pytest.approx((0.1, 1.1))
 
 
 @pytest.mark.parametrize(
