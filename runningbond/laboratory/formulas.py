@@ -57,4 +57,5 @@ def formula(scene: Scene, tolerance: float, *, what: str) -> Outcome:
     """The outcome of one of `FORMULAS`, or of any other name the smaller of them; a model's ``solve``."""
     loads = by_hand(scene)
     load = loads.get(what, min(loads.values()))
-    return Outcome(scene.title, what, "collapse", load, load, load, message="worked out by hand")
+    message = "worked out by hand" + (", without its ties" if len(scene.ties) else "")
+    return Outcome(scene.title, what, "collapse", load, load, load, message=message)

@@ -10,7 +10,7 @@ import pytest
 from runningbond.dynamics.lead import TOE, failing
 from runningbond.laboratory import read_folder
 from runningbond.laboratory.folder import SHIPPED
-from runningbond.laboratory.formulas import by_hand
+from runningbond.laboratory.formulas import by_hand, formula
 from runningbond.laboratory.ladder import LADDER, find_rungs
 from runningbond.laboratory.modes import DIAGONAL, ROCKING, SLIDING, bed_slips, measured_modes, predicted_mode
 from runningbond.laboratory.predictions import Prediction
@@ -134,6 +134,21 @@ def test_what_is_worked_out_by_hand_knows_all_that_presses_and_the_weakest_bed()
     scene = scene_from_dict(tables)
     assert by_hand(scene)["sliding"] == pytest.approx(0.2 * pressed, rel=1e-6)
     assert limit(scene).multiplier == pytest.approx(0.2 * pressed, rel=1e-5)
+
+
+def test_what_is_worked_out_by_hand_says_that_it_knows_no_ties() -> None:
+    tables: dict[str, Any] = {
+        "wall": {"length": 0.8, "height": 0.6, "block_width": 0.4, "block_height": 0.2, "thickness": 0.15},
+        "block": {"density": 2000.0},
+        "joint": {"friction": 0.6},
+        "support": {"kind": "base"},
+        "load": {"gravity": 9.81},
+        "beam": {"height": 0.1, "force": [0, -2e4], "drive": {"force": [1.0, 0]}},
+    }
+    tie = {"from": [0.1, 0.65], "to": [0.1, -0.2], "area": 1e-4, "young": 2e11, "yield": 1e4, "preload": 5e3}
+    without, tied = (formula(scene_from_dict(tables | extra), 0.01, what="rocking") for extra in ({}, {"tie": [tie]}))
+    assert tied.multiplier == without.multiplier
+    assert (without.message, tied.message) == ("worked out by hand", "worked out by hand, without its ties")
 
 
 @pytest.mark.parametrize("end", [0.0, 1e-17, -1e-17])
