@@ -18,6 +18,9 @@ from .table import Table
 if TYPE_CHECKING:
     from .wall import Scene
 
+NOWHERE = np.zeros(0)
+"""Shares of a line at which it is cut: none."""
+
 
 @dataclass(frozen=True)
 class PointLoad(Action):
@@ -71,8 +74,15 @@ class LineLoad(Action):
         """The load of a table with two ends and a force per length."""
         return cls(table.vector("from"), table.vector("to"), table.vector("force"))
 
-    def parts(self, scene: "Scene") -> tuple[Indices, Array]:
-        """Movable blocks that it is on ``(n,)``, and the parts of the line on each, as shares of it ``(n, 2)``."""
+    def parts(self, scene: "Scene", cuts: Array = NOWHERE) -> tuple[Indices, Array]:
+        """Movable blocks that it is on ``(n,)``, and the parts of the line on each, as shares of it ``(n, 2)``.
+
+        The line is cut where blocks begin and end, and at more shares of it ``(k,)`` if they are given.
+        """
+        return self._each_part_once(scene, *self.along(scene), cuts)
+
+    def along(self, scene: "Scene") -> tuple[Indices, Array]:
+        """Movable blocks that it runs along or through ``(n,)``, from where to where, as shares of it ``(n, 2)``."""
         start, run = np.array(self.start), np.subtract(self.end, self.start)
         length, blocks = float(np.hypot(*run)), scene.blocks
         line = shapely.LineString([self.start, self.end])
@@ -87,13 +97,13 @@ class LineLoad(Action):
         np.minimum.at(share[:, 0], piece, (at - start) @ run / length**2)
         np.maximum.at(share[:, 1], piece, (at - start) @ run / length**2)
         long = share[:, 1] - share[:, 0] > 3 * reach / length
-        return self._each_part_once(scene, close[of[long]], share[long])
+        return close[of[long]], share[long]
 
-    def _each_part_once(self, scene: "Scene", owner: Indices, share: Array) -> tuple[Indices, Array]:
+    def _each_part_once(self, scene: "Scene", owner: Indices, share: Array, cuts: Array) -> tuple[Indices, Array]:
         """Cut the line where blocks begin and end, and give each of its parts to one of the blocks there."""
         length = float(np.hypot(*np.subtract(self.end, self.start)))
         close = 3 * scene.blocks.tolerance / length
-        cuts = np.unique(np.concatenate([[0.0, 1.0], share.ravel()]))
+        cuts = np.unique(np.concatenate([[0.0, 1.0], share.ravel(), cuts]))
         # One block ends as far beyond its neighbour's beginning as contact reaches: the cut is in the middle.
         groups = np.split(cuts, np.flatnonzero(np.diff(cuts) > close) + 1)
         cuts = np.array([0.0, *(group.mean() for group in groups[1:-1]), 1.0])
@@ -123,9 +133,9 @@ class LineLoad(Action):
             raise SceneError("load.live.from", what, list(self.start))
         return int(pressed[0])
 
-    def forces(self, scene: "Scene") -> Forces:
-        """Two forces on each part, at its Gauss points: of the same resultant and the same first two moments."""
-        block, share = self.parts(scene)
+    def forces(self, scene: "Scene", cuts: Array = NOWHERE) -> Forces:
+        """Two forces on each of its `parts`, at Gauss points: of the same resultant and the same first two moments."""
+        block, share = self.parts(scene, cuts)
         run = np.subtract(self.end, self.start)
         width = np.diff(share, axis=1)
         at = (share.mean(axis=1)[:, None] + width * np.array([-0.5, 0.5]) / math.sqrt(3)).ravel()

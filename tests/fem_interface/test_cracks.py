@@ -305,6 +305,68 @@ def test_a_beam_is_pushed_at_any_height(at: float) -> None:
     assert np.array_equal(before, after)
 
 
+FLOOR = {"kind": "line", "from": [0.0, 0.12], "to": [0.48, 0.12], "force": [300.0, -900.0]}
+SLOPE = {"kind": "line", "from": [0.05, 0.02], "to": [0.45, 0.11], "force": [300.0, -900.0]}
+LONG: dict[str, Any] = {"wall__length": None, "wall__height": None, "wall__block_height": 0.12, "wall__courses": [[2]]}
+"""One stone, two blocks long: each half has twice as many cells."""
+
+
+@pytest.mark.parametrize("cells", [1, 2, 3, 4])
+@pytest.mark.parametrize("size", [{}, LONG], ids=["bricks", "one long stone"])
+def test_a_line_load_is_on_every_triangle_along_it(cells: int, size: dict[str, Any]) -> None:
+    """Each triangle with a side on the top bears what lies on that side, at its middle, however fine the mesh is."""
+    scene = wall(STRONG, load={"gravity": 9.81, "live": FLOOR}, **size)
+    found = modal_wall(scene, cells, cracks="blocks").scene
+    for piece in np.flatnonzero(~found.fixed).tolist():
+        corner = found.blocks.polygon(piece)
+        above = corner[np.abs(corner[:, 1] - 0.12) < 1e-9]
+        length = np.ptp(above[:, 0]) if len(above) == 2 else 0.0
+        here = found.live_forces.block == piece
+        force, at = found.live_forces.force[here], found.live_forces.at[here]
+        assert force.sum(axis=0) == pytest.approx(length * np.array(FLOOR["force"]), abs=1e-9)
+        if length:
+            assert np.average(at, axis=0, weights=force[:, 0]) == pytest.approx(above.mean(axis=0), abs=1e-9)
+
+
+@pytest.mark.parametrize("line", [FLOOR, SLOPE])
+def test_a_line_load_on_triangles_has_the_resultants_of_that_on_blocks(line: dict[str, Any]) -> None:
+    """Along their top and across them."""
+    scene = wall(STRONG, load={"gravity": 9.81, "live": line})
+    found = modal_wall(scene, 3, cracks="blocks")
+    each, owner = found.scene.live_forces, found.pieces.owner
+    on_blocks = Forces.on(scene, block=owner[each.block], at=each.at, force=each.force)
+    wanted = scene.live_forces.resultants(scene)
+    assert on_blocks.resultants(scene) == pytest.approx(wanted, abs=1e-9 * np.abs(wanted).max())
+
+
+def test_a_stone_is_torn_by_a_line_load_at_the_strength_of_its_triangles() -> None:
+    """Drawn upwards at f_t × thickness and the weight of its upper half, where the first edges right across are."""
+    inner = {"cohesion": 4e4, "tensile_strength": 2e4}
+    load = {"gravity": 9.81, "live": {"kind": "line", "from": [0.0, 0.12], "to": [0.48, 0.12], "force": [0.0, 1.0]}}
+    scene = wall(inner, joint__cohesion=1e5, load=load, **LONG)
+    outcome = fem(scene, cells=2, cracks="blocks")
+    weight = 1800.0 * 9.81 * 0.12 * 0.12  # of the stone, per length
+    assert outcome.multiplier == pytest.approx(2e4 * 0.12 + 0.5 * weight, rel=0.01)
+
+
+LIVE: dict[str, dict[str, Any]] = {
+    "line": FLOOR,
+    "moment": {"kind": "moment", "at": [0.1, 0.03], "moment": 1.0},
+    "point": POINT,
+    "lateral": {"kind": "lateral"},
+}
+
+
+@pytest.mark.parametrize("kind", LIVE)
+def test_displacements_of_triangles_are_read_where_those_of_blocks_are(kind: str) -> None:
+    scene = wall(STRONG, load={"gravity": 9.81, "live": LIVE[kind]})
+    found = modal_wall(scene, 2, cracks="blocks")
+    (blocks, at, direction), (held, there, along) = scene.control_point, found.scene.control_point
+    assert np.array_equal(at, there)
+    assert np.array_equal(direction, along)
+    assert set(found.pieces.owner[held].tolist()) == set(blocks.tolist())
+
+
 def test_cracks_between_triangles_are_inner_joints_to_who_looks_at_toes() -> None:
     """As those on axes, which the scene numbers; joints between blocks are none."""
     scene = wall(STRONG)
