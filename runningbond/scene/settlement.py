@@ -81,13 +81,16 @@ class Settlement(Action):
         return Forces.on(scene)
 
     def moving(self, scene: "Scene") -> Mask:
-        """Fixed blocks that move, ``(nb,)``."""
+        """Fixed blocks that move, ``(nb,)``; the halves of one that may crack move together."""
         # What only touches the box, or has its middle on a side of it, stays, whatever the last bit of a sum of sizes.
         low, high = np.array(self.box) + [[scene.blocks.tolerance], [-scene.blocks.tolerance]]
-        centre = scene.blocks.centroid
+        number = np.arange(len(scene.blocks))
+        _, body = np.unique(np.where(scene.part_of < 0, len(number) + number, scene.part_of), return_inverse=True)
+        area = scene.blocks.area
+        middle = (np.bincount(body, area * scene.blocks.centroid[:, 0]) / np.bincount(body, area))[body]
         bottom, top = (ends[:, 1] for ends in scene.blocks.boxes)
-        inside = (centre[:, 0] > low[0]) & (centre[:, 0] < high[0]) & (bottom < high[1]) & (top > low[1])
-        moving: Mask = scene.fixed & inside
+        level = (np.bincount(body, (bottom < high[1]) & (top > low[1])) > 0)[body]
+        moving: Mask = scene.fixed & level & (middle > low[0]) & (middle < high[0])
         return moving
 
     def motion(self, scene: "Scene") -> Array:

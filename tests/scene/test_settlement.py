@@ -53,3 +53,19 @@ def test_a_block_with_its_middle_on_a_side_of_a_box_stays_on_whichever_side(widt
             scene = panel(wall=size, support__kind="fixed-first-course", load__live=live)
             moving.append(int(scene.support_motion.any(axis=1).sum()))
         assert moving == [number, 7 - number]
+
+
+@pytest.mark.parametrize("side", [0.65, 0.75, 0.85, 0.95, 1.05])
+def test_a_held_block_that_may_crack_moves_whole_or_stays(side: float) -> None:
+    """Its halves move where it would, whole: nothing else may part what is as strong as can be."""
+    size = {"length": 1.6, "height": 0.4, "block_width": 0.4, "block_height": 0.2, "thickness": 0.1}
+    live = {"kind": "settlement", "box": [[side, -1.0], [9.0, 0.2]], "by": [0.0, -1e-3]}
+    inner = {"friction": 0.6, "cohesion": 1e9}
+    whole, cut = (
+        panel(wall=size, support__kind="fixed-first-course", load__live=live, **one)
+        for one in ({}, {"inner_joint": inner})
+    )
+    moving, pieces = (np.flatnonzero(scene.support_motion[:, 1]) for scene in (whole, cut))
+    assert np.array_equal(pieces, np.flatnonzero(np.isin(cut.part_of, moving)))
+    found = [run_model("limit", scene).multiplier for scene in (whole, cut)]
+    assert found[0] == pytest.approx(found[1], rel=1e-6)
