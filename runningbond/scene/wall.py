@@ -37,6 +37,9 @@ SAME_COLUMN = 1e-9
 CANCELLED = 1e-12
 """Share of the largest live load on a block, or of the largest moment, that is what rounding leaves of none."""
 
+FAR = 1e4
+"""How far ground that moves reaches beyond the wall, in its sizes: farther than walls slide on it."""
+
 NEAR = 0.1
 """Gap, in block sizes, that looks like one of a survey."""
 
@@ -419,7 +422,8 @@ def _bodies(
     """All bodies: the wall's blocks, the beam, which knows its number then, and the grounds; how many of the last."""
     blocks = Blocks.from_polygons(polygons)
     if not grounds and support == "base":
-        grounds = [_strip_below(blocks)]
+        shaken = any(isinstance(live, History) for live in load.live)
+        grounds = [_strip_below(blocks, FAR if shaken else 1.0)]
     settlements = [live for live in load.live if isinstance(live, Settlement)]
     grounds = cut_ground(grounds, settlements, blocks.tolerance)
     bodies = [*polygons]
@@ -450,11 +454,11 @@ def _joints(blocks: Blocks, fixed: Mask, part_of: Indices) -> Joints:
     return Joints(joints.block[order], joints.ends[order], inner[order])
 
 
-def _strip_below(blocks: Blocks) -> Array:
-    """Ground that reaches the wall's size beyond it on either side, so that a toppling wall lands on it."""
+def _strip_below(blocks: Blocks, far: float) -> Array:
+    """Ground that reaches so many sizes of the wall beyond it on either side: by one for a toppling wall to land on."""
     low, high = blocks.extent()
-    reach = max(high - low)
-    depth = 0.1 * reach
+    size = max(high - low)
+    depth, reach = 0.1 * size, far * size
     left, right, top = low[0] - reach, high[0] + reach, low[1]
     return np.array([[left, top - depth], [right, top - depth], [right, top], [left, top]])
 
