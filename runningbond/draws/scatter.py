@@ -7,6 +7,7 @@ import numpy as np
 
 from runningbond.scene import Action, Array, GivenForces, Indices, JointMaterial, Scene, SceneError
 from runningbond.scene.arrays import components
+from runningbond.scene.materials import LEAST_FRICTION, MOST_FRICTION
 from runningbond.scene.ranges import Range, suggestion
 
 SEED = 20
@@ -89,6 +90,8 @@ def _bit(random: np.random.Generator) -> float:
 def _rougher(material: JointMaterial, by: float) -> JointMaterial:
     """A material of so many times the friction, whose tensile strength is at most what its cohesion leaves it."""
     friction, tension = material.friction * by, material.tensile_strength
+    if friction > 0:  # what is given as the least or the most stays one that a wall may have
+        friction = min(max(friction, LEAST_FRICTION), MOST_FRICTION)
     if tension is not None and friction > 0:
         tension = min(tension, material.cohesion / friction)
     return replace(material, friction=friction, tensile_strength=tension)

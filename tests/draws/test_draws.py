@@ -193,6 +193,16 @@ def test_no_friction_leaves_more_tensile_strength_than_cohesion_has() -> None:
     Scatter().draw(exact, 2)
 
 
+@pytest.mark.parametrize("friction", [0.0, 1e-6, 1e6])
+@pytest.mark.parametrize("scatter", ["bits", "friction=0.5"])
+def test_walls_of_the_least_and_the_most_friction_have_draws(friction: float, scatter: str) -> None:
+    """A draw is a wall that a file may describe: none of its joints is rougher, or smoother, than any may be."""
+    scene = panel(wall__length=0.96, wall__height=0.36, joint={"friction": friction})
+    for k in range(6):
+        drawn = [each.friction for each in Scatter.read(scatter).draw(scene, k).joint_materials]
+        assert all(x == 0 if friction == 0 else 1e-6 <= x <= 1e6 for x in drawn)
+
+
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
 def test_a_block_slides_at_the_friction_it_was_drawn_with(model: str) -> None:
     """Exact: λ = tan φ of each draw's one joint; and no last bit matters to a single block."""
