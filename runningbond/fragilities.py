@@ -84,7 +84,7 @@ def fragility(
     wall
         The wall, with a ``load.history`` whose file is replaced by each record's in turn.
     records
-        Files.
+        Files; paths that are relative are so to the wall's folder, as in its scene file.
     model, tolerance, folder, jobs
         As of `sweep`: with a folder, only records that are not there are computed.
     seed, draws
