@@ -37,8 +37,11 @@ SAME_COLUMN = 1e-9
 CANCELLED = 1e-12
 """Share of the largest live load on a block, or of the largest moment, that is what rounding leaves of none."""
 
-FAR = 1e4
-"""How far ground that moves reaches beyond the wall, in its sizes: farther than walls slide on it."""
+FAR = 30.0
+"""How far ground that moves reaches beyond the wall, in its sizes: farther than records let walls slide on it.
+
+Slips are told from its corners, and rounded as these are far: at ten thousand walls of stiff joints never rest.
+"""
 
 NEAR = 0.1
 """Gap, in block sizes, that looks like one of a survey."""

@@ -154,7 +154,7 @@ def test_pulses_overturn_a_block_where_housners_falls(cycles: float, ratio: floa
 def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None:
     """Under half a sine, to 1e-3: a = μ g from where the ground is faster until the velocities are one.
 
-    The last slides by twice the ground that there was beside it, which has no end.
+    The last slides by more than its own length and half of it, off the ground that there was beside it.
     """
     period = 0.4
     rest = resting(block(0.5, 0.1, shaken("half-sine", peak * GRAVITY, period), friction, stiffness=1e11))

@@ -258,6 +258,16 @@ def test_ground_that_moves_slowly_bears_the_inertia_of_the_mass_there_is(mass: f
     assert borne == pytest.approx(2000.0 + (mass or 2.0), rel=2e-3)
 
 
+@pytest.mark.parametrize("model", ["dem-dynamic", *at_length("fem")])
+def test_blocks_on_the_stiffest_joints_come_to_rest_however_far_the_ground_reaches(model: str) -> None:
+    """Slips are rounded as the ground's corners are far away: at ten thousand of its sizes none rested."""
+    scene = block(0.5, 0.1, shaken("half-sine", 2.0, 0.1), 0.3, stiffness=1e13)
+    scene = replace(scene, block_materials=(replace(scene.block, young=1e10, poisson=0.2),))
+    response = respond(model, scene)
+    assert response.verdict == "stands"
+    assert response.unaccounted < 1e-3
+
+
 def test_points_are_followed_on_the_blocks_that_hold_them() -> None:
     """Centroids go where their blocks do, of walls in bond, where corners of others are nearer."""
     scene = wall(History(*pulse("sine", 0.9 * GRAVITY, 0.6), interval=0.003), joint__friction=0.3)
