@@ -13,7 +13,7 @@ from .points import JointPoints, Rule, joint_points, lobatto
 from .stiffness import joint_stiffness, stiffest
 
 BETWEEN = 9
-"""Points of a joint along which pressures are spread: with five a toe that crushes bears 2.3 % more, with 17 0.7 % less
+"""Points of a joint along which pressures are spread: with five a toe that crushes bears 2.4 % more, with 17 0.4 % less
 (SW.200.1, docs/laboratory.md)."""
 
 LEAST = 3
