@@ -86,4 +86,6 @@ def main(path: Path, names: list[str]) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        sys.exit("python tools/crack_maps.py PICTURE WALL …")
     main(Path(sys.argv[1]), sys.argv[2:])

@@ -50,6 +50,8 @@ def seconds_beyond(blocks: int) -> list[tuple[str, int, float]]:
 
 def main() -> None:
     """Fit log seconds to log blocks and to whether the wall has weight, a line a model; then the tolerance."""
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     fine = seconds_of(sys.argv[1])
     beyond = seconds_beyond(max(n for n, _ in fine.values()))
     for model in MODELS:
