@@ -15,20 +15,7 @@ from scipy.sparse import coo_array, csr_array
 
 from meshing import WallMesh
 from runningbond.joints import joint_stiffness
-from runningbond.scene import (
-    Action,
-    Array,
-    Blocks,
-    Forces,
-    Indices,
-    Joints,
-    LineLoad,
-    Load,
-    Mask,
-    Pins,
-    Scene,
-    SceneError,
-)
+from runningbond.scene import Action, Array, Blocks, Forces, Indices, Joints, Load, Mask, Pins, Scene, SceneError
 
 from .operators import edges_between, find_edges
 
@@ -100,7 +87,7 @@ class PassedOn(Action):
 
     def forces(self, scene: Scene) -> Forces:
         """Forces on the pieces."""
-        forces = self._on_blocks(scene)
+        forces = self.load.forces_by_piece(self.wall, scene)
         share = scene.blocks.area / self.wall.blocks.area[self.owner]
         of_block = [self._bearing(scene, block, at) for block, at in zip(forces.block, forces.at, strict=True)]
         count = np.array([len(near) for near in of_block], dtype=np.int64)
@@ -117,12 +104,6 @@ class PassedOn(Action):
         """The control point that the load has on whole blocks, on the pieces that touch it."""
         blocks, at, direction = self.load.control(self.wall)
         return np.concatenate([self._bearing(scene, block, at) for block in blocks]), at, direction
-
-    def _on_blocks(self, scene: Scene) -> Forces:
-        """Forces on the blocks, at points that each lie in one piece where the load is spread along a line."""
-        if isinstance(self.load, LineLoad):
-            return self.load.forces(self.wall, self.load.along(scene)[1].ravel())
-        return self.load.forces(self.wall)
 
     def _bearing(self, scene: Scene, block: int, at: Array) -> Indices:
         """The pieces that bear a force on a block: those that touch its point, or else the nearest."""

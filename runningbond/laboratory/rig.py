@@ -2,14 +2,14 @@
 
 import math
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from runningbond.joints import joint_stiffness
+from runningbond.joints.closure import closure_curve, stiffness_at
 from runningbond.scene import JointMaterial, Scene, SceneError, Stiffness, scene_from_dict
 from runningbond.scene.file import read_description
-from runningbond.scene.materials import CAP_SHEAR
 
 from .formulas import pressed
 from .measured import MeasuredWall
@@ -33,12 +33,8 @@ LEAST_BEAM = 0.2
 """Least height of the beam [m] where the actuator's height does not give it; of no influence, for it is stiff."""
 
 
-SOUND: dict[str, Any] = {
-    "compressive_strength": None,
-    "compressive_fracture_energy": None,
-    "cap_shear": CAP_SHEAR,
-    "peak_closure": 0.0,
-}
+CRUSHING = ("compressive_strength", "compressive_fracture_energy", "cap_shear", "peak_closure")
+SOUND: dict[str, Any] = {one.name: one.default for one in fields(JointMaterial) if one.name in CRUSHING}
 """What a joint that does not crush says of crushing."""
 
 
@@ -117,9 +113,8 @@ def _as_stiff_as_under(pressure: float, material: JointMaterial) -> JointMateria
     """A joint that does not close, as stiff as one that does is under a pressure [Pa]."""
     if material.closure is None:
         return material
-    stiffness = joint_stiffness(material)
-    normal = min(stiffness.normal + material.closure.growth * pressure, material.closure.stiffest)
-    return replace(material, closure=None, elasticity=Stiffness(normal, stiffness.shear))
+    normal = float(stiffness_at(pressure, closure_curve(material)))
+    return replace(material, closure=None, elasticity=Stiffness(normal, joint_stiffness(material).shear))
 
 
 def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
@@ -130,9 +125,9 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
     length, thickness, at = row.number("L"), row.number("t"), row.number("H0")
     height, width = row.number("hb"), row.number("lb")
     courses = _courses(wall, stone, height)
-    pressed = vertical_load(wall)
+    force = vertical_load(wall)
     start, growth = stone.stiffness(height, deformable=features.deformable)
-    normal = start + growth * pressed / (length * thickness)
+    normal = start + growth * force / (length * thickness)
     joint: dict[str, Any] = {
         "friction": stone.friction,
         "normal_stiffness": start if features.closes else normal,
@@ -164,7 +159,7 @@ def _tables(wall: MeasuredWall, features: Features) -> dict[str, Any]:
         "beam": {
             "height": beam,
             "condition": "free",
-            "force": [0, -pressed],
+            "force": [0, -force],
             "force_line": "fixed",
             "drive": drive | {"at": at},
         },

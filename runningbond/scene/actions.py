@@ -28,6 +28,10 @@ class Action:
         """Forces on a scene's blocks; of a live load, those at λ = 1."""
         raise NotImplementedError(f"{type(self).__name__} says no forces")
 
+    def forces_by_piece(self, scene: "Scene", pieces: "Scene") -> Forces:
+        """Forces on a scene's blocks, at points that each lie in one of the pieces that the blocks may crack into."""
+        return self.forces(scene)
+
     def check(self, scene: "Scene", key: str) -> None:
         """Refuse a scene that the load cannot act on, in a `SceneError` under its key."""
 

@@ -79,9 +79,9 @@ class LineLoad(Action):
 
         The line is cut where blocks begin and end, and at more shares of it ``(k,)`` if they are given.
         """
-        return self._each_part_once(scene, *self.along(scene), cuts)
+        return self._each_part_once(scene, *self._along(scene), cuts)
 
-    def along(self, scene: "Scene") -> tuple[Indices, Array]:
+    def _along(self, scene: "Scene") -> tuple[Indices, Array]:
         """Movable blocks that it runs along or through ``(n,)``, from where to where, as shares of it ``(n, 2)``."""
         start, run = np.array(self.start), np.subtract(self.end, self.start)
         length, blocks = float(np.hypot(*run)), scene.blocks
@@ -133,9 +133,15 @@ class LineLoad(Action):
             raise SceneError("load.live.from", what, list(self.start))
         return int(pressed[0])
 
-    def forces(self, scene: "Scene", cuts: Array = NOWHERE) -> Forces:
+    def forces(self, scene: "Scene") -> Forces:
         """Two forces on each of its `parts`, at Gauss points: of the same resultant and the same first two moments."""
-        block, share = self.parts(scene, cuts)
+        return self._on(scene, *self.parts(scene))
+
+    def forces_by_piece(self, scene: "Scene", pieces: "Scene") -> Forces:
+        """As `forces`, of the line cut where pieces begin and end as well."""
+        return self._on(scene, *self.parts(scene, self._along(pieces)[1].ravel()))
+
+    def _on(self, scene: "Scene", block: Indices, share: Array) -> Forces:
         run = np.subtract(self.end, self.start)
         width = np.diff(share, axis=1)
         at = (share.mean(axis=1)[:, None] + width * np.array([-0.5, 0.5]) / math.sqrt(3)).ravel()
