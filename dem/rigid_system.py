@@ -52,7 +52,8 @@ def rigid_system(scene: Scene) -> BlockSystem:
     """
     order = joint_order(scene)
     points = order.points
-    law = kernel_law(scene.joint_materials, scene.material_of_joint[points.joint])
+    materials, of_joint = scene.materials_of_joints
+    law = kernel_law(materials, of_joint[points.joint])
     bound = largest_frequency_squared(scene, points, law, held_masses(scene).reshape(-1, 3))
     interface = Interface(law, points.area, gather_rigid, scatter_rigid, order.runs, bound)
     if order.between is not None:

@@ -5,6 +5,7 @@ tensile strength f_t, slip (II) by the cohesion c. The paper prints the two stre
 the block's width b for the length of a bed joint, which is half of it in running bond.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal, TypeAlias
 
@@ -27,7 +28,7 @@ def printed_energies(length: float, cohesion: float, tension: float, young: floa
     return length * np.pi * cohesion**2 / young, length * np.pi * tension**2 / young
 
 
-def fractured(scene: Scene, energies: Energies) -> tuple[list[JointMaterial], Indices]:
+def fractured(scene: Scene, energies: Energies) -> tuple[Sequence[JointMaterial], Indices]:
     """Materials of a scene's joints with their fracture energies, and which of them each joint is of, ``(nj,)``.
 
     Inner joints are not of mortar, and always have the energies of the scene.
@@ -38,7 +39,7 @@ def fractured(scene: Scene, energies: Energies) -> tuple[list[JointMaterial], In
         If energies are to follow from a mortar that is not given.
     """
     if energies == "given":
-        return list(scene.joint_materials), scene.material_of_joint
+        return scene.materials_of_joints
     formula = corrected_energies if energies == "corrected" else printed_energies
     length = _printed_length(scene) if energies == "printed" else scene.joints.length
     # Lengths that differ by rounding make one material.

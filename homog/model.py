@@ -15,7 +15,7 @@ import time
 import numpy as np
 
 from runningbond.results import Outcome
-from runningbond.scene import Bond, JointMaterial, Scene, SceneError
+from runningbond.scene import Bond, Scene, SceneError
 
 FINENESS = (1, 4, 8, 16)
 """The fewer of courses and of blocks in one, from which on deviations are told together."""
@@ -72,7 +72,7 @@ def homog(scene: Scene) -> Outcome:
     bond = _bond(scene)
     low, high = scene.blocks.extent(~scene.fixed)
     length, height = high - low
-    friction = _joints(scene)[0].friction
+    friction = scene.materials_of_joints[0][0].friction
     slope = crack_slope(bond.width, bond.height, friction)
     multiplier = lateral_multiplier(height / length, slope, friction)
     sliding = "sliding" if multiplier == friction else "turning about a crack"
@@ -117,7 +117,7 @@ def _why_not(scene: Scene, bond: Bond) -> str:
         return 'it needs support.kind = "base" or "fixed-first-course"'
     if scene.inner_joint is not None:
         return "it needs blocks that do not crack, without inner_joint"
-    joint, *others = _joints(scene)
+    (joint, *others), _ = scene.materials_of_joints
     if len(np.unique(scene.material_of_block[~scene.fixed])) > 1 or others:
         return "it needs one material of blocks and one of joints"
     if joint.cohesion > 0:
@@ -132,11 +132,6 @@ def _why_not(scene: Scene, bond: Bond) -> str:
     if not _is_running_bond(scene, bond):
         return "it needs running bond, every course half a block off its neighbours"
     return ""
-
-
-def _joints(scene: Scene) -> list[JointMaterial]:
-    """Materials that joints of a scene have."""
-    return [scene.joint_materials[k] for k in np.unique(scene.material_of_joint)] or [scene.joint]
 
 
 def _is_lateral(scene: Scene) -> bool:

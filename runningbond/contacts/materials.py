@@ -37,6 +37,9 @@ class ContactMaterials:
     """
 
     def __init__(self, scene: Scene) -> None:
+        if scene.joint.elasticity is None and scene.joint not in scene.materials_of_joints[0]:
+            what = "is missing; blocks that move far meet anew on [joint], which needs it"
+            raise SceneError("joint.mortar", f"{what}, or joint.normal_stiffness and joint.shear_stiffness")
         for material in scene.joint_materials:
             table = table_of(material)
             joint_stiffness(material)

@@ -89,9 +89,10 @@ def wall_stiffness(scene: Scene, joint: Indices, *, closed: bool = False) -> tup
 
     Of joints that are `closed` it is the largest that they come to.
     """
-    both = [(joint_stiffness(each), stiffest(each)) for each in scene.joint_materials]
+    materials, number = scene.materials_of_joints
+    both = [(joint_stiffness(each), stiffest(each)) for each in materials]
     of_material = np.array([(largest if closed else each.normal, each.shear) for each, largest in both])
-    normal, shear = of_material[scene.material_of_joint[joint]].T
+    normal, shear = of_material[number[joint]].T
     return normal, shear
 
 
@@ -100,16 +101,17 @@ def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Arra
 
     A law without a tangent is refused by a `SceneError`.
     """
-    for material in scene.joint_materials:
+    materials, _ = scene.materials_of_joints
+    for material in materials:
         for key in ("compressive_strength", "closure"):
             if getattr(material, key) is not None:
                 what = "is not taken by dem-static, which knows neither crushing nor closure; dem-dynamic and fem do"
                 raise SceneError(f"{table_of(material)}.{key}", what)
-    if all(material.law is None for material in scene.joint_materials):
+    if all(material.law is None for material in materials):
         return PointLaw(strength, normal, shear)
     from .wall_law import common_law
 
-    law = common_law(scene.joint_materials)
+    law = common_law(materials)
     if law.response is None:
         raise SceneError("joint.law", f'"{law.name}" has no response with a tangent, which dem-static needs')
     return law.response(strength, normal, shear)

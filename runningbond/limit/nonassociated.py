@@ -95,7 +95,7 @@ def limit_nonassociated(
 
 def _refuse_crushing(scene: Scene) -> None:
     """Certificates know of no crushing: their forces may be more than such joints bear."""
-    for material in scene.joint_materials:
+    for material in scene.materials_of_joints[0]:
         if material.compressive_strength is not None:
             key = f"{table_of(material)}.compressive_strength"
             remedy = "is not taken by limit-nonassociated, which knows no crushing; limit, dem-dynamic and fem do"

@@ -125,6 +125,15 @@ class Scene:
         """Material of the joints that nothing else is said of."""
         return self.joint_materials[0]
 
+    @cached_property
+    def materials_of_joints(self) -> tuple[tuple[JointMaterial, ...], Indices]:
+        """Materials that joints are of, at least one, and which of them each joint is of, ``(nj,)``.
+
+        The default one is not among them where every joint is of another.
+        """
+        used, number = np.unique(self.material_of_joint, return_inverse=True)
+        return tuple(self.joint_materials[k] for k in used) or (self.joint,), number
+
     @property
     def inner_joint(self) -> JointMaterial | None:
         """Material of the potential cracks inside blocks; None where blocks do not crack."""

@@ -8,8 +8,9 @@ import ezdxf
 import numpy as np
 import pytest
 
+from dem.finite_system import finite_system
 from runningbond.models import run_model
-from runningbond.scene import Array, Scene, read_scene, scene_from_dict
+from runningbond.scene import Array, Scene, SceneError, read_scene, scene_from_dict
 from tests.at_length import at_length
 from tests.walls import content, write_toml
 
@@ -173,3 +174,24 @@ def test_an_arch_under_a_load_that_moves_over_it(loaded: int, tmp_path: Path) ->
         assert run_model("limit", scene).status == "unbounded"
         return
     check(scene, exact, ("limit", "dem-static") if loaded == 3 else ("limit",), sharp=1e-5)
+
+
+@pytest.mark.parametrize("unused", [{}, {"mortar": MORTAR, "compressive_strength": 1e3, "cohesion": 1e6}])
+def test_the_default_joint_material_says_nothing_of_a_wall_all_of_whose_joints_are_of_another(
+    unused: dict[str, Any],
+) -> None:
+    scene = scene_from_dict(
+        content(
+            wall={"thickness": 0.5, "block_width": 1.0, "block_height": 1.6, "length": 1.0, "height": 1.6},
+            block=STONE,
+            joint={"friction": 0.1, **unused},
+            joints={"rough": {"friction": 2.0, "mortar": MORTAR}},
+            assign=[{"joint": "rough", "between": ["block", "*"]}],
+        )
+    )
+    check(scene, 1 / 1.6)
+    for model in EVERY:
+        assert "not taken into account: joint." not in run_model(model, scene).message
+    if not unused:
+        with pytest.raises(SceneError, match=r"joint\.mortar: is missing; blocks that move far meet anew on \[joint\]"):
+            finite_system(scene)
