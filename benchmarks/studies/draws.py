@@ -27,10 +27,9 @@ def row(draws: Draws) -> str:
     count = f"{len(loads)} of {len(draws.outcomes)}"
     if draws.mean is None or draws.error is None:
         return f"{count} | | | | |"
+    scatter = draws.error * len(loads) ** 0.5 / draws.mean
     three = " | ".join(number(load) for load in (loads[0], draws.quantiles["50"], loads[-1]))
-    return (
-        f"{count} | {three} | {number(draws.mean)} ± {draws.error:.1g} | {100 * loads.std(ddof=1) / draws.mean:.2g} %"
-    )
+    return f"{count} | {three} | {number(draws.mean)} ± {draws.error:.1g} | {100 * scatter:.2g} %"
 
 
 def main() -> None:

@@ -67,7 +67,17 @@ class Draws:
     def error(self) -> float | None:
         """Standard error of the mean, of two draws or more."""
         n = len(self.borne)
-        return float(self.borne.std(ddof=1) / np.sqrt(n)) if n > 1 and np.isfinite(self.borne[-1]) else None
+        if n < 2 or not np.isfinite(self.borne[-1]):
+            return None
+        # From the lowest, so that equal ones have no scatter from the rounding of their mean.
+        return float((self.borne - self.borne[0]).std(ddof=1) / np.sqrt(n))
+
+    @property
+    def half_width(self) -> float | None:
+        """Half the widest bracket of the draws that collapse: so far each λ, and so their mean, may be from its own."""
+        brackets = [(each.lower, each.upper) for each in self.outcomes if each.multiplier is not None]
+        halves = [(upper - lower) / 2 for lower, upper in brackets if lower is not None and upper is not None]
+        return max(halves, default=None)
 
     @property
     def quantiles(self) -> dict[str, float]:
@@ -90,7 +100,7 @@ class Draws:
             "number": len(self.outcomes),
             "collapsed": len(self.multipliers),
             **{status: self._count(status) for status in ("infeasible", "unbounded")},
-            **{key: getattr(self, key) for key in ("lowest", "mean", "error")},
+            **{key: getattr(self, key) for key in ("lowest", "mean", "error", "half_width")},
             "quantiles": {q: x if np.isfinite(x) else None for q, x in self.quantiles.items()},
             "each": [{key: getattr(outcome, key) for key in keys} for outcome in self.outcomes],
         }
@@ -114,9 +124,9 @@ class Draws:
             return f"{told}{'' if self.lowest is None else f', at {_told(self.lowest)}'}"
         quantiles = ", ".join(f"{q} % {_told(x)}" for q, x in self.quantiles.items())
         told += f": lowest {_told(self.lowest)}, quantiles {quantiles}"
-        if self.mean is None:
-            return told
-        return f"{told}, mean {_told(self.mean)} ± {_told(self.error)} (standard error)"
+        if self.mean is not None:
+            told += f", mean {_told(self.mean)} ± {_told(self.error)} (standard error)"
+        return f"{told}; λ of each is known to ± {_told(self.half_width)}" if self.half_width else told
 
     def __repr__(self) -> str:
         first, ends = self.outcomes[0], {"lowest": self.lowest, "mean": self.mean}

@@ -241,6 +241,14 @@ def test_statistics_are_those_of_the_draws_that_collapse() -> None:
     json.dumps(said, allow_nan=False)
 
 
+def test_draws_that_agree_are_no_better_known_than_each_of_them() -> None:
+    """Bisection ends in one bracket of all: their mean has no scatter, and may be as wrong as each of them."""
+    same = Draws((Outcome("wall", "fem", "collapse", 0.601, 0.599, 0.603),) * 5 + (outcome(None),), Scatter())
+    assert (same.error, same.half_width) == pytest.approx((0.0, 0.002))
+    assert str(same).endswith("mean 0.6010 ± 0.0000 (standard error); λ of each is known to ± 0.002")
+    assert same.summary()["half_width"] == same.half_width
+
+
 def test_walls_that_fall_under_their_weight_or_never_are_ranked_among_the_others() -> None:
     """Of 0, 0, 0, 1, 2 the median is 0; of 1, 2, ∞, ∞, ∞ it is infinite, and there is no mean."""
     weak, strong = (
