@@ -14,7 +14,7 @@ from .models import TOLERANCE, Model
 from .scene import Array, Mask, SceneError
 from .scene.history import STANDARD_GRAVITY
 from .scene.ranges import whole
-from .sweeps import sweep
+from .sweeps import check_wall, sweep
 from .tables import Table
 from .wall import Wall
 
@@ -95,6 +95,7 @@ def fragility(
     SceneError
         Where the wall has no record, or fewer than two records bring it down.
     """
+    check_wall(wall)
     if wall.scene.history is None or "file" not in wall.description["load"]["history"]:
         raise SceneError("load.history.file", "is missing: the record that others are to take the place of")
     whole("draws", draws)

@@ -20,6 +20,12 @@ ANSWER = ("multiplier", "lower", "upper", "status", "seconds", "message")
 """Columns of a sweep's table after the keys that vary."""
 
 
+def check_wall(wall: object) -> None:
+    """Refuse what is no wall."""
+    if not isinstance(wall, Wall):
+        raise SceneError("wall", "must be a Wall, as rb.read gives one", wall)
+
+
 def sweep(
     wall: Wall,
     changes: Mapping[str, Iterable[Any]],
@@ -53,8 +59,7 @@ def sweep(
         describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
     """
     model = find_model(model)
-    if not isinstance(wall, Wall):
-        raise SceneError("wall", "must be a Wall, as rb.read gives one", wall)
+    check_wall(wall)
     if not isinstance(changes, Mapping):
         remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
         raise SceneError("changes", remedy, changes)

@@ -33,6 +33,12 @@ TABLES = {
 TABLE_OF = {key: table for table, keys in TABLES.items() for key in keys}
 """The table of each of them."""
 
+OF_WALL = (
+    *("length", "height", "block_width", "block_height", "thickness", "first_course", "ends", "course_heights"),
+    *("courses", "opening", "drawing", "units", "heal"),
+)
+"""Keys of the table of the wall itself."""
+
 WHOLE = (
     "title",
     "wall",
@@ -190,16 +196,16 @@ class Wall:
         if not isinstance(changes, Mapping | None):
             raise SceneError("with_", 'takes values by the full names of keys, {"joint.friction": 0.7}', changes)
         for name, value in (changes or {}).items():
-            if not isinstance(name, str):
+            path = _path(name, self._description) if isinstance(name, str) else [""]
+            if "" in path:
                 raise SceneError("with_", 'takes keys by their full names, "joint.friction"', name)
+            _check_has_its_table(name, value)
             nested = value
-            for part in reversed(_path(name, self._description)):
+            for part in reversed(path):
                 nested = {part: nested}
             nested_changes.append(nested)
         for name, value in tables.items():
-            if name in TABLE_OF and not isinstance(value, Mapping):
-                what = f'is a key of [{TABLE_OF[name]}]; give it as {{"{TABLE_OF[name]}.{name}": {value}}}'
-                raise SceneError(name, what, value)
+            _check_has_its_table(name, value)
         return Wall(_changed(self._description, [*nested_changes, tables]), self.folder)
 
     @property
@@ -358,6 +364,13 @@ def read(wall: str | Path) -> Wall:
 
     path = find_scene(str(path_of("wall", wall)))
     return Wall({"title": path.stem, **read_description(path)}, path.parent)
+
+
+def _check_has_its_table(name: str, value: object) -> None:
+    """Refuse a key that is named without the table it belongs to."""
+    table = (TABLE_OF | dict.fromkeys(OF_WALL, "wall")).get(name)
+    if table is not None:
+        raise SceneError(name, f'is a key of [{table}]; give it as {{"{table}.{name}": {value!r}}}', value)
 
 
 def _as_in_a_file(value: Any) -> Any:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib.metadata import version
 
-from cyclopts import App, CycloptsError
+from cyclopts import App, CycloptsError, UnusedCliTokensError
 
 from runningbond.pictures.vtk_safety import VtkError
 from runningbond.results import StoreError
@@ -60,6 +60,8 @@ def command(arguments: Sequence[str] | None = None) -> int:
             _check_backend()
         result = app(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()
+    except UnusedCliTokensError as error:
+        return _say(f"{' '.join(error.unused_tokens or ())}: is more than this command takes", BAD_INPUT)
     except (SceneError, StoreError, CycloptsError) as error:
         return _say(str(error), BAD_INPUT)
     except VtkError as error:

@@ -70,6 +70,7 @@ def study(*, out: Path = Path("study"), jobs: Whole = 1) -> int:
     from runningbond.studies.page import write_page
     from runningbond.studies.store import failures
 
+    make_folder(out)
     try:
         rows = _measured([STUDY], out, "measuring", jobs)[0][1]
     except Stopped:

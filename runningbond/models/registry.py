@@ -272,7 +272,7 @@ def check_response(
     return model.respond
 
 
-def respond(model: str | Model, scene: Scene, scale: float = 1.0, **settings: Any) -> "Response":
+def respond(model: str | Model, scene: Scene, /, scale: float = 1.0, **settings: Any) -> "Response":
     """Follow a scene through the motion of its ground, `scale` times as large; settings as of `follow`.
 
     The response's message ends with the keys of the scene that the model does not take into account.

@@ -30,6 +30,11 @@ def _rule(key: str, value: object) -> None:
         raise SceneError(key, "must be a Rule of runningbond.joints.points, of nodes and weights", value)
 
 
+def _function(key: str, value: object) -> None:
+    if not callable(value):
+        raise SceneError(key, "must be a function, which is called with every state that is followed", value)
+
+
 CHECKS: Mapping[str, Check] = {
     "collapse": ABOVE_ZERO.take,
     "first_step": ABOVE_ZERO.take,
@@ -50,7 +55,7 @@ OPTIONAL = ("programs", "modes", "rule")
 NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements")
 """Settings that mean nothing where the ground moves."""
 
-OF_MOTIONS: Mapping[str, Check] = {"rows": whole, "after": AT_LEAST_ZERO.take}
+OF_MOTIONS: Mapping[str, Check] = {"rows": whole, "after": AT_LEAST_ZERO.take, "observe": _function}
 """Checks of settings of a response."""
 
 

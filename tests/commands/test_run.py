@@ -271,3 +271,8 @@ def test_what_a_long_run_costs_is_told_on_a_terminal_only(
     said = capsys.readouterr()
     assert said.out == ""
     assert re.fullmatch(r"limit: about \S+ s \(×÷ \S+\); Ctrl-C leaves what is proved by then\n", said.err)
+
+
+def test_one_scene_too_many_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(["run", "panel-01", "panel-02", "--model", "limit"]) == 2
+    assert capsys.readouterr().err == "runningbond: panel-02: is more than this command takes\n"

@@ -54,6 +54,8 @@ def test_settings_of_load_steps_mean_nothing_where_the_ground_moves(model: str, 
         ({"rows": 0}, "rows = 0: must be a whole number, at least 1"),
         ({"after": -1.0}, "after = -1.0: must be a number at least 0"),
         ({"after": "later"}, "after = 'later': must be a number at least 0"),
+        ({"observe": 3}, "observe = 3: must be a function"),
+        ({"scene": 3}, "scene = 3: is not a setting of a response"),
     ],
 )
 def test_settings_of_a_response_are_refused_before_it_is_followed(settings: dict[str, Any], said: str) -> None:

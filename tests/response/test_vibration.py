@@ -1,6 +1,7 @@
 """Natural vibrations of stacks of blocks beside closed forms."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from dem.rigid_system import contact_points, rigid_system
 from fem_interface.model import fem_vibration
 from runningbond.dynamics import Criteria, Run, put_on_dead_load
 from runningbond.response import Vibration
-from runningbond.scene import Array, Closure, JointMaterial, Scene, Stiffness, scene_from_dict
+from runningbond.scene import Array, Closure, JointMaterial, Scene, SceneError, Stiffness, scene_from_dict
 from runningbond.studies.walls import boxes
 from tests.walls import content
 
@@ -46,6 +47,12 @@ def test_all_mass_goes_along_with_the_ground() -> None:
     found = dem_vibration(stack(3, 0.4, 0.2, 1e9, 1e9), 9)
     assert found.loose == 0
     assert found.share.sum(axis=0) == pytest.approx([1.0, 1.0], rel=1e-9)
+
+
+@pytest.mark.parametrize("count", [0, -1, 1.5, "all"])
+def test_a_number_of_vibrations_is_one(count: Any) -> None:
+    with pytest.raises(SceneError, match="count = .*: must be a whole number, at least 1"):
+        dem_vibration(stack(3, 0.4, 0.2, 1e9, 1e9), count)
 
 
 def test_grains_that_hardly_bear_leave_a_stack_its_vibrations() -> None:

@@ -377,3 +377,13 @@ def test_the_page_tells_all_of_the_study(written: list[Path]) -> None:
 def test_a_study_in_no_process_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["study", "--jobs", "0"]) == 2
     assert "--jobs" in capsys.readouterr().err
+
+
+def test_a_study_in_a_file_is_refused_before_anything_is_measured(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "taken").touch()
+    assert command(["study", "--out", str(tmp_path / "taken")]) == 2
+    printed = capsys.readouterr().err
+    assert "is not a folder; name one" in printed
+    assert len(printed.splitlines()) == 1
