@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runningbond.dynamics.lead import LITTLE, formed, shedding, turns_round
+from runningbond.dynamics.lead import LITTLE, formed, goes_both_ways, shedding
 from runningbond.limit.associated import is_self_locking
 from runningbond.limit.kinematics import dead_load
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
@@ -203,5 +203,5 @@ def _notes(lead: StaticLead, outcome: Outcome) -> str:
     if lead.settles or drive is None:
         return ""
     other = -float(outcome.curve[:, 1].min())
-    back = f"; the other way it takes {number(other)}" if turns_round(lead.goals) and other > 0 else ""
+    back = f"; the other way it takes {number(other)}" if goes_both_ways(lead.goals) and other > 0 else ""
     return back + ("; beam.drive.rate has no influence on states at rest" if drive.rate else "")

@@ -44,6 +44,9 @@ STILL = 1e-6
 SAME = 1e-9
 """Part of a way by which rounding may set places apart that are one."""
 
+ASIDE = 0.05
+"""Part of a way to one side that still counts as coming back to rest, if it is to the other side."""
+
 COME_DOWN = 0.5
 """Sizes of a block by which all of the dead load has come down, or what would do as much work, once a wall falls."""
 
@@ -297,11 +300,13 @@ def windows_of_stage(steps: float) -> int:
     return max(1, round(steps) // (2 * SOFT * WINDOW))
 
 
-def turns_round(goals: Array) -> bool:
-    """Whether a way from zero to some goals ``(n,)``, one after the other, ever comes back."""
-    ways = np.sign(np.diff(goals, prepend=0.0))
-    ways = ways[ways != 0]
-    return bool((ways != ways[:1]).any())
+def goes_both_ways(goals: Array) -> bool:
+    """Whether a way from zero to some goals ``(n,)``, one after the other, goes to both sides.
+
+    It does not where it comes back to where it began, if a little beyond.
+    """
+    most = float(np.abs(goals).max(initial=0.0))
+    return bool(goals.max(initial=0.0) > ASIDE * most and goals.min(initial=0.0) < -ASIDE * most)
 
 
 def last_leg(curve: Array) -> Array:

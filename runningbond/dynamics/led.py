@@ -20,7 +20,7 @@ from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import put_on_dead_load
-from .lead import BEAM, LITTLE, Lead, Way, formed, shedding, turns_round
+from .lead import BEAM, LITTLE, Lead, Way, formed, goes_both_ways, shedding
 from .run import CALMING, Observer, Run, Unstable
 
 LEAST_STEPS, UNHURRIED, UNHURRIED_FAR = 20_000, 20, 2
@@ -160,7 +160,7 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
     what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
     what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
     other = -float(outcome.curve[:, 1].min())
-    if turns_round(lead.goals) and other > 0 and not lead.settles:
+    if goes_both_ways(lead.goals) and other > 0 and not lead.settles:
         what += f"; the other way it takes {number(other)}"
     what += f"; {'small' if lead.run.system.contacts is None else 'finite'} displacements"
     at = f"{abs(outcome.curve[-1, 0]) if lead.settles else np.abs(outcome.curve[:, 0]).max():.4g} m"

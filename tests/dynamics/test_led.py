@@ -18,7 +18,7 @@ from meshing import wall_mesh
 from runningbond import Wall
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.collapse import U_CRIT
-from runningbond.dynamics.lead import Lead, formed, turns_round, windows_of_stage
+from runningbond.dynamics.lead import Lead, formed, goes_both_ways, windows_of_stage
 from runningbond.dynamics.peaks import Peaks
 from runningbond.dynamics.ties import tie_rows
 from runningbond.joints import joint_stiffness, wall_points
@@ -606,10 +606,14 @@ def test_a_mechanism_has_formed_where_the_force_no_longer_grows(force: list[floa
 
 @pytest.mark.parametrize(
     ("goals", "expected"),
-    [([1.0], False), ([0.0, 1.0], False), ([0.0, -1.0, -2.0], False), ([1.0, 0.0], True), ([0.0, 1.0, -1.0], True)],
+    [
+        *[([1.0], False), ([0.0, 1.0], False), ([0.0, -1.0, -2.0], False), ([0.0, 1.0, -1.0], True)],
+        *[([1.0, 0.0], False), ([-2.0, 0.1, -4.0], False), ([0.0], False), ([], False)],
+    ],
 )
-def test_a_way_that_begins_at_zero_or_goes_on_never_goes_the_other_way(goals: list[float], expected: bool) -> None:
-    assert turns_round(np.array(goals)) == expected
+def test_a_way_that_goes_on_or_comes_back_to_rest_does_not_go_the_other_way(goals: list[float], expected: bool) -> None:
+    """It was said to, of cycles to one side, whose unloading friction resists as well."""
+    assert goes_both_ways(np.array(goals)) == expected
 
 
 @pytest.mark.parametrize("model", [dem_static, *MODELS])
