@@ -20,7 +20,7 @@ from .scores import cycle_ends, cycle_peaks
 from .summary import errors_by_hand, kind_of
 
 PUSHED_LEFT = ("SW.200.1",)
-"""Walls whose cracks were drawn as pushed to the left; they are mirrored beside predictions, which go to the right."""
+"""Shipped walls whose cracks were drawn as pushed to the left, though their records are positive."""
 
 MEASURED = "0.15"
 LEAST_ERROR, LEAST_SECONDS = 0.004, 5e-3
@@ -42,12 +42,19 @@ def card(predictions: Sequence[Prediction]) -> Figure:
     if drawn is not None and drawn.outcome is not None:
         draw_mechanism(axes.pop(0), drawn.scene, drawn.outcome)
     if wall.cracks is not None:
-        mirrored = wall.name in PUSHED_LEFT
+        mirrored = _goes_the_other_way(predictions[0])
         axes[0].imshow(imread(wall.cracks)[:, :: -1 if mirrored else 1])
         axes[0].set_title("cracks, as drawn after the test" + (", mirrored" if mirrored else ""), fontsize=9)
         axes[0].axis("off")
     figure.draw_without_rendering()  # a first layout, from which that of the drawing knows how tall the wall's axes get
     return figure
+
+
+def _goes_the_other_way(prediction: Prediction) -> bool:
+    """Whether a wall was pushed to the left, as its cracks show it, and is predicted to the right."""
+    wall, drive = prediction.wall, prediction.scene.drive
+    goes_right = drive is None or drive.force[0] > 0
+    return goes_right and (wall.is_turned or wall.name in PUSHED_LEFT)
 
 
 def drawn_by(predictions: Sequence[Prediction]) -> Prediction | None:

@@ -93,7 +93,7 @@ def _wall(folder: Path, name: str, row: TableRow) -> MeasuredWall:
     peaks = tuple(value for value in printed if value is not None)
     wall = MeasuredWall(name, row, curve, peaks, modes, there[".toml"], there["-cracks.png"])
     if _is_pushed_left(wall):
-        wall = replace(wall, curve=-curve)
+        wall = replace(wall, curve=-curve, is_turned=True)
     return wall if peaks else replace(wall, peaks=_peaks(wall))
 
 

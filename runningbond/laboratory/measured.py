@@ -41,6 +41,8 @@ class MeasuredWall:
         How it failed, in the words of the table, such as R, TC, F, SL. Empty where that is not said.
     scene_file, cracks
         Its scene where it is not made from the row, and the drawing of its cracks.
+    is_turned
+        Whether its record went to the negative side and is turned round here, as its cracks are not.
     """
 
     name: str
@@ -50,6 +52,7 @@ class MeasuredWall:
     modes: tuple[str, ...]
     scene_file: Path | None = None
     cracks: Path | None = None
+    is_turned: bool = False
 
     @property
     def reference(self) -> str:

@@ -1,5 +1,6 @@
 """The page of the laboratory: error against experiment over cost, scores, a card a wall, and sources."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -49,7 +50,18 @@ def write_laboratory(predictions: Sequence[Prediction], folder: Path) -> list[Pa
         blocks += _wall(wall, [each for each in predictions if each.wall is wall], folder)
     blocks += ["## Where numbers come from", sources()]
     write_atomically(folder / FILE, write_errors(model_errors(predictions)).encode())
-    return write_page(NAME, blocks, folder, NAME)
+    before = _pictured(folder)
+    written = write_page(NAME, blocks, folder, NAME)
+    for older in before.difference(written):
+        older.unlink(missing_ok=True)
+    return written
+
+
+def _pictured(folder: Path) -> set[Path]:
+    """Pictures of the page that is in a folder already, if there is one."""
+    page = folder / f"{NAME}.md"
+    text = page.read_text(encoding="utf-8", errors="replace") if page.is_file() else ""
+    return {folder / name for name in re.findall(r"^!\[.*\]\((wall-[^/\\\n]+\.png)\)$", text, re.MULTILINE)}
 
 
 def _walls(predictions: Sequence[Prediction]) -> list[MeasuredWall]:

@@ -3,13 +3,16 @@
 import io
 from pathlib import Path
 
+import numpy as np
 import pytest
+from matplotlib.image import imsave
 from matplotlib.text import Annotation
 
 from runningbond.laboratory.cards import card
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.predictions import predict, scenes_of
+from tests.laboratory.folders import CURVE, GRANITE, write_folder
 
 PIXEL = 1.0
 
@@ -28,3 +31,19 @@ def test_card_draws_the_motion_of_the_model_nearest_to_the_test_and_cuts_no_word
         box = each.get_window_extent()
         assert figure.bbox.y0 <= box.y0
         assert box.y1 <= figure.bbox.y1 + PIXEL
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_cracks_of_a_wall_that_was_pushed_to_the_left_are_mirrored(side: int, tmp_path: Path) -> None:
+    """Its record is turned round and it is predicted to the right; its cracks are dark on the side that it leant to."""
+    points = [line.split(",") for line in CURVE.split()[1:]]
+    curve = "displacement_mm,force_kN\n" + "".join(f"{side * float(x):g},{side * float(y):g}\n" for x, y in points)
+    folder = write_folder(tmp_path / "walls", GRANITE, curve=curve)
+    cracks = np.ones((2, 4))
+    cracks[:, 2 if side > 0 else 1] = 0.0
+    imsave(folder / "WS.175-cracks.png", cracks, cmap="gray")
+    (wall,), rung = read_folder(folder), LADDER["rocking"]
+    predictions, _ = predict([wall], [rung], scenes_of([wall], [rung]), tmp_path, jobs=1)
+    (image,) = (image for axes in card(predictions).axes for image in axes.images)
+    assert np.asarray(image.get_array())[0, :, 0].tolist() == [1.0, 1.0, 0.0, 1.0]
+    assert ("mirrored" in image.axes.get_title()) == (side < 0)

@@ -74,6 +74,18 @@ def test_walls_that_are_not_shipped_are_predicted_and_scored(
     assert all((out / f"{name}.png").is_file() for name in ("error-over-cost", "wall-WS.175", "wall-SW.100.1"))
 
 
+def test_pictures_of_walls_that_are_gone_from_the_data_are_taken_away(tmp_path: Path) -> None:
+    """Those of the page before, and nobody else's."""
+    out, folder = tmp_path / "out", tmp_path / "walls"
+    arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]
+    write_folder(folder, GRANITE, SANDSTONE)
+    assert command(arguments) == 0
+    (out / "wall-of-mine.png").touch()
+    write_folder(folder, GRANITE)
+    assert command(arguments) == 0
+    assert {path.name for path in out.glob("wall-*.png")} == {"wall-WS.175.png", "wall-of-mine.png"}
+
+
 def test_walls_that_differ_in_name_alone_are_computed_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     twin = GRANITE.replace("WS.175", "WS2.175").replace(",61,", ",70,")
     folder, out = write_folder(tmp_path / "walls", GRANITE, twin), tmp_path / "out"
