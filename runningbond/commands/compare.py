@@ -12,6 +12,7 @@ from runningbond.models import MODELS, TOLERANCE, check_tolerance, find_model
 from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
+from runningbond.scene.folder_lock import locked
 
 from .terminal import (
     DONE,
@@ -85,7 +86,8 @@ def compare(
         again = "the same command without --fresh" if fresh else "the same command"
         kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
         return told_interruption(stopped, kept)
-    _report(Comparison(walls, chosen, campaign, published), out, tolerance)
+    with locked(out):  # what is written is of one comparison, where two end at once
+        _report(Comparison(walls, chosen, campaign, published), out, tolerance)
     failed = [(cell, outcome.message) for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for cell, message in failed:
         print(f"{', '.join(cell)}: {message}", file=sys.stderr)

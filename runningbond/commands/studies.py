@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from runningbond.campaigns import INTERRUPTIONS
 from runningbond.results import make_folder
 from runningbond.scene import SceneError
+from runningbond.scene.folder_lock import locked
 from runningbond.scene.ranges import suggestion
 
 from .terminal import DONE, NO_ANSWER, STOPPED, Whole, print_table, progress_bar
@@ -46,7 +47,8 @@ def stability(*experiments: str, out: Path = Path("stability")) -> int:
     except Stopped:
         kept = sum(is_complete(each, out) for each in studies)
         return _interrupted(f"{kept} of {len(studies)} experiments are kept in {out}")
-    written = write_page("stability", page(rows, out), out, "stability")
+    with locked(out):
+        written = write_page("stability", page(rows, out), out, "stability")
     print_table(summary(rows))
     print(f"written: {', '.join(map(str, written[:2]))}")
     return _exit_code([*off(rows), *failed(rows)])
@@ -75,7 +77,8 @@ def study(*, out: Path = Path("study"), jobs: Whole = 1) -> int:
         rows = _measured([STUDY], out, "measuring", jobs)[0][1]
     except Stopped:
         return _interrupted(f"what is measured is kept in {out}")
-    written = write_page("speed against accuracy", page(rows, out), out, STUDY.name)
+    with locked(out):
+        written = write_page("speed against accuracy", page(rows, out), out, STUDY.name)
     for sheet in STUDY.tables(rows)[:2]:
         print(sheet.markdown())
     print(f"written: {', '.join(map(str, written))}")

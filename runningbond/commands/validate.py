@@ -5,6 +5,7 @@ from pathlib import Path
 
 from runningbond.campaigns import Interrupted
 from runningbond.results import make_folder
+from runningbond.scene.folder_lock import locked
 
 from .terminal import DONE, NO_ANSWER, UNDECIDED, Flag, Json, check_jobs, print_table, progress_bar, told_interruption
 
@@ -57,7 +58,9 @@ def validate(
         again = "the same command without --fresh" if fresh else "the same command"
         kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
         return told_interruption(stopped, kept)
-    written, sums = write_laboratory(predictions, out), totals(predictions)
+    with locked(out):
+        written = write_laboratory(predictions, out)
+    sums = totals(predictions)
     if json:
         content = {"walls": [each.row() for each in predictions], "summary": as_json(sums)}
         print(to_json.dumps(content, allow_nan=False))

@@ -11,6 +11,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -486,3 +487,26 @@ def test_a_broken_pipe_is_no_complaint() -> None:
     line = f"{SCRIPT} run panel-04 --model limit | true; exit ${{PIPESTATUS[0]}}"
     done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_of_two_comparisons_that_end_at_once_one_waits_to_write_its_tables(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Or tables were of one, pictures of the other, and each took away what the other had drawn."""
+    fcntl, compare = pytest.importorskip("fcntl"), import_module("runningbond.commands.compare")
+    report, found = vars(compare)["_report"], list[bool]()
+
+    def tried(*arguments: Any) -> None:
+        folder = os.open(tmp_path, os.O_RDONLY)
+        try:
+            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            found.append(True)
+        finally:
+            os.close(folder)
+        report(*arguments)
+
+    monkeypatch.setattr(compare, "_report", tried)
+    assert command(["compare", "panel-04", "--models", "homog", "--jobs", "1", "--out", str(tmp_path)]) == 0
+    assert found == [True]
+    assert (tmp_path / "report.html").is_file()
