@@ -5,10 +5,11 @@ from math import inf
 from statistics import median
 from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.image import imread
-from matplotlib.ticker import FixedLocator, NullLocator
+from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
 
 from runningbond.pictures.charts import bare
 from runningbond.pictures.flat import draw_mechanism
@@ -112,6 +113,7 @@ def error_over_cost(figure: Figure, predictions: Sequence[Prediction]) -> None:
     for axes, kind in zip(panels, kinds, strict=True):
         _errors(axes, [each for each in scored if kind_of(each) == kind])
         axes.set(xscale="log", yscale="log", xlabel="CPU seconds", title=f"walls with {kind} joints")
+        axes.xaxis.set_minor_formatter(NullFormatter())
     panels[0].set_ylabel("|ΔV|, strength against experiment")
     panels[0].yaxis.set_major_formatter(lambda value, _: f"{100 * value:g} %")
     panels[0].yaxis.set_major_locator(FixedLocator([0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10]))
@@ -147,8 +149,19 @@ def _errors(axes: Axes, scored: Sequence[Prediction]) -> None:
         axes.plot(
             median(seconds), median(errors), model.marker, color=model.colour, ms=10, mec="black", ls="none", label=name
         )
+    _in_whole_decades(axes)
     if better := errors_by_hand(scored):
         _level(axes, max(median(better.values()), LEAST_ERROR), "the better of both,\nwall by wall", width=1.6)
+
+
+def _in_whole_decades(axes: Axes) -> None:
+    """Widen an axis of seconds that has fewer than two powers of ten, which alone are labelled."""
+    low, high = axes.dataLim.intervalx
+    if low > high:  # nothing that took any
+        return
+    first, last = np.floor(np.log10(low)), np.ceil(np.log10(high))
+    if np.floor(np.log10(high)) - np.ceil(np.log10(low)) < 1:
+        axes.set_xlim(10**first, 10 ** max(last, first + 1))
 
 
 def _level(axes: Axes, error: float, text: str, width: float = 0.9) -> None:

@@ -1,14 +1,17 @@
 """The picture of a wall of the laboratory."""
 
 import io
+from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imsave
 from matplotlib.text import Annotation
 
-from runningbond.laboratory.cards import card
+from runningbond.laboratory.cards import card, error_over_cost
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.predictions import predict, scenes_of
@@ -47,3 +50,27 @@ def test_cracks_of_a_wall_that_was_pushed_to_the_left_are_mirrored(side: int, tm
     (image,) = (image for axes in card(predictions).axes for image in axes.images)
     assert np.asarray(image.get_array())[0, :, 0].tolist() == [1.0, 1.0, 0.0, 1.0]
     assert ("mirrored" in image.axes.get_title()) == (side < 0)
+
+
+@pytest.mark.parametrize("seconds", [(1.13, 1.37), (0.9, 1.1), (0.5, 0.5), (0.02, 30.0)])
+def test_seconds_of_models_that_cost_alike_are_labelled_apart(seconds: tuple[float, float], tmp_path: Path) -> None:
+    """Those from 1.13 to 1.37 s were 1.15 × 10⁰, 1.2 × 10⁰ and so on, one over the other."""
+    rows = [GRANITE, GRANITE.replace("WS.175", "WS2.175")]
+    walls, rung = read_folder(write_folder(tmp_path / "walls", *rows)), LADDER["limit"]
+    predictions, _ = predict(walls, [rung], scenes_of(walls, [rung]), tmp_path, jobs=1)
+    outcomes = [each.outcome for each in predictions if each.outcome]
+    alike = [
+        replace(each, outcome=replace(outcome, seconds=cost))
+        for each, outcome, cost in zip(predictions, outcomes, seconds, strict=True)
+    ]
+    figure = Figure(figsize=(5, 5), layout="constrained")
+    error_over_cost(figure, alike)
+    figure.draw_without_rendering()
+    axis = figure.axes[0].xaxis
+    boxes = [each.get_window_extent() for each in axis.get_ticklabels(which="both") if each.get_text()]
+    low, high = figure.axes[0].get_window_extent().intervalx
+    boxes = sorted(
+        (box for box in boxes if low - PIXEL <= (box.x0 + box.x1) / 2 <= high + PIXEL), key=lambda box: box.x0
+    )
+    assert len(boxes) >= 2
+    assert all(box.x1 < after.x0 for box, after in pairwise(boxes))
