@@ -1,6 +1,6 @@
 """How far the smallest load that `limit-nonassociated` certifies on a wall goes by the random starts of its search.
 
-    PYTHONPATH=. python benchmarks/studies/limit_starts.py [SCENE [SEARCHES]]
+    python benchmarks/studies/limit_starts.py [SCENE [SEARCHES]]
 
 Searches of the published wall as the suite makes it, then with other random numbers each: their loads, ascending.
 """
