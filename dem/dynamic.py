@@ -31,7 +31,7 @@ from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import elastic_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene import Array, Scene, SceneError, check_scene
 
 from .finite_system import finite_system
 from .rigid_system import contact_points, rigid_system, with_fictitious_inertia
@@ -64,6 +64,7 @@ def dem_dynamic(
     Outcome
         As of `collapse_by_steps`.
     """
+    check_scene(scene)
     if scene.history:
         return critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), tolerance, observe=observe)
     start = time.perf_counter()
@@ -107,6 +108,7 @@ def dem_response(scene: Scene, scale: float = 1.0, **settings: Any) -> Response:
 
 def dem_vibration(scene: Scene, count: int = 10) -> Vibration:
     """Natural vibrations of a scene's rigid blocks at rest under their dead load."""
+    check_scene(scene)
     return vibration_at_rest(scene, Run(rigid_system(scene)), count)
 
 

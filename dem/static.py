@@ -29,7 +29,7 @@ from runningbond.limit.equilibrium import equilibrium
 from runningbond.limit.kinematics import control_row, dead_load, live_load
 from runningbond.results import Outcome, Supports
 from runningbond.results.outcome import number
-from runningbond.scene import Scene
+from runningbond.scene import Scene, check_scene
 
 from .climb import INTERRUPTED, NEITHER, climb, ends, look_closer, peak
 from .led import lead_along
@@ -96,6 +96,7 @@ def dem_static(
         of `lower`. Of a wall that is led `curve` has its whole way and `force` is of the answer, and `lower` and
         `upper` are the answers in the last steps and in those twice as long. Ctrl-C ends it with the result so far.
     """
+    check_scene(scene)
     start = time.perf_counter()
     system = static_system(scene)
     outcome = Outcome(scene.title, "dem-static", "undecided", dofs=system.freedoms)

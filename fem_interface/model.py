@@ -33,7 +33,7 @@ from runningbond.joints.wall_points import spread_rule
 from runningbond.limit import elastic_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene import Array, Scene, SceneError, check_scene
 from runningbond.scene.ranges import one_of
 
 from .coupled_masses import with_coupled_masses
@@ -106,6 +106,7 @@ def fem(
         As of `collapse_by_steps`. `force` lists the points joint by joint or, where the mesh has others than a joint's
         own, the forces at its ends that have the same resultants; `motion` is the blocks' rigid part.
     """
+    check_scene(scene)
     start = time.perf_counter()
     words = (("points", points, PointsOn), ("cracks", cracks, Cracks), ("loads", loads, Loads))
     for setting, word, known in (*words, ("energies", energies, Energies)):
@@ -204,6 +205,7 @@ def fem_response(
 
 def fem_vibration(scene: Scene, count: int = 10, *, cells: int = 1, modes: ModeCount | None = None) -> Vibration:
     """Natural vibrations of a scene's deformable blocks at rest under their dead load."""
+    check_scene(scene)
     system = system_of(modal_wall(scene, cells, modes), mass_scaling=False)
     return vibration_at_rest(scene, Run(system), count)
 

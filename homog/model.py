@@ -15,7 +15,7 @@ import time
 import numpy as np
 
 from runningbond.results import Outcome
-from runningbond.scene import Bond, Scene, SceneError
+from runningbond.scene import Bond, Scene, SceneError, check_scene
 
 FINENESS = (1, 4, 8, 16)
 """The fewer of courses and of blocks in one, from which on deviations are told together."""
@@ -68,6 +68,7 @@ def homog(scene: Scene) -> Outcome:
     there; any other is refused by a `SceneError`. The outcome has no bracket: a mechanism of the continuum proves the
     multiplier an upper bound for the continuum, but for the wall of blocks it is an estimate, on either side.
     """
+    check_scene(scene)
     start = time.perf_counter()
     bond = _bond(scene)
     low, high = scene.blocks.extent(~scene.fixed)

@@ -13,7 +13,7 @@ import numpy as np
 
 from runningbond.joints import PointStrength
 from runningbond.results import Outcome, Status, collapse_state
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Scene, check_scene
 
 from .crushed import beyond_note, crushed, crushing_note, without_crushing
 from .equilibrium import Equilibrium, equilibrium
@@ -311,6 +311,7 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
         that moves λ is the least share of the dead load that it can bear, `lower` is from the mechanism and `upper`
         from the forces; one below zero has to be driven along its motion.
     """
+    check_scene(scene)
     start = time.perf_counter()
     system = equilibrium(scene).with_crushing().under_live_load()
     state = limit_state(system)

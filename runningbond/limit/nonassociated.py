@@ -11,7 +11,7 @@ from dataclasses import replace
 from functools import partial
 
 from runningbond.results import Outcome, collapse_state
-from runningbond.scene import Array, Scene, SceneError, table_of
+from runningbond.scene import Array, Scene, SceneError, check_scene, table_of
 
 from .associated import LimitState, arrays_of, judge, limit_state, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
@@ -78,6 +78,7 @@ def limit_nonassociated(
     if no collapse was certified and friction grew with the load in every program; the message says what is not
     proved.
     """
+    check_scene(scene)
     start = time.perf_counter()
     _refuse_crushing(scene)
     system = equilibrium(scene).under_live_load()

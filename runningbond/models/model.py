@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.results import Outcome
-from runningbond.scene import Array, JointMaterial, Mortar, Scene, SceneError, table_of
+from runningbond.scene import Array, JointMaterial, Mortar, Scene, SceneError, check_scene, table_of
 
 if TYPE_CHECKING:
     from runningbond.response import Response  # which needs a compiler
@@ -92,6 +92,7 @@ class Model:
 
     def check(self, scene: Scene) -> None:
         """Refuse, by name, a scene with what this model does not know of."""
+        check_scene(scene)
         for key in scene.extras:
             if key not in self.takes:
                 raise SceneError(key, f"is not taken by model {self.name}; take another model, or leave it out")

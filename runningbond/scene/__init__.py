@@ -18,7 +18,7 @@ from .segments import Joints, find_joints
 from .settlement import Settlement
 from .supports import NO_PINS, Pins, free_motions
 from .ties import ANCHOR, NO_TIES, Tie, Ties
-from .wall import Scene, build_scene, table_of
+from .wall import Scene, build_scene, check_scene, table_of
 
 __all__ = [
     "ANCHOR",
@@ -58,6 +58,7 @@ __all__ = [
     "Tilt",
     "Unsigned",
     "build_scene",
+    "check_scene",
     "complement",
     "find_joints",
     "free_motions",

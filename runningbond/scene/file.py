@@ -82,13 +82,15 @@ def scene_from_dict(content: dict[str, Any], *, folder: Path = Path(), default_t
     SceneError
         As `read_scene`.
     """
+    if not isinstance(content, dict):
+        raise SceneError("content", "must be a dictionary of the tables of a scene file", content)
     try:
         return _scene(content, folder, default_title)
     except SceneError:
         from .schema import misspelt
 
         # Where a key is misspelt, what is missing or does not fit is told for want of it.
-        found = misspelt(content) if Table.visits is None and isinstance(content, dict) else None
+        found = misspelt(content) if Table.visits is None else None
         if found is not None:
             raise found from None
         raise

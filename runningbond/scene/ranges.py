@@ -94,8 +94,13 @@ def one_of(key: str, value: object, options: Iterable[str]) -> str:
 
 def suggestion(word: object, options: list[str]) -> str:
     """What a misspelt word may have been meant to be."""
-    likely = difflib.get_close_matches(word, options, n=1) if isinstance(word, str) else []
-    return f'; did you mean "{likely[0]}"?' if likely else ""
+    if not isinstance(word, str) or not options:
+        return ""
+    near = difflib.get_close_matches(word, options, n=len(options))
+    # Of several that are as near the first one: difflib would take the last by the alphabet.
+    near = [option for option in options if option in near]
+    likely = max(near, key=lambda option: difflib.SequenceMatcher(None, option, word).ratio(), default="")
+    return f'; did you mean "{likely}"?' if likely else ""
 
 
 def _beyond(value: object, words: str) -> str:

@@ -308,6 +308,12 @@ class Scene:
         return float((high - low)[masonry if masonry.any() else movable, 1].min())
 
 
+def check_scene(scene: object) -> None:
+    """Refuse what is no scene, as the wall of Python that has one, or a file's name."""
+    if not isinstance(scene, Scene):
+        raise SceneError("scene", "must be a Scene: of a Wall it is wall.scene, of a file read_scene gives it", scene)
+
+
 def build_scene(
     title: str,
     polygons: Sequence[Array],

@@ -10,7 +10,7 @@ import pytest
 import runningbond as rb
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.compare.published import PUBLISHED, published_scene
-from runningbond.scene import Scene, SceneError
+from runningbond.scene import Scene, SceneError, scene_from_dict
 from runningbond.scene.schema import scene_schema
 from runningbond.wall import WHOLE
 from tests.scene.drafting import BRICKS, closed, dxf, tables
@@ -226,6 +226,18 @@ def test_a_wall_that_is_no_plain_data_is_not_written(tmp_path: Path) -> None:
     with pytest.raises(rb.SceneError, match=re.escape("joint.law")):
         wall.to_toml(tmp_path / "wall.toml")
     assert not (tmp_path / "wall.toml").exists()
+
+
+@pytest.mark.parametrize(("name", "meant"), [("panel-1", "panel-01"), ("panel-7", "panel-07"), ("wall-W3", "wall-w3")])
+def test_the_nearest_published_wall_is_meant(name: str, meant: str) -> None:
+    """Of panel-01, panel-10, panel-11 and panel-12, which are as near to panel-1, it was the last."""
+    with pytest.raises(SceneError, match=f'did you mean "{meant}"'):
+        rb.read(name)
+
+
+def test_tables_of_a_scene_are_a_dictionary() -> None:
+    with pytest.raises(SceneError, match="content = 3: must be a dictionary of the tables of a scene file"):
+        scene_from_dict(3)  # type: ignore[arg-type]
 
 
 def test_a_file_that_is_not_there_is_refused() -> None:

@@ -4,11 +4,20 @@ from typing import Any
 
 import pytest
 
+from dem.dynamic import dem_dynamic, dem_vibration
+from dem.static import dem_static
+from fem_interface.model import fem, fem_vibration
+from homog import homog
+from runningbond.limit import limit, limit_nonassociated
 from runningbond.models import MODELS, Model, respond, run_model
 from runningbond.models.registry import DRY
 from runningbond.scene import SceneError
+from runningbond.wall import Wall
 from tests.walls import panel
 
+VIBRATIONS = (dem_vibration, fem_vibration)
+PANEL: dict[str, Any] = {"length": 0.48, "height": 0.12, "block_width": 0.24, "block_height": 0.06, "thickness": 0.12}
+PANEL |= {"density": 1800.0, "friction": 0.6}
 PULSE = {"pulse": {"kind": "sine", "amplitude": 0.1, "period": 0.5}, "quantity": "g"}
 
 
@@ -85,3 +94,11 @@ def test_dead_loads_that_are_no_weights_are_told_of_where_the_ground_tilts() -> 
     for tilted, loads in ((True, {"kind": "tilt"}), (False, {"kind": "lateral"})):
         message = run_model("limit", panel(load__live=loads, load__dead=dead)).message
         assert ("as jacks do and weights do not" in message) == tilted
+
+
+@pytest.mark.parametrize("ask", [limit, limit_nonassociated, homog, dem_static, dem_dynamic, fem, *VIBRATIONS])
+def test_a_wall_in_place_of_its_scene_is_refused_by_name(ask: Any) -> None:
+    """It was an error of an attribute that a wall has not, in the middle of a model."""
+    for other in (Wall.running_bond(**PANEL), "panel-01"):
+        with pytest.raises(SceneError, match=r"scene = .*: must be a Scene: of a Wall it is wall\.scene"):
+            ask(other)
