@@ -16,6 +16,7 @@ from runningbond.scene import SceneError
 from .processes import side_by_side
 from .tasks import Answer, ClusterError, Task
 
+NEITHER = "is neither the address of a Dask scheduler nor its file"
 PATIENCE = 30  # seconds in which a scheduler must answer and have a worker
 
 
@@ -52,17 +53,26 @@ class TaskBackend(DaskDistributedBackend):  # type: ignore[misc]
         return super().retrieve_result_callback(out)
 
 
-def on_cluster(tasks: Sequence[Task], where: str) -> Iterator[Answer]:
-    """Answers as they come, from a cluster by its scheduler's address or file; a `SceneError` if it has no worker."""
-    keys = {task.cell: task.key() for task in tasks}
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are reported here, in a line
+def scheduler_address(where: str) -> str:
+    """The address of a scheduler, by itself or by the file that it has written; a `SceneError` for what is neither."""
     try:
         address = json.loads(Path(where).read_bytes())["address"] if Path(where).is_file() else where
         if ":" not in address:  # no port: a client would try for a minute to go there, and another to give that up
             raise ValueError(address)
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError, TypeError, KeyError) as error:
-        raise SceneError("--cluster", "is neither the address of a Dask scheduler nor its file", where) from error
+        raise SceneError("--cluster", NEITHER, where) from error
+    return str(address)
+
+
+def on_cluster(tasks: Sequence[Task], where: str) -> Iterator[Answer]:
+    """Answers as they come, from a cluster by its scheduler's address or file; a `SceneError` if it has no worker."""
+    keys = {task.cell: task.key() for task in tasks}
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are reported here, in a line
+    address = scheduler_address(where)
+    try:
+        client = Client(address, timeout=PATIENCE, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise SceneError("--cluster", NEITHER, where) from error
     with client:
         try:
             client.wait_for_workers(1, timeout=PATIENCE)

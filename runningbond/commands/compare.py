@@ -63,6 +63,10 @@ def compare(
         raise SceneError("--jobs", "does not go with --cluster, whose workers are as many as it has", jobs)
     if cluster is not None and find_spec("distributed") is None:
         raise SceneError("--cluster", "needs Dask: pip install 'runningbond[cluster]'", cluster)
+    if cluster is not None:
+        from runningbond.campaigns.cluster import scheduler_address
+
+        scheduler_address(cluster)
     walls, published = _read_all(scenes or [case.name for case in PUBLISHED])
     make_folder(out)
     for name, wall in walls.items():

@@ -179,3 +179,12 @@ def test_what_is_no_cluster_is_refused(
     printed = capsys.readouterr()
     assert said in printed.err
     assert printed.out == ""
+
+
+def test_what_is_no_address_is_refused_before_anything_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    assert command(["compare", "panel-04", "--models", "homog", "--out", str(out), "--cluster", "nowhere"]) == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not out.exists()
