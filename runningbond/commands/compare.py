@@ -92,6 +92,9 @@ def compare(
         return told_interruption(stopped, kept)
     with locked(out):  # what is written is of one comparison, where two end at once
         _report(Comparison(walls, chosen, campaign, published), out, tolerance)
+    for (name, model), reason in campaign.inapplicable.items():
+        if name not in published:  # of which it is known
+            print(f"note: {name}, {model}: {reason}", file=sys.stderr)
     failed = [(cell, outcome.message) for cell, outcome in campaign.outcomes.items() if outcome.status == "failed"]
     for cell, message in failed:
         print(f"{', '.join(cell)}: {message}", file=sys.stderr)

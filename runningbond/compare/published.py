@@ -68,7 +68,7 @@ def find_scene(scene: str) -> Path:
     if scene in cases:
         return cases[scene].path
     if path.exists():
-        raise SceneError(scene, f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
+        raise SceneError(str(path), f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
     names = list(cases)
     what = f"there is no such file, nor a published scene of that name ({names[0]} … {names[-1]})"
     raise SceneError(scene, what + suggestion(scene, names))

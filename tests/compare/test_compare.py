@@ -510,3 +510,15 @@ def test_of_two_comparisons_that_end_at_once_one_waits_to_write_its_tables(
     assert command(["compare", "panel-04", "--models", "homog", "--jobs", "1", "--out", str(tmp_path)]) == 0
     assert found == [True]
     assert (tmp_path / "report.html").is_file()
+
+
+def test_why_a_model_does_not_apply_to_a_wall_of_ones_own_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a wall without a stiffness nothing was said but n/a; that W3 has no closed form is known."""
+    own = str(write_toml(content(), tmp_path / "own.toml"))
+    line = ["compare", own, "wall-w3", "--models", "homog,dem-static", "--tolerance", "0.1", "--jobs", "1"]
+    assert command([*line, "--out", str(tmp_path / "out")]) == 0
+    notes = [line for line in capsys.readouterr().err.splitlines() if line.startswith("note: ")]
+    assert len(notes) == 1
+    assert notes[0].startswith("note: own, dem-static: joint.mortar: is missing; this model needs it")

@@ -236,6 +236,7 @@ def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys:
     [
         (["run", "nowhere.toml", "--model", "limit"], "there is no such file"),
         (["run", ".", "--model", "limit"], "it is a folder"),
+        (["run", "", "--model", "limit"], ".: cannot be read: it is a folder"),
         (["run", "panel-01"], "--model"),
         (["run", "panel-01", "--model", "limt"], 'did you mean "limit"?'),
         (["run", "panel-01", "--model", "fern"], "must be one of homog, limit, limit-nonassociated, dem-static, dem-d"),
