@@ -87,7 +87,8 @@ class PassedOn(Action):
 
     def forces(self, scene: Scene) -> Forces:
         """Forces on the pieces."""
-        forces = self.load.forces_by_piece(self.wall, scene)
+        corners = scene.blocks.vertices
+        forces = self.load.forces_by_piece(self.wall, np.stack([corners, corners[scene.blocks.successor]], axis=1))
         share = scene.blocks.area / self.wall.blocks.area[self.owner]
         of_block = [self._bearing(scene, block, at) for block, at in zip(forces.block, forces.at, strict=True)]
         count = np.array([len(near) for near in of_block], dtype=np.int64)

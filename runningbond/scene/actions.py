@@ -28,8 +28,11 @@ class Action:
         """Forces on a scene's blocks; of a live load, those at λ = 1."""
         raise NotImplementedError(f"{type(self).__name__} says no forces")
 
-    def forces_by_piece(self, scene: "Scene", pieces: "Scene") -> Forces:
-        """Forces on a scene's blocks, at points that each lie in one of the pieces that the blocks may crack into."""
+    def forces_by_piece(self, scene: "Scene", edges: Array) -> Forces:
+        """Forces on a scene's blocks, at points that each lie in one of the pieces that they are cut into.
+
+        The pieces are triangles, of a mesh or of blocks that may crack, and given by their edges ``(n, 2, 2)`` [m].
+        """
         return self.forces(scene)
 
     def check(self, scene: "Scene", key: str) -> None:

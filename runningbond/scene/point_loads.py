@@ -137,9 +137,24 @@ class LineLoad(Action):
         """Two forces on each of its `parts`, at Gauss points: of the same resultant and the same first two moments."""
         return self._on(scene, *self.parts(scene))
 
-    def forces_by_piece(self, scene: "Scene", pieces: "Scene") -> Forces:
-        """As `forces`, of the line cut where pieces begin and end as well."""
-        return self._on(scene, *self.parts(scene, self._along(pieces)[1].ravel()))
+    def forces_by_piece(self, scene: "Scene", edges: Array) -> Forces:
+        """As `forces`, of the line cut where it meets edges ``(n, 2, 2)`` as well.
+
+        In constant strain displacements along a part are linear then, and its two forces work as it does.
+        """
+        return self._on(scene, *self.parts(scene, self._met(edges, scene.blocks.tolerance)))
+
+    def _met(self, edges: Array, reach: float) -> Array:
+        """Where it crosses edges ``(n, 2, 2)``, or their ends lie on it, as shares of it ``(k,)``."""
+        start, run = np.array(self.start), np.subtract(self.end, self.start)
+        length = float(np.hypot(*run))
+        off = (edges - start) @ [-run[1], run[0]] / length
+        on, (low, high) = np.abs(off) <= reach, np.sort(off).T
+        across = (low < -reach) & (high > reach)
+        first, last = off[across].T
+        at = edges[across, 0] + (first / (first - last))[:, None] * (edges[across, 1] - edges[across, 0])
+        share = (np.concatenate([edges[on], at]) - start) @ run / length**2
+        return np.asarray(share[(share > 0) & (share < 1)])
 
     def _on(self, scene: "Scene", block: Indices, share: Array) -> Forces:
         run = np.subtract(self.end, self.start)

@@ -249,15 +249,24 @@ class Scene:
     @cached_property
     def dead_forces(self) -> Forces:
         """Forces of the blocks' weight and of all dead loads."""
-        return self._sum(Forces.on(self, self.load.gravity), self.load.dead)
+        return self._sum(self._weight, [load.forces(self) for load in self.load.dead])
 
     @cached_property
     def live_forces(self) -> Forces:
         """Forces of all live loads at λ = 1."""
-        return self._sum(Forces.on(self), self.load.live)
+        return self._sum(Forces.on(self), [load.forces(self) for load in self.load.live])
 
-    def _sum(self, forces: Forces, loads: Sequence[Action]) -> Forces:
-        total = sum((load.forces(self) for load in loads), forces)
+    def forces_by_piece(self, edges: Array) -> tuple[Forces, Forces]:
+        """As `dead_forces` and `live_forces`, each at points in one of the pieces between edges ``(n, 2, 2)`` [m]."""
+        dead, live = ([load.forces_by_piece(self, edges) for load in one] for one in (self.load.dead, self.load.live))
+        return self._sum(self._weight, dead), self._sum(Forces.on(self), live)
+
+    @property
+    def _weight(self) -> Forces:
+        return Forces.on(self, self.load.gravity)
+
+    def _sum(self, first: Forces, others: Sequence[Forces]) -> Forces:
+        total = sum(others, first)
         loose = ~self.fixed[total.block]
         return replace(total, block=total.block[loose], at=total.at[loose], force=total.force[loose])
 
