@@ -22,7 +22,7 @@ from dataclasses import replace
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from runningbond.joints import stiffness_note
+from runningbond.joints import ends_note, stiffness_note
 from runningbond.limit import elastic_displacement
 from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
 from runningbond.limit.equilibrium import equilibrium
@@ -119,7 +119,8 @@ def dem_static(
                     outcome = replace(outcome, steps=budget - path.budget)
                 else:
                     outcome = _on_paths(outcome, path, budget, first_step, tolerance, past)
-                message = "; ".join(part for part in (outcome.message, _window(path)) if part)
+                notes = _window(path), ends_note(scene, system.equilibrium.points)
+                message = "; ".join(filter(None, (outcome.message, *notes)))
                 outcome = replace(outcome, message=message)
     except KeyboardInterrupt:
         outcome = replace(outcome, message=f"no answer: {INTERRUPTED}")

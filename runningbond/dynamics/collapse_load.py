@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from runningbond.joints import JointPoints, stiffness_note
+from runningbond.joints import JointPoints, ends_note, stiffness_note
 from runningbond.joints.stiffness import GIVES
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
@@ -114,7 +114,7 @@ def collapse_by_steps(
     criteria = Criteria(collapse=collapse * sizes, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
-    note = "; ".join(filter(None, (note, beam_note(scene))))
+    note = "; ".join(filter(None, (note, beam_note(scene), ends_note(scene, points))))
     try:
         # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):

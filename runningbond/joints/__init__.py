@@ -7,6 +7,7 @@ from .points import JointPoints, Rule, gauss, joint_points, lobatto
 from .resultant_law import ResultantLaw
 from .stiffness import joint_stiffness, stiffness_note
 from .wall_points import (
+    ends_note,
     impact_note,
     listed_points,
     static_law,
@@ -28,6 +29,7 @@ __all__ = [
     "PointStrength",
     "ResultantLaw",
     "Rule",
+    "ends_note",
     "gauss",
     "impact_note",
     "joint_points",

@@ -47,6 +47,17 @@ def impact_note(scene: Scene) -> str:
     return f"{what} than Housner's" if spreads(scene) else ""
 
 
+def ends_note(scene: Scene, points: JointPoints) -> str:
+    """What a message says of joints that bear at two points, under a beam held at its height; empty elsewhere.
+
+    What turns under it presses on the near end of a joint as if all of the pressure along it were there: a strut is
+    then steeper than it is, and slides where friction is enough for that which it is.
+    """
+    if not len(scene.late_pins) or not len(points) or np.bincount(points.joint).max() > 2:
+        return ""
+    return "joints bear at their ends alone, and slide under a beam held at its height where whole ones may lock"
+
+
 def spread_rule(parts: int = 1) -> Rule:
     """Points of `wall_rule` where joints soften, crush or close."""
     return lobatto(BETWEEN if parts == 1 else max(LEAST, 1 + math.ceil((BETWEEN - 1) / parts)))
