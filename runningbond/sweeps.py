@@ -64,6 +64,8 @@ def sweep(
         remedy = 'must be lists of values by the full names of keys, {"joint.friction": [0.7]}'
         raise SceneError("changes", remedy, changes)
     for key, values in changes.items():
+        if key in ANSWER:
+            raise SceneError(key, "is no key of a scene, but a column of the sweep's table", values)
         is_single = isinstance(values, (str, bytes, Mapping)) or (isinstance(values, np.ndarray) and not values.ndim)
         if is_single or not isinstance(values, Iterable):
             raise SceneError(key, "must be a list of the values that it is to take", values)

@@ -21,7 +21,7 @@ from runningbond.scene.ranges import suggestion
 
 from .model import Cost, Model
 from .second_opinion import FINER, asks_others, beside_others
-from .settings import check_response_settings, check_settings
+from .settings import check_observer, check_response_settings, check_settings
 
 if TYPE_CHECKING:
     from runningbond.response import Response  # which needs a compiler
@@ -201,6 +201,8 @@ def run_model(
     model = find_model(model)
     check_tolerance(tolerance)
     check_parameters(model, parameters)
+    if observe is not None:
+        check_observer("observe", observe)
     model.check(scene)
     if model in _EVERY_MODEL:
         check_settings(model.name, scene, parameters)

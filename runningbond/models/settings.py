@@ -30,9 +30,10 @@ def _rule(key: str, value: object) -> None:
         raise SceneError(key, "must be a Rule of runningbond.joints.points, of nodes and weights", value)
 
 
-def _function(key: str, value: object) -> None:
+def check_observer(key: str, value: object) -> None:
+    """Refuse what cannot be called."""
     if not callable(value):
-        raise SceneError(key, "must be a function, which is called with every state that is followed", value)
+        raise SceneError(key, "must be a function, which is shown the states that the model passes through", value)
 
 
 CHECKS: Mapping[str, Check] = {
@@ -55,7 +56,7 @@ OPTIONAL = ("programs", "modes", "rule")
 NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements")
 """Settings that mean nothing where the ground moves."""
 
-OF_MOTIONS: Mapping[str, Check] = {"rows": whole, "after": AT_LEAST_ZERO.take, "observe": _function}
+OF_MOTIONS: Mapping[str, Check] = {"rows": whole, "after": AT_LEAST_ZERO.take, "observe": check_observer}
 """Checks of settings of a response."""
 
 

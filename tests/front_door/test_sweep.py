@@ -166,6 +166,13 @@ def test_values_are_a_list(value: Any) -> None:
         rb.sweep(WALL, {"support.kind": value}, "limit")
 
 
+@pytest.mark.parametrize("key", ["status", "multiplier", "message"])
+def test_columns_of_the_answer_are_no_keys(key: str) -> None:
+    """They were in the table once, with the values of the key."""
+    with pytest.raises(rb.SceneError, match=f"{key} = .*: is no key of a scene, but a column"):
+        rb.sweep(WALL, {key: [1, 2]}, "limit")
+
+
 def test_an_interrupted_sweep_is_an_interruption(monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt

@@ -72,6 +72,12 @@ def test_settings_of_a_response_are_refused_before_it_is_followed(settings: dict
         respond("dem-dynamic", panel(load__live=None, load__history=PULSE), **settings)
 
 
+@pytest.mark.parametrize("model", ["limit", "dem-static", "fem"])
+def test_what_is_to_look_on_is_a_function(model: str) -> None:
+    with pytest.raises(SceneError, match="observe = 3: must be a function"):
+        run_model(model, panel(block__young=1e10), observe=3)  # type: ignore[arg-type]
+
+
 def test_a_law_of_ones_own_is_read_by_the_models_that_are_handed_it() -> None:
     assert [name for name, model in MODELS.items() if "joint.law" not in model.reads] == ["homog"]
 

@@ -43,6 +43,13 @@ def test_a_shear_column_has_the_frequencies_of_its_closed_form() -> None:
     assert found[:4] == pytest.approx(exact[:4], rel=1e-3)
 
 
+@pytest.mark.parametrize("count", [0, -1, 1.5, "all"])
+@pytest.mark.parametrize("vibrate", [dem_vibration, fem_vibration])
+def test_a_number_of_vibrations_that_is_none_is_refused(vibrate: Any, count: Any) -> None:
+    with pytest.raises(SceneError, match="count = .*: must be a whole number, at least 1"):
+        vibrate(stack(2, 0.4, 0.2, 1e9, 1e9, block__young=1e10), count)
+
+
 def test_all_mass_goes_along_with_the_ground() -> None:
     found = dem_vibration(stack(3, 0.4, 0.2, 1e9, 1e9), 9)
     assert found.loose == 0
