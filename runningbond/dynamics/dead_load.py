@@ -21,7 +21,7 @@ ELASTIC = 1 / 4
 """Part of the dead load that is put on at once where all of it is too much: it overshoots to half."""
 
 HARDLY = 1 / 64
-"""As `ELASTIC`, where joints must not slide either: under a quarter thrusts still came out up to a tenth too small."""
+"""As `ELASTIC`, where joints must not slide either: after a quarter at once thrusts were up to two fifths too small."""
 
 SLID = 1e-3
 """Part of the dead load's work beyond which what friction took of it is no rounding."""
