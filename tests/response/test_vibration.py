@@ -56,12 +56,6 @@ def test_all_mass_goes_along_with_the_ground() -> None:
     assert found.share.sum(axis=0) == pytest.approx([1.0, 1.0], rel=1e-9)
 
 
-@pytest.mark.parametrize("count", [0, -1, 1.5, "all"])
-def test_a_number_of_vibrations_is_one(count: Any) -> None:
-    with pytest.raises(SceneError, match="count = .*: must be a whole number, at least 1"):
-        dem_vibration(stack(3, 0.4, 0.2, 1e9, 1e9), count)
-
-
 def test_grains_that_hardly_bear_leave_a_stack_its_vibrations() -> None:
     """90 of 2 µm beside it, pressed by less than `PRESSED`: 270 loose motions, slower than all of the stack's."""
     tower = [(0.0, float(k), 0.5, 1.0) for k in range(4)]
