@@ -48,7 +48,7 @@ class RigidContacts:
 
     def __init__(self, scene: Scene) -> None:
         self.outline, self._materials = Outline.of(scene), ContactMaterials(scene)
-        self._rule = wall_rule(scene)
+        self._rule = wall_rule(scene, finite=True)
         self._gather = gather_sides if self.outline.radius.any() else gather_sharp
         self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
         self._scene, self._mass = scene, held_masses(scene)

@@ -233,7 +233,7 @@ def modal_wall(
 ) -> ModalWall:
     """Mesh a scene, find the modes of its blocks and put its joint elements in runs; see `fem_interface.model.fem`."""
     parts = pieces(scene, wall_mesh(scene, cells), cracks)
-    rule = rule or wall_rule(scene, cells if points == "elements" else 1)
+    rule = rule or wall_rule(parts.scene, cells if points == "elements" else 1)
     joints = joint_elements(parts.mesh, parts.scene, rule, points)
     if modes is None:
         modes = BENDING if cracks == "joints" else "all"

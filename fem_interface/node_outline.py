@@ -103,7 +103,7 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     for key, forces in (("load.live", scene.live_forces), ("load.dead", scene.dead_forces)):
         if forces.moment.any() or not scene.is_beam[forces.block].all():
             raise SceneError(key, "finite displacements need loads on the blocks' mass, or on a beam")
-    parts = math.ceil((BETWEEN - 1) / cells) if spreads(scene) else 1
+    parts = math.ceil((BETWEEN - 1) / cells) if spreads(scene, finite=True) else 1
     wall, outline = modal_wall(scene, cells, modes, trapezoids(parts)), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))
     node, first = np.concatenate(on_side), np.cumsum([0, *map(len, on_side)])

@@ -25,7 +25,7 @@ def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
     return joint_points(scene.joints, scene.thickness, rule, wall_inset(scene))
 
 
-def wall_rule(scene: Scene, parts: int = 1) -> Rule:
+def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:
     """Points that the law of a scene's joints is evaluated at: the ends, and what softens, crushes or closes between.
 
     At its ends alone a joint is three times as stiff against turning as along all of its length. Of dry and perfectly
@@ -33,18 +33,22 @@ def wall_rule(scene: Scene, parts: int = 1) -> Rule:
 
     Of joints in several parts each part has a rule, and all of them together as many points as a whole joint.
     """
-    return spread_rule(parts) if spreads(scene) else lobatto()
+    return spread_rule(parts) if spreads(scene, finite=finite) else lobatto()
 
 
-def spreads(scene: Scene) -> bool:
-    """Whether any joint softens, crushes or closes, so that how pressures are spread along it matters."""
-    return any(each.compressive_strength or each.closure or each.softens for each in scene.joint_materials)
+def spreads(scene: Scene, *, finite: bool = False) -> bool:
+    """Whether any joint softens, crushes or closes, so that how pressures are spread along it matters.
+
+    At `finite` displacements sides may meet anew, which are of the default material even if no joint was.
+    """
+    materials = scene.joint_materials if finite else scene.materials_of_joints[0]
+    return any(each.compressive_strength or each.closure or each.softens for each in materials)
 
 
 def impact_note(scene: Scene) -> str:
     """What a message says of impacts on joints that bear them all along; empty where their ends do."""
     what = "joints that soften, crush or close bear impacts all along, which then take less of a rocking motion"
-    return f"{what} than Housner's" if spreads(scene) else ""
+    return f"{what} than Housner's" if spreads(scene, finite=True) else ""
 
 
 def ends_note(scene: Scene, points: JointPoints) -> str:
@@ -65,8 +69,8 @@ def spread_rule(parts: int = 1) -> Rule:
 
 def listed_points(scene: Scene, count: int) -> JointPoints | None:
     """The points on a scene's joints that so many forces are of: their ends, or those of `wall_rule`, or others."""
-    rules = (rule for rule in (lobatto(), wall_rule(scene)) if count == len(rule.nodes) * len(scene.joints))
-    return next((wall_points(scene, rule) for rule in rules), None)
+    rules = lobatto(), wall_rule(scene, finite=True)
+    return next((wall_points(scene, rule) for rule in rules if count == len(rule.nodes) * len(scene.joints)), None)
 
 
 def wall_inset(scene: Scene) -> Array:

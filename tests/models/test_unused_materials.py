@@ -1,0 +1,53 @@
+"""What ``[joint]`` says is of no joint where all are of others by name, and changes nothing."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from homog import rigid_moduli
+from runningbond.compare.advice.experiment import joints_of
+from runningbond.joints import wall_rule
+from runningbond.models import run_model
+from runningbond.scene import Scene
+from tests.walls import courses
+
+STIFF = {"normal_stiffness": 1e9, "shear_stiffness": 4e8}
+DRY: dict[str, Any] = {"friction": 0.386} | STIFF
+CRUSHES: dict[str, Any] = {"friction": 1.3, "cohesion": 1e5, "compressive_strength": 1e4, "fracture_energy_1": 1.0}
+ALL = {"joint": "dry", "between": ["*", "*"]}
+GATE: list[list[float]] = [[0.5, 1, 1, 0.5], [1, -1, 1], [0.5, 1, 1, 0.5], [1, 1, 1]]
+PANEL: list[list[float]] = [[1, 1, 1], [0.5, 1, 1, 0.5]]
+
+
+def _wall(joint: dict[str, Any], pattern: list[list[float]] = GATE, **changes: Any) -> Scene:
+    return courses(pattern, 0.2, 0.2, joint=joint, joints={"dry": DRY}, assign=[ALL], **changes)
+
+
+@pytest.fixture(scope="module")
+def named() -> Scene:
+    """A gate of dry joints, all of a material by name; the default one crushes and softens."""
+    return _wall(CRUSHES | {"normal_stiffness": 1e7, "shear_stiffness": 1e5})
+
+
+@pytest.mark.parametrize("model", ["limit", "limit-nonassociated", "dem-static", "dem-dynamic", "fem"])
+def test_a_joint_material_that_no_joint_is_of_changes_no_answer(model: str, named: Scene) -> None:
+    """With the default one a wall had nine points to a joint, and fell 5 % earlier, or was refused."""
+    known, scene = (each.with_block(young=1e12) for each in (_wall(DRY), named))
+    one, two = (run_model(model, each) for each in (known, scene))
+    assert (one.status, one.lower, one.upper) == (two.status, two.lower, two.upper)
+    assert np.array_equal(one.force, two.force)
+
+
+def test_its_points_are_those_of_joints_that_sides_may_form_later(named: Scene) -> None:
+    assert len(wall_rule(named).nodes) == 2
+    assert len(wall_rule(named, finite=True).nodes) > 2
+
+
+def test_it_is_none_of_the_walls_that_were_tested(named: Scene) -> None:
+    assert joints_of(named) == joints_of(_wall(DRY))
+
+
+def test_moduli_of_a_wall_are_those_of_its_joints() -> None:
+    one, two = (rigid_moduli(_wall(joint, PANEL)) for joint in (DRY, DRY | {"normal_stiffness": 1e5}))
+    assert one == two
