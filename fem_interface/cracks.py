@@ -177,6 +177,7 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
     joint = np.concatenate([mesh.joint, len(scene.joints) + np.arange(len(inside[0]))])
     first = np.searchsorted(joint, np.arange(joint[-1] + 1))
     outlines = [scene.blocks.polygon(owner[k]) if held[k] else points[first_node[k] :][:3] for k in range(len(owner))]
+    inner = scene.joint_materials.index(scene.inner_joint)
     passed_on = partial(PassedOn, wall=scene, owner=owner)
     parted = replace(
         scene,
@@ -192,7 +193,7 @@ def _in_triangles(scene: Scene, mesh: WallMesh) -> Pieces:
             np.concatenate([scene.joints.inner, np.ones(len(inside[0]), dtype=bool)]),
         ),
         material_of_block=scene.material_of_block[owner],
-        material_of_joint=np.append(scene.material_of_joint, np.full(len(inside[0]), len(scene.joint_materials) - 1)),
+        material_of_joint=np.append(scene.material_of_joint, np.full(len(inside[0]), inner)),
     )
     shape = _shapes(points, first_node, held)
     interfaces = np.concatenate(sides, axis=1)

@@ -16,6 +16,7 @@ from fem_interface.model import fem
 from fem_interface.operators import nodal_jump
 from fem_interface.system import system_of
 from meshing import wall_mesh
+from runningbond.draws.scatter import Scatter
 from runningbond.dynamics import Criteria, Run, State, settle
 from runningbond.dynamics.lead import Lead
 from runningbond.joints.law import FRICTION_WORK
@@ -132,6 +133,19 @@ def test_the_axis_of_a_block_that_may_crack_is_one_more_edge_of_its_mesh() -> No
         return np.asarray(found[np.lexsort(np.round(found.T, 9))])
 
     assert np.abs(centres(cut) - centres(plain)).max() < 1e-12
+
+
+def test_blocks_of_a_drawn_wall_crack_at_their_own_strength() -> None:
+    """Each joint of a draw has a material of its own, and edges inside blocks were of the last joint's: dry ones."""
+    narrow: dict[str, Any] = {
+        "wall__length": None,
+        "wall__height": None,
+        "wall__courses": [[0.75, 0.75], [0.5, 0.5, 0.5]],
+    }
+    drawn = Scatter.read("friction=0.05").draw(wall(STRONG, **narrow), 1)
+    parted = modal_wall(drawn, cracks="blocks").scene
+    inside = parted.material_of_joint[parted.joints.inner]
+    assert {parted.joint_materials[k].cohesion for k in inside} == {STRONG["cohesion"]}
 
 
 def test_equal_cells_have_four_templates() -> None:
