@@ -15,9 +15,8 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
-from .dead_load import keeps_what_it_does
 from .inertia import beam_note
-from .led import UNACCOUNTED, collapse_of_led
+from .led import UNACCOUNTED, collapse_of_led, fallen_under_dead_load
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
@@ -58,7 +57,7 @@ def collapse_by_steps(
     is_self_locking: Callable[[], bool],
     bound: Callable[[], float | None] = lambda: None,
     gives: Callable[[float], float | None] = lambda _: None,
-    bears: bool = True,
+    bears: Callable[[], bool] = lambda: False,
     note: str = "",
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
@@ -89,7 +88,7 @@ def collapse_by_steps(
         Largest displacement of a block [m] under the live load times a multiplier while joints neither open nor slip,
         if it is known.
     bears
-        Whether a `bound` above zero says that forces balance the dead load: not of one without the run's own cracks.
+        Whether joint forces balance the dead load, by all cracks of the run; asked where that brings the wall down.
     note
         What the message is to say about the run besides.
     collapse
@@ -120,7 +119,7 @@ def collapse_by_steps(
         with threadpool_limits(limits=1, user_api="blas"):
             if scene.is_led:
                 outcome = collapse_of_led(
-                    outcome, scene, run, tolerance, points, point_order, is_self_locking, criteria, observe
+                    outcome, scene, run, tolerance, points, point_order, is_self_locking, bears, criteria, observe
                 )
                 return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
             result, above = LoadSteps(interrupted=True), None
@@ -133,8 +132,7 @@ def collapse_by_steps(
     if result.rests:
         outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
-    above = above if bears else None
-    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, above)
+    outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears)
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
@@ -208,15 +206,12 @@ def _judge(
     point_order: Indices,
     is_self_locking: Callable[[], bool],
     criteria: Criteria,
-    above: float | None,
+    bears: Callable[[], bool],
 ) -> Outcome:
     """Outcome of a search."""
     if result.borne is None:
-        if result.verdict == "collapse" and above and not keeps_what_it_does(run):
-            message = "collapses under its dead load as it was put on, though forces exist that balance it"
-            return replace(outcome, message=message)
         if result.verdict == "collapse":
-            return replace(outcome, status="infeasible", message="collapses under its dead load")
+            return fallen_under_dead_load(outcome, run, bears)
         why = "interrupted" if result.interrupted else "the budget ran out"
         return replace(outcome, message=f"{why} before the wall came to rest under its dead load")
     outcome = replace(outcome, force=np.column_stack(run.forces(result.borne))[point_order])

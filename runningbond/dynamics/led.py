@@ -40,6 +40,7 @@ def collapse_of_led(
     points: JointPoints,
     point_order: Indices,
     is_self_locking: Callable[[], bool],
+    bears: Callable[[], bool],
     criteria: Criteria,
     observe: Observer,
 ) -> Outcome:
@@ -58,7 +59,7 @@ def collapse_of_led(
         state, verdict = loaded.state, loaded.verdict
         outcome = replace(outcome, steps=loaded.steps)
         if verdict == "collapse":
-            return replace(outcome, status="infeasible", message="collapses under its dead load")
+            return fallen_under_dead_load(outcome, run, bears)
         if verdict == "undecided":
             return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
         run = run.held_late(state)
@@ -92,6 +93,14 @@ def collapse_of_led(
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
     return outcome
+
+
+def fallen_under_dead_load(outcome: Outcome, run: Run, bears: Callable[[], bool]) -> Outcome:
+    """Outcome of a wall that fell as its dead load was put on: of no answer where joints that keep it balance that."""
+    if not run.interface.law.can_break and bears():
+        message = "collapses under its dead load as it was put on, though forces exist that balance it"
+        return replace(outcome, message=message)
+    return replace(outcome, status="infeasible", message="collapses under its dead load")
 
 
 def _rate(scene: Scene) -> float | None:

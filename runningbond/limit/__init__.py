@@ -1,6 +1,6 @@
 """Limit analysis of rigid blocks: programs for forces, their dual mechanisms, and what the two prove."""
 
-from .associated import LimitState, is_self_locking, limit, limit_state, proved_bound
+from .associated import LimitState, bears_dead_load, is_self_locking, limit, limit_state, proved_bound
 from .elastic import elastic_displacement
 from .equilibrium import Equilibrium, equilibrium
 from .nonassociated import limit_nonassociated
@@ -8,6 +8,7 @@ from .nonassociated import limit_nonassociated
 __all__ = [
     "Equilibrium",
     "LimitState",
+    "bears_dead_load",
     "elastic_displacement",
     "equilibrium",
     "is_self_locking",

@@ -239,6 +239,14 @@ def stands_under_dead_load(system: Equilibrium) -> bool | None:
     return status == "optimal" if status in ("optimal", "infeasible") else None
 
 
+def bears_dead_load(scene: Scene) -> bool:
+    """Whether admissible joint forces balance a scene's dead load, and more: those of joints that crush as well."""
+    outcome = limit(scene)
+    if outcome.status == "collapse":
+        return scene.settlement is not None or (outcome.upper or 0.0) > 0
+    return outcome.status == "unbounded"
+
+
 def is_self_locking(scene: Scene) -> bool:
     """Whether admissible joint forces balance any multiple of a scene's live load."""
     system = equilibrium(scene).with_crushing().under_live_load()

@@ -9,10 +9,12 @@ from dem.static import dem_static
 from fem_interface.model import fem
 from runningbond.dynamics import Criteria, put_on_dead_load
 from runningbond.joints import lobatto
+from runningbond.limit import limit
 from runningbond.models import respond
 from runningbond.results import Outcome
 from runningbond.scene import Scene, scene_from_dict
 from tests.at_length import at_length
+from tests.walls import courses
 
 GRAVITY, DENSITY, HEIGHT = 9.81, 2000.0, 0.2
 STRESS = DENSITY * GRAVITY * HEIGHT
@@ -97,6 +99,38 @@ def test_what_preloads_give_is_work_that_the_ledger_is_measured_by() -> None:
 @pytest.mark.parametrize("wall", [hanging, crushed])
 def test_a_weight_beyond_the_strength_is_not_borne(model: Any, wall: Any) -> None:
     assert model(wall(1.02)).status == "infeasible"
+
+
+CANTILEVERS: list[list[float]] = [[1, -2, 1], [1.5, 1, 1.5]]
+SETTLES = {"kind": "settlement", "box": [[1.4, -1.0], [9.0, 0.01]], "by": [0.0, -0.01]}
+PULLED_DOWN = {"kind": "point", "at": [0.25, 0.4], "force": [0.0, -1.0]}
+LOADS: dict[str, dict[str, Any]] = {
+    "lateral": {},
+    "none that brings it down": {"load__live": PULLED_DOWN},
+    "a settlement": {"load__live": SETTLES},
+    "a beam that is driven": {
+        "load": {"gravity": GRAVITY},
+        "beam": {"height": 0.2, "mass": 10.0, "drive": {"displacement": [0.01, 0.0]}},
+    },
+}
+
+
+@pytest.mark.parametrize("further", [{}, {"fracture_energy_1": 10.0}, {"compressive_strength": 1e9}])
+@pytest.mark.parametrize("load", LOADS)
+@pytest.mark.parametrize("model", MODELS)
+def test_a_fall_of_joints_that_keep_their_strength_does_not_prove_that_nothing_bears_the_weight(
+    model: Any, load: str, further: Any
+) -> None:
+    """A block between two cantilevers, which forces balance that nothing brings about, whatever else is to come.
+
+    A fracture energy of dry joints, and a strength that no pressure comes near, do not make this another wall.
+    """
+    joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, **further}
+    scene = courses(CANTILEVERS, 0.5, 0.2, joint=joint, block__young=1e12, **LOADS[load])
+    assert limit(scene).status in ("collapse", "unbounded")
+    outcome = model(scene)
+    assert outcome.status == "undecided"
+    assert "though forces exist that balance it" in outcome.message
 
 
 @pytest.mark.parametrize("model", MODELS)
