@@ -28,8 +28,9 @@ def wall_points(scene: Scene, rule: Rule | None = None) -> JointPoints:
 def wall_rule(scene: Scene, parts: int = 1, *, finite: bool = False) -> Rule:
     """Points that the law of a scene's joints is evaluated at: the ends, and what softens, crushes or closes between.
 
-    At its ends alone a joint is three times as stiff against turning as along all of its length. Of dry and perfectly
-    plastic ones the collapse load is the same; of one that softens it is up to three times as large (a stone on a bed).
+    At its ends alone a joint is three times as stiff against turning as along all of its length. Dry and perfectly
+    plastic ones bear the same, but that friction may bring them along another path; one that softens bears up to three
+    times as much (a stone on a bed).
 
     Of joints in several parts each part has a rule, and all of them together as many points as a whole joint.
     """
