@@ -3,7 +3,7 @@
 from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
 from .controls import Pushover, drive, pushover_curve, ramp, settled_drive
-from .dead_load import put_on_dead_load
+from .dead_load import fall_under_dead_load, put_on_dead_load
 from .highest_frequency import with_highest_frequency
 from .inertia import CALMER, beam_note, inertia_factors, inertia_note, largest_scaling
 from .load_stepping import LoadSteps, load_steps
@@ -39,6 +39,7 @@ __all__ = [
     "block_frequency_squared",
     "collapse_by_steps",
     "drive",
+    "fall_under_dead_load",
     "force_unit",
     "inertia_factors",
     "inertia_note",

@@ -15,8 +15,9 @@ from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
+from .dead_load import fall_under_dead_load
 from .inertia import beam_note
-from .led import UNACCOUNTED, collapse_of_led, fallen_under_dead_load
+from .led import UNACCOUNTED, collapse_of_led
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
@@ -211,7 +212,8 @@ def _judge(
     """Outcome of a search."""
     if result.borne is None:
         if result.verdict == "collapse":
-            return fallen_under_dead_load(outcome, run, bears)
+            status, message = fall_under_dead_load(run.interface.law, bears)
+            return replace(outcome, status=status, message=message)
         why = "interrupted" if result.interrupted else "the budget ran out"
         return replace(outcome, message=f"{why} before the wall came to rest under its dead load")
     outcome = replace(outcome, force=np.column_stack(run.forces(result.borne))[point_order])

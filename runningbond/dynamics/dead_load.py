@@ -4,12 +4,14 @@ Preloads of ties come with it. A beam that is held at its height from then on ke
 comes slowly as well where joints have slid.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 
-from runningbond.joints.law import PLASTIC_CLOSURE
+from runningbond.joints.law import PLASTIC_CLOSURE, KernelLaw
 from runningbond.scene import Array
 
 from .collapse import CALM, Criteria, Verdict, settle
@@ -66,6 +68,16 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
     for _ in range(CALM if unseen else 0):  # observers take a wall to be at rest that is so at as many looks
         observe(run, state, 0.0)
     return UnderDeadLoad(state, verdict, state.steps, state.steps)
+
+
+def fall_under_dead_load(law: KernelLaw, bears: Callable[[], bool]) -> tuple[Literal["infeasible", "undecided"], str]:
+    """Status and message of a wall that fell as its dead load was put on, of joints of a law.
+
+    It proves nothing where these keep their strength and, which `bears` says, balance that load.
+    """
+    if not law.can_break and bears():
+        return "undecided", "collapses under its dead load as it was put on, though forces exist that balance it"
+    return "infeasible", "collapses under its dead load"
 
 
 def keeps_what_it_does(run: Run) -> bool:

@@ -19,7 +19,7 @@ from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
-from .dead_load import put_on_dead_load
+from .dead_load import fall_under_dead_load, put_on_dead_load
 from .lead import BEAM, LITTLE, Lead, Way, formed, goes_both_ways, shedding
 from .run import CALMING, Observer, Run, Unstable
 
@@ -59,7 +59,8 @@ def collapse_of_led(
         state, verdict = loaded.state, loaded.verdict
         outcome = replace(outcome, steps=loaded.steps)
         if verdict == "collapse":
-            return fallen_under_dead_load(outcome, run, bears)
+            status, message = fall_under_dead_load(run.interface.law, bears)
+            return replace(outcome, status=status, message=message)
         if verdict == "undecided":
             return replace(outcome, message="the budget ran out before the wall came to rest under its dead load")
         run = run.held_late(state)
@@ -93,14 +94,6 @@ def collapse_of_led(
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
     return outcome
-
-
-def fallen_under_dead_load(outcome: Outcome, run: Run, bears: Callable[[], bool]) -> Outcome:
-    """Outcome of a wall that fell as its dead load was put on: of no answer where joints that keep it balance that."""
-    if not run.interface.law.can_break and bears():
-        message = "collapses under its dead load as it was put on, though forces exist that balance it"
-        return replace(outcome, message=message)
-    return replace(outcome, status="infeasible", message="collapses under its dead load")
 
 
 def _rate(scene: Scene) -> float | None:

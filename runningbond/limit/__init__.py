@@ -1,6 +1,14 @@
 """Limit analysis of rigid blocks: programs for forces, their dual mechanisms, and what the two prove."""
 
-from .associated import LimitState, bears_dead_load, is_self_locking, limit, limit_state, proved_bound
+from .associated import (
+    LimitState,
+    bears_dead_load,
+    is_self_locking,
+    limit,
+    limit_state,
+    proved_bound,
+    stands_under_dead_load,
+)
 from .elastic import elastic_displacement
 from .equilibrium import Equilibrium, equilibrium
 from .nonassociated import limit_nonassociated
@@ -16,4 +24,5 @@ __all__ = [
     "limit_nonassociated",
     "limit_state",
     "proved_bound",
+    "stands_under_dead_load",
 ]

@@ -6,9 +6,18 @@ from typing import Literal
 
 import numpy as np
 
-from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, put_on_dead_load
+from runningbond.dynamics import (
+    U_CRIT,
+    BlockSystem,
+    Criteria,
+    Run,
+    State,
+    fall_under_dead_load,
+    put_on_dead_load,
+)
 from runningbond.dynamics.collapse import Verdict
 from runningbond.dynamics.run import CALMING
+from runningbond.limit import equilibrium, stands_under_dead_load
 from runningbond.scene import Array, History, Scene, SceneError
 
 VISCOUS = 1.0
@@ -50,10 +59,13 @@ class Resting:
     def trouble(self) -> tuple[Literal["infeasible", "undecided"], str] | None:
         """What is to be said of a wall that does not rest, and so cannot be shaken."""
         if self.verdict == "collapse":
-            return "infeasible", "collapses under its dead load"
+            return fall_under_dead_load(self.system.interface.law, self._bears_dead_load)
         if self.verdict == "undecided":
             return "undecided", "the budget ran out before the wall came to rest under its dead load"
         return None
+
+    def _bears_dead_load(self) -> bool:
+        return stands_under_dead_load(equilibrium(self.scene)) is True
 
     @property
     def history(self) -> History:

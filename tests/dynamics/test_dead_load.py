@@ -133,6 +133,18 @@ def test_a_fall_of_joints_that_keep_their_strength_does_not_prove_that_nothing_b
     assert "though forces exist that balance it" in outcome.message
 
 
+@pytest.mark.parametrize(("joint", "verdict"), [({}, "undecided"), ({"friction": 0.0}, "infeasible")])
+def test_neither_does_a_fall_before_the_ground_moves(joint: dict[str, float], verdict: str) -> None:
+    """Without friction no forces balance the block in the middle."""
+    pulse = {"pulse": {"kind": "sine", "amplitude": 0.2, "period": 0.3}, "quantity": "g"}
+    joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, **joint}
+    scene = courses(CANTILEVERS, 0.5, 0.2, joint=joint, load={"gravity": GRAVITY, "history": pulse})
+    found = respond("dem-dynamic", scene)
+    assert found.verdict == verdict
+    assert found.message.startswith("collapses under its dead load")
+    assert ("though forces exist" in found.message) == (verdict == "undecided")
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_weight_and_live_load_count_alike(model: Any) -> None:
     """A joint that tears from its edge on bears one load in all, however much of it is weight, to the brackets."""
