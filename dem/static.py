@@ -23,8 +23,8 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.joints import ends_note, stiffness_note
-from runningbond.limit import elastic_displacement, stands_under_dead_load
-from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking
+from runningbond.limit import elastic_displacement
+from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
 from runningbond.limit.equilibrium import equilibrium
 from runningbond.limit.kinematics import control_row, dead_load, live_load
 from runningbond.results import Outcome, Supports

@@ -1,14 +1,6 @@
 """Limit analysis of rigid blocks: programs for forces, their dual mechanisms, and what the two prove."""
 
-from .associated import (
-    LimitState,
-    bears_dead_load,
-    is_self_locking,
-    limit,
-    limit_state,
-    proved_bound,
-    stands_under_dead_load,
-)
+from .associated import LimitState, bears_dead_load, is_self_locking, limit, limit_state, proved_bound
 from .elastic import elastic_displacement
 from .equilibrium import Equilibrium, equilibrium
 from .nonassociated import limit_nonassociated
@@ -24,5 +16,4 @@ __all__ = [
     "limit_nonassociated",
     "limit_state",
     "proved_bound",
-    "stands_under_dead_load",
 ]

@@ -133,9 +133,15 @@ def test_a_fall_of_joints_that_keep_their_strength_does_not_prove_that_nothing_b
     assert "though forces exist that balance it" in outcome.message
 
 
-@pytest.mark.parametrize(("joint", "verdict"), [({}, "undecided"), ({"friction": 0.0}, "infeasible")])
+@pytest.mark.parametrize(
+    ("joint", "verdict"),
+    [
+        *[({}, "undecided"), ({"compressive_strength": 1e9}, "undecided")],
+        *[({"friction": 0.0}, "infeasible"), ({"compressive_strength": 1e3}, "infeasible")],
+    ],
+)
 def test_neither_does_a_fall_before_the_ground_moves(joint: dict[str, float], verdict: str) -> None:
-    """Without friction no forces balance the block in the middle."""
+    """Without friction no forces balance the block in the middle, nor do any that joints bear which crush under it."""
     pulse = {"pulse": {"kind": "sine", "amplitude": 0.2, "period": 0.3}, "quantity": "g"}
     joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, **joint}
     scene = courses(CANTILEVERS, 0.5, 0.2, joint=joint, load={"gravity": GRAVITY, "history": pulse})
