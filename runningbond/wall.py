@@ -33,12 +33,6 @@ TABLES = {
 TABLE_OF = {key: table for table, keys in TABLES.items() for key in keys}
 """The table of each of them."""
 
-OF_WALL = (
-    *("length", "height", "block_width", "block_height", "thickness", "first_course", "ends", "course_heights"),
-    *("courses", "opening", "drawing", "units", "heal"),
-)
-"""Keys of the table of the wall itself."""
-
 WHOLE = (
     "title",
     "wall",
@@ -368,8 +362,10 @@ def read(wall: str | Path) -> Wall:
 
 def _check_has_its_table(name: str, value: object) -> None:
     """Refuse a key that is named without the table it belongs to."""
-    table = (TABLE_OF | dict.fromkeys(OF_WALL, "wall")).get(name)
-    if table is not None:
+    from .scene.schema import is_key_of
+
+    table = TABLE_OF.get(name, "wall")
+    if table != "wall" or (name not in WHOLE and is_key_of(table, name)):
         raise SceneError(name, f'is a key of [{table}]; give it as {{"{table}.{name}": {value!r}}}', value)
 
 

@@ -156,6 +156,11 @@ def _keys() -> dict[str, frozenset[str]]:
     return {path: frozenset(key for _, asked in visits for key in asked) for path, visits in _read().items()}
 
 
+def is_key_of(table: str, key: str) -> bool:
+    """Whether a table at the top of a scene file may have a key."""
+    return key in _keys()[table]
+
+
 def misspelt(content: dict[Any, Any], name: str = "") -> SceneError | None:
     """The first key of a table, or of those in it, that no such table has, but that is spelt much like one of its."""
     path = _path(name)
