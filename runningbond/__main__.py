@@ -11,6 +11,7 @@ from contextlib import suppress
 def main() -> None:
     """Load the command line and run it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    _open_streams()
     # joblib says at its import where processes cannot share a lock; a campaign says so when it matters.
     warnings.filterwarnings("ignore", ".*joblib will operate in serial mode", UserWarning)
     from runningbond.commands.command_line import main as run
@@ -22,6 +23,16 @@ def main() -> None:
         if end.code == STOPPED:
             _leave_at_once(STOPPED)
         raise
+
+
+def _open_streams() -> None:
+    """Let streams lead nowhere that were closed when the program was started.
+
+    What is for standard error would come on standard output without, and files be opened under the numbers of both.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:  # whose number is the lowest that is free
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
 
 
 def _leave_at_once(code: int) -> None:

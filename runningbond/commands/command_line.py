@@ -4,7 +4,6 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
 from importlib.metadata import version
 
 from cyclopts import App, CycloptsError, UnusedCliTokensError
@@ -23,7 +22,7 @@ from .run import run
 from .schema import schema
 from .show import show
 from .studies import stability, study
-from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions
+from .terminal import BAD_INPUT, DONE, NO_ANSWER, STOPPED, interruptions, say
 from .validate import validate
 
 app = App(
@@ -61,16 +60,16 @@ def command(arguments: Sequence[str] | None = None) -> int:
         result = app(tokens, exit_on_error=False, print_error=False)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
-        return _say(f"{' '.join(error.unused_tokens or ())}: is more than this command takes", BAD_INPUT)
+        return _left_with(f"{' '.join(error.unused_tokens or ())}: is more than this command takes", BAD_INPUT)
     except (SceneError, StoreError, CycloptsError) as error:
-        return _say(str(error), BAD_INPUT)
+        return _left_with(str(error), BAD_INPUT)
     except VtkError as error:
-        return _say(str(error), NO_ANSWER)
+        return _left_with(str(error), NO_ANSWER)
     except BrokenPipeError:  # whoever read us has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return DONE
     except OSError as error:
-        return _say(f"{error.filename or 'output'}: {error.strerror or error}", BAD_INPUT)
+        return _left_with(f"{error.filename or 'output'}: {error.strerror or error}", BAD_INPUT)
     except KeyboardInterrupt:
         return _stopped()
     return result if isinstance(result, int) else DONE
@@ -88,11 +87,10 @@ def _check_backend() -> None:
 
 
 def _stopped() -> int:
-    return _say("interrupted; every file is whole, or as it was before", STOPPED)
+    return _left_with("interrupted; every file is whole, or as it was before", STOPPED)
 
 
-def _say(message: str, code: int) -> int:
-    """Say a line on standard error, if that takes any, and give the exit code back."""
-    with suppress(OSError):
-        print(f"runningbond: {' '.join(message.split())}", file=sys.stderr, flush=True)
+def _left_with(message: str, code: int) -> int:
+    """Say a line on standard error, and give the exit code back."""
+    say(message)
     return code

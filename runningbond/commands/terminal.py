@@ -5,7 +5,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from shutil import get_terminal_size
 from typing import Annotated, TypeAlias
 
@@ -57,6 +57,12 @@ def check_jobs(jobs: int) -> None:
     """Refuse what is no number of processes."""
     if jobs == 0 or jobs < -1:
         raise SceneError("--jobs", "must be a number of processes, or -1 for one a core", jobs)
+
+
+def say(message: str) -> None:
+    """Say a line on standard error, if that takes any."""
+    with suppress(OSError):
+        print(f"runningbond: {' '.join(message.split())}", file=sys.stderr, flush=True)
 
 
 def told_interruption(stopped: Interrupted, kept: str) -> int:

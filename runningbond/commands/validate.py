@@ -1,13 +1,27 @@
 """``runningbond validate``."""
 
 import json as to_json
+import sys
 from pathlib import Path
 
 from runningbond.campaigns import Interrupted
 from runningbond.results import make_folder
+from runningbond.scene import SceneError
 from runningbond.scene.folder_lock import locked
 
-from .terminal import DONE, NO_ANSWER, UNDECIDED, Flag, Json, check_jobs, print_table, progress_bar, told_interruption
+from .terminal import (
+    BAD_INPUT,
+    DONE,
+    NO_ANSWER,
+    UNDECIDED,
+    Flag,
+    Json,
+    check_jobs,
+    print_table,
+    progress_bar,
+    say,
+    told_interruption,
+)
 
 
 def validate(
@@ -21,7 +35,8 @@ def validate(
 ) -> int:
     """Predict walls that were tested, and score the predictions beside two formulas worked out by hand.
 
-    Results are kept as they come: an interrupted command goes on where it was.
+    Results are kept as they come: an interrupted command goes on where it was. A wall that is described wrongly is
+    refused in a line, and the others are predicted.
 
     Parameters
     ----------
@@ -37,7 +52,7 @@ def validate(
     fresh
         Compute again what is already there.
     """
-    from runningbond.laboratory.folder import SHIPPED, read_folder
+    from runningbond.laboratory.folder import SHIPPED, read_folder, unused
     from runningbond.laboratory.ladder import find_rungs
     from runningbond.laboratory.page import error_sheet, score_sheet, write_laboratory
     from runningbond.laboratory.predictions import predict, scenes_of
@@ -45,8 +60,16 @@ def validate(
 
     rungs = find_rungs(models)
     check_jobs(jobs)
-    walls = [wall for folder in ((data,) if data else SHIPPED) for wall in read_folder(folder)]
-    scenes = scenes_of(walls, rungs)
+    refused, folders = list[SceneError](), (data,) if data else SHIPPED
+    walls = [wall for folder in folders for wall in read_folder(folder, refused.append)]
+    scenes = scenes_of(walls, rungs, refused.append)
+    walls = [wall for wall in walls if (wall.name, rungs[0].name) in scenes]
+    for error in refused:
+        say(str(error))
+    if not walls:
+        return BAD_INPUT
+    for name in (name for folder in folders for name in unused(folder)):
+        print(f"note: {name} is of no wall in the table", file=sys.stderr)
     make_folder(out)
     total = len(walls) * len(rungs)
     try:
@@ -59,14 +82,17 @@ def validate(
         kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
         return told_interruption(stopped, kept)
     with locked(out):
-        written = write_laboratory(predictions, out)
+        written = write_laboratory(predictions, out, refused)
     sums = totals(predictions)
     if json:
         content = {"walls": [each.row() for each in predictions], "summary": as_json(sums)}
+        content |= {"refused": [str(error) for error in refused]}
         print(to_json.dumps(content, allow_nan=False))
     else:
         for sheet in (score_sheet(predictions), error_sheet(predictions), summary_sheet(sums)):
             print_table(sheet)
         print("\n".join(verdicts(sums)))
         print(f"{total} cases, {len(campaign.reused)} of them already in {out}; written: {written[0]}, {written[1]}")
+    if refused:
+        return BAD_INPUT
     return NO_ANSWER if any(each.status in UNDECIDED for each in predictions) else DONE

@@ -44,7 +44,8 @@ def card(predictions: Sequence[Prediction]) -> Figure:
         draw_mechanism(axes.pop(0), drawn.scene, drawn.outcome)
     if wall.cracks is not None:
         mirrored = _goes_the_other_way(predictions[0])
-        axes[0].imshow(imread(wall.cracks)[:, :: -1 if mirrored else 1])
+        # In grey where a picture has no colours, instead of in those of a chart.
+        axes[0].imshow(imread(wall.cracks, format="png")[:, :: -1 if mirrored else 1], cmap="gray", vmin=0, vmax=1)
         axes[0].set_title("cracks, as drawn after the test" + (", mirrored" if mirrored else ""), fontsize=9)
         axes[0].axis("off")
     figure.draw_without_rendering()  # a first layout, from which that of the drawing knows how tall the wall's axes get

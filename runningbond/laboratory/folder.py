@@ -4,11 +4,12 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Container, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from matplotlib.image import imread
 
 from runningbond.scene import Array, SceneError
 
@@ -19,14 +20,30 @@ DATA = Path(__file__).parent / "data"
 SHIPPED = (DATA / "dry", DATA / "mortared")
 NAME = "test unit name"
 HEADS = ["displacement_mm", "force_kN"]
-PNG = b"\x89PNG\r\n\x1a\n"
+CURVE, SCENE, CRACKS = ENDINGS = (".csv", ".toml", "-cracks.png")
+SEPARATORS = ",;\t"
+COMMENT = "#"
+DECIMAL = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
 
 
-def read_folder(folder: Path) -> list[MeasuredWall]:
+def raised(error: SceneError) -> None:
+    """Raise what a wall is refused for."""
+    raise error
+
+
+def read_folder(folder: Path, refuse: Callable[[SceneError], None] = raised) -> list[MeasuredWall]:
     """Walls of a folder, in the order of its table.
 
     The table is the one CSV file that has a column ``Test unit name``; ``NAME.csv`` holds a wall's curve, ``NAME.toml``
-    its scene and ``NAME-cracks.png`` its cracks, each where there is one.
+    its scene and ``NAME-cracks.png`` its cracks, each where there is one. Entries are separated by commas, or by
+    semicolons or tabs, and then numbers may have decimal commas. Lines that begin with # are comments.
+
+    Parameters
+    ----------
+    folder
+        The folder.
+    refuse
+        Told why a wall cannot be read, which is then left out; unless it raises that.
 
     Raises
     ------
@@ -36,17 +53,24 @@ def read_folder(folder: Path) -> list[MeasuredWall]:
     path, lines = _table(folder)
     heads = lines[0][1]
     walls: dict[str, MeasuredWall] = {}
-    for number, cells in lines[1:]:
-        row = TableRow.read(path, number, heads, cells)
-        name = row.text(NAME)
-        if not name or name.startswith(".") or set(name) & set('/\\:*?"<>|$'):
-            raise SceneError(row.key("Test unit name"), "must be a name, as it may be that of a file, without $", name)
-        if name in walls:
-            raise SceneError(row.key("Test unit name"), "is the second row of that name", name)
-        walls[name] = _wall(folder, name, row)
-    if not walls:
+    if not lines[1:]:
         raise SceneError(path.name, "holds no wall, only heads")
+    for number, cells in lines[1:]:
+        try:
+            wall = _wall(folder, TableRow.read(path, number, heads, cells), walls)
+        except SceneError as error:
+            refuse(error)
+        else:
+            walls[wall.name] = wall
     return list(walls.values())
+
+
+def unused(folder: Path) -> list[str]:
+    """Files of a folder that would be a wall's by their names, and are of none in its table."""
+    table, lines = _table(folder)
+    named = {cell.strip() for _, cells in lines for cell in cells}
+    own = {table.name, *(f"{name}{ending}" for name in named for ending in ENDINGS)}
+    return sorted(path.name for ending in ENDINGS for path in folder.glob(f"*{ending}") if path.name not in own)
 
 
 def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
@@ -65,12 +89,15 @@ def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Numbers and entries of the lines that are neither empty nor comments."""
     try:
         text = path.read_bytes().decode("utf-8-sig")
-        reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+        told = [line for line in text.splitlines() if line.strip() and not line.startswith(COMMENT)]
+        separator = max(SEPARATORS, key=told[0].count) if told else ","
+        reader = csv.reader(io.StringIO(text, newline=""), strict=True, delimiter=separator)
         for cells in reader:
-            if any(cell.strip() for cell in cells):
-                yield reader.line_num, cells
+            if any(cell.strip() for cell in cells) and not cells[0].startswith(COMMENT):
+                yield reader.line_num, cells if separator == "," else [_with_point(cell) for cell in cells]
     except OSError as error:
         raise SceneError(str(path), f"cannot be read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
@@ -79,22 +106,40 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
         raise SceneError(f"{path.name}, line {reader.line_num}", f"is not a line of a CSV file: {error}") from error
 
 
-def _wall(folder: Path, name: str, row: TableRow) -> MeasuredWall:
-    files = {ending: folder / f"{name}{ending}" for ending in (".csv", ".toml", "-cracks.png")}
-    there = {ending: path if path.is_file() else None for ending, path in files.items()}
-    curve = read_curve(there[".csv"]) if there[".csv"] else np.zeros((0, 2))
+def _with_point(cell: str) -> str:
+    """An entry, with a decimal point where it is a number with a decimal comma."""
+    return cell.replace(",", ".") if DECIMAL.fullmatch(cell) else cell
+
+
+def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
+    name = row.text(NAME)
+    if not name or name.startswith(".") or set(name) & set('/\\:*?"<>|$'):
+        raise SceneError(row.key("Test unit name"), "must be a name, as it may be that of a file, without $", name)
+    if name in others:
+        raise SceneError(row.key("Test unit name"), "is the second row of that name", name)
+    files = {ending: folder / f"{name}{ending}" for ending in ENDINGS}
+    there = {ending: path for ending, path in files.items() if path.is_file()}
+    curve = read_curve(there[CURVE]) if CURVE in there else np.zeros((0, 2))
     if len(curve) and np.nansum(curve[:, 0] * curve[:, 1]) <= 0:
         raise SceneError(f"{name}.csv", "has its forces against its displacements; change the sign of one of them")
-    if there["-cracks.png"] and not there["-cracks.png"].read_bytes().startswith(PNG):
-        raise SceneError(there["-cracks.png"].name, "is no PNG picture")
+    if CRACKS in there:
+        _check_picture(there[CRACKS])
     said = re.split(r"[,;/+&]", row.text("from test report: failure type"))
     modes = tuple(mode.strip().upper() for mode in said if mode.strip())
     printed = [row.optional(column) for column in ("Vmax,+", "Vmax,-")]
     peaks = tuple(value for value in printed if value is not None)
-    wall = MeasuredWall(name, row, curve, peaks, modes, there[".toml"], there["-cracks.png"])
+    wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
     if _is_pushed_left(wall):
         wall = replace(wall, curve=-curve, is_turned=True)
     return wall if peaks else replace(wall, peaks=_peaks(wall))
+
+
+def _check_picture(path: Path) -> None:
+    """Refuse what is drawn beside the curves in the end and cannot be."""
+    try:
+        imread(path, format="png")
+    except (OSError, SyntaxError, ValueError) as error:  # SyntaxError is what pillow makes of a damaged one
+        raise SceneError(path.name, "is no PNG picture, or a damaged one") from error
 
 
 def _is_pushed_left(wall: MeasuredWall) -> bool:
@@ -123,6 +168,10 @@ def read_curve(path: Path) -> Array:
             f"{path.name}, line {lines[0][0] if lines else 1}", f"must be the heads {','.join(HEADS)}", ",".join(heads)
         )
     columns = [heads.index(head) for head in HEADS]
+    for number, cells in lines[1:]:
+        if any(cell.strip() for cell in cells[len(heads) :]):
+            what = f"must have {len(heads)} entries, as its heads; has {len(cells)}"
+            raise SceneError(f"{path.name}, line {number}", what, ",".join(cells))
     rows = [_point(path, number, [cells[k] if k < len(cells) else "" for k in columns]) for number, cells in lines[1:]]
     curve = np.array(rows, dtype=float).reshape(-1, 2) * (1e-3, 1e3)
     known = curve[~np.isnan(curve).any(axis=1)]

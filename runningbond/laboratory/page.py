@@ -12,7 +12,7 @@ from runningbond.compare.advice.experiment import FILE, write_errors
 from runningbond.pictures.sheet import Sheet
 from runningbond.results import write_atomically
 from runningbond.results.outcome import two_digits
-from runningbond.scene import BlockMaterial, JointMaterial, table_of
+from runningbond.scene import BlockMaterial, JointMaterial, SceneError, table_of
 from runningbond.studies.page import Block, Picture, write_page, write_picture
 
 from .cards import card, drawn_by, error_over_cost
@@ -37,10 +37,11 @@ LEGEND = (
 )
 
 
-def write_laboratory(predictions: Sequence[Prediction], folder: Path) -> list[Path]:
-    """Draw and write the page into a folder; the files that were written."""
+def write_laboratory(predictions: Sequence[Prediction], folder: Path, refused: Sequence[SceneError] = ()) -> list[Path]:
+    """Draw and write the page into a folder, with what walls were refused for; the files that were written."""
     sums = totals(predictions)
     blocks: list[Block] = ["# The laboratory: measured walls, predicted blind", *verdicts(sums)]
+    blocks += [f"**Not predicted**: {error}" for error in refused]
     blocks += [LEGEND, summary_sheet(sums), _chart(predictions, folder), error_sheet(predictions)]
     blocks.append(score_sheet(predictions))
     blocks.append(
@@ -61,7 +62,7 @@ def _pictured(folder: Path) -> set[Path]:
     """Pictures of the page that is in a folder already, if there is one."""
     page = folder / f"{NAME}.md"
     text = page.read_text(encoding="utf-8", errors="replace") if page.is_file() else ""
-    return {folder / name for name in re.findall(r"^!\[.*\]\((wall-[^/\\\n]+\.png)\)$", text, re.MULTILINE)}
+    return {folder / name for name in re.findall(r"^!\[.*\]\(<?(wall-[^/\\\n]+\.png)>?\)$", text, re.MULTILINE)}
 
 
 def _walls(predictions: Sequence[Prediction]) -> list[MeasuredWall]:

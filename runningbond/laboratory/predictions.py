@@ -14,6 +14,7 @@ from runningbond.models import TOLERANCE, Model
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 
+from .folder import raised
 from .formulas import FORMULAS, by_hand
 from .ladder import Rung
 from .measured import MeasuredWall
@@ -147,17 +148,18 @@ class Prediction:
         return float(np.mean(over)) if over else None
 
 
-def scenes_of(walls: Sequence[MeasuredWall], rungs: Sequence[Rung]) -> dict[Cell, Scene]:
-    """The scene of every wall for every rung; `SceneError` where one cannot be made."""
+def scenes_of(
+    walls: Sequence[MeasuredWall], rungs: Sequence[Rung], refuse: Callable[[SceneError], None] = raised
+) -> dict[Cell, Scene]:
+    """The scene of every wall for every rung; `refuse` is told of walls that have none, as in `read_folder`."""
     scenes: dict[Cell, Scene] = {}
     for wall in walls:
         try:
             scenes |= {(wall.name, rung.name): scene_of(wall, rung.features) for rung in rungs}
         except SceneError as error:
             where = wall.row.place if wall.scene_file is None else wall.scene_file.name
-            if where in error.key:
-                raise
-            raise SceneError(f"{where}: {error.key}", error.remedy, error.value) from None
+            key = error.key if where in error.key else f"{where}: {error.key}"
+            refuse(SceneError(key, error.remedy, error.value))
     return scenes
 
 

@@ -123,7 +123,12 @@ def agreement(edges: Sequence[Edge]) -> str:
 def _markdown(block: Block) -> str:
     if isinstance(block, Sheet):
         return block.markdown()
-    return f"![{block.caption}]({block.path.name})\n" if isinstance(block, Picture) else f"{block}\n"
+    return f"![{block.caption}]({_link(block.path.name)})\n" if isinstance(block, Picture) else f"{block}\n"
+
+
+def _link(name: str) -> str:
+    """A file's name as Markdown takes it."""
+    return f"<{name}>" if set(name) & set(" ()") else name
 
 
 def _html(block: Block) -> str:

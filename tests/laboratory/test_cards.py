@@ -10,6 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
 from matplotlib.text import Annotation
+from PIL import Image
 
 from runningbond.laboratory.cards import card, error_over_cost
 from runningbond.laboratory.folder import SHIPPED, read_folder
@@ -50,6 +51,20 @@ def test_cracks_of_a_wall_that_was_pushed_to_the_left_are_mirrored(side: int, tm
     (image,) = (image for axes in card(predictions).axes for image in axes.images)
     assert np.asarray(image.get_array())[0, :, 0].tolist() == [1.0, 1.0, 0.0, 1.0]
     assert ("mirrored" in image.axes.get_title()) == (side < 0)
+
+
+@pytest.mark.parametrize("mode", ["L", "1", "RGB", "P"])
+def test_cracks_scanned_in_grey_are_drawn_in_grey(mode: str, tmp_path: Path) -> None:
+    """Those of one channel were drawn in the colours of a chart: paper yellow, and cracks dark purple."""
+    folder = write_folder(tmp_path / "walls", GRANITE)
+    Image.fromarray(np.array([[255, 255], [0, 255]], dtype=np.uint8)).convert(mode).save(folder / "WS.175-cracks.png")
+    (wall,), rung = read_folder(folder), LADDER["rocking"]
+    predictions, _ = predict([wall], [rung], scenes_of([wall], [rung]), tmp_path, jobs=1)
+    (image,) = (image for axes in card(predictions).axes for image in axes.images)
+    assert image.to_rgba(image.get_array())[:, :, :3].round(6).tolist() == [
+        [[1.0] * 3, [1.0] * 3],
+        [[0.0] * 3, [1.0] * 3],
+    ]
 
 
 @pytest.mark.parametrize("seconds", [(1.13, 1.37), (0.9, 1.1), (0.5, 0.5), (0.02, 30.0)])

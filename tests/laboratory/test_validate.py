@@ -270,6 +270,50 @@ def test_wall_that_cannot_be_made_is_one_line_and_nothing_is_written(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_wall_that_is_refused_does_not_lose_the_others(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A row, a curve and a scene that are none; all are told of, on the page as well."""
+    marble = GRANITE.replace("WS.175", "marble").replace("Granite", "Marble")
+    pushed = GRANITE.replace("WS.175", "scene")
+    folder, out = write_folder(tmp_path / "walls", marble, GRANITE, pushed, SANDSTONE), tmp_path / "out"
+    (folder / "scene.toml").write_text("[wall]\n")
+    (folder / "SW.100.1.csv").write_text("mm,kN\n")
+    arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1", "--json"]
+    assert command(arguments) == 2
+    told = capsys.readouterr()
+    content = json.loads(told.out)
+    assert [row["wall"] for row in content["walls"]] == ["WS.175"]
+    lines = [
+        "SW.100.1.csv, line 1 = 'mm,kN': must be the heads displacement_mm,force_kN",
+        "tests.csv, line 2: Stone = 'Marble': must be one of sandstone, granite; for another give a scene NAME.toml",
+        "scene.toml: beam.drive: is missing; a tested wall is pushed at its beam",
+    ]
+    assert content["refused"] == lines
+    assert [line for line in told.err.splitlines() if line.startswith("runningbond")] == [
+        f"runningbond: {line}" for line in lines
+    ]
+    page = (out / "laboratory.md").read_text()
+    assert all(f"**Not predicted**: {line}\n" in page for line in lines)
+    assert "## marble" not in page
+
+
+def test_curves_of_no_wall_are_told_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Else one with a slip in its name would be missed by nobody."""
+    folder = write_folder(tmp_path / "walls", GRANITE)
+    (folder / "WS.175.csv").rename(folder / "WS 175.csv")
+    assert command(["validate", "--data", str(folder), "--out", str(tmp_path / "out"), "--models", "rocking"]) == 0
+    assert "note: WS 175.csv is of no wall in the table\n" in capsys.readouterr().err
+
+
+def test_a_picture_of_a_wall_whose_name_has_a_space_is_linked(tmp_path: Path) -> None:
+    folder, out = write_folder(tmp_path / "walls", GRANITE.replace("WS.175", "Wand (Süd)")), tmp_path / "out"
+    arguments = ["validate", "--data", str(folder), "--out", str(out), "--models", "rocking", "--jobs", "1"]
+    assert command(arguments) == 0
+    assert "](<wall-Wand (Süd).png>)\n" in (out / "laboratory.md").read_text()
+    write_folder(folder, GRANITE)
+    assert command(arguments) == 0
+    assert [path.name for path in out.glob("wall-*.png")] == ["wall-WS.175.png"]
+
+
 def test_model_that_does_not_answer_is_exit_code_3(walls: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     rung = LADDER["limit"]
     silent = replace(rung, model=replace(rung.model, solve=lambda *_: Outcome("", "", "undecided", message="none")))

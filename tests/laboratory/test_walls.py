@@ -1,6 +1,7 @@
 """Rows of tables become scenes: facts of the campaigns, and one line for what is wrong."""
 
 import tomllib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -323,6 +324,8 @@ def test_table_that_is_none_is_refused(tmp_path: Path, rows: list[str], heads: s
         (CURVE + "1\n", "WS.175.csv, line 6 = '1,': must be two numbers"),
         (CURVE + "1,nan\n", "WS.175.csv, line 6 = '1,nan': must be two numbers"),
         (CURVE + "1,inf\n", "WS.175.csv, line 6 = '1,inf': must be two numbers"),
+        (CURVE + "1,5,20,3\n", "WS.175.csv, line 6 = '1,5,20,3': must have 2 entries, as its heads; has 4"),
+        (CURVE.replace(",", ";") + "1.000,5;2\n", "WS.175.csv, line 6 = '1.000,5,2': must be two numbers"),
         ("displacement_mm,force_kN\n1,1\n", "WS.175.csv: must hold points of a curve"),
         ("displacement_mm,force_kN\n1,1\n1,2\n", "WS.175.csv: must hold points of a curve"),
         ("displacement_mm,force_kN\n0,0\n1,0\n", "WS.175.csv: must hold points of a curve"),
@@ -334,6 +337,40 @@ def test_curve_that_is_none_is_refused(tmp_path: Path, curve: str, said: str) ->
     with pytest.raises(SceneError) as refused:
         read_folder(write_folder(tmp_path, GRANITE, curve=curve))
     assert said in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: text.replace(",", ";"),
+        lambda text: text.replace(",", "\t"),
+        lambda text: text.replace(",", ";").replace(".5", ",5"),
+        lambda text: text.replace("\n", "\r\n"),
+        lambda text: "\ufeff" + text,
+        lambda text: "# measured; in, 2005\n\n" + text.replace("\n1.5", "\n# a pause\n\n1.5") + "# end\n",
+    ],
+)
+def test_a_curve_is_the_same_however_a_spreadsheet_writes_it(change: Callable[[str], str], tmp_path: Path) -> None:
+    text = "displacement_mm,force_kN\n0,0\n1.5,30.5\nNaN,NaN\n-1.5,-20\n"
+    curves = [read_folder(write_folder(tmp_path, GRANITE, curve=each))[0].curve for each in (text, change(text))]
+    assert np.array_equal(curves[0], curves[1], equal_nan=True)
+    assert curves[0][1] == pytest.approx([1.5e-3, 30.5e3])
+
+
+def test_a_table_is_the_same_however_a_spreadsheet_writes_it(tmp_path: Path) -> None:
+    """Heads have commas of their own, which need no quotes beside semicolons."""
+    heads, row = HEADS.replace('"', "").replace("Vmax,", "Vmax|"), f"{GRANITE[:-1]}R/TC"
+    write_folder(tmp_path, row)
+    (wall,) = read_folder(tmp_path)
+    table = "\n".join(["# of 2005", heads, row, "# end"]).replace(",", ";").replace("|", ",").replace("179.8", "179,8")
+    (tmp_path / "tests.csv").write_text(table)
+    (same,) = read_folder(tmp_path)
+    assert dict(same.row.entries) == dict(wall.row.entries)
+    assert (same.peaks, same.modes) == ((61e3,), ("R", "TC"))
+    (tmp_path / "tests.csv").write_text(table.replace(";1000;", ";long;"))
+    (wrong,) = read_folder(tmp_path)
+    with pytest.raises(SceneError, match="tests.csv, line 3: L = 'long': must be a number"):
+        scene_of(wrong, Features())
 
 
 def test_folder_that_is_none_or_holds_two_tables_or_bytes_is_refused(tmp_path: Path) -> None:
@@ -382,9 +419,11 @@ def test_a_number_in_a_name_is_a_load_where_the_table_agrees(tmp_path: Path, nam
     assert vertical_load(one(tmp_path, row)) == pytest.approx(load, rel=1e-9)
 
 
-def test_cracks_that_are_no_picture_are_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("content", [b"none", b"\x89PNG\r\n\x1a\nhalf", b""])
+def test_cracks_that_are_no_picture_are_refused(content: bytes, tmp_path: Path) -> None:
+    """Of a damaged one the first bytes were looked at alone; it ended in a traceback when all walls were predicted."""
     folder = write_folder(tmp_path / "walls", GRANITE)
-    (folder / "WS.175-cracks.png").write_text("none")
+    (folder / "WS.175-cracks.png").write_bytes(content)
     with pytest.raises(SceneError, match=r"WS\.175-cracks\.png: is no PNG picture"):
         read_folder(folder)
 

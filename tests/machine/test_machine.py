@@ -1,5 +1,6 @@
 """Nothing is lost: not by Ctrl-C and SIGKILL, on full and read-only disks, to a second writer or to damaged files."""
 
+import json
 import os
 import signal
 import subprocess
@@ -232,6 +233,23 @@ def test_ctrl_c_while_the_suite_is_loading_is_no_traceback() -> None:
     process.send_signal(signal.SIGINT)
     assert process.communicate(timeout=60) == ("", "")
     assert process.returncode == -signal.SIGINT
+
+
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_a_stream_that_is_closed_takes_nothing(number: int, tmp_path: Path) -> None:
+    """Without standard output there was a traceback; without standard error its lines came on standard output."""
+    where: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "cwd": tmp_path}
+    told = []
+    for model in ("homog", "limti"):
+        line = [sys.executable, "-m", "runningbond", "run", "panel-04", "--model", model, "--json"]
+        shell = ["sh", "-c", f'exec "$@" {number}{"<" if number == 0 else ">"}&-', "sh", *line, "--out", "kept"]
+        told.append(subprocess.run(shell, **where, timeout=60))
+    right, wrong = told
+    assert (right.returncode, right.stderr) == (0, "")
+    assert right.stdout == "" if number == 1 else json.loads(right.stdout)["multiplier"] > 0
+    assert load_outcome(tmp_path / "kept")[0].status == "collapse"
+    assert (wrong.returncode, wrong.stdout) == (2, "")
+    assert wrong.stderr == "" if number == 2 else wrong.stderr.startswith("runningbond: --model = 'limti'")
 
 
 def test_ctrl_c_after_the_last_case_does_not_wait_for_idle_workers(tmp_path: Path) -> None:
