@@ -51,7 +51,7 @@ SQUARE = [(0, 0, 200, 0), (200, 0, 200, 100), (200, 100, 0, 100), (0, 100, 0, 0)
         (closed(BRICKS, "soil"), "has all its outlines on layer soil, which is the ground's"),
         (
             polyline((0, 0), (200, 0), (200, 100), close=False),
-            "layer 0: is open at (0, 0) and (200, 100); each block needs",
+            "layer 0: is open at (0, 0) and (200, 100); each block needs a closed outline; what is no block",
         ),
         (lines(*SQUARE[:3]), "layer 0: is open at (0, 0) and (0, 100)"),
         (lines(*SQUARE[:3], (0, 100, 0, 0.1)), "is open at (0, 0) and (0, 0.1)"),

@@ -58,7 +58,8 @@ def join(
     if len(loose):
         places = " and ".join(f"({x:.6g}, {y:.6g})" for x, y in loose[:2].round(9) + 0.0)
         more = f" and {len(loose) - 2} more" if len(loose) > 2 else ""
-        raise SceneError(f"{KEY}, layer {layer}", f"is open at {places}{more}; each block needs a closed outline")
+        remedy = "each block needs a closed outline; what is no block may lie on a layer that is off"
+        raise SceneError(f"{KEY}, layer {layer}", f"is open at {places}{more}; {remedy}")
     faces = shapely.get_parts(shapely.polygonize(list(shapely.linestrings(edges))))
     if any(len(face.interiors) for face in faces):
         x, y = next(face for face in faces if len(face.interiors)).interiors[0].coords[0]
