@@ -1,17 +1,23 @@
 """The console command, from its first moment: while the suite is loading, Ctrl-C ends it without a traceback."""
 
+import _thread
 import atexit
 import os
 import signal
 import sys
+import threading
 import warnings
 from contextlib import suppress
+
+MOMENT = 0.02
+"""Seconds in which a callback is over."""
 
 
 def main() -> None:
     """Load the command line and run it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     _open_streams()
+    sys.unraisablehook = _interrupted_again
     # joblib says at its import where processes cannot share a lock; a campaign says so when it matters.
     warnings.filterwarnings("ignore", ".*joblib will operate in serial mode", UserWarning)
     from runningbond.commands.command_line import main as run
@@ -33,6 +39,26 @@ def _open_streams() -> None:
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:  # whose number is the lowest that is free
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
+
+
+def _interrupted_again(lost: "sys.UnraisableHookArgs") -> None:
+    """Interrupt once more where an interruption fell into a callback, as numba has, out of which no error comes."""
+    if lost.exc_type is not KeyboardInterrupt:
+        sys.__unraisablehook__(lost)
+        return
+
+    def stop(number: int, frame: object) -> None:
+        signal.signal(number, signal.SIG_DFL)  # as after the first one
+        raise KeyboardInterrupt
+
+    def again() -> None:
+        if sys.platform == "win32":
+            _thread.interrupt_main()
+        else:  # which wakes it as well
+            signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
+
+    signal.signal(signal.SIGINT, stop)
+    threading.Timer(MOMENT, again).start()
 
 
 def _leave_at_once(code: int) -> None:

@@ -225,6 +225,34 @@ def test_ctrl_c_is_no_traceback_where_a_library_makes_another_error_of_it(
     assert capsys.readouterr().err.count("\n") == 1
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_within_a_callback_is_not_lost(number: signal.Signals) -> None:
+    """A run went on to its end, and a traceback of an ignored exception was all that was seen of Ctrl-C."""
+    program = f"""
+import os, sys, time
+import runningbond.commands.command_line as line
+from runningbond.__main__ import main
+
+class Dropped:
+    def __del__(self):
+        os.kill(os.getpid(), {int(number)})
+        time.sleep(0.001)
+
+def run(tokens, **_):
+    Dropped()
+    time.sleep(20)
+    print("not heard")
+
+line.app = run
+main()
+"""
+    start = time.monotonic()
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+    told = "runningbond: interrupted; every file is whole, or as it was before\n"
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", told)
+    assert time.monotonic() - start < 20
+
+
 def test_ctrl_c_while_the_suite_is_loading_is_no_traceback() -> None:
     line = [sys.executable, "-m", "runningbond", "run", "panel-04", "--model", "limit"]
     process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
