@@ -91,7 +91,7 @@ def validate(
     else:
         for sheet in (score_sheet(predictions), error_sheet(predictions), summary_sheet(sums)):
             print_table(sheet)
-        print("\n".join(verdicts(sums)))
+        print("\n".join(verdicts(sums)).replace("**", ""))  # marks of the page
         print(f"{total} cases, {len(campaign.reused)} of them already in {out}; written: {written[0]}, {written[1]}")
     if refused:
         return BAD_INPUT
