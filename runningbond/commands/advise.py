@@ -1,6 +1,7 @@
 """``runningbond advise``: a line a rung, then the answer; or one JSON object."""
 
 import json as to_json
+from dataclasses import replace
 from typing import Any
 
 from runningbond.compare.advice import TOLERANCE, Advice, Rung
@@ -38,11 +39,16 @@ def advise(
         if not json:
             print(_rung_line(rung), flush=True)
         if stopped:
-            return STOPPED
+            break
         if rung.next.model is not None:
             stopped = interruptions(rung.next.model)
     outcome = advice.outcome()
+    if stopped:
+        before = rung.next.name and f" before {rung.next.name}"
+        outcome = replace(outcome, message=f"interrupted{before or ''}: {outcome.message}")
     print(_as_json(advice, outcome) if json else _as_text(advice, outcome), flush=True)
+    if stopped:
+        return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
