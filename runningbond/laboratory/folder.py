@@ -23,6 +23,9 @@ HEADS = ["displacement_mm", "force_kN"]
 CURVE, SCENE, CRACKS = ENDINGS = (".csv", ".toml", "-cracks.png")
 SEPARATORS = ",;\t"
 COMMENT = "#"
+APART = 100.0
+"""Factor between the largest forces of a curve and of the table that is a slip in a unit."""
+
 DECIMAL = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?\s*")
 
 
@@ -128,6 +131,11 @@ def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
     modes = tuple(mode.strip().upper() for mode in said if mode.strip())
     printed = [row.optional(column) for column in ("Vmax,+", "Vmax,-")]
     peaks = tuple(value for value in printed if value is not None)
+    if len(curve) and peaks:
+        largest, told = float(np.nanmax(np.abs(curve[:, 1]))), max(peaks)
+        if not told / APART < largest < told * APART:
+            what = f"has a largest force of {largest:.3g} N, and the table one of {told:.3g} N; are their units right?"
+            raise SceneError(f"{name}.csv", what)
     wall = MeasuredWall(name, row, curve, peaks, modes, there.get(SCENE), there.get(CRACKS))
     if _is_pushed_left(wall):
         wall = replace(wall, curve=-curve, is_turned=True)

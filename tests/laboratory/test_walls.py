@@ -373,6 +373,15 @@ def test_a_table_is_the_same_however_a_spreadsheet_writes_it(tmp_path: Path) -> 
         scene_of(wrong, Features())
 
 
+@pytest.mark.parametrize("factor", [1e3, 1e-3])
+def test_a_curve_in_another_unit_than_the_table_is_refused(factor: float, tmp_path: Path) -> None:
+    """Of newtons under a head of kilonewtons nothing was said."""
+    curve = "displacement_mm,force_kN\n0,0\n" + f"10,{61 * factor:g}\n"
+    with pytest.raises(SceneError, match=r"WS\.175\.csv: has a largest force of .* one of 6\.1e\+04 N; are their"):
+        read_folder(write_folder(tmp_path, GRANITE, curve=curve))
+    assert len(read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))) == 1
+
+
 def test_folder_that_is_none_or_holds_two_tables_or_bytes_is_refused(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="must be a folder that holds tests.csv"):
         read_folder(tmp_path / "nowhere")
