@@ -52,8 +52,7 @@ def rigid_system(scene: Scene) -> BlockSystem:
     """
     order = joint_order(scene)
     points = order.points
-    materials, of_joint = scene.materials_of_joints
-    law = kernel_law(materials, of_joint[points.joint])
+    law = kernel_law(scene.materials_of_joints, scene.material_number_of_joint[points.joint])
     bound = largest_frequency_squared(scene, points, law, held_masses(scene).reshape(-1, 3))
     interface = Interface(law, points.area, gather_rigid, scatter_rigid, order.runs, bound)
     if order.between is not None:

@@ -39,7 +39,7 @@ def fractured(scene: Scene, energies: Energies) -> tuple[Sequence[JointMaterial]
         If energies are to follow from a mortar that is not given.
     """
     if energies == "given":
-        return scene.materials_of_joints
+        return scene.materials_of_joints, scene.material_number_of_joint
     formula = corrected_energies if energies == "corrected" else printed_energies
     length = _printed_length(scene) if energies == "printed" else scene.joints.length
     # Lengths that differ by rounding make one material.

@@ -48,7 +48,7 @@ def elastic_moduli(
 def rigid_moduli(scene: Scene) -> Moduli:
     """Closed-form moduli [Pa] of a wall's running bond of rigid blocks."""
     assert scene.bond is not None
-    joint = joint_stiffness(scene.materials_of_joints[0][0])
+    joint = joint_stiffness(scene.materials_of_joints[0])
     springs = dict.fromkeys(("bed_normal", "head_normal"), joint.normal)
     springs |= dict.fromkeys(("bed_shear", "head_shear"), joint.shear)
     return elastic_moduli(scene.bond.width, scene.bond.height, **springs)

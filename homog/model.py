@@ -73,7 +73,7 @@ def homog(scene: Scene) -> Outcome:
     bond = _bond(scene)
     low, high = scene.blocks.extent(~scene.fixed)
     length, height = high - low
-    friction = scene.materials_of_joints[0][0].friction
+    friction = scene.materials_of_joints[0].friction
     slope = crack_slope(bond.width, bond.height, friction)
     multiplier = lateral_multiplier(height / length, slope, friction)
     sliding = "sliding" if multiplier == friction else "turning about a crack"
@@ -118,7 +118,7 @@ def _why_not(scene: Scene, bond: Bond) -> str:
         return 'it needs support.kind = "base" or "fixed-first-course"'
     if scene.inner_joint is not None:
         return "it needs blocks that do not crack, without inner_joint"
-    (joint, *others), _ = scene.materials_of_joints
+    joint, *others = scene.materials_of_joints
     if len(np.unique(scene.material_of_block[~scene.fixed])) > 1 or others:
         return "it needs one material of blocks and one of joints"
     if joint.cohesion > 0:

@@ -365,7 +365,8 @@ def _check_has_its_table(name: str, value: object) -> None:
     from .scene.schema import is_key_of
 
     table = TABLE_OF.get(name, "wall")
-    if table != "wall" or (name not in WHOLE and is_key_of(table, name)):
+    # A full name is no key of [wall], and need not wait for the schema, which looks into drawings.
+    if table != "wall" or (name not in WHOLE and "." not in name and is_key_of(table, name)):
         raise SceneError(name, f'is a key of [{table}]; give it as {{"{table}.{name}": {value!r}}}', value)
 
 

@@ -37,7 +37,7 @@ class ContactMaterials:
     """
 
     def __init__(self, scene: Scene) -> None:
-        if scene.joint.elasticity is None and scene.joint not in scene.materials_of_joints[0]:
+        if scene.joint.elasticity is None and scene.joint not in scene.materials_of_joints:
             what = "is missing; blocks that move far meet anew on [joint], which needs it"
             raise SceneError("joint.mortar", f"{what}, or joint.normal_stiffness and joint.shear_stiffness")
         for material in scene.joint_materials:

@@ -42,7 +42,7 @@ def spreads(scene: Scene, *, finite: bool = False) -> bool:
 
     At `finite` displacements sides may meet anew, which are of the default material even if no joint was.
     """
-    materials = scene.joint_materials if finite else scene.materials_of_joints[0]
+    materials = scene.joint_materials if finite else scene.materials_of_joints
     return any(each.compressive_strength or each.closure or each.softens for each in materials)
 
 
@@ -105,10 +105,9 @@ def wall_stiffness(scene: Scene, joint: Indices, *, closed: bool = False) -> tup
 
     Of joints that are `closed` it is the largest that they come to.
     """
-    materials, number = scene.materials_of_joints
-    both = [(joint_stiffness(each), stiffest(each)) for each in materials]
+    both = [(joint_stiffness(each), stiffest(each)) for each in scene.materials_of_joints]
     of_material = np.array([(largest if closed else each.normal, each.shear) for each, largest in both])
-    normal, shear = of_material[number[joint]].T
+    normal, shear = of_material[scene.material_number_of_joint[joint]].T
     return normal, shear
 
 
@@ -117,17 +116,16 @@ def static_law(scene: Scene, strength: PointStrength, normal: Array, shear: Arra
 
     A law without a tangent is refused by a `SceneError`.
     """
-    materials, _ = scene.materials_of_joints
-    for material in materials:
+    for material in scene.materials_of_joints:
         for key in ("compressive_strength", "closure"):
             if getattr(material, key) is not None:
                 what = "is not taken by dem-static, which knows neither crushing nor closure; dem-dynamic and fem do"
                 raise SceneError(f"{table_of(material)}.{key}", what)
-    if all(material.law is None for material in materials):
+    if all(material.law is None for material in scene.materials_of_joints):
         return PointLaw(strength, normal, shear)
     from .wall_law import common_law
 
-    law = common_law(materials)
+    law = common_law(scene.materials_of_joints)
     if law.response is None:
         raise SceneError("joint.law", f'"{law.name}" has no response with a tangent, which dem-static needs')
     return law.response(strength, normal, shear)

@@ -20,7 +20,7 @@ def elastic_displacement(scene: Scene, multiplier: float) -> float | None:
     A lower bound of that at collapse, soft blocks counted in; None without a stiffness, or on pins that leave such a
     wall loose.
     """
-    if any(each.elasticity is None for each in scene.materials_of_joints[0]):
+    if any(each.elasticity is None for each in scene.materials_of_joints):
         return None
     points = joint_points(scene.joints, scene.thickness, gauss(2))  # which are exact for what is linear along a joint
     normal, shear = (k * points.area for k in wall_stiffness(scene, points.joint))

@@ -96,7 +96,7 @@ def limit_nonassociated(
 
 def _refuse_crushing(scene: Scene) -> None:
     """Certificates know of no crushing: their forces may be more than such joints bear."""
-    for material in scene.materials_of_joints[0]:
+    for material in scene.materials_of_joints:
         if material.compressive_strength is not None:
             key = f"{table_of(material)}.compressive_strength"
             remedy = "is not taken by limit-nonassociated, which knows no crushing; limit, dem-dynamic and fem do"

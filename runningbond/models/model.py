@@ -100,7 +100,7 @@ class Model:
     def unread(self, scene: Scene) -> list[str]:
         """Keys of its file that a scene gives and this model does not take into account."""
         unread = []
-        for kind, materials in (("block", scene.block_materials), ("joint", scene.materials_of_joints[0])):
+        for kind, materials in (("block", scene.block_materials), ("joint", scene.materials_of_joints)):
             for material in materials:
                 read = material.name != "inner_joint" or "inner_joint" in self.reads
                 given = [key for key in _given_keys(material) if not (read and f"{kind}.{key}" in self.reads)]

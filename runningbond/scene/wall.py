@@ -126,13 +126,14 @@ class Scene:
         return self.joint_materials[0]
 
     @cached_property
-    def materials_of_joints(self) -> tuple[tuple[JointMaterial, ...], Indices]:
-        """Materials that joints are of, at least one, and which of them each joint is of, ``(nj,)``.
+    def materials_of_joints(self) -> tuple[JointMaterial, ...]:
+        """Materials that joints are of, at least one; the default one is left out where every joint is of another."""
+        return tuple(self.joint_materials[k] for k in np.unique(self.material_of_joint)) or (self.joint,)
 
-        The default one is not among them where every joint is of another.
-        """
-        used, number = np.unique(self.material_of_joint, return_inverse=True)
-        return tuple(self.joint_materials[k] for k in used) or (self.joint,), number
+    @cached_property
+    def material_number_of_joint(self) -> Indices:
+        """Which of `materials_of_joints` each joint is of, ``(nj,)``."""
+        return np.unique(self.material_of_joint, return_inverse=True)[1]
 
     @property
     def inner_joint(self) -> JointMaterial | None:

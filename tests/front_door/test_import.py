@@ -49,6 +49,11 @@ def test_a_wall_is_built_without_models_compilers_and_pictures() -> None:
     assert not (DRAWING | {"numba", "gmsh", "joblib"}) & set(loaded)
 
 
+def test_a_wall_is_changed_by_full_names_without_a_look_into_drawings() -> None:
+    lines = f"{FIVE_LINES.split('result =')[0]}\nwall = wall.with_({{'joint.friction': 0.5, 'title': 'rougher'}})"
+    assert "ezdxf" not in python("-c", f"{lines}\nimport sys; print(*sys.modules)").split()
+
+
 def test_every_name_is_listed_and_there() -> None:
     assert set(rb.__all__) <= set(dir(rb))
     assert all(hasattr(rb, name) for name in rb.__all__)

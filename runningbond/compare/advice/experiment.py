@@ -81,13 +81,13 @@ def read_errors(path: Path = SHIPPED) -> list[ModelError]:
 
 def joints_of(scene: Scene) -> str:
     """Kind of the joints between the blocks of a scene."""
-    materials, _ = scene.materials_of_joints
-    return MORTAR if any(each.cohesion > 0 for each in materials if each.name != "inner_joint") else DRY
+    bonded = any(each.cohesion > 0 for each in scene.materials_of_joints if each.name != "inner_joint")
+    return MORTAR if bonded else DRY
 
 
 def error_of(model: str, scene: Scene, *, finite: bool) -> ModelError | None:
     """The error of a model on walls with such joints, and as many of a scene's features; None if none was tested."""
-    crushes = any(each.compressive_strength is not None for each in scene.materials_of_joints[0])
+    crushes = any(each.compressive_strength is not None for each in scene.materials_of_joints)
     splits = scene.inner_joint is not None
     own = [each for each in read_errors() if (each.base, each.joints, each.finite) == (model, joints_of(scene), finite)]
     return max(own, key=lambda each: (each.splits == splits, each.crushes == crushes), default=None)

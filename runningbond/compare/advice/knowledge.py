@@ -61,7 +61,7 @@ class Knowledge:
     def __post_init__(self) -> None:
         self.compliance = block_compliance(self.scene)
         self.cracks = self.scene.inner_joint is not None  # blocks may crack
-        materials, _ = self.scene.materials_of_joints
+        materials = self.scene.materials_of_joints
         self.softens = any(each.softens for each in materials)
         self.crushes = any(each.compressive_strength is not None for each in materials)
         self.gives_way = any(each.compressive_fracture_energy is not None for each in materials)
