@@ -87,9 +87,7 @@ def compare(
                 progress=lambda cell: advance(", ".join(cell)),
             )
     except Interrupted as stopped:
-        again = "the same command without --fresh" if fresh else "the same command"
-        kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
-        return told_interruption(stopped, kept)
+        return told_interruption(stopped, total, "cases", out, fresh=fresh)
     with locked(out):  # what is written is of one comparison, where two end at once
         _report(Comparison(walls, chosen, campaign, published), out, tolerance)
     for (name, model), reason in campaign.inapplicable.items():

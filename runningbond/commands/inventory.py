@@ -28,7 +28,8 @@ Row = tuple[str, str]
 
 def rows(scene: Scene) -> list[Row]:
     """Everything there is to say of a scene in numbers, each with its unit."""
-    return [*_blocks(scene), *_joints(scene), *_held(scene), *_loads(scene), *_assigned(scene)]
+    assigned = ((key, text) for key, _, text in (line.partition(": ") for line in scene.assigned))
+    return [*_blocks(scene), *_joints(scene), *_held(scene), *_loads(scene), *assigned]
 
 
 def _blocks(scene: Scene) -> Iterator[Row]:
@@ -165,10 +166,3 @@ def _settlement(scene: Scene, load: Settlement) -> str:
     path = ", ".join(f"{share:g}" for share in load.path[:8]) + (", …" if len(load.path) > 8 else "")
     times = "" if load.path == (1.0,) else f", {path} times that"
     return f"{moving} moved {' and '.join(parts)}{times}; λ is the share of the reaction"
-
-
-def _assigned(scene: Scene) -> Iterator[Row]:
-    """What became of each entry of ``assign``."""
-    for line in scene.assigned:
-        key, _, text = line.partition(": ")
-        yield key, text

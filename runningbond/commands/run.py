@@ -145,9 +145,7 @@ def _draws(
         with progress_bar(f"{model.name}, draws", number) as advance, _as_options():
             found = sampling.run(tolerance, folder, jobs, advance)
     except Interrupted as stopped:
-        kept = "nothing is kept without --out" if folder is None else f"{stopped.campaign.kept} of {number} draws are "
-        kept += "" if folder is None else f"kept in {folder}; the same command goes on."
-        return told_interruption(stopped, kept)
+        return told_interruption(stopped, number, "draws", folder)
     for line in remarks(wall):
         print(line, file=sys.stderr)
     outcome = found.outcomes[0]

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from shutil import get_terminal_size
 from typing import Annotated, TypeAlias
 
@@ -65,8 +66,11 @@ def say(message: str) -> None:
         print(f"runningbond: {' '.join(message.split())}", file=sys.stderr, flush=True)
 
 
-def told_interruption(stopped: Interrupted, kept: str) -> int:
-    """Say on standard error why a campaign stopped, and what is kept of it; the exit code."""
+def told_interruption(stopped: Interrupted, total: int, what: str, folder: Path | None, *, fresh: bool = False) -> int:
+    """Say on standard error why a campaign stopped, and how much of the total is kept in a folder; the exit code."""
+    again = "the same command without --fresh" if fresh else "the same command"
+    kept = f"{stopped.campaign.kept} of {total} {what} are kept in {folder}; {again} goes on."
+    kept = "nothing is kept without --out" if folder is None else kept
     print(f"{f'runningbond: {stopped.reason}' if stopped.reason else 'Interrupted'}: {kept}", file=sys.stderr)
     if isinstance(stopped.__cause__, OSError):
         return BAD_INPUT

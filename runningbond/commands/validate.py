@@ -78,9 +78,7 @@ def validate(
                 walls, rungs, scenes, out, jobs=jobs, fresh=fresh, progress=lambda cell: advance(", ".join(cell))
             )
     except Interrupted as stopped:
-        again = "the same command without --fresh" if fresh else "the same command"
-        kept = f"{stopped.campaign.kept} of {total} cases are kept in {out}; {again} goes on."
-        return told_interruption(stopped, kept)
+        return told_interruption(stopped, total, "cases", out, fresh=fresh)
     with locked(out):
         written = write_laboratory(predictions, out, refused)
     sums = totals(predictions)

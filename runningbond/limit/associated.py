@@ -20,7 +20,6 @@ from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .moving_support import JAMMED, support_verdict
 from .proved import CLOSE, STOP, falls_at_rest, is_large, proved, resting_forces, tolerance_of
-from .remarks import remarks
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
 INTERRUPTED = "the linear program was interrupted, or ran out of iterations"
@@ -335,6 +334,18 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     else:
         outcome = replace(outcome, status=status, **so_far(state))
     return replace(outcome, seconds=time.perf_counter() - start)
+
+
+def remarks(scene: Scene, message: str) -> str:
+    """A message, and what it is to add of how ties and the beam were taken."""
+    notes = {
+        "ties count by their yield force alone": len(scene.ties) > 0,
+        "of tie.preload, whose friction may hold the wall at these loads, nothing is known": scene.ties.preload.any(),
+        "the beam is held at its height by whatever vertical force that takes": len(scene.late_pins) > 0,
+        "λ is the force on the beam [N]": len(scene.drive_path) > 0,
+        "of the beam's path the first direction counts": len(scene.drive_path) > 1,
+    }
+    return "; ".join([message, *(note for note, applies in notes.items() if applies)])
 
 
 def proved_bound(scene: Scene) -> float | None:

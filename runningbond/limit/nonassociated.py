@@ -13,7 +13,7 @@ from functools import partial
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene, SceneError, check_scene, table_of
 
-from .associated import LimitState, arrays_of, judge, limit_state, so_far, spends_cut_strength
+from .associated import LimitState, arrays_of, judge, limit_state, remarks, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify, least_multiplier
 from .coarse import POINTS, CoarseSearch
@@ -22,7 +22,6 @@ from .force_program import ForceSolution, coulomb, solve_forces
 from .found import Observer, Search
 from .large import search_large, takes_one_start
 from .moving_support import JAMMED, NOTHING, bridged_message, is_bridged, may_leave, reaction_note
-from .remarks import remarks
 from .search import STARTS, search
 
 LISTED = 4

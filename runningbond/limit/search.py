@@ -1,10 +1,8 @@
 """The smallest load at which a collapse with true Coulomb friction can be certified, looked for from many starts.
 
-After Gilbert, Casapulla & Ahmed (2006) a sequence of linear programs freezes each point's shear resistance at μ times
-a pressure that is brought up to date between programs: averaged with weights (k + 1)^(−1/2) in program k, which settles
-where fixed weights keep wandering, or with fixed ones, which settle elsewhere. What it settles at depends on the
-pressure that it starts from. From every certificate `descent` goes on to smaller loads. Finding the smallest of all is
-a program with complementarity constraints, for which nothing better than looking is known; no lower bound comes of it.
+What a sequence of programs settles at depends on the pressure that it starts from (`sequences`). From every
+certificate `descent` goes on to smaller loads. Finding the smallest of all is a program with complementarity
+constraints, for which nothing better than looking is known; no lower bound comes of it.
 
 Starts are made in rounds. Those of a round know what was found before it and nothing of each other, so that what is
 found does not depend on how many are made at a time.

@@ -95,7 +95,7 @@ def _bend(axes: "Axes", moved: Array, load: Array) -> None:
     """Make the axis of displacements a logarithmic one beyond a part, where the rise of the load were not seen."""
     from matplotlib.ticker import SymmetricalLogLocator
 
-    half = _half_way(moved, load)
+    half = float(np.abs(moved[np.argmax(load >= load.max() / 2)]))  # where the load first is half its peak
     if not 0 < half < SEEN * np.ptp(moved) or moved.min() <= -half:  # a wall that is pushed to and fro
         return
     linear = float(10.0 ** np.ceil(np.log10(half)))
@@ -117,8 +117,3 @@ def curve_quantities(scene: Scene) -> tuple[str, str]:
     if scene.settlement:
         return "displacement of the support", f"share {symbol} of the dead load on the support"
     return "displacement of the control point along the live load", load
-
-
-def _half_way(moved: Array, load: Array) -> float:
-    """Displacement at which the load first is half its peak."""
-    return float(np.abs(moved[np.argmax(load >= load.max() / 2)]))

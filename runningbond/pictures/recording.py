@@ -62,16 +62,12 @@ class SeriesRecorder:
         """Write a moment."""
         if self._error is None:
             try:
-                self._replace_outcome()
+                if self._folder and not self._is_begun:  # an outcome that is there is of another run
+                    (self._folder / RECORD).unlink(missing_ok=True)
+                self._is_begun = True
                 self._series.add(frame)
             except (OSError, VtkError) as error:
                 self._error = error
-
-    def _replace_outcome(self) -> None:
-        """Remove an outcome that was there before the first moment: it is of another run."""
-        if self._folder and not self._is_begun:
-            (self._folder / RECORD).unlink(missing_ok=True)
-        self._is_begun = True
 
     def finish(self, outcome: Outcome) -> None:
         """End the series, once the outcome is known; raises the error of a moment that could not be written."""
@@ -121,7 +117,9 @@ class MotionRecorder(SeriesRecorder):
         """Look at a run: keep the state if it is at rest, or else remember it for a while."""
         self._turn_to(run.system.source)
         if run.led:
-            self._follow_way(state)
+            if state.steps < self._led:  # the way's first state, the dead load's rest, and anew on each slower one
+                self._series.clear()
+            self._led = state.steps
         elif multiplier != self._multiplier:
             self._next_load(multiplier)
         self._calm = self._calm + 1 if run.unbalanced(state) < Criteria.rest else 0
@@ -141,11 +139,6 @@ class MotionRecorder(SeriesRecorder):
         self._wall = wall
         triangles = Triangles(wall.mesh.points, wall.mesh.triangles, wall.mesh.triangle_block)
         self._begin(Discretisation(wall.scene, wall.elements.points, triangles))
-
-    def _follow_way(self, state: State) -> None:
-        if state.steps < self._led:  # the way's first state, and anew on each slower one; the dead load's rest is it
-            self._series.clear()
-        self._led = state.steps
 
     def _next_load(self, multiplier: float) -> None:
         if multiplier == 0.0 and len(self._series):  # the search begins anew, more slowly

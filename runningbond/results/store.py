@@ -39,7 +39,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Where something goes wrong, all is left as it was before. The folder is made if missing.
     """
-    try:
+    with _errors_named(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=path.suffix.lower())
         os.close(handle)
@@ -52,8 +52,6 @@ def replacing(path: Path) -> Iterator[Path]:
         except BaseException:
             Path(name).unlink(missing_ok=True)
             raise
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def write_atomically(path: Path, content: bytes) -> None:

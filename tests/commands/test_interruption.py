@@ -2,6 +2,7 @@
 
 import errno
 import json
+from pathlib import Path
 
 import pytest
 
@@ -10,13 +11,15 @@ from runningbond.commands.command_line import command
 from runningbond.commands.terminal import BAD_INPUT, NO_ANSWER, STOPPED, told_interruption
 from runningbond.models import Model
 
+KEPT = "0 of 5 cases are kept in out; the same command goes on.\n"
+
 
 @pytest.mark.parametrize(
     ("cause", "reason", "code", "said"),
     [
-        (None, "", STOPPED, "Interrupted: 3 of 5 kept\n"),
-        (OSError(errno.ENOSPC, "full"), "out: full", BAD_INPUT, "runningbond: out: full: 3 of 5 kept\n"),
-        (RuntimeError(), "the cluster failed", NO_ANSWER, "runningbond: the cluster failed: 3 of 5 kept\n"),
+        (None, "", STOPPED, f"Interrupted: {KEPT}"),
+        (OSError(errno.ENOSPC, "full"), "out: full", BAD_INPUT, f"runningbond: out: full: {KEPT}"),
+        (RuntimeError(), "the cluster failed", NO_ANSWER, f"runningbond: the cluster failed: {KEPT}"),
     ],
 )
 def test_who_is_stopped_is_told_why_and_what_is_kept(
@@ -24,7 +27,7 @@ def test_who_is_stopped_is_told_why_and_what_is_kept(
 ) -> None:
     stopped = Interrupted(Campaign(), reason)
     stopped.__cause__ = cause
-    assert told_interruption(stopped, "3 of 5 kept") == code
+    assert told_interruption(stopped, 5, "cases", Path("out")) == code
     assert capsys.readouterr() == ("", said)
 
 
@@ -44,3 +47,17 @@ def test_a_climb_that_is_stopped_says_how_far_it_came(
     assert told["message"].startswith("interrupted before limit-nonassociated: ")
     assert command(["advise", "wall-w3"]) == STOPPED
     assert "\n  interrupted before limit-nonassociated: " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("folder", "fresh", "kept"),
+    [
+        (None, False, "nothing is kept without --out"),
+        (Path("out"), True, "0 of 5 cases are kept in out; the same command without --fresh goes on."),
+    ],
+)
+def test_what_goes_on_is_the_command_that_makes_nothing_anew(
+    folder: Path | None, fresh: bool, kept: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    told_interruption(Interrupted(Campaign(), ""), 5, "cases", folder, fresh=fresh)
+    assert capsys.readouterr().err == f"Interrupted: {kept}\n"

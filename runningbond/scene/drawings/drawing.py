@@ -80,7 +80,8 @@ def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness
         space = read_dxf(path)
         blocks, layers, names, notes = _outlines(space)
         grounds = []
-        notes += _units_note(space, units)
+        if space.units not in (None, units):
+            notes.append(f"units: the drawing's header says {space.units}, wall.units says {units}, which counts")
     outlines = _cleaned([scale * outline for outline in [*blocks, *grounds]], names)
     blocks, grounds = outlines[: len(blocks)], outlines[len(blocks) :]
     if path.suffix.lower() != ".json":
@@ -141,12 +142,6 @@ def _listed(left_out: Counter[tuple[str, str]]) -> str:
     for (kind, place), number in left_out.items():
         by_place.setdefault(place, []).append(f"{number} {kind}")
     return "; ".join(f"{', '.join(kinds)} {place}" for place, kinds in by_place.items())
-
-
-def _units_note(space: ModelSpace, units: str) -> list[str]:
-    if space.units in (None, units):
-        return []
-    return [f"units: the drawing's header says {space.units}, wall.units says {units}, which counts"]
 
 
 def _without_ground(
