@@ -362,11 +362,12 @@ def read(wall: str | Path) -> Wall:
 
 def _check_has_its_table(name: str, value: object) -> None:
     """Refuse a key that is named without the table it belongs to."""
+    table = TABLE_OF.get(name, "wall")
+    if table == "wall" and (name in WHOLE or "." in name):  # a full name need not wait for the schema to be read
+        return
     from .scene.schema import is_key_of
 
-    table = TABLE_OF.get(name, "wall")
-    # A full name is no key of [wall], and need not wait for the schema, which looks into drawings.
-    if table != "wall" or (name not in WHOLE and "." not in name and is_key_of(table, name)):
+    if table != "wall" or is_key_of(table, name):
         raise SceneError(name, f'is a key of [{table}]; give it as {{"{table}.{name}": {value!r}}}', value)
 
 

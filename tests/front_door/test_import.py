@@ -49,9 +49,19 @@ def test_a_wall_is_built_without_models_compilers_and_pictures() -> None:
     assert not (DRAWING | {"numba", "gmsh", "joblib"}) & set(loaded)
 
 
-def test_a_wall_is_changed_by_full_names_without_a_look_into_drawings() -> None:
+def test_a_wall_is_changed_by_full_names_without_a_look_into_the_schema() -> None:
     lines = f"{FIVE_LINES.split('result =')[0]}\nwall = wall.with_({{'joint.friction': 0.5, 'title': 'rougher'}})"
-    assert "ezdxf" not in python("-c", f"{lines}\nimport sys; print(*sys.modules)").split()
+    assert "runningbond.scene.schema" not in python("-c", f"{lines}\nimport sys; print(*sys.modules)").split()
+
+
+def test_a_key_is_refused_without_a_look_into_drawings() -> None:
+    """The schema, by which a key is told to be misspelt, knows of a drawing that does not exist."""
+    lines = (
+        "from runningbond.scene.schema import misspelt\nimport sys\nprint(misspelt({'wall': {'heigth': 0.6}}).remedy)"
+    )
+    said = python("-c", f"{lines}\nprint(*sys.modules)")
+    assert said.startswith("is not a key of [wall]")
+    assert "ezdxf" not in said.split()
 
 
 def test_every_name_is_listed_and_there() -> None:

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from stat import S_ISREG
 from typing import Any
 
 import numpy as np
@@ -54,13 +55,13 @@ def read_dxf(path: Path) -> ModelSpace:
     SceneError
         For what is no DXF file, for meshes and for curves out of the drawing's plane.
     """
-    if path.exists() and not path.is_file():  # a device has no end, and a pipe may have no other one
-        raise SceneError(KEY, "cannot be read as DXF: it is not a regular file", str(path))
     try:
-        from ezdxf.filemanagement import readfile
-    except Exception as error:  # its import reads settings of the user's, who may have no home
-        raise SceneError(KEY, f"cannot be read, for ezdxf cannot be imported: {error}", str(path)) from error
-    try:
+        if not S_ISREG(path.stat().st_mode):  # a device has no end, and a pipe may have no other one
+            raise SceneError(KEY, "cannot be read as DXF: it is not a regular file", str(path))
+        try:
+            from ezdxf.filemanagement import readfile  # which takes longer than to see that there is no file
+        except Exception as error:  # its import reads settings of the user's, who may have no home
+            raise SceneError(KEY, f"cannot be read, for ezdxf cannot be imported: {error}", str(path)) from error
         document = readfile(path)
         left_out: Counter[tuple[str, str]] = Counter()
         drawn = []
