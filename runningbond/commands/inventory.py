@@ -6,12 +6,11 @@ import numpy as np
 
 from runningbond.joints import wall_points, wall_rule
 from runningbond.pictures.legend import CONDITIONS, strength, used_block_materials, used_joint_materials
-from runningbond.pictures.quantities import counted, millimetres, minus, pair, readable
+from runningbond.pictures.quantities import beginning, counted, millimetres, minus, pair, readable
 from runningbond.scene import (
     ANCHOR,
     Action,
     Array,
-    Beam,
     BeamLoad,
     Forces,
     History,
@@ -81,7 +80,8 @@ def _held(scene: Scene) -> Iterator[Row]:
         held.append(f"{'roller' if own.sum() == 1 else 'pin'} at ({minus(x)}, {minus(y)}) m")
     yield "supports", ", ".join(held) or "none"
     if scene.beam is not None:
-        yield "beam", _beam(scene, scene.beam)
+        beam, on = scene.beam, f"on joints of {scene.beam.joint or scene.joint.name}"
+        yield "beam", f"{beam.height:.4g} m high, {_mass(scene, beam.mass)}, {CONDITIONS[beam.condition]}, {on}"
     ties = scene.ties
     for k in range(len(ties)):
         ends = " to ".join(
@@ -102,11 +102,6 @@ def _body(scene: Scene, block: int) -> str:
         return "an anchor fixed in space"
     number = scene.part_of[block]
     return f"block {number}" if number >= 0 else "the beam" if scene.wall[block] else "the ground"
-
-
-def _beam(scene: Scene, beam: Beam) -> str:
-    joint = f"on joints of {beam.joint or scene.joint.name}"
-    return f"{beam.height:.4g} m high, {_mass(scene, beam.mass)}, {CONDITIONS[beam.condition]}, {joint}"
 
 
 def _loads(scene: Scene) -> Iterator[Row]:
@@ -142,7 +137,7 @@ def _kind(scene: Scene, load: Action) -> str:
     match load:
         case BeamLoad():
             path = scene.drive_path if load.key == "beam.drive" else ()
-            moves = ", ".join(minus(1e3 * x) for x in path[:8]) + (", …" if len(path) > 8 else "")
+            moves = beginning([minus(1e3 * x) for x in path])
             rate = scene.drive.rate if path and scene.drive else None
             speed = f" at {millimetres(rate)}/s" if rate else ""
             return f"moved to {moves} mm{speed}, the force that takes" if path else "on the beam"
@@ -163,6 +158,5 @@ def _settlement(scene: Scene, load: Settlement) -> str:
     moving = counted(int(load.moving(scene).sum()), "support")
     parts = [f"by ({', '.join(millimetres(x) for x in load.by)})"] if any(load.by) else []
     parts += [f"turned by {minus(load.rotation_angle)}°"] if load.rotation_angle else []
-    path = ", ".join(f"{share:g}" for share in load.path[:8]) + (", …" if len(load.path) > 8 else "")
-    times = "" if load.path == (1.0,) else f", {path} times that"
+    times = "" if load.path == (1.0,) else f", {beginning([f'{share:g}' for share in load.path])} times that"
     return f"{moving} moved {' and '.join(parts)}{times}; λ is the share of the reaction"

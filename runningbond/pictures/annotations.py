@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from runningbond.scene import Array
 
 from .deformed_shape import DeformedShape, Extent, around
+from .labels import block_numbers
 from .loads import LoadDrawing
-from .numbers import block_numbers
 from .sketch import Sketch
 from .style import UNIT
 from .supports import draw_beam, draw_scale, draw_supports

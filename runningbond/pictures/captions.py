@@ -115,6 +115,11 @@ def is_force(scene: Scene) -> bool:
     return live.at_points_alone and math.isclose(math.hypot(*live.force.sum(axis=0)), 1.0)
 
 
+def load_text(scene: Scene, multiplier: float) -> str:
+    """A multiplier, in newtons where it is a force."""
+    return f"{load_symbol(scene)} = {number(multiplier)}{' N' if is_force(scene) else ''}"
+
+
 def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     """Load at collapse, or what there is instead, and its bracket; empty where that adds nothing."""
     name, unit = load_symbol(scene), " N" if is_force(scene) else ""

@@ -145,8 +145,12 @@ class DeformedShape:
         """Ends of joints that are crushed, midway between their faces where they are drawn, ``(n, 2)``."""
         if not len(self.crushed):
             return np.zeros((0, 2))
-        faces = self.placed_faces
-        return np.unique(((faces[:, :2] + faces[:, :1:-1]) / 2)[self.crushed], axis=0)
+        return np.unique(mid_lines(self.placed_faces)[self.crushed], axis=0)
+
+    def crossed_lines(self, arm: float) -> Array:
+        """The lines of crosses there, half as wide as an arm [m], ``(2 n, 2, 2)`` [m]."""
+        corners = arm * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
+        return np.asarray((self.crosses[:, None, None] + corners).reshape(-1, 2, 2))
 
     def drawn_at(self, at: Array, block: ArrayLike) -> Array:
         """Where a point ``(2,)`` [m] of a block, or of some ``(n,)``, is drawn, ``(2,)`` [m]."""
@@ -250,3 +254,16 @@ def outline(scene: Scene, which: Mask | None = None) -> list[Array]:
     # What touches in the scene may be as far apart as the tolerance.
     union = shapely.union_all(shapely.buffer(polygons, blocks.tolerance, join_style="mitre"))
     return [np.asarray(ring.coords) for part in shapely.get_parts(union) for ring in (part.exterior, *part.interiors)]
+
+
+def mid_lines(faces: Array) -> Array:
+    """Lines midway between the faces ``(n, 4, 2)`` of joints' gaps, ``(n, 2, 2)``."""
+    return (faces[:, :2] + faces[:, :1:-1]) / 2
+
+
+def joint_lines(faces: Array, state: int) -> Array:
+    """What joints in a state are drawn with: both of their faces ``(n, 4, 2)`` where they are open, ``(2 n, 2, 2)``.
+
+    Else one line along the middle, ``(n, 2, 2)``: dashes on both faces would fill each other's gaps.
+    """
+    return np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else mid_lines(faces)

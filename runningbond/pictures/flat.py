@@ -14,11 +14,11 @@ from runningbond.scene import Array, Mask, Scene
 
 from .annotations import THRUST, Room, annotate, axes_size, metres_of_point, room_for
 from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mechanism_caption, show_extent
-from .deformed_shape import DeformedShape, Extent, outline, undeformed_shape
+from .deformed_shape import DeformedShape, Extent, joint_lines, outline, undeformed_shape
 from .joint_state import JointState
+from .labels import block_numbers
 from .legend import block_colours, joint_colour, used_joint_materials, wall_caption
 from .mechanism import mechanism_shape
-from .numbers import block_numbers
 from .quantities import readable
 from .resultants import resultants
 from .style import CRUSHED, DARK, EDGE, OUTLINE, STATE_COLOURS, tint
@@ -208,9 +208,7 @@ def _draw_joints(axes: "Axes", faces: Array, state: JointState, colour: str, wid
         return
     gaps = PolyCollection(list(faces), facecolors=[tint(state)], edgecolors="none", zorder=3)
     axes.add_collection(gaps, autolim=False)
-    # Of a joint that slides, one line along the middle: dashes on both faces would fill each other's gaps.
-    middle = (faces[:, :2] + faces[:, :1:-1]) / 2
-    lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
+    lines = joint_lines(faces, state)
     wide = (0.75 if state == JointState.OPEN else 1.0) * width
     if state != JointState.OPEN:  # what is dark below would fill the gaps of dashes
         _draw_lines(axes, lines, "white", wide, "solid")

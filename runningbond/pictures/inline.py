@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.scene import Array, Scene
 
-from .deformed_shape import DeformedShape, Extent, outline
+from .deformed_shape import DeformedShape, Extent, joint_lines, outline
 from .flat import line_width
 from .joint_state import JointState
 from .style import AT_REST, CRUSHED, STATE_COLOURS, tint
@@ -56,16 +56,14 @@ def inline_mechanism(shape: DeformedShape, extent: Extent, name: str) -> str:
         parts.append(
             f'<path d="{_path(faces[area * scale**2 > SEEN_AREA], extent)}" fill="{hexadecimal(tint(state))}"/>'
         )
-        middle = (faces[:, :2] + faces[:, :1:-1]) / 2
-        lines = np.concatenate([faces[:, :2], faces[:, 2:]]) if state == JointState.OPEN else middle
+        lines = joint_lines(faces, state)
         dashes = "" if state == JointState.OPEN else f' stroke-dasharray="{2.6 * width:.0f} {1.3 * width:.0f}"'
         look = f'stroke="{colour}" stroke-width="{(0.75 if state == JointState.OPEN else 1) * width:.1f}"'
         parts.append(f'<path d="{_path(lines, extent, "")}" fill="none" {look}{dashes}/>')
     for x, y in np.rint(scale * (shape.hinges - [left, top]) * [1, -1]).astype(int):
         parts.append(f'<circle cx="{x}" cy="{y}" r="{1.2 * width:.1f}" fill="#fff" stroke="#404040"/>')
     if len(shape.crosses):
-        arm = 1.2 * width / scale * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
-        crosses = _path((shape.crosses[:, None, None] + arm).reshape(-1, 2, 2), extent, "")
+        crosses = _path(shape.crossed_lines(1.2 * width / scale), extent, "")
         parts.append(f'<path d="{crosses}" fill="none" stroke="{CRUSHED}" stroke-width="{width:.1f}"/>')
     return "".join([*parts, "</svg>"])
 

@@ -1,14 +1,15 @@
-"""Labels of a drawing, each put where it hides nothing: neither another label nor an arrow."""
+"""Labels of a drawing, each where it hides nothing, neither another label nor an arrow; and numbers of blocks."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+import shapely
 
-from runningbond.scene import Array
+from runningbond.scene import Array, Scene
 
-from .style import DARK, TYPE
+from .style import DARK, SMALL_TYPE, TYPE
 
 GAP, PAD = 2.5, 0.8
 """Distance of a label from what it is about, and air around it [pt]."""
@@ -101,3 +102,19 @@ def _covered(boxes: Array, others: Array) -> Array:
     sides = np.minimum(boxes[:, None, 1], others[:, 1]) - np.maximum(boxes[:, None, 0], others[:, 0])
     common = np.prod(np.maximum(sides, 0.0), axis=2).sum(axis=1)
     return np.asarray(common / np.prod(boxes[:, 1] - boxes[:, 0], axis=1))
+
+
+def block_numbers(scene: Scene, point: float) -> list[PlacedLabel]:
+    """The numbers that ``assign`` knows blocks by, in type as large as fits where a point takes so many metres."""
+    placed = []
+    for number in range(int(scene.part_of.max()) + 1):
+        own = np.flatnonzero(scene.part_of == number)
+        outline = shapely.union_all([shapely.Polygon(scene.blocks.polygon(int(k))) for k in own])
+        middle = outline.centroid if outline.contains(outline.centroid) else outline.representative_point()
+        x0, y0, x1, y1 = outline.bounds
+        width, height = text_size(str(number), 1.0)
+        size = float(min(0.8 * (x1 - x0) / width / point, 0.75 * (y1 - y0) / height / point, SMALL_TYPE))
+        half = np.array([width, height]) / 2 * size * point
+        label = Label(str(number), (), "black", size)
+        placed.append(PlacedLabel(label, np.array([middle.x, middle.y]), half, upright=False))
+    return placed

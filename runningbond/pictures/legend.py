@@ -8,7 +8,7 @@ import numpy as np
 from runningbond.scene import Array, JointMaterial, Scene
 
 from .captions import Caption, held_key, is_force, wall_title
-from .quantities import counted, minus, readable
+from .quantities import beginning, counted, minus, readable
 from .style import BEAM, BLOCK_COLOURS, DARK, DEAD, HELD, JOINT_COLOURS, MOTION
 from .ties import TIE, tie_kinds
 
@@ -125,7 +125,7 @@ def _loads(scene: Scene) -> list[Any]:
 
     look: dict[str, Any] = {"lw": 1.0, "marker": ">", "ms": 3.0, "markevery": [1]}
     path = scene.drive_path
-    moves = ", ".join(minus(1e3 * u) for u in path[:8]) + (", …" if len(path) > 8 else "")
+    moves = beginning([minus(1e3 * u) for u in path])
     has_live = scene.settlement is None and not path
     kinds = {
         "dead load": (DEAD, bool(scene.load.dead)),

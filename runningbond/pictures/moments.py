@@ -10,10 +10,9 @@ import numpy as np
 
 from runningbond.results import Outcome
 from runningbond.results.mechanism import carried
-from runningbond.results.outcome import number
 from runningbond.scene import Array, Scene
 
-from .captions import is_force, load_symbol
+from .captions import load_symbol, load_text
 from .deformed_shape import DeformedShape, Extent
 from .flat import line_width
 from .inline import UNITS, WIDTH, hexadecimal
@@ -87,7 +86,6 @@ def moving_wall(scene: Scene, outcome: Outcome, extent: Extent, name: str) -> di
     x, y, width, tall = CHART
     most = float(loads.max()) if loads.max() > 0 else 1.0
     path = zip(x + width * far / (far.max() or 1.0), y + tall * (1 - loads.clip(0) / most), strict=True)
-    symbol, unit = load_symbol(scene), " N" if is_force(scene) else ""
     pairs = zip(loads, far, strict=True)
     return {
         "model": outcome.model,
@@ -96,8 +94,8 @@ def moving_wall(scene: Scene, outcome: Outcome, extent: Extent, name: str) -> di
         "width": f"{0.5 * line_width(scene, extent, (WIDTH, WIDTH * height / UNITS)) * UNITS / (72 * WIDTH):.1f}",
         "motion": base64.b64encode(zlib.compress(whole.transpose(2, 0, 1).tobytes(), 9)).decode(),
         "unit": f"{place / 127:.4g} {turn / 127:.4g}",
-        "said": "|".join(f"{symbol} = {number(load)}{unit}, farthest {1000 * gone:.3g} mm" for load, gone in pairs),
-        "symbol": symbol,
+        "said": "|".join(f"{load_text(scene, load)}, farthest {1000 * gone:.3g} mm" for load, gone in pairs),
+        "symbol": load_symbol(scene),
         "path": " ".join(f"{px:.0f},{py:.0f}" for px, py in path),
         "factor": f"{factor:,.0f}" if factor >= 10 else f"{factor:.2g}",
         "colours": f"{hexadecimal(AT_REST)} {hexadecimal(FASTEST)}",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from runningbond.results.outcome import Outcome, number
+from runningbond.results import Outcome
 from runningbond.scene import Scene
 
 from .annotations import Room, annotate, room_for
@@ -17,8 +17,7 @@ from .captions import (
     colour_key,
     figure_with_room,
     held_key,
-    is_force,
-    load_symbol,
+    load_text,
     mechanism_caption,
     show_extent,
     wall_title,
@@ -50,8 +49,7 @@ def frame_figure(
 ) -> "Figure":
     """Figure of one moment of a run; with room for all moments of a film, and the key to them, if it is one of them."""
     film = film or (shape,)
-    unit = " N" if is_force(shape.scene) else ""
-    load = f"{outcome.model}: {load_symbol(shape.scene)} = {number(shape.multiplier)}{unit}"
+    load = f"{outcome.model}: {load_text(shape.scene, shape.multiplier)}"
     load += "" if shape.time is None else f", t = {shape.time:.3f} s"
     note = f"displacements × {float(f'{shape.scale:.3g}'):,.12g}"
     states = [state for state in STATE_COLOURS if any(state in one.drawn_state for one in film)]

@@ -109,8 +109,7 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
             thin = _thin(WIDTHS[state] * width * strength, max(strength, FAINTEST))
             plotter.add_mesh(faces, color=colour, **thin, **flat)
     if len(shape.crosses):
-        arm = CROSS * shape.scene.block_size * np.array([[[-1, -1], [1, 1]], [[-1, 1], [1, -1]]])
-        ends = (shape.crosses[:, None, None] + arm).reshape(-1, 2)
+        ends = shape.crossed_lines(CROSS * shape.scene.block_size).reshape(-1, 2)
         crosses = _lines(ends, np.arange(len(ends)).reshape(-1, 2), 8.0)
         plotter.add_mesh(crosses, color=CRUSHED, line_width=3.4 * width, **flat)
 

@@ -1,5 +1,7 @@
 """Quantities as people read them: 12 kN instead of 12000 N."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from runningbond.scene import Array
@@ -43,6 +45,11 @@ def minus(value: float) -> str:
 def times_lambda(text: str, *, live: bool) -> str:
     """What a load's label says: a live one is multiplied."""
     return f"λ · {text}" if live else text
+
+
+def beginning(words: Sequence[str]) -> str:
+    """The first eight of some words."""
+    return ", ".join(words[:8]) + (", …" if len(words) > 8 else "")
 
 
 def counted(n: int, what: str) -> str:

@@ -6,7 +6,7 @@ from runningbond.joints import listed_points
 from runningbond.results import Outcome
 from runningbond.scene import Array
 
-from .deformed_shape import DeformedShape
+from .deformed_shape import DeformedShape, mid_lines
 
 LEAST = 0.08
 """Resultant, relative to the largest, below which none is drawn."""
@@ -40,8 +40,7 @@ def resultants(shape: DeformedShape, outcome: Outcome) -> tuple[Array, float, in
     large = length > LEAST * largest
     near = large & (np.abs(moment) <= (0.5 + FARTHEST) * np.abs(total)) & (total != 0)
     share = 0.5 + (moment[near] / total[near])[:, None]
-    faces = shape.placed_faces[near]
-    middle = (faces[:, :2] + faces[:, :1:-1]) / 2
+    middle = mid_lines(shape.placed_faces[near])
     centre = (1 - share) * middle[:, 0] + share * middle[:, 1]
     half = 0.5 * scene.block_size / largest * vector[near]
     return np.stack([centre - half, centre + half], axis=1), largest, int((large & ~near).sum())
