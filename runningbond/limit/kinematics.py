@@ -9,8 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array, csr_array, vstack
 
-from runningbond.joints import JointPoints
+from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.scene import ANCHOR, Array, Indices, Pins, Scene
+
+NO_SLIP = 1e-6  # slip [m] that counts as none in a mechanism whose fastest corner moves by 1 m
 
 
 def point_operator(block: Indices, point: Array, direction: Array, centroid: Array) -> csr_array:
@@ -96,3 +98,16 @@ def control_row(scene: Scene) -> Array:
     n = len(block)
     rows = point_operator(block, np.tile(at, (n, 1)), np.tile(direction, (n, 1)), scene.blocks.centroid)
     return np.asarray(rows.T @ np.full(n, 1 / n), dtype=np.float64)
+
+
+def sliding_dilates(scene: Scene, motion: Array) -> bool:
+    """Whether a mechanism ``(nb, 3)`` of associated joints opens some only because they slide.
+
+    Where none does, joints that slide are off each other anyway and carry no friction: forces and mechanism prove
+    their load for friction without dilatancy just as well.
+    """
+    points = wall_points(scene)
+    jump = jump_operator(points, scene.blocks.centroid)
+    opening, slip = jump.opening @ motion.ravel(), np.abs(jump.slip @ motion.ravel())
+    friction = wall_strength(scene, points).friction
+    return bool(((slip > NO_SLIP) & (opening < friction * slip + NO_SLIP)).any())

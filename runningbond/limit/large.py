@@ -14,10 +14,11 @@ Nothing is searched further: neither other starts nor a descent.
 """
 
 from collections.abc import Iterator
+from itertools import islice
 
 from runningbond.scene import Array
 
-from .certificates import Certificate, driving_forces, roughly_certified
+from .certificates import driving_forces, roughly_certified
 from .equilibrium import Equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .found import Observer, Search
@@ -92,19 +93,12 @@ def _sequence(
         if program.status != "optimal":
             return
         if k in looked_at:
-            found.certificates += _certified(system, _corners(system, place, pressure, program.motion, found), found)
+            corners = _corners(system, place, pressure, program.motion, found)
+            certified = (roughly_certified(system, corner, found.add_programs) for corner in corners)
+            found.certificates += islice(filter(None, certified), 1)  # of the first that forces near those here drive
             if found.certificates:
                 return
         observe(found)
-
-
-def _certified(system: Equilibrium, motions: Iterator[Array], found: Search) -> list[Certificate]:
-    """The first of some mechanisms ``(nd,)`` that forces near those that are found drive."""
-    for motion in motions:
-        certificate = roughly_certified(system, motion, found.add_programs)
-        if certificate is not None:
-            return [certificate]
-    return []
 
 
 def _corners(

@@ -24,7 +24,7 @@ from runningbond.joints.stiffness import block_compliance
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
-from runningbond.limit.dilatancy import sliding_dilates
+from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS
 from runningbond.results import Outcome
 from runningbond.scene import Closure, Scene, SceneError, Settlement, Stiffness

@@ -8,7 +8,7 @@ import numpy as np
 
 from runningbond.joints.stiffness import block_compliance
 from runningbond.limit import elastic_displacement
-from runningbond.limit.dilatancy import sliding_dilates
+from runningbond.limit.kinematics import sliding_dilates
 from runningbond.models import MODELS, Kind, Model
 from runningbond.results import Outcome
 from runningbond.results.outcome import number
