@@ -88,7 +88,7 @@ def _closer(path: LoadPath, lead: StaticLead, run: Run, turns: bool) -> Run:
 
 
 def lead_along(outcome: Outcome, path: LoadPath, tolerance: float, first_step: float) -> Outcome:
-    """StaticLead a wall from rest under its dead load through the displacements of its scene.
+    """Lead a wall from rest under its dead load through the displacements of its scene.
 
     Parameters
     ----------

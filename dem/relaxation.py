@@ -106,7 +106,8 @@ def relax(
     while True:
         residual = system.unbalanced(x, response, control)
         path.append((float(np.abs(x[:nd] - guess[:nd]).max()), _norm(residual[:nd])))
-        if _balanced(residual, response):
+        # Displacements, of which one unit makes about one unit of force, are held to the same measure.
+        if np.abs(residual).max() <= BALANCED * _largest(response):
             return Rest("rest", x, response, last, solves)
         if path[-1][0] > far and _steady(path, STEADY):
             return Rest("fall", x, response, last, solves)
@@ -174,11 +175,6 @@ def _steady(path: list[tuple[float, float]], share: float) -> bool:
     """Whether the unbalanced force is still some share of what it was before half the motion, or larger."""
     moved, size = path[-1]
     return size >= share * next(before for way, before in reversed(path) if way <= moved / 2)
-
-
-def _balanced(residual: Array, response: PointResponse) -> bool:
-    # Displacements, of which one unit makes about one unit of force, are held to the same measure.
-    return bool(np.abs(residual).max() <= BALANCED * _largest(response))
 
 
 def _largest(response: PointResponse) -> float:

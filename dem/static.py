@@ -28,7 +28,7 @@ from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands
 from runningbond.limit.equilibrium import equilibrium
 from runningbond.limit.kinematics import control_row, dead_load, live_load
 from runningbond.results import Outcome, Supports
-from runningbond.results.outcome import number
+from runningbond.results.outcome import joined, number
 from runningbond.scene import Scene, check_scene
 
 from .climb import INTERRUPTED, NEITHER, climb, ends, look_closer, peak
@@ -111,7 +111,9 @@ def dem_static(
                 if len(scene.late_pins):
                     system, late = with_late_pins(system, rest.x)
                     rest = replace(rest, x=late)
-                rests, elastic = [state_of(system, rest)], _elastic(scene, system)
+                # Under the live load, where joints neither open nor slip.
+                moved = elastic_displacement(scene.with_block(young=None), system.equilibrium.live_unit) or 0.0
+                elastic, rests = moved / system.length_unit, [state_of(system, rest)]
                 path = LoadPath(system, far, budget - rest.solves, rests, elastic, observe=observe)
                 observe(path, path.rests[0])
                 if scene.is_led:
@@ -120,17 +122,10 @@ def dem_static(
                 else:
                     outcome = _on_paths(outcome, path, budget, first_step, tolerance, past)
                 notes = _window(path), ends_note(scene, system.equilibrium.points)
-                message = "; ".join(filter(None, (outcome.message, *notes)))
-                outcome = replace(outcome, message=message)
+                outcome = replace(outcome, message=joined(outcome.message, *notes))
     except KeyboardInterrupt:
         outcome = replace(outcome, message=f"no answer: {INTERRUPTED}")
     return replace(outcome, seconds=time.perf_counter() - start)
-
-
-def _elastic(scene: Scene, system: StaticSystem) -> float:
-    """Motion under the live load of a wall whose joints neither open nor slip, in units of the system."""
-    moved = elastic_displacement(scene.with_block(young=None), system.equilibrium.live_unit)
-    return (moved or 0.0) / system.length_unit
 
 
 def _window(path: LoadPath) -> str:

@@ -21,7 +21,7 @@ from runningbond.pictures.moments import farthest_shape, moving_wall
 from runningbond.pictures.quantities import counted
 from runningbond.pictures.sheet import Sheet
 from runningbond.results import Outcome
-from runningbond.results.outcome import number, two_digits
+from runningbond.results.outcome import joined, number, two_digits
 
 from .figures import wall_curves
 from .page import inline_svg, templates
@@ -133,7 +133,7 @@ def _card(comparison: Comparison, name: str) -> dict[str, Any]:
     scene = comparison.scenes[name]
 
     def said(outcome: Outcome) -> str:
-        return "; ".join(filter(None, (outcome.message, mechanism_warning(scene, outcome))))
+        return joined(outcome.message, mechanism_warning(scene, outcome))
 
     outcomes = {x.name: outcome for x in comparison.models if (outcome := comparison.outcome(name, x)) is not None}
     shapes = {model: shape for model, x in outcomes.items() if (shape := mechanism_shape(scene, x)) is not None}

@@ -12,6 +12,7 @@ from threadpoolctl import threadpool_limits
 from runningbond.joints import JointPoints, ends_note, stiffness_note
 from runningbond.joints.stiffness import GIVES
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
+from runningbond.results.outcome import joined
 from runningbond.scene import Array, Indices, Scene
 
 from .collapse import U_CRIT, Criteria
@@ -114,7 +115,7 @@ def collapse_by_steps(
     criteria = Criteria(collapse=collapse * sizes, budget=budget)
     first = first_step / (system.measure(system.live) or 1.0)  # pins may take up all of it
     outcome = Outcome(scene.title, model, "undecided", dofs=system.freedoms)
-    note = "; ".join(filter(None, (note, beam_note(scene), ends_note(scene, points))))
+    note = joined(note, beam_note(scene), ends_note(scene, points))
     try:
         # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):
@@ -122,7 +123,7 @@ def collapse_by_steps(
                 outcome = collapse_of_led(
                     outcome, scene, run, tolerance, points, point_order, is_self_locking, bears, criteria, observe
                 )
-                return replace(outcome, message="; ".join(filter(None, (outcome.message, note))))
+                return replace(outcome, message=joined(outcome.message, note))
             result, above = LoadSteps(interrupted=True), None
             with suppress(KeyboardInterrupt):
                 above = bound()
@@ -131,7 +132,7 @@ def collapse_by_steps(
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
     if result.rests:
-        outcome = replace(outcome, curve=_curve(run, result), **_path(scene, run, result, points))
+        outcome = replace(outcome, **_path(scene, run, result, points))
     outcome = replace(outcome, steps=result.steps)
     outcome = _judge(outcome, scene, run, result, tolerance, point_order, is_self_locking, criteria, bears)
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
@@ -139,12 +140,12 @@ def collapse_by_steps(
         message = "moves as far under its dead load as counts as collapse"
         outcome = replace(outcome, status="undecided", message=message)
     elif outcome.status == result.verdict == "undecided" and not result.interrupted:
-        note = "; ".join(part for part in (note, f"each load was followed for at most {budget * run.dt:.2g} s") if part)
+        note = joined(note, f"each load was followed for at most {budget * run.dt:.2g} s")
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
     state = result.fallen or result.borne
     crushed = "" if state is None else run.crushing_note(state)
-    parts = (outcome.message, note, long if run.dt > run.safe_step else "", stiffness, crushed)
-    return replace(outcome, message="; ".join(part for part in parts if part))
+    long = long if run.dt > run.safe_step else ""
+    return replace(outcome, message=joined(outcome.message, note, long, stiffness, crushed))
 
 
 def _search(
@@ -191,13 +192,6 @@ def _note_on_stiffness(scene: Scene, run: Run, result: LoadSteps, collapse: floa
     return stiffness_note(overlap, collapse, scene.block_size, stiffest, smallest)
 
 
-def _moved(run: Run, result: LoadSteps, criteria: Criteria) -> float:
-    """How far the wall has moved under the largest load at rest, in what counts as collapse [1]."""
-    if result.borne is None or not result.rests:
-        return 0.0
-    return run.system.farthest(result.borne.motion - result.rests[0][1].motion, criteria.collapse)
-
-
 def _judge(
     outcome: Outcome,
     scene: Scene,
@@ -230,7 +224,8 @@ def _judge(
     lost = run.unaccounted(result.fallen)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
-    if _moved(run, result, criteria) > 1 and is_self_locking():
+    moved = run.system.farthest(result.borne.motion - result.rests[0][1].motion, criteria.collapse)
+    if moved > 1 and is_self_locking():
         message = "self-locking: it gives as far at rest as counts as collapse, and joint forces balance any multiple"
         return replace(outcome, status="unbounded", lower=None, upper=None, motion=np.zeros((0, 3)), message=message)
     if result.verdict == "undecided":
@@ -274,24 +269,16 @@ def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
     return motions[-1]
 
 
-def _curve(run: Run, result: LoadSteps) -> Array:
-    """Control displacement and multiplier of the states at rest, then of the fall."""
-    return np.array([(run.system.control @ state.motion, multiplier) for multiplier, state in _states(result)])
-
-
 def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dict[str, Any]:
-    """Reactions and works of the same states."""
-    states = _states(result)
+    """Control displacement and multiplier of the states at rest, then of the fall; and their reactions and works."""
+    states = result.rests
+    if result.fallen is not None and result.upper is not None:
+        states = [*states, (result.upper, result.fallen)]
+    curve = np.array([(run.system.control @ state.motion, multiplier) for multiplier, state in states])
     dead = np.array([run.dead_work(state) for _, state in states])
     works = np.column_stack([dead, [state.external for _, state in states] - dead])
     forces = [np.column_stack(run.forces(state)) for _, state in states]
     ties = [run.system.ties.force(state.motion, state.stretch) for _, state in states]
     supports = Supports(scene, points, run.system.owner)
-    return supports.path(forces, ties, [load for load, _ in states], works, falls=len(states) > len(result.rests))
-
-
-def _states(result: LoadSteps) -> list[tuple[float, State]]:
-    """Every state at rest, then the fall, each with its multiplier."""
-    if result.fallen is None or result.upper is None:
-        return result.rests
-    return [*result.rests, (result.upper, result.fallen)]
+    falls = len(states) > len(result.rests)
+    return {"curve": curve, **supports.path(forces, ties, [load for load, _ in states], works, falls=falls)}

@@ -14,7 +14,7 @@ import numpy as np
 
 from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
-from runningbond.results.outcome import number
+from runningbond.results.outcome import joined, number
 from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
 from runningbond.scene import Indices, Scene
 
@@ -89,7 +89,7 @@ def collapse_of_led(
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, ways, tolerance)
-    outcome = replace(outcome, message="; ".join(filter(None, (outcome.message, run.crushing_note(way.best)))))
+    outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(way.best)))
     if outcome.status == "undecided" and outcome.upper is None and not lead.settles and is_self_locking():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from homog import homog
 from runningbond.limit import elastic_displacement, limit, limit_nonassociated
 from runningbond.results import Outcome
+from runningbond.results.outcome import joined
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.history import FACTOR
 from runningbond.scene.mass_loads import Tilt
@@ -220,7 +221,7 @@ def run_model(
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
         notes += [_tilted_with_the_ground(scene)]
-    return replace(outcome, model=model.name, message="; ".join(filter(None, notes)))
+    return replace(outcome, model=model.name, message=joined(*notes))
 
 
 def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
@@ -292,5 +293,5 @@ def respond(model: str | Model, scene: Scene, /, scale: float = 1.0, **settings:
 
     response = follow(scene, scale, **settings)
     impacts = impact_note(scene) if len(response.time) else ""
-    parts = response.message, impacts, beam_note(scene), _left_out(find_model(model), scene)
-    return replace(response, message="; ".join(filter(None, parts)))
+    notes = impacts, beam_note(scene), _left_out(find_model(model), scene)
+    return replace(response, message=joined(response.message, *notes))

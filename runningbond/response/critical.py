@@ -16,7 +16,7 @@ import numpy as np
 from runningbond.dynamics import BlockSystem, Observer, beam_note, no_observer
 from runningbond.joints import impact_note
 from runningbond.results import Outcome, fastest_corner_by_one
-from runningbond.results.outcome import number
+from runningbond.results.outcome import joined, number
 from runningbond.results.reactions import AT_REST
 from runningbond.scene import Scene
 from runningbond.scene.history import STANDARD_GRAVITY
@@ -106,7 +106,7 @@ def critical_scale(
     if outcome.upper is not None and observe is not no_observer and not stopped:
         with suppress(KeyboardInterrupt):
             follow(rest, outcome.upper, after=AFTER, rows=ROWS, observe=observe)
-    message = "; ".join(filter(None, (outcome.message, impact_note(scene), note, beam_note(scene))))
+    message = joined(outcome.message, impact_note(scene), note, beam_note(scene))
     return replace(outcome, message=message, seconds=seconds)
 
 
@@ -173,4 +173,4 @@ def _judged(outcome: Outcome, rest: Resting, search: Search, tolerance: float, s
         f"scales were tried in steps of {RATIO:g} up to {number(runs[-1].scale)}; narrower windows are not seen",
     )
     middle = (lower.scale + upper.scale) / 2
-    return replace(outcome, status="collapse", multiplier=middle, message="; ".join(filter(None, parts)))
+    return replace(outcome, status="collapse", multiplier=middle, message=joined(*parts))

@@ -125,6 +125,11 @@ ARRAYS |= {"moments": 3, "moment_loads": 1}
 """Array fields and their number of columns."""
 
 
+def joined(*parts: str) -> str:
+    """Those parts of a message that say anything."""
+    return "; ".join(filter(None, parts))
+
+
 def two_digits(value: float) -> str:
     """A number with the two digits that count, without an exponent below a million."""
     return f"{float(f'{value:.2g}'):g}"

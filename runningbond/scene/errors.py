@@ -3,6 +3,9 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+LONGEST = 60
+"""Characters of a value that are shown."""
+
 
 class SceneError(ValueError):
     """Input that describes no wall.
@@ -37,9 +40,9 @@ def keys_of(table: str, default: str) -> Iterator[None]:
         raise SceneError(table + error.key.removeprefix(default), error.remedy, error.value) from None
 
 
-def _abbreviated(value: object, limit: int = 60) -> str:
+def _abbreviated(value: object) -> str:
     try:
         text = " ".join(repr(value).split())
     except ValueError:  # Python refuses to print integers of thousands of digits
         return "(a number too long to print)"
-    return text if len(text) <= limit else f"{text[: limit - 1]}…"
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
