@@ -210,19 +210,21 @@ class DeformableContacts:
         part = np.where(np.arange(6)[:, None] // 2 == 1, share, 1.0)
         return np.column_stack([values, lost])[:, at] * part  # -1, of those that are none, is the last
 
-    def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
-        """As of `ContactSearch`."""
+    def _gathered(self, contacts: Contacts, motion: Array) -> DeformableSides:
+        """The geometry of contacts where a motion ``(nd,)`` has taken them."""
         geometry = self.geometry(contacts)
         gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
-        contact = geometry.contact
+        return geometry
+
+    def pulls(self, contacts: Contacts, motion: Array, force: Array) -> Array:
+        """As of `ContactSearch`."""
+        contact = self._gathered(contacts, motion).contact
         pull, shear = turn_out.py_func(*force, contact[:, 7])
         return in_space(pull, shear * contact[:, 6], contact[:, 2:4])
 
     def resultants(self, contacts: Contacts, motion: Array, force: Array) -> Array:
         """As of `ContactSearch`."""
-        geometry = self.geometry(contacts)
-        gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
-        contact = geometry.contact
+        contact = self._gathered(contacts, motion).contact
         pull, shear = turn_out.py_func(*force, contact[:, 7])
         return contacts.resultants(self.outline, contact[:, :4], np.array([pull, shear * contact[:, 6]]))
 
@@ -230,8 +232,7 @@ class DeformableContacts:
     def _joint_points(self) -> tuple[Indices, Array]:
         """Key of the contact of the same joint nearest to each joint point, and the point's part of its area."""
         contacts, points = self.undeformed, self.blocks.wall.elements.points
-        geometry = self.geometry(contacts)
-        gather_deformable(np.zeros(len(self.blocks.wall.mass)), tuple(geometry), *np.zeros((2, len(contacts))))
+        geometry = self._gathered(contacts, np.zeros(len(self.blocks.wall.mass)))
         nearest = np.zeros(len(points), dtype=np.int64)
         for joint in np.unique(points.joint):
             here, own = np.flatnonzero(points.joint == joint), np.flatnonzero(contacts.joint == joint)
@@ -242,8 +243,7 @@ class DeformableContacts:
 
     def resting(self, contacts: Contacts, motion: Array) -> Indices:
         """A number of the corner or point that rests and the side it rests on, for each contact."""
-        geometry = self.geometry(contacts)
-        gather_deformable(motion, tuple(geometry), *np.zeros((2, len(contacts))))
+        geometry = self._gathered(contacts, motion)
         of_a = geometry.touched[:, 2] == 1
         v, w, _, _, e, f = contacts.ends.astype(np.int64).T
         inner = contacts.inwards == 0

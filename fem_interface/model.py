@@ -33,6 +33,7 @@ from runningbond.joints.wall_points import spread_rule
 from runningbond.limit import bears_dead_load, elastic_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
+from runningbond.results.outcome import joined
 from runningbond.scene import Array, Scene, SceneError, check_scene
 from runningbond.scene.ranges import one_of
 
@@ -185,9 +186,8 @@ def _note(wall: ModalWall, system: BlockSystem, cracks: Cracks) -> str:
     """What a message says of how the blocks were taken."""
     deformed = wall.stiffness > 0
     factor = largest_scaling(system.mass[deformed], wall.mass[deformed])
-    notes = [inertia_note(system.inertia_scaling)]
-    notes += [f"masses of deformable modes scaled up to {factor:.3g} times"] if factor > 1.005 else []
-    note = "; ".join(filter(None, notes))
+    scaled = f"masses of deformable modes scaled up to {factor:.3g} times" if factor > 1.005 else ""
+    note = joined(inertia_note(system.inertia_scaling), scaled)
     note += ", those of soft blocks coupled across joints" if len(system.coupling.freedom) else ""
     note += ", pieces of blocks heavier against one another" if len(system.clusters.cluster) else ""
     if cracks == "blocks" and (more := added_compliance(wall.pieces)) > SOFTER:
@@ -259,9 +259,7 @@ def fem_pushover(
     arm = at - scene.blocks.centroid[held]
 
     def measure(motion: Array) -> tuple[float, float]:
-        cosine, sine, x, y = blocks.outline.placed(blocks.rigid(motion)).blocks[:, held]
-        px, py = (arm + rows @ motion).T
-        control = np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py]) - at
+        control = blocks.placed(held, arm + rows @ motion, motion) - at
         moved = (blocks.positions(motion)[corners] - scene.blocks.vertices) @ direction
         return float((control @ direction).mean()), float(moved.max())
 

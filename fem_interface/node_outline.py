@@ -14,7 +14,7 @@ from runningbond.contacts.outline import Outline
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints.points import trapezoids
 from runningbond.joints.wall_points import BETWEEN, spreads
-from runningbond.scene import Array, Blocks, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene, SceneError
 
 from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, SidePoints, Sides
@@ -71,11 +71,18 @@ class NodeOutline:
 
     def positions(self, motion: Array) -> Array:
         """Where the nodes of the mesh are after a motion ``(nd,)``, ``(nn, 2)`` [m]."""
-        mesh, blocks = self.wall.mesh, self.outline.blocks
-        deformed = motion.copy()
+        mesh, deformed = self.wall.mesh, motion.copy()
         deformed[self.wall.rigid] = 0.0
-        cosine, sine, x, y = self.outline.placed(self.rigid(motion)).blocks[:, mesh.block]
-        px, py = (mesh.points - blocks.centroid[mesh.block] + self.wall.displacement(deformed)).T
+        arm = mesh.points - self.scene.blocks.centroid[mesh.block] + self.wall.displacement(deformed)
+        return self.placed(mesh.block, arm, motion)
+
+    def placed(self, block: Indices, arm: Array, motion: Array) -> Array:
+        """Where points of blocks ``(n,)`` are after a motion ``(nd,)``, ``(n, 2)`` [m].
+
+        Their arms ``(n, 2)`` [m] are from the blocks' centroids, and in the blocks' frames.
+        """
+        cosine, sine, x, y = self.outline.placed(self.rigid(motion)).blocks[:, block]
+        px, py = arm.T
         return np.column_stack([x + cosine * px - sine * py, y + sine * px + cosine * py])
 
     def new_tables(self) -> NodalTables:
@@ -113,18 +120,12 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     return NodeOutline(wall, outline, node, row, first, nodes, points, sides, parts, tables)
 
 
-def _following(first: Indices, blocks: Blocks) -> Indices:
-    """Next outline node of each, from the first one of each side, ``(no,)``."""
-    following = np.arange(1, first[-1] + 1)
-    following[first[1:] - 1] = first[blocks.successor]
-    return following
-
-
 def _outline_nodes(wall: ModalWall, node: Indices, first: Indices, place: Indices) -> OutlineNodes:
     blocks, position = wall.scene.blocks, wall.mesh.points[node]
     side = np.repeat(np.arange(len(first) - 1), np.diff(first))
     owner = blocks.owner[side]
-    following = _following(first, blocks)
+    following = np.arange(1, first[-1] + 1)
+    following[first[1:] - 1] = first[blocks.successor]
     length = np.hypot(*(position[following] - position).T)
     total = np.cumsum(length) - length
     return OutlineNodes(

@@ -40,7 +40,8 @@ def with_heavier_pieces(wall: ModalWall, system: BlockSystem) -> BlockSystem:
     system
         Its pieces, with modes as `mass_scaling` has them.
     """
-    block = _block_of_piece(wall)
+    points, count = wall.elements.points, len(wall.scene.blocks)
+    block = components(points.block[wall.scene.joints.inner[points.joint]], count)  # of all that these hold together
     part = (np.bincount(block)[block] > 1) & ~wall.scene.fixed
     part[np.isin(block, block[wall.scene.pins.block])] = False
     if wall.pieces.are_blocks or not part.any():
@@ -77,13 +78,6 @@ def _longer(wall: ModalWall, block: Indices) -> float:
     np.maximum.at(high, block[wall.mesh.block], wall.mesh.points)
     longest = (high - low)[np.bincount(block) > 1].max()
     return float(min(LONGER, time * min(speeds, default=np.inf) / (2 * longest * UNNOTICED)))
-
-
-def _block_of_piece(wall: ModalWall) -> Indices:
-    """Number of the block that each piece is part of, ``(np,)``: of all that inner joints hold together."""
-    count, points = len(wall.scene.blocks), wall.elements.points
-    joined = points.block[wall.scene.joints.inner[points.joint]]
-    return components(joined, count)
 
 
 def _clusters(wall: ModalWall, block: Indices, part: Mask, more: float) -> Clusters:
