@@ -14,9 +14,9 @@ from .scene.ranges import path_of, suggestion
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from .drawn_response import DrawnResponse
     from .draws import Draws
     from .models import Model
+    from .pictures.response import DrawnResponse
     from .run_result import Result
 
 TABLES = {
@@ -290,8 +290,8 @@ class Wall:
             ``points``, to be followed instead of the upper corners (m, ``(k, 2)``), and ``after``, the time for which
             the wall is followed once a block has fallen [s].
         """
-        from .drawn_response import DrawnResponse
         from .models import respond
+        from .pictures.response import DrawnResponse
 
         return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)))
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from runningbond.response import ENERGIES, Response
 
+from .captions import to_png, to_svg
 from .charts import bare
 from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
@@ -54,3 +55,13 @@ def response_figure(response: Response) -> "Figure":
     title = "\n".join([*textwrap.wrap(response.scene, LETTERS), *verdict])
     figure.suptitle(title, fontsize=TYPE, parse_math=False)
     return figure
+
+
+class DrawnResponse(Response):
+    """What `Wall.respond` returns: a response, and its chart in notebooks; none where the wall was not shaken."""
+
+    def _repr_svg_(self) -> str | None:
+        return to_svg(response_figure(self)).decode() if len(self.time) else None
+
+    def _repr_png_(self) -> bytes | None:
+        return to_png(response_figure(self)) if len(self.time) else None
