@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from runningbond.results import Outcome
 from runningbond.results.store import StoreError, load_outcome, load_scene, write_atomically
-from runningbond.scene import Indices
+from runningbond.scene import Indices, Scene
 
 from .captions import to_png, to_svg
 from .deformed_shape import DeformedShape, farthest_motion, series_scale, undeformed_shape
@@ -73,15 +74,15 @@ def render_folder(folder: Path, colouring: Colouring = "displacement") -> list[P
             figure = mechanism_figure(scene, outcome, painter, colouring)
             write_atomically(folder / "rendering.png", to_png(figure))
             written.append(folder / "rendering.png")
-        return written + _render_series(folder, colouring, painter)
+        return written + _render_series(folder, scene, outcome, colouring, painter)
 
 
-def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list[Path]:
+def _render_series(folder: Path, scene: Scene, outcome: Outcome, colouring: Colouring, painter: Painter) -> list[Path]:
     """Draw the moments of a folder, those of a film from one point of view and to one scale: that of the farthest."""
-    shapes = _shapes(folder, colouring)
+    shapes = _shapes(folder, scene, colouring)
     if not shapes:
         return []
-    outcome, last, written = load_outcome(folder)[0], shapes[-1], []
+    last, written = shapes[-1], []
     if len({shape.multiplier for shape in shapes}) > 1:  # under one load, it is the mechanism once more
         write_atomically(folder / "last-moment.png", to_png(frame_figure(last, outcome, painter)))
         written.append(folder / "last-moment.png")
@@ -95,8 +96,7 @@ def _render_series(folder: Path, colouring: Colouring, painter: Painter) -> list
     return written
 
 
-def _shapes(folder: Path, colouring: Colouring) -> list[DeformedShape]:
-    scene = load_scene(folder)
+def _shapes(folder: Path, scene: Scene, colouring: Colouring) -> list[DeformedShape]:
     shapes = []
     for blocks, joints in zip(frame_files(folder, "blocks"), frame_files(folder, "joints"), strict=False):
         try:
@@ -112,7 +112,7 @@ def view_folder(folder: Path, colouring: Colouring = "displacement") -> None:
     """Show a folder's mechanism, its last moment or its undeformed wall in a window, until that is closed."""
     pv = import_pyvista("Plotter")
     outcome, scene = load_outcome(folder)[0], load_scene(folder)
-    shape = mechanism_shape(scene, outcome) or next(reversed(_shapes(folder, colouring)), undeformed_shape(scene))
+    shape = mechanism_shape(scene, outcome) or [undeformed_shape(scene), *_shapes(folder, scene, colouring)][-1]
     plotter: Any = pv.Plotter(title=f"{outcome.scene}: {outcome.model}")
     plotter.set_background("white")
     fill_plotter(plotter, replace(shape, colouring=colouring), 1.5)

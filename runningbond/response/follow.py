@@ -11,6 +11,7 @@ import math
 import time
 from dataclasses import replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -64,6 +65,23 @@ SPENT = 0.01
 """Share of what a wall that sways loses by viscosity which its joints may take."""
 
 
+class _Row(NamedTuple):
+    """What was seen at one time: a row of a `Response`, whose `places` are displacements of its points."""
+
+    time: float
+    ground: Array
+    places: Array
+    drift: float
+    reaction: Array
+    energy: Array
+    fallen: int
+
+    @property
+    def kinetic(self) -> float:
+        """Energy that was in motion [J]."""
+        return float(self.energy[ENERGIES.index("kinetic")])
+
+
 class _Log:
     """Rows of a response as they come, and the blocks that have fallen."""
 
@@ -84,7 +102,7 @@ class _Log:
         self.shape = np.zeros((len(self._blocks), 3))
         self._motion, self._places, self._energies = state.motion.copy(), self._where(state), self._energy(state)
         self._momentum, self._time = ground.momentum(state), state.time
-        self.rows: list[tuple[float, Array, Array, float, Array, Array, int]] = []
+        self.rows: list[_Row] = []
         self.first: list[int] = []
         self._gone = 0.0
         self.look(state)
@@ -102,30 +120,30 @@ class _Log:
         pushed = (momentum - self._momentum) / span if span else np.zeros(2)
         self._momentum, self._time = momentum, state.time
         places = self._where(state) - self._places
-        motion = (self.ground.acceleration(now), places, float(places[:, 0].mean() / self._height))
+        ground, drift = self.ground.acceleration(now), float(places[:, 0].mean() / self._height)
         energy = self._energy(state) - self._energies
-        self._gone += float(np.abs(energy[:2] - (self.rows[-1][5][:2] if self.rows else 0.0)).sum())
-        self.rows.append((now, *motion, pushed - self._dead, energy, len(self.first)))
+        self._gone += float(np.abs(energy[:2] - (self.rows[-1].energy[:2] if self.rows else 0.0)).sum())
+        self.rows.append(_Row(now, ground, places, drift, pushed - self._dead, energy, len(self.first)))
 
     @property
     def is_lost(self) -> bool:
         """Whether more energy is missing, by more than rest has, than works have gone through."""
-        energy = self.rows[-1][5]
+        energy = self.rows[-1].energy
         return not abs(supplied(energy[None])[0] - energy[2:].sum()) <= self._gone + self._calm
 
     def is_calm(self, since: float) -> bool:
         """Whether hardly any energy was in motion from a time on [s], no more of it later, and nothing came far."""
-        rows = [row for row in self.rows if row[0] >= since]
-        energy = np.array([row[5][2] for row in rows])
+        rows = self._since(since)
+        energy = np.array([row.kinetic for row in rows])
         before, late = energy[: len(energy) // 2].max(initial=0.0), energy[len(energy) // 2 :].max(initial=0.0)
         if max(before, late) > self._calm or late > max(before, GATHERS * self._calm):
             return False
-        return bool(np.ptp([row[2] for row in rows], axis=0).max() <= self._still)
+        return bool(np.ptp([row.places for row in rows], axis=0).max() <= self._still)
 
     def swaying(self, since: float) -> Array | None:
         """Least and largest drift ``(2,)`` of late of a wall that from a time on [s] has only swayed, and ever less."""
-        rows = [row for row in self.rows if row[0] >= since]
-        drift, energy = np.array([row[3] for row in rows]), np.array([row[5] for row in rows])
+        rows = self._since(since)
+        drift, energy = np.array([row.drift for row in rows]), np.array([row.energy for row in rows])
         before, late = drift[: len(rows) // 2], drift[len(rows) // 2 :]
         spent, damped = energy[-1, 4:] - energy[0, 4:]
         within = before.min() < late.min() <= late.max() < before.max()
@@ -133,9 +151,12 @@ class _Log:
 
     def runs_away(self, since: float) -> bool:
         """Whether a wall has gathered energy ever since a time [s], as one that slides under a load that stays on."""
-        energy = np.array([row[5][2] for row in self.rows if row[0] >= since])
+        energy = np.array([row.kinetic for row in self._since(since)])
         parts = [float(part.mean()) for part in np.array_split(energy, PARTS)]
         return all(later > FASTER * before for before, later in pairwise(parts)) and parts[0] > GATHERS * self._calm
+
+    def _since(self, time: float) -> list[_Row]:
+        return [row for row in self.rows if row.time >= time]
 
     def _where(self, state: State) -> Array:
         return self._outline.points(self._block, self.points, state.motion[self._run.system.rigid].ravel())
