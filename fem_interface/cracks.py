@@ -142,6 +142,8 @@ def pieces(scene: Scene, mesh: WallMesh, cracks: Cracks) -> Pieces:
     SceneError
         If blocks are to crack and the scene does not say at what strength, or has ties or supports that move.
     """
+    if cracks not in ("joints", "blocks"):
+        raise ValueError(f'cracks = {cracks!r}: must be "joints" or "blocks"')
     if cracks == "joints":
         return Pieces(scene, mesh, np.arange(len(scene.blocks)), np.arange(len(mesh.points)))
     if other := [key for key in scene.extras if not key.startswith("beam")]:

@@ -162,6 +162,8 @@ def joint_elements(
     SceneError
         If the inset leaves nothing of a joint's last element.
     """
+    if points not in ("elements", "joints"):
+        raise ValueError(f'points = {points!r}: must be "elements" or "joints"')
     rule = rule or wall_rule(scene)
     inset = wall_inset(scene)
     element, local, share = (_on_elements if points == "elements" else _on_joints)(mesh, scene, rule, inset)
