@@ -194,14 +194,15 @@ def test_a_wall_whose_energy_is_made_by_too_long_a_step_is_not_followed_on(monke
 def test_a_verdict_whose_ledger_does_not_close_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A corner that bounces, for hardly any viscosity, loses more than is counted at each of its blows.
 
-    At half of the step that is taken; at a quarter the ledger would close.
+    At a quarter of the step that is taken a few thousandths, of which no more than one is allowed here.
     """
-    monkeypatch.setattr(import_module("runningbond.response.follow"), "PART", 1.8)
+    allowed = 1e-3
+    monkeypatch.setattr(import_module("runningbond.response.follow"), "MISSED", allowed)
     housner = HousnerBlock()
     pulse = shaken("sine", 1.5 * GRAVITY * housner.b / housner.h, 2 * math.pi / (4 * housner.p))
     response = follow(replace(resting(block(housner.b, housner.h, pulse)), viscous=0.03), 1.0, rows=50)
     assert response.verdict == "stands"
-    assert 0.01 < response.unaccounted < 1
+    assert allowed < response.unaccounted < 0.01
     assert f"{response.unaccounted:.1%} of the energy supplied is unaccounted for" in response.message
 
 
