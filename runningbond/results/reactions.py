@@ -24,6 +24,9 @@ AT_REST = "at rest"
 UNFELT = 1e-6
 """Force, beside the largest in any joint, that counts as none."""
 
+UNSEEN = 1e-9
+"""Coordinate, in sizes of the wall, that is told as zero: cosines of a right angle leave 6e-17."""
+
 COME_FREE = "it bridges the support, which bears nothing of it where the settlement ends"
 """What is said of a wall at rest whose supports have come free."""
 
@@ -93,9 +96,10 @@ class Supports:
         """Names of the numbers that `reactions` gives, and of the ties' forces."""
         ties = [f"tie {k} [N]" for k in range(len(self._scene.ties))]
         heads = ("horizontal [N]", "vertical [N]", "moment about ({:.6g}, {:.6g}) [N m]")
+        places = np.where(np.abs(self.about) < UNSEEN * self._scene.size, 0.0, self.about)
         return [
             f"{name} {head.format(*about)}"
-            for name, about in zip(self._names(), self.about.tolist(), strict=True)
+            for name, about in zip(self._names(), places.tolist(), strict=True)
             for head in heads
         ] + ties
 

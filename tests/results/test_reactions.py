@@ -1,5 +1,7 @@
 """Reactions and works along a path: what is held bears what pushes, state by state."""
 
+import math
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -9,7 +11,7 @@ from runningbond.joints import wall_points
 from runningbond.models import run_model
 from runningbond.results import Outcome, Supports, load_outcome, save_outcome
 from runningbond.results.reactions import AT_REST, WORKS
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, BlockMaterial, JointMaterial, Lateral, Load, Scene, build_scene
 from tests.at_length import at_length
 
 from ..walls import courses, panel
@@ -80,6 +82,16 @@ def test_a_block_on_its_base_by_hand() -> None:
     assert (horizontal, vertical) == pytest.approx((-weight / 2, weight))
     assert moment == pytest.approx(0.5 * weight)
     assert np.isnan([columns[work][0] for work in WORKS]).all()
+
+
+def test_places_of_moments_are_told_without_what_rounding_leaves_of_zero() -> None:
+    """An arch about the origin, whose springings cosines and sines of half a turn put at 1e-16 m."""
+    rays = [(math.cos(angle), math.sin(angle)) for angle in np.linspace(math.pi, 0, 4)]
+    ends = np.array([[0.7 * np.array(ray), 1.3 * np.array(ray)] for ray in rays])
+    voussoirs = [np.array([a[0], b[0], b[1], a[1]]) for a, b in pairwise(ends)]
+    joint, load = JointMaterial(0.7), Load(live=(Lateral(),))
+    scene = build_scene("arch", voussoirs, thickness=0.1, block=BlockMaterial(2000.0), joint=joint, load=load)
+    assert "ground moment about (0, 0) [N m]" in Supports(scene, wall_points(scene)).columns
 
 
 def test_stepped_ground_is_a_support_a_piece() -> None:
