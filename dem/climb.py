@@ -8,7 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from runningbond.dynamics.collapse_load import LARGEST_LOAD
+from runningbond.dynamics.collapse_load import BEYOND_BOUND, LARGEST_LOAD
 from runningbond.limit import proved_bound
 
 from .pushover import NOISE, LoadPath, StaticState, lengthened
@@ -24,9 +24,11 @@ def climb(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[f
     """Load a wall until it has fallen, close enough to the last load at rest, or note why it is undecided.
 
     Of a wall that has fallen, loads that are `asked` for are tried before those in the middle. Nothing stands above the
-    bound of limit analysis, which is asked where a wall neither rests nor falls before it has fallen.
+    bound of limit analysis, which is asked where a wall neither rests nor falls before it has fallen, and where it has
+    borne a million first steps: of a light wall whose joints are strong they may be next to nothing.
     """
     step, left, path.undecided = first_step, list(asked), INTERRUPTED
+    most = LARGEST_LOAD * first_step
     with suppress(KeyboardInterrupt):
         while True:
             inside = [load for load in left if path.upper is not None and path.lower < load < path.upper]
@@ -39,15 +41,23 @@ def climb(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[f
             if held.verdict == "undecided":
                 path.unclear.append(load)
                 if path.upper is None and path.budget > 0:
-                    bound = proved_bound(path.system.equilibrium.scene)
-                    path.upper = None if bound is None else max(bound / path.system.equilibrium.live_unit, path.lower)
+                    bound = _bound(path)
+                    path.upper = None if bound is None else max(bound, path.lower)
                 if path.budget <= 0 or path.upper is None or len(path.unclear) > UNCLEAR:
                     path.undecided = "" if path.fall is not None and path.budget > 0 else NEITHER
                     return
             step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
-            if path.upper is None and path.lower > LARGEST_LOAD * first_step:
-                path.undecided = "it bore every load tried"
-                return
+            if path.upper is None and path.lower > most:
+                most = BEYOND_BOUND * (_bound(path) or 0.0)
+                if path.lower > most:
+                    path.undecided = "it bore every load tried"
+                    return
+
+
+def _bound(path: LoadPath) -> float | None:
+    """Load above which limit analysis proves that nothing stands, if it does, in units of the system."""
+    bound = proved_bound(path.system.equilibrium.scene)
+    return None if bound is None else bound / path.system.equilibrium.live_unit
 
 
 def _next_load(path: LoadPath, step: float) -> float:

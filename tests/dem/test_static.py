@@ -262,6 +262,19 @@ def test_block_lifts_off_at_its_weight() -> None:
     assert upper == pytest.approx(1962.0, rel=1e-2)
 
 
+@pytest.mark.parametrize("gravity", [9.81, 1e-3])
+def test_however_light_a_block_is_it_is_lifted_at_the_strength_of_its_joint(gravity: float) -> None:
+    """0.5 m × 0.3 m of joint bear 1e5 Pa of tension: 15 kN and the weight, of which the lighter one is 0.12 N."""
+    glued = JointMaterial(0.7, 1e5, 1e5, elasticity=Stiffness(1e9, 4e8))
+    lift = Load((0.0, -gravity), (PointLoad((0.25, 0.4), (0.0, 1.0)),))
+    stone = [rectangle(0, 0, 0.5, 0.4)]
+    scene = build_scene("stone", stone, thickness=0.3, block=BlockMaterial(2000.0), joint=glued, load=lift)
+    lower, upper = bracket(dem_static(scene))
+    exact = 15e3 + gravity * float(scene.mass[0])
+    assert lower == pytest.approx(exact, rel=1e-6)
+    assert exact < upper <= 1.01 * exact
+
+
 def test_block_that_balances_on_an_edge_bears_no_push() -> None:
     """Its centroid stands over the edge of the block below."""
     lower, _ = bracket(dem_static(pile([rectangle(0, 0, 1, 1), rectangle(0.5, 1, 1, 1)], 0.6)))
