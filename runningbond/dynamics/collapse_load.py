@@ -270,11 +270,15 @@ def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
 
 
 def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dict[str, Any]:
-    """Control displacement and multiplier of the states at rest, then of the fall; and their reactions and works."""
+    """Control displacement, from the rest under the dead load on, and multiplier of the states at rest, then of the fall.
+
+    And their reactions and works.
+    """
     states = result.rests
     if result.fallen is not None and result.upper is not None:
         states = [*states, (result.upper, result.fallen)]
-    curve = np.array([(run.system.control @ state.motion, multiplier) for multiplier, state in states])
+    start = states[0][1].motion
+    curve = np.array([(run.system.control @ (state.motion - start), multiplier) for multiplier, state in states])
     dead = np.array([run.dead_work(state) for _, state in states])
     works = np.column_stack([dead, [state.external for _, state in states] - dead])
     forces = [np.column_stack(run.forces(state)) for _, state in states]

@@ -47,9 +47,9 @@ class Outcome:
         The same four at the other end of an interval of certified loads: at `upper`, or `lower` of a support that
         moves. Empty for models that certify none.
     curve : (n, 2) float
-        Pushover curve: displacement of the control point along the live load [m], and λ. Empty for models
-        that follow no path. The control point is where a point load acts, or the wall's highest corner that
-        lies farthest along a lateral load.
+        Pushover curve: displacement of the control point along the live load [m], from the rest under the dead load
+        on, and λ. Empty for models that follow no path. The control point is where a point load acts, or the wall's
+        highest corner that lies farthest along a lateral load.
     path : (n, k) float
         What else is known of the states of `curve`, in columns that `path_columns` name with their units: reactions
         of all supports (`Supports`), the works of the dead and of the live load since the wall was built, and whether
