@@ -1,7 +1,9 @@
 """Rigid blocks at finite displacements against exact solutions."""
 
+import cmath
 import math
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -354,6 +356,59 @@ def test_a_toppling_block_loses_resistance_as_the_tangent(inset: float) -> None:
     assert falling.sum() > 50
     smooth = np.convolve(multiplier, np.ones(5) / 5, "same")
     assert smooth[falling] == pytest.approx(exact[falling], abs=0.01 * half_width / (half_height + inset))
+
+
+def unfolded(hinge: Array, links: list[tuple[Array, Array]], crown: Array, spin: float) -> tuple[float, Array, float]:
+    """Three links on four hinges ``(4, 2)``, of which the first has turned by an angle.
+
+    Each link has areas ``(n,)`` and centroids ``(n, 2)``, the crown is on the second. Heights and ways of the
+    areas' resultant [m³], and the crown's way [m].
+    """
+
+    def turned(angle: float, arm: Array) -> Array:
+        x, y = arm.T
+        return np.stack([x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)], axis=-1)
+
+    first, second, third = (complex(*link) for link in np.diff(hinge, axis=0))
+    start, end = complex(*hinge[0]) + first * cmath.exp(1j * spin), complex(*hinge[3])
+    # The triangle of the second and third link: its angle at `start` by the law of cosines, on the side it has at rest.
+    base = end - start
+    cosine = (abs(base) ** 2 + abs(second) ** 2 - abs(third) ** 2) / (2 * abs(base) * abs(second))
+    side = math.copysign(1.0, (second / (second + third)).imag)
+    onward = abs(second) * cmath.exp(1j * (cmath.phase(base) + side * math.acos(cosine)))
+    spins = spin, cmath.phase(onward / second), cmath.phase((base - onward) / third)
+    starts = [np.array([at.real, at.imag]) for at in (complex(*hinge[0]), start, start + onward)]
+    place = np.zeros(2)
+    for at, angle, pivot, (area, centroid) in zip(starts, spins, hinge[:3], links, strict=True):
+        place += area @ (at + turned(angle, centroid - pivot))
+    return place[1], place[0], float((starts[1] + turned(spins[1], crown - hinge[1]) - crown)[0])
+
+
+def test_an_arch_unfolds_as_its_three_links() -> None:
+    """Five voussoirs pushed by their weight hinge at joints 0, 2, 4 and 5: λ = dV / dU of the links' linkage, to 1e-3.
+
+    V is the height, U the way of the weights, at any rotation; λ falls by a third on the way.
+    """
+    inner, outer, count = 0.9, 1.1, 5
+    rays = [(math.cos(a), math.sin(a)) for a in np.linspace(np.pi, 0, count + 1)]
+    joints = np.array([[inner * np.array(ray), outer * np.array(ray)] for ray in rays])
+    voussoirs = [np.array([a[0], b[0], b[1], a[1]]) for a, b in pairwise(joints)]
+    scene = dry(voussoirs, friction=2.0, stiffness=1e10)
+    hinged = (0, 2, 4, 5)
+    hinge = np.array([joints[j, k % 2] for k, j in enumerate(hinged)])  # inner and outer ends in turn
+    links = [(scene.blocks.area[a:b], scene.blocks.centroid[a:b]) for a, b in pairwise(hinged)]
+    _, at, direction = scene.control_point
+    assert direction == pytest.approx([1, 0])
+    exact = []
+    for spin in -np.linspace(0.0, 0.05, 51):
+        (low, left, _), (high, right, _) = (unfolded(hinge, links, at, spin + step) for step in (-1e-6, 1e-6))
+        exact.append((unfolded(hinge, links, at, spin)[2], (high - low) / (right - left)))
+    gone, multiplier = np.array(exact).T
+    curve = finite_pushover(scene, 0.02)
+    for way in (0.001, 0.005, 0.01, 0.019):
+        expected = np.interp(way, gone, multiplier)
+        assert np.interp(way, curve[:, 0], curve[:, 2]) == pytest.approx(expected, rel=1e-3)
+    assert multiplier[0] > 1.4 * np.interp(0.019, gone, multiplier)
 
 
 @pytest.mark.parametrize("inset", [0.0, 0.02])
