@@ -28,7 +28,7 @@ from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
 from runningbond.dynamics.rig import Displacements, is_finite
 from runningbond.dynamics.run import MOVING
 from runningbond.joints.wall_law import with_impacts
-from runningbond.limit import bears_dead_load, elastic_displacement, is_self_locking, proved_bound
+from runningbond.limit import bears_dead_load, given_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, check_scene
@@ -81,7 +81,7 @@ def dem_dynamic(
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: proved_bound(scene),
         bears=lambda: bears_dead_load(scene),
-        gives=lambda multiplier: elastic_displacement(scene.with_block(young=None), multiplier),
+        gives=lambda multiplier: given_displacement(scene.with_block(young=None), multiplier),
         note=inertia_note(run.system.inertia_scaling),
         collapse=collapse,
         first_step=first_step,

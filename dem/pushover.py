@@ -69,6 +69,7 @@ class LoadPath:
     budget: int  # linear systems that may still be solved
     rests: list[StaticState]  # states of rest under growing loads, the dead load's first
     elastic: float = 0.0  # motion under the live load while joints neither open nor slip
+    hangs: float = 0.0  # motion until ties yield
     past: list[StaticState] = field(default_factory=list)  # states of rest past the largest load, under displacements
     upper: float | None = None  # smallest load under which the wall fell, or above which nothing stands
     unclear: list[float] = field(default_factory=list)  # loads under which it neither rested nor fell
@@ -83,7 +84,7 @@ class LoadPath:
 
     def fall_over(self, multiplier: float) -> float:
         """Motion under a load that counts as a fall, in units of the system: more than springs alone can give."""
-        return max(self.far, GIVES * self.elastic * abs(multiplier))
+        return max(self.far, GIVES * (self.elastic * abs(multiplier) + self.hangs))
 
     def push(self, multiplier: float, budget: int = LONGEST) -> Rest:
         """Hold a load larger than the last until the wall rests or falls, and note which."""

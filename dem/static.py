@@ -23,7 +23,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from runningbond.joints import ends_note, stiffness_note
-from runningbond.limit import elastic_displacement
+from runningbond.limit import elastic_displacement, hanging_displacement
 from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
 from runningbond.limit.equilibrium import equilibrium
 from runningbond.limit.kinematics import control_row, dead_load, live_load
@@ -114,7 +114,8 @@ def dem_static(
                 # Under the live load, where joints neither open nor slip.
                 moved = elastic_displacement(scene.with_block(young=None), system.equilibrium.live_unit) or 0.0
                 elastic, rests = moved / system.length_unit, [state_of(system, rest)]
-                path = LoadPath(system, far, budget - rest.solves, rests, elastic, observe=observe)
+                hangs = 0.0 if scene.is_led else hanging_displacement(scene) / system.length_unit
+                path = LoadPath(system, far, budget - rest.solves, rests, elastic, hangs, observe=observe)
                 observe(path, path.rests[0])
                 if scene.is_led:
                     outcome = lead_along(outcome, path, tolerance, first_step)
@@ -145,7 +146,7 @@ def _on_paths(result: Outcome, first: LoadPath, budget: int, first_step: float, 
     if not first.undecided:
         cut = _look_closer(first, tolerance, past)
         if not cut:
-            paths.append(LoadPath(first.system, first.far, left, first.rests[:1], first.elastic))
+            paths.append(LoadPath(first.system, first.far, left, first.rests[:1], first.elastic, first.hangs))
             climb(paths[-1], OTHER_STEP * first_step, tolerance, ends(first))
     found = [path for path in paths if not path.undecided]
     ways = _apart(found) or [first]

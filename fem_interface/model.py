@@ -30,7 +30,7 @@ from runningbond.dynamics.run import CALMING, MOVING
 from runningbond.joints import JointPoints, Rule, listed_points, wall_points
 from runningbond.joints.wall_law import with_impacts
 from runningbond.joints.wall_points import spread_rule
-from runningbond.limit import bears_dead_load, elastic_displacement, is_self_locking, proved_bound
+from runningbond.limit import bears_dead_load, given_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
 from runningbond.results.outcome import joined
@@ -140,7 +140,7 @@ def fem(
         point_order=wall.elements.listing,
         is_self_locking=lambda: is_self_locking(scene),
         bound=lambda: proved_bound(scene),
-        gives=lambda multiplier: elastic_displacement(scene, multiplier),
+        gives=lambda multiplier: given_displacement(scene, multiplier),
         bears=lambda: cracks == "joints" and bears_dead_load(scene),
         note=note,
         collapse=collapse,

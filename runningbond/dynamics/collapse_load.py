@@ -58,7 +58,7 @@ def collapse_by_steps(
     point_order: Indices,
     is_self_locking: Callable[[], bool],
     bound: Callable[[], float | None] = lambda: None,
-    gives: Callable[[float], float | None] = lambda _: None,
+    gives: Callable[[float], float] = lambda _: 0.0,
     bears: Callable[[], bool] = lambda: False,
     note: str = "",
     collapse: float = U_CRIT,
@@ -88,7 +88,7 @@ def collapse_by_steps(
         Multiplier that is proved too large, if there is one.
     gives
         Largest displacement of a block [m] under the live load times a multiplier while joints neither open nor slip,
-        if it is known.
+        and as the wall hangs on its ties, as far as it is known.
     bears
         Whether joint forces balance the dead load, by all cracks of the run; asked where that brings the wall down.
     note
@@ -127,7 +127,7 @@ def collapse_by_steps(
             result, above = LoadSteps(interrupted=True), None
             with suppress(KeyboardInterrupt):
                 above = bound()
-                elastic = (gives(above) if above else None) or 0.0
+                elastic = gives(above) if above else 0.0
                 result = _search(scene, run, first, tolerance, criteria, above, elastic, observe)
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))
@@ -270,7 +270,7 @@ def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:
 
 
 def _path(scene: Scene, run: Run, result: LoadSteps, points: JointPoints) -> dict[str, Any]:
-    """Control displacement, from the rest under the dead load on, and multiplier of the states at rest, then of the fall.
+    """Control displacement from the first rest on, and multiplier, of the states at rest, then of the fall.
 
     And their reactions and works.
     """

@@ -3,6 +3,7 @@
 from .associated import LimitState, bears_dead_load, is_self_locking, limit, limit_state, proved_bound
 from .elastic import elastic_displacement
 from .equilibrium import Equilibrium, equilibrium
+from .hanging import given_displacement, hanging_displacement
 from .nonassociated import limit_nonassociated
 
 __all__ = [
@@ -11,6 +12,8 @@ __all__ = [
     "bears_dead_load",
     "elastic_displacement",
     "equilibrium",
+    "given_displacement",
+    "hanging_displacement",
     "is_self_locking",
     "limit",
     "limit_nonassociated",

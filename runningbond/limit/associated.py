@@ -353,10 +353,16 @@ def proved_bound(scene: Scene) -> float | None:
 
     It is rounded up, to nine digits: its last ones differ from machine to machine, and loads are tried beside it.
     """
+    upper = proved_outcome(scene).upper
+    return None if upper is None else float(f"{upper + 1e-9 * abs(upper):.9g}")
+
+
+def proved_outcome(scene: Scene) -> Outcome:
+    """Outcome of `limit`; Ctrl-C, with which that ends, is raised."""
     outcome = limit(scene)
     if outcome.message.startswith(INTERRUPTED):
         raise KeyboardInterrupt
-    return None if outcome.upper is None else float(f"{outcome.upper + 1e-9 * abs(outcome.upper):.9g}")
+    return outcome
 
 
 def so_far(state: LimitState) -> dict[str, Any]:

@@ -11,6 +11,8 @@ from importlib import import_module
 from numbers import Real
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from homog import homog
 from runningbond.limit import elastic_displacement, limit, limit_nonassociated
 from runningbond.results import Outcome
@@ -40,6 +42,7 @@ EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # of `Scene.e
 FOLLOWED = EXTRAS | {"load.live settlement, along a path"}  # and one that follows a way
 KERNELS = 0.3  # seconds until the kernels of blocks in motion are loaded
 TOLERANCE = 0.01  # relative width of the bracket where none is asked for
+FAR = 0.02  # motion of a wall, in its smaller side: a block that topples has lost as much of its resistance
 IN_STEPS = ("collapse", "first_step", "budget")  # settings of every model that raises its loads in steps
 OF_RESPONSES = ("points", "after", "rows", "observe")  # settings of every response
 OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scaling", "energies")  # of deformable blocks
@@ -217,15 +220,19 @@ def run_model(
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     if not isinstance(outcome, Outcome):
         raise SceneError(f"model {model.name}", "must return an Outcome", outcome)
-    notes = [outcome.message, _gives(model, scene, outcome, parameters.get("collapse")), _left_out(model, scene)]
+    notes = [outcome.message, _moves(model, scene, outcome, parameters.get("collapse")), _left_out(model, scene)]
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
         notes += [_tilted_with_the_ground(scene)]
     return replace(outcome, model=model.name, message=joined(*notes))
 
 
-def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
-    """What is to be said where joints give more than what counts as `collapse` [heights of a block]."""
+def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None) -> str:
+    """What is to be said where a wall has moved farther, at its largest load at rest, than small displacements go.
+
+    Its joints may give more than what counts as `collapse` [heights of a block]; or they have opened, and it hangs on
+    ties that are soft.
+    """
     if model.kind != "history" or scene.is_led or scene.history or outcome.status != "collapse" or not outcome.upper:
         return ""
     from dem.static import FALLEN
@@ -233,10 +240,22 @@ def _gives(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
     if "block.young" not in model.reads:
         scene = scene.with_block(young=None)
     moved = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
-    if moved <= (FALLEN if collapse is None else collapse):
-        return ""
-    share = f"{100 * moved:.2g} % of a block's height"
-    return f"joints are too soft: the wall gives by {share} elastically, beyond small displacements"
+    notes = []
+    if moved > (FALLEN if collapse is None else collapse):
+        share = f"{_percent(moved)} of a block's height"
+        notes.append(f"joints are too soft: the wall gives by {share} elastically, beyond small displacements")
+    way, load = outcome.curve.T
+    low, high = scene.blocks.extent(scene.wall)
+    gone = float(np.abs(way[load == outcome.lower][:1]).sum() / (high - low).min())
+    if gone > FAR:
+        share = f"{_percent(gone)} of its smaller side"
+        notes.append(f"at the largest load at rest the wall has moved by {share}, beyond small displacements")
+    return "; ".join(notes)
+
+
+def _percent(share: float) -> str:
+    """A share with two digits, 0.0123 as 1.2 % and 12.3 as 1200 %."""
+    return f"{float(f'{100 * share:.2g}'):g} %"
 
 
 def _tilted_with_the_ground(scene: Scene) -> str:

@@ -9,7 +9,7 @@ from runningbond.compare import published_scene
 from runningbond.limit import elastic_displacement
 from runningbond.models import run_model
 from tests.at_length import at_length
-from tests.walls import panel
+from tests.walls import courses, panel
 
 
 @pytest.mark.parametrize(
@@ -27,6 +27,27 @@ def test_joints_soft_in_shear_are_told(model: str, stiffness: float, said: bool)
     scene = panel(wall__length=0.96, wall__height=0.72, joint=joint)
     message = run_model(model, scene, 0.05).message
     assert ("joints are too soft: the wall gives by" in message) == said
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+@pytest.mark.parametrize(("young", "said"), [(1e9, True), (2.1e11, False)])
+def test_a_wall_that_has_turned_far_on_its_tie_is_told(model: str, young: float, said: bool) -> None:
+    """A block 0.5 m wide, held at its top by 3 m of 10 mm²: at 3 kN they are longer by 0.9 m, or, of steel, 4 mm.
+
+    At small displacements it falls at (3 kN h + W b / 2) / h all the same, 0.9 m = 1.8 b from where it stood.
+    """
+    scene = courses(
+        [[1]],
+        width=0.5,
+        height=1.0,
+        wall__thickness=0.3,
+        joint={"friction": 1.4, "normal_stiffness": 1e10, "shear_stiffness": 1e10},
+        load={"gravity": 9.81, "live": {"kind": "point", "at": [0.0, 1.0], "force": [1, 0]}},
+        tie=[{"from": [-3.0, 1.0], "to": [0.0, 1.0], "area": 1e-5, "young": young, "yield": 3000.0}],
+    )
+    outcome = run_model(model, scene)
+    assert outcome.lower == pytest.approx(3000 + 9.81 * float(scene.mass[0]) / 4, rel=0.01)
+    assert ("of its smaller side, beyond small displacements" in outcome.message) == said
 
 
 def test_what_slips_far_at_rest_is_not_soft() -> None:

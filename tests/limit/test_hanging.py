@@ -1,0 +1,64 @@
+"""Walls that hang on their ties: how far they go until those yield, and that models follow them so far."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from runningbond.limit import hanging_displacement
+from runningbond.models import run_model
+from runningbond.scene import Scene
+from tests.at_length import at_length
+from tests.walls import courses
+
+WIDTH, HEIGHT, THICKNESS, COURSES = 0.5, 3.0, 0.3, 20
+YIELD, PRELOAD, LENGTH, BAR = 9e4, 2e4, 4.0, 1e-4
+WEIGHT = 1800 * 9.81 * WIDTH * HEIGHT * THICKNESS
+
+
+def pier(young: float, **changes: Any) -> Scene:
+    """A pier of one block a course, with an unbonded bar on its axis from its rock to its top."""
+    middle, head = WIDTH / 2, HEIGHT - HEIGHT / COURSES / 2
+    tie = {"from": [middle, head - LENGTH], "to": [middle, head], "area": BAR, "young": young}
+    return courses(
+        [[1]] * COURSES,
+        width=WIDTH,
+        height=HEIGHT / COURSES,
+        wall__thickness=THICKNESS,
+        block__young=1e11,
+        joint={"friction": 0.8, "normal_stiffness": 1e10, "shear_stiffness": 4e9},
+        tie=[tie | {"yield": YIELD, "preload": PRELOAD}],
+        **changes,
+    )
+
+
+@pytest.mark.parametrize("young", [2.1e11, 5e10])
+def test_a_pier_hangs_on_its_bar_by_the_levers_of_its_toe(young: float) -> None:
+    """It turns about its toe until the bar, b / 2 away, is longer by what is left of its force, the far corner more."""
+    slack = (YIELD - PRELOAD) * LENGTH / (young * BAR)
+    exact = slack / (WIDTH / 2) * np.hypot(WIDTH, HEIGHT)
+    assert hanging_displacement(pier(young)) == pytest.approx(exact, rel=1e-6)
+    assert hanging_displacement(courses([[1]])) == 0.0
+
+
+@pytest.mark.parametrize(
+    ("model", "young"),
+    [
+        *(("dem-static", young) for young in (2.1e11, 5e10, 1e10, 1e9)),
+        *(("dem-dynamic", young) for young in (5e10, 1e10)),
+        *at_length(("dem-dynamic", 2.1e11), ("fem", 1e10)),
+    ],
+)
+def test_a_pier_bears_the_yield_force_of_its_bar_however_soft_that_is(model: str, young: float) -> None:
+    """λ = (W + Y) b / (W H): steel, glass or rope yield at one load, the head 0.2 m, 0.7 m or 30 m from where it was.
+
+    It is no load of a pier that has turned so far, which messages say.
+    """
+    outcome = run_model(model, pier(young))
+    exact = (WEIGHT + YIELD) * WIDTH / (WEIGHT * HEIGHT)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower <= exact * (1 + 1e-6)
+    assert exact < outcome.upper <= 1.01 * outcome.lower
+    assert "of its smaller side, beyond small displacements" in outcome.message
