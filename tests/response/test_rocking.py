@@ -175,6 +175,33 @@ def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None
     )
 
 
+@pytest.mark.parametrize(("slope", "lifts"), [(0.0, 0.4), (0.0, -0.4), (0.14, 0.0), *at_length((0.14, 0.3))])
+def test_a_block_slides_downhill_and_where_the_ground_falls_from_under_it(slope: float, lifts: float) -> None:
+    """Newmark's block with all of its terms, to 1e-3: v' = g sin β − a ∓ μ (g cos β + a_v), four pulses of 0.5 s.
+
+    On level ground it slides farther to the side on which the ground is falling when it is pushed there; on a slope of
+    8° by each pulse downhill alone.
+    """
+    friction, angle = (0.4, slope) if slope else (0.3, 0.0)
+    time = np.arange(0.0, 2.001, 0.005)
+    shape = np.sin(4 * math.pi * time)
+    motion = GRAVITY * np.column_stack([(0.35 if slope else 0.45) * shape, lifts * shape])
+    bare = block(0.5, 0.1, History(time, motion), friction, stiffness=1e11)
+    leaning = (GRAVITY * math.sin(angle), -GRAVITY * math.cos(angle))
+    response = follow(resting(replace(bare, load=replace(bare.load, gravity=leaning))), 1.0)
+    step, velocity, slid = 2e-5, 0.0, 0.0
+    moments = np.arange(0.0, 3.0, step) + step / 2
+    across, up = (np.interp(moments, time, each, right=0.0) for each in motion.T)
+    for push, most in zip(leaning[0] - across, friction * (up - leaning[1]), strict=True):
+        before, velocity = velocity, velocity + push * step
+        velocity -= float(np.clip(velocity, -most * step, most * step))
+        slid += (before + velocity) / 2 * step
+    assert abs(slid) > 0.02
+    assert response.verdict == "stands"
+    assert response.displacement[-1, 0] == pytest.approx([slid, 0.0], abs=1e-3 * abs(slid))
+    assert response.unaccounted < 0.01
+
+
 @pytest.mark.parametrize("period", [0.5, *at_length(5.0)])
 def test_a_force_that_stays_on_slides_a_block_away(period: float) -> None:
     """At μ g and not later, though just above it takes half a minute: what still gathers energy does not stand."""
