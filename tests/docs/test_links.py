@@ -1,11 +1,17 @@
 """Links of the documentation lead somewhere, read as files as well: the site's own are checked when it is built."""
 
+import os
 import re
+import shutil
+import subprocess
+import sys
+import tarfile
 from pathlib import Path
 
 import pytest
 
-DOCS = Path(__file__).parents[2] / "docs"
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
 PAGES = sorted(DOCS.rglob("*.md"))
 
 
@@ -20,3 +26,22 @@ def test_every_page_is_in_the_contents() -> None:
     for page in PAGES:
         name = page.relative_to(DOCS).with_suffix("").as_posix()
         assert name == "index" or f"\n{name}\n" in contents, name
+
+
+@pytest.mark.skipif(not (ROOT / ".git").exists(), reason="what is kept is asked of git")
+def test_a_source_distribution_holds_what_the_readme_links_to_and_the_tests(tmp_path: Path) -> None:
+    """What setuptools takes by itself has neither the changelog nor the pages, and of the tests those at the top."""
+    tree = tmp_path / "tree"
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
+    for name in listed:
+        (tree / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(ROOT / name, tree / name)
+    build = "import sys, setuptools.build_meta; print(setuptools.build_meta.build_sdist(sys.argv[1]))"
+    quiet = {**os.environ, "PYTHONWARNINGS": "ignore"}
+    subprocess.run([sys.executable, "-c", build, tmp_path], cwd=tree, env=quiet, capture_output=True, check=True)
+    (archive,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(archive) as file:
+        held = {name.partition("/")[2] for name in file.getnames()}
+    linked = re.findall(r"\]\((?!https?:|#)([^)#\s]+)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert {os.path.normpath(target) for target in linked} <= held
+    assert {name for name in listed if name.startswith("tests/")} <= held
