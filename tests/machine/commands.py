@@ -28,6 +28,8 @@ class Command:
         What whole work is in the folder, named piece by piece, with what tells one piece from another.
     damage
         Damages what is in the folder.
+    is_alone
+        Whether another one in the same folder is refused meanwhile.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Command:
     begun: Callable[[Path], bool]
     found: Callable[[Path], dict[str, object]]
     damage: Callable[[Path], None]
+    is_alone: bool = False
 
 
 def _outcomes(folder: Path) -> dict[str, object]:
@@ -83,6 +86,7 @@ RUN = Command(
     lambda folder: (folder / "blocks.pvd").exists(),
     _outcomes,
     _damage_outcomes,
+    is_alone=True,
 )
 COMPARE = Command(
     "compare",

@@ -49,9 +49,11 @@ def at_once(scratch: Scratch, folder: Path) -> Trial:
     with started(scratch.command, scratch.fresh(folder)) as process:
         code, message = call(scratch.command.arguments(folder))
         _, said = process.communicate(timeout=PATIENCE)
+    is_whole = process.returncode == DONE and scratch.command.found(folder) == scratch.expected
+    if scratch.command.is_alone:
+        return judged(scratch.trial("two at once", folder, code, message, REFUSED), is_whole and code == BAD_INPUT)
     code, message = max((code, message), (process.returncode, message_of(said)))
-    trial = scratch.trial("two at once", folder, code, message, WHOLE)
-    return judged(trial, code == DONE and scratch.command.found(folder) == scratch.expected)
+    return judged(scratch.trial("two at once", folder, code, message, WHOLE), is_whole and code == DONE)
 
 
 def damage(scratch: Scratch, folder: Path) -> Trial:
