@@ -10,6 +10,9 @@ from .arrays import Array, Indices, Mask, frozen
 from .blocks import Blocks, touching_boxes
 from .errors import SceneError
 
+MEETING = 1e-9
+"""Distance between two points, in lengths of their joint, that is rounding: forces in them have no lever."""
+
 
 @dataclass(frozen=True, eq=False)
 class Joints:
@@ -49,6 +52,10 @@ class Joints:
         """Whether each joint lies flatter than 45°, ``(nj,)``."""
         run = np.abs(self.ends[:, 1] - self.ends[:, 0])
         return frozen(run[:, 0] > run[:, 1], np.bool_)
+
+    def left_none_by(self, inset: float | Array) -> Mask:
+        """Whether contact points moved in from both ends by an inset [m], one or one a joint, meet: ``(nj,)``."""
+        return np.asarray(2 * np.asarray(inset) >= (1 - MEETING) * self.length)
 
 
 def find_joints(blocks: Blocks) -> Joints:

@@ -496,9 +496,10 @@ def _check(scene: Scene) -> None:
         raise SceneError("support.kind", "holds every block; give the wall more than one course", "fixed-first-course")
     _refuse_floating_blocks(scene)
     for k, material in enumerate(scene.joint_materials):
-        length = scene.joints.length[scene.material_of_joint == k]
-        if len(length) and 2 * material.inset >= length.min():
-            what = f"must be less than half the shortest joint, {length.min():.4g} m long"
+        too_short = scene.joints.left_none_by(material.inset) & (scene.material_of_joint == k)
+        if too_short.any():
+            length = scene.joints.length[too_short].min()
+            what = f"must be less than half the shortest joint, {length:.4g} m long"
             raise SceneError(f"{table_of(material)}.inset", what, material.inset)
     if not scene.load.live:
         raise SceneError("load.live", "is missing: nothing is multiplied by λ")

@@ -140,6 +140,11 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
         ({"joint__tensile_strength": 1e4}, "joint.tensile_strength = 10000.0: must be at most"),
         ({"joint": {"friction": 0, "cohesion": 1e3}}, "joint.tensile_strength: is missing"),
         ({"joint__inset": 0.03}, "joint.inset = 0.03: must be less than half the shortest joint, 0.06 m long"),
+        # A hundredth of a block is 2.4000000000000132 mm: contact points 4e-18 m apart have no lever.
+        (
+            {**FREE, "wall__courses": [[1, 0.01]], "joint__inset": 0.0012},
+            "joint.inset = 0.0012: must be less than half the shortest joint, 0.0024 m long",
+        ),
         ({"joint__mortar": {"young": 1e9, "poisson": 0.2}}, "joint.mortar.thickness: is missing"),
         ({"joint__normal_stiffness": 1e9}, "joint.shear_stiffness: is missing"),
         ({"support__kind": "rollers"}, "support.kind = 'rollers': must be one of"),
