@@ -109,7 +109,7 @@ def joint_points(joints: Joints, thickness: float, rule: Rule | None = None, ins
         Points of joint 0 first, each joint's points in the sense of its tangent.
     """
     rule = rule or lobatto()
-    too_far = joints.left_none_by(inset)
+    too_far = joints.too_short_for(inset)
     if too_far.any():
         raise SceneError(
             "joint.inset",

@@ -53,7 +53,7 @@ class Joints:
         run = np.abs(self.ends[:, 1] - self.ends[:, 0])
         return frozen(run[:, 0] > run[:, 1], np.bool_)
 
-    def left_none_by(self, inset: float | Array) -> Mask:
+    def too_short_for(self, inset: float | Array) -> Mask:
         """Whether contact points moved in from both ends by an inset [m], one or one a joint, meet: ``(nj,)``."""
         return np.asarray(2 * np.asarray(inset) >= (1 - MEETING) * self.length)
 

@@ -496,7 +496,7 @@ def _check(scene: Scene) -> None:
         raise SceneError("support.kind", "holds every block; give the wall more than one course", "fixed-first-course")
     _refuse_floating_blocks(scene)
     for k, material in enumerate(scene.joint_materials):
-        too_short = scene.joints.left_none_by(material.inset) & (scene.material_of_joint == k)
+        too_short = scene.joints.too_short_for(material.inset) & (scene.material_of_joint == k)
         if too_short.any():
             length = scene.joints.length[too_short].min()
             what = f"must be less than half the shortest joint, {length:.4g} m long"
