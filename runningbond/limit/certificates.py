@@ -6,7 +6,7 @@ collapse.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -101,9 +101,14 @@ def roughly_certified(system: Equilibrium, motion: Array, count: Callable[[int],
 
 
 def _end(system: Equilibrium, forces: ForceSet, aim: Aim) -> ForceSolution:
-    """Forces at an extreme load: those of large walls are near it, and proved all the same."""
+    """Forces at an extreme load: those of large walls are near it, and proved all the same.
+
+    The load of these is told to as many digits as their balance has: the last ones differ from machine to machine.
+    """
     found = nearly_extreme(system, forces, aim) if system.freedoms >= MANY else None
-    return solve_forces(system, forces, aim) if found is None else found
+    if found is None:
+        return solve_forces(system, forces, aim)
+    return replace(found, multiplier=float(f"{found.multiplier:.12g}"))
 
 
 def certified_loads(
