@@ -47,9 +47,7 @@ def _interrupted_again(lost: "sys.UnraisableHookArgs") -> None:
         sys.__unraisablehook__(lost)
         return
 
-    def stop(number: int, frame: object) -> None:
-        signal.signal(number, signal.SIG_DFL)  # as after the first one
-        raise KeyboardInterrupt
+    from runningbond.commands.terminal import interruptions
 
     def again() -> None:
         if sys.platform == "win32":
@@ -57,7 +55,7 @@ def _interrupted_again(lost: "sys.UnraisableHookArgs") -> None:
         else:  # which wakes it as well
             signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGINT)
 
-    signal.signal(signal.SIGINT, stop)
+    interruptions()
     threading.Timer(MOMENT, again).start()
 
 

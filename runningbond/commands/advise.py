@@ -44,8 +44,8 @@ def advise(
             stopped = interruptions(rung.next.model)
     outcome = advice.outcome()
     if stopped:
-        before = rung.next.name and f" before {rung.next.name}"
-        outcome = replace(outcome, message=f"interrupted{before or ''}: {outcome.message}")
+        before = f" before {rung.next.name}" if rung.next.name else ""
+        outcome = replace(outcome, message=f"interrupted{before}: {outcome.message}")
     print(_as_json(advice, outcome) if json else _as_text(advice, outcome), flush=True)
     if stopped:
         return STOPPED

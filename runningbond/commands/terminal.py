@@ -68,9 +68,10 @@ def say(message: str) -> None:
 
 def told_interruption(stopped: Interrupted, total: int, what: str, folder: Path | None, *, fresh: bool = False) -> int:
     """Say on standard error why a campaign stopped, and how much of the total is kept in a folder; the exit code."""
-    again = "the same command without --fresh" if fresh else "the same command"
-    kept = f"{stopped.campaign.kept} of {total} {what} are kept in {folder}; {again} goes on."
-    kept = "nothing is kept without --out" if folder is None else kept
+    kept = "nothing is kept without --out"
+    if folder is not None:
+        again = "the same command without --fresh" if fresh else "the same command"
+        kept = f"{stopped.campaign.kept} of {total} {what} are kept in {folder}; {again} goes on."
     print(f"{f'runningbond: {stopped.reason}' if stopped.reason else 'Interrupted'}: {kept}", file=sys.stderr)
     if isinstance(stopped.__cause__, OSError):
         return BAD_INPUT

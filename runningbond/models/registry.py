@@ -16,7 +16,7 @@ import numpy as np
 from homog import homog
 from runningbond.limit import elastic_displacement, limit, limit_nonassociated
 from runningbond.results import Outcome
-from runningbond.results.outcome import joined
+from runningbond.results.outcome import joined, two_digits
 from runningbond.scene import Scene, SceneError
 from runningbond.scene.history import FACTOR
 from runningbond.scene.mass_loads import Tilt
@@ -239,23 +239,15 @@ def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
 
     if "block.young" not in model.reads:
         scene = scene.with_block(young=None)
-    moved = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
-    notes = []
-    if moved > (FALLEN if collapse is None else collapse):
-        share = f"{_percent(moved)} of a block's height"
-        notes.append(f"joints are too soft: the wall gives by {share} elastically, beyond small displacements")
+    gives = (elastic_displacement(scene, outcome.upper) or 0.0) / scene.lowest_block
     way, load = outcome.curve.T
     low, high = scene.blocks.extent(scene.wall)
-    gone = float(np.abs(way[load == outcome.lower][:1]).sum() / (high - low).min())
-    if gone > FAR:
-        share = f"{_percent(gone)} of its smaller side"
-        notes.append(f"at the largest load at rest the wall has moved by {share}, beyond small displacements")
-    return "; ".join(notes)
-
-
-def _percent(share: float) -> str:
-    """A share with two digits, 0.0123 as 1.2 % and 12.3 as 1200 %."""
-    return f"{float(f'{100 * share:.2g}'):g} %"
+    rests = np.abs(way[load == outcome.lower]) / (high - low).min()
+    moved = rests[0] if len(rests) else 0.0
+    height, side = (f"{two_digits(100 * share)} % of" for share in (gives, moved))
+    soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"
+    far = f"at the largest load at rest the wall has moved by {side} its smaller side, beyond small displacements"
+    return joined(soft if gives > (FALLEN if collapse is None else collapse) else "", far if moved > FAR else "")
 
 
 def _tilted_with_the_ground(scene: Scene) -> str:
