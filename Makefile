@@ -7,7 +7,7 @@ ready := .venv/.ready
 bin := .venv/bin
 
 .DEFAULT_GOAL := help
-.PHONY: compare study stability validate test mypy pytest test-long bench docs clean help
+.PHONY: compare study stability validate test mypy pytest test-long test-oldest bench docs clean help
 
 compare: $(ready) ## run every model on every published wall and tabulate, in comparison/
 	$(bin)/runningbond compare --out comparison $(ARGS)
@@ -36,6 +36,14 @@ pytest: $(ready)
 test-long: $(ready) ## the studies that take minutes
 	$(bin)/pytest -q -m long $(ARGS)
 
+test-oldest: ## the tests with the oldest version of every library that pyproject.toml takes, in .venv-oldest
+	$(PYTHON) -m venv --clear .venv-oldest
+	$(PYTHON) tools/oldest_versions.py > .venv-oldest/oldest.txt
+	.venv-oldest/bin/python -m pip install -q --disable-pip-version-check -c .venv-oldest/oldest.txt -e '.[develop]'
+	@# What is deprecated in an old version is no matter of ours.
+	OPENBLAS_NUM_THREADS=1 .venv-oldest/bin/pytest -q -n logical --maxprocesses 8 --dist worksteal -m "not long" \
+		-W ignore::DeprecationWarning $(ARGS)
+
 bench: $(ready) ## run the benchmarks one after another
 	@set -e; for script in $(sort $(wildcard benchmarks/*.py)); do echo "$$script"; PYTHONPATH=. $(bin)/python "$$script"; done
 
@@ -48,7 +56,7 @@ docs: .venv/.docs ## build the documentation, its gallery run, in site/
 	@touch $@
 
 clean: ## remove .venv and caches; results stay
-	rm -rf .venv docs/gallery-of-examples .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist *.egg-info
+	rm -rf .venv .venv-oldest docs/gallery-of-examples .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist *.egg-info
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 help: ## show this

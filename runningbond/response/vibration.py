@@ -10,12 +10,14 @@ and stands open, the secant along which it unloads.
 The weight closes the joints; of what it does besides, the moment of a block that leans, nothing is in K.
 """
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import csr_array, diags_array
-from scipy.sparse.linalg import eigsh
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import ArpackError, eigsh
 
 from runningbond.dynamics import U_CRIT, BlockSystem, Criteria, Run, State, put_on_dead_load
 from runningbond.dynamics.ties import YIELD
@@ -97,15 +99,7 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     count = min(count, len(moving))
     if not closed.any():
         raise SceneError("load.gravity", "closes no joint: a wall that is not pressed together does not vibrate")
-    least, sought = LOOSE**2 * float(scaled.diagonal().max()), count
-    while True:  # there may be any number of loose motions, which are slower than all others
-        square, vectors = _slowest(scaled, sought, -least)
-        held = square > least
-        if held.sum() >= count or len(square) == len(moving):
-            break
-        sought *= 2
-    loose = int((~held).sum())
-    square, vectors = square[held][:count], vectors[:, held][:, :count]
+    square, vectors, loose = _slowest(scaled, count, LOOSE**2 * float(scaled.diagonal().max()))
     modes = np.zeros((len(square), len(system.mass)))
     modes[:, moving] = (root[:, None] * vectors).T
     ground = system.mass_along
@@ -114,13 +108,46 @@ def vibration(run: Run, state: State, count: int = 10) -> Vibration:
     return Vibration(np.sqrt(square) / (2 * np.pi), shape.reshape(len(square), -1, 3), share, loose)
 
 
-def _slowest(scaled: csr_array, count: int, shift: float) -> tuple[Array, Array]:
+def _slowest(scaled: csr_array, count: int, least: float) -> tuple[Array, Array, int]:
+    """The `count` slowest eigenvalues of a symmetric matrix that are above the `least`, ascending.
+
+    Beside them are their eigenvectors, and how many are not above. What hangs together is solved by itself: Lanczos'
+    method finds one of several equal eigenvalues, which equal stacks have, and loose blocks.
+    """
+    scaled.eliminate_zeros()
+    bodies, body = connected_components(scaled, directed=False)
+    rows = [np.flatnonzero(body == k) for k in range(bodies)]
+    found = [_slowest_of_body(scaled[own][:, own], count, least) for own in rows]
+    square = np.concatenate([each[0] for each in found])
+    place = [(k, column) for k, (held, _, _) in enumerate(found) for column in range(len(held))]
+    order = np.argsort(square, kind="stable")[:count]
+    vectors = np.zeros((scaled.shape[0], len(order)))
+    for i, (k, column) in enumerate(place[j] for j in order):
+        vectors[rows[k], i] = found[k][1][:, column]
+    return square[order], vectors, sum(loose for _, _, loose in found)
+
+
+def _slowest_of_body(scaled: csr_array, count: int, least: float) -> tuple[Array, Array, int]:
+    """As `_slowest` of what hangs together; there may be any number of loose motions, slower than all others."""
+    sought, size = count, scaled.shape[0]
+    while True:
+        square, vectors = _eigenvectors(scaled, sought, -least)
+        held = square > least
+        if held.sum() >= count or len(square) == size:
+            return square[held][:count], vectors[:, held][:, :count], int((~held).sum())
+        sought *= 2
+
+
+def _eigenvectors(scaled: csr_array, count: int, shift: float) -> tuple[Array, Array]:
     """Eigenvalues of a symmetric matrix, ascending, and eigenvectors: all of a small one, else more than the `count`.
 
     None is below the `shift`.
     """
-    if scaled.shape[0] <= max(DENSE, 3 * count):
-        return eigh(scaled.toarray())
-    square, vectors = eigsh(scaled.tocsc(), k=count + 6, sigma=shift, which="LM")
-    order = np.argsort(square)
-    return square[order], vectors[:, order]
+    size = scaled.shape[0]
+    if size > max(DENSE, 3 * count):
+        start = np.random.default_rng(0).standard_normal(size)
+        with suppress(ArpackError):  # of many equal ones its subspace may have no more directions
+            square, vectors = eigsh(scaled.tocsc(), k=count + 6, sigma=shift, which="LM", v0=start)
+            order = np.argsort(square)
+            return square[order], vectors[:, order]
+    return eigh(scaled.toarray())

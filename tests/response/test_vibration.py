@@ -212,3 +212,13 @@ def test_a_joint_that_has_softened_is_as_stiff_as_its_secant() -> None:
     found = dem_vibration(scene, 3).frequency
     assert found == pytest.approx(own, rel=1e-6)
     assert found[0] < 0.95 * frequencies(scene, 3, np.tile([1e9, 4e8], (len(secant), 1)))[0]
+
+
+def test_equal_stacks_have_every_vibration_of_one_as_often_as_there_are_stacks() -> None:
+    """Thirty of four blocks, 360 motions: Lanczos' method sees one of equal vibrations, and has no more directions."""
+    joint = JointMaterial(0.6, elasticity=Stiffness(1e9, 4e8))
+    stack = [(0.0, float(k), 0.5, 1.0) for k in range(4)]
+    stacks = [(x + 2.0 * number, *box) for number in range(30) for x, *box in stack]
+    alone, beside = (dem_vibration(boxes(*some, joint=joint), count) for some, count in ((stack, 2), (stacks, 60)))
+    assert beside.frequency == pytest.approx(np.repeat(alone.frequency, 30), rel=1e-9)
+    assert np.linalg.matrix_rank(beside.shape.reshape(60, -1)) == 60
