@@ -1,0 +1,55 @@
+"""Cost of a wall of some fifty blocks that is pushed to 20 mm, by models whose blocks may split.
+
+    python -m benchmarks.laboratory_cost [WALL …]
+
+Of the shipped dry walls that are pushed to one side where none is named: their own way ends at another displacement
+each. Kernels are compiled before; the median and the range of `REPEATS` runs in one process are printed.
+"""
+
+import sys
+import time
+from dataclasses import replace
+from statistics import median
+
+from runningbond.joints.compiled import compilation
+from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory.ladder import LADDER
+from runningbond.laboratory.rig import scene_of
+from runningbond.models import TOLERANCE
+from runningbond.scene import Scene
+
+MODELS = ("rigid-splitting", "fem-splitting")
+TO, REPEATS = 0.02, 3
+
+
+def pushed(scene: Scene, displacement: float) -> Scene:
+    """The scene, its beam pushed to a displacement [m] to one side."""
+    beam = scene.beam
+    assert beam is not None
+    assert beam.drive is not None
+    return replace(scene, beam=replace(beam, drive=replace(beam.drive, path=(displacement,))))
+
+
+def main(names: list[str]) -> None:
+    """Print a row a wall and model."""
+    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    print("| wall | blocks | model | status | V [kN] | time steps | CPU s |")
+    print("| --- | --- | --- | --- | --- | --- | --- |")
+    for name in names:
+        for model in MODELS:
+            rung, seconds = LADDER[model], list[float]()
+            blocks = int(scene_of(walls[name], LADDER["limit"].features).wall.sum())
+            scene = pushed(scene_of(walls[name], rung.features), TO)
+            for _ in range(REPEATS):
+                with compilation() as compiled:
+                    start = time.process_time()
+                    outcome = rung.model.solve(scene, TOLERANCE)
+                    seconds.append(time.process_time() - start - compiled.seconds)
+            bracket = f"{(outcome.lower or 0) / 1e3:.1f} … {(outcome.upper or 0) / 1e3:.1f}"
+            spread = f"{median(seconds):.1f} ({min(seconds):.1f} … {max(seconds):.1f})"
+            cells = (name, str(blocks), model, outcome.status, bracket, f"{outcome.steps:,}", spread)
+            print(f"| {' | '.join(cells)} |", flush=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:] or ["SW.30.1", "SW.200.1", "SW.200.2", "WS.100", "WS.250"])
