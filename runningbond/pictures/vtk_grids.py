@@ -97,6 +97,9 @@ class GridBuilder:
         # Of blocks that deform, the rigid parts of both sides and the jump make out what is shared evenly.
         a, b = (_moved(self._scene.blocks, side, points.position, frame) for side in points.block.T)
         share = np.tile([0.5, 0.5, 0.0, 0.0, 1.0, 1.0], n)
+        # What pieces that meet in a point have of its area; on mid-lines alone, or sums would count it three times.
+        area = (points.area / np.maximum(np.bincount(pair.ravel(), minlength=len(points)), 1))[at]
+        area = area * np.tile([1.0, 1.0, 0.0, 0.0, 0.0, 0.0], n)
         _add(
             grid.point_data,
             {
@@ -106,6 +109,7 @@ class GridBuilder:
                 "opening [m]": frame.opening[at],
                 "slip [m]": frame.slip[at],
                 "traction [Pa]": _in_space(traction[at]),
+                "force [N]": _in_space(area[:, None] * traction[at]),
                 "normal stress [Pa]": frame.normal[at],
                 "shear stress [Pa]": frame.tangential[at],
                 "damage": frame.damage[at],

@@ -14,7 +14,7 @@ import pyvista
 
 from runningbond.joints import wall_points
 from runningbond.limit import limit
-from runningbond.models import respond, run_model
+from runningbond.models import find_model, respond, run_model
 from runningbond.pictures.frame import Discretisation, Frame, Triangles
 from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.recording import ResponseRecorder, motion_recorder, record_mechanism
@@ -173,6 +173,40 @@ def test_tractions_and_jumps_are_vectors_along_normals_and_across_them(tmp_path:
         assert (values * normal).sum(axis=1) == pytest.approx(np.asarray(data[along]), abs=1e-9)
         assert tangential == pytest.approx(np.asarray(data[across]), abs=1e-9)
         assert abs(values).max() > 0
+
+
+@pytest.mark.parametrize(
+    ("model", "joint"),
+    [("limit", {"inset": 0.03}), ("dem-static", {"inset": 0.03}), ("dem-dynamic", {"compressive_strength": 1e6})],
+)
+def test_forces_on_the_mid_lines_of_joints_hold_the_blocks(model: str, joint: dict[str, float], tmp_path: Path) -> None:
+    """Against weight and push, also turning, under the largest load at rest; pressures are uneven there.
+
+    Tractions along mid-lines do not: those are shorter than joints with an inset, and nine points not evenly spaced.
+    """
+    scene = courses([[1, 1], [0.5, 1, 0.5], [1, 1]], joint=STIFF | joint)
+    observer = find_model(model).observer
+    recorder = observer(scene, tmp_path) if observer else None
+    outcome = run_model(model, scene, 0.05, recorder)
+    if recorder is None:
+        record_mechanism(scene, outcome, tmp_path)
+    grids: list[Any] = [pyvista.read(file) for file in frame_files(tmp_path, "joints")]
+    loads = [float(grid.field_data["multiplier"][0]) for grid in grids]
+    at = max((k for k, load in enumerate(loads) if load <= (outcome.lower or 0.0)), key=loads.__getitem__)
+    load, grid = loads[at], grids[at]
+    lines = grid.cells_dict[3]
+    sides = scene.joints.block[np.asarray(grid.cell_data["joint"])[: len(lines)]]
+    force = np.asarray(grid.point_data["force [N]"])
+    assert not np.delete(force, lines.ravel(), axis=0).any()
+    x, y, _ = (np.asarray(grid.points)[lines.ravel()] - [0.3, 0.1, 0.0]).T
+    fx, fy, _ = force[lines.ravel()].T
+    pulls = np.column_stack([fx, fy, x * fy - y * fx])
+    held = np.zeros((len(scene.blocks), 3))
+    for side, sign in enumerate((1.0, -1.0)):
+        np.add.at(held, np.repeat(sides[:, side], 2), sign * pulls)
+    weight, (x, y) = 9.81 * scene.mass, (scene.blocks.centroid - [0.3, 0.1]).T
+    held += weight[:, None] * np.column_stack([np.full_like(x, load), -np.ones_like(x), -x - load * y])
+    assert np.abs(held[~scene.fixed]).max() < 1e-4 * weight[~scene.fixed].sum()
 
 
 @pytest.mark.parametrize("support", ["base", "fixed-first-course"])
