@@ -108,9 +108,9 @@ def _bodies(scene: Scene) -> list[Any]:
         mass = f"{scene.beam.mass:g} kg" if scene.beam.mass else "weightless"
         text = f"stiff beam: {mass}, {CONDITIONS[scene.beam.condition]}"
         handles.append(Patch(fc=BEAM, ec=DARK, lw=1.0, label=_wrapped(text)))
-    kinds = tie_kinds(scene)
-    for number, (kind, members) in enumerate(kinds.items(), 1):
-        name = f"tie {number}" if len(kinds) > 1 else f"{len(members)} ties" if len(members) > 1 else "tie"
+    for kind, members in tie_kinds(scene).items():
+        numbers = f" {beginning([str(k) for k in members])}" if len(scene.ties) > 1 else ""
+        name = f"tie{'s' if len(members) > 1 else ''}{numbers}"
         handles.append(Line2D([], [], color=TIE, lw=1.6, label=_wrapped(f"{name}: {kind}")))
     if (scene.ties.block < 0).any():
         handles.append(Patch(fc="white", ec="0.45", hatch="//////", lw=0, label="anchor fixed in space"))

@@ -15,9 +15,8 @@ TIE = "0.1"
 
 
 def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
-    """Draw ties between where their ends have moved to; where they differ, each with the number of its kind."""
+    """Draw ties between where their ends have moved to, several with the numbers that tables and messages know."""
     ties, a = shape.scene.ties, sketch.a
-    kinds = tie_kinds(shape.scene)
     for k in range(len(ties)):
         ends = np.array([shape.drawn_at(*end) for end in zip(ties.ends[k], ties.block[k], strict=True)])
         along = (ends[1] - ends[0]) / np.hypot(*(ends[1] - ends[0]))
@@ -30,8 +29,7 @@ def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
                 back = plate[::-1] + 0.9 * a * outward
                 sketch.area("anchor", [*plate, *back], fc="white", ec="0.45", hatch="//////", lw=0)
             sketch.line("anchor" if block == ANCHOR else "tie plate", plate, color=TIE, lw=2.2)
-        if len(kinds) > 1:
-            number = next(n for n, kind in enumerate(kinds.values(), 1) if k in kind)
+        if len(ties) > 1:
             middle = ends.mean(axis=0)
             spots = [
                 Spot(
@@ -40,7 +38,7 @@ def draw_ties(sketch: Sketch, shape: DeformedShape) -> None:
                 )
                 for side in (across, -across)
             ]
-            sketch.label(f"tie {number}", spots, TIE, SMALL_TYPE)
+            sketch.label(f"tie {k}", spots, TIE, SMALL_TYPE)
 
 
 def tie_kinds(scene: Scene) -> dict[str, list[int]]:
