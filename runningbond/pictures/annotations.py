@@ -53,6 +53,8 @@ def sketch_around(shape: DeformedShape, point: float, *, numbers: bool = False, 
     With it the numbers of blocks, and lines of thrust ``(n, 2, 2)`` [m], of which those at the base go beyond the wall.
     """
     sketch = Sketch(point, block_numbers(shape.scene, point) if numbers else [])
+    sketch.keep_clear(shape.hinges)
+    sketch.keep_clear(shape.crosses)
     for line in () if thrust is None else thrust:
         sketch.line("thrust", line, color=THRUST, lw=0.8, zorder=4)
     draw_supports(sketch, shape)

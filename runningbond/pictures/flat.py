@@ -195,7 +195,10 @@ def _hide_sound_cracks(axes: "Axes", shape: DeformedShape, width: float) -> None
         return
     colours = shape.block_colours()[np.searchsorted(shape.block, shape.scene.joints.block[sound, 0])]
     start, end = shape.placed_faces[sound, 0], shape.placed_faces[sound, 1]
-    within = np.stack([start + 0.04 * (end - start), end - 0.04 * (end - start)], axis=1)  # the outline stays whole
+    extent = (*axes.get_xlim(), *axes.get_ylim())
+    half = 0.25 * width * metres_of_point(extent, axes_size(axes))  # of the outline's line, which stays whole
+    inwards = half * (end - start) / np.linalg.norm(end - start, axis=1)[:, None]
+    within = np.stack([start + inwards, end - inwards], axis=1)
     hidden = LineCollection(list(within), colors=list(colours), lw=0.9 * width, capstyle="butt", zorder=2.5)
     axes.add_collection(hidden, autolim=False)
 

@@ -46,6 +46,7 @@ class Sketch:
     numbers: Sequence[PlacedLabel] = ()
     marks: list[Mark] = field(default_factory=list)
     labels: list[Label] = field(default_factory=list)
+    dots: list[Array] = field(default_factory=list)
 
     @property
     def a(self) -> float:
@@ -83,6 +84,10 @@ class Sketch:
         """A text, and where it may stand."""
         self.labels.append(Label(text, spots, colour, size))
 
+    def keep_clear(self, points: Array) -> None:
+        """Points ``(n, 2)`` [m] with a sign of their own that labels had better not hide."""
+        self.dots.append(points)
+
     def taken(self) -> Array:
         """Boxes of arrows, and of labels where they would stand now, ``(n, 2, 2)`` [m]."""
         arrows = [mark.points for mark in self.marks if mark.kind == "arrow"]
@@ -97,6 +102,7 @@ class Sketch:
     def _obstacles(self) -> Array:
         """Boxes of pieces of the marks that a label may not hide, ``(n, 2, 2)`` [m]."""
         pieces = [np.zeros((0, 2, 2)), *(one.box[None] for one in self.numbers)]
+        pieces += [np.stack([dots - 0.2 * self.a, dots + 0.2 * self.a], axis=1) for dots in self.dots]
         for mark in self.marks:
             if mark.kind == "area":
                 if mark.counts:
