@@ -56,8 +56,8 @@ def beside_others(outcome: Outcome, rigid_blocks: Solver, finer_mesh: Solver) ->
     -------
     Outcome
         As it was where rigid blocks fall at a load that its bracket has as well; else the bracket takes in that of
-        the finer mesh, its multiplier is the smaller of both, and the message has all three. Steps and seconds are
-        those of all that were asked.
+        the finer mesh, its multiplier is the smaller of both, and the message has all three; arrays stay as they were.
+        Steps and seconds are those of all that were asked.
     """
     if outcome.status != "collapse":
         return outcome
@@ -76,6 +76,7 @@ def beside_others(outcome: Outcome, rigid_blocks: Solver, finer_mesh: Solver) ->
     multiplier = min(each.multiplier for each in found if each.multiplier is not None)
     message = f"{outcome.message}; how blocks deform decides where this wall falls: as they are {_loads(outcome)}"
     message += f", on a mesh {FINER} times as fine {told}, without deforming {_loads(rigid)}"
+    message += "; mechanism, curve and forces are those of blocks as they are"
     return replace(asked, multiplier=multiplier, lower=lower, upper=upper, message=message)
 
 

@@ -36,6 +36,7 @@ def test_where_rigid_blocks_fall_elsewhere_the_finer_mesh_is_taken_in(rigid: tup
     assert (found.lower, found.upper) == (0.46, 0.51)
     assert found.multiplier == pytest.approx(0.465)  # found by one of them, and the smaller
     assert found.steps == 30
+    assert "forces are those of blocks as they are" in found.message
     for loads in ("0.5000–0.5100", "0.4600–0.4700", f"{rigid[0]:.4f}–{rigid[1]:.4f}"):
         assert loads in found.message
 

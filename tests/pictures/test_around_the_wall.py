@@ -18,6 +18,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Patch
 from matplotlib.text import Text
 
+from runningbond.joints import wall_points
+from runningbond.limit import limit
 from runningbond.pictures.captions import to_png, to_svg
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.labels import Label, Spot, place_labels
@@ -25,7 +27,8 @@ from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.quantities import counted, millimetres, pair, readable
 from runningbond.pictures.style import BEAM, BLOCK_COLOURS, DARK, DEAD, DRAWN, HELD, JOINT_COLOURS, MOTION
 from runningbond.results import Outcome
-from runningbond.scene import Action, Array, Forces, Scene, scene_from_dict
+from runningbond.results.reactions import Supports
+from runningbond.scene import Action, Array, Forces, Scene, read_scene, scene_from_dict
 
 from ..scene.test_loads import Wind
 from .scenes import MORTAR, SCENES, facade, large, line, on_a_step, point, settling_portal, wall
@@ -161,7 +164,7 @@ LIVE, DEAD_LOAD, MOVED = "live load", "dead load", "motion"
         ("shear_wall", ["0.625 m", "100 kN", "u = ±4 mm\n6 moves"], {MOVED: 1, DEAD_LOAD: 1}),
         ("kept_beam", ["50 kN", "λ · 1 kN"], {LIVE: 1, DEAD_LOAD: 1}),
         ("free_beam", ["20 kN", "30 kN", "u = 10 mm"], {MOVED: 1, DEAD_LOAD: 2}),
-        ("tied", ["tie 1", "tie 2", "λ · 2 kN m", "λ · weight"], {LIVE: 6}),
+        ("tied", ["tie 0", "tie 1", "λ · 2 kN m", "λ · weight"], {LIVE: 6}),
         ("tilted", ["g = 1.62 m/s²", "α", "λ = tan α"], {LIVE: 1, "gravity": 1}),
         ("cracked", ["P"], {LIVE: 1}),
         ("one_block", ["λ · 1.044 kN/m"], {LIVE: 5}),
@@ -297,8 +300,26 @@ def test_a_tie_runs_from_plate_to_plate_and_to_its_anchor(drawn: Any) -> None:
     assert len(named(figure, "tie plate", Line2D)) == 3
     assert [one.get_hatch() is not None for one in named(figure, "anchor", Patch)] == [True]
     said = [text.get_text() for text in words(figure)]
-    assert "tie 1: E A = 63 MN, yields at 70 kN, preload 5 kN" in said
+    assert "tie 0: E A = 63 MN, yields at 70 kN, preload 5 kN" in said
     assert "anchor fixed in space" in said
+
+
+def test_ties_have_the_numbers_that_tables_know_them_by() -> None:
+    """In the drawing each its own, in the key those that are alike together; one alone needs none."""
+    bar = {"area": 3e-4, "young": 2.1e11, "yield": 7e4}
+    rows = ((0.1, 0.0), (0.6, 5e3), (0.9, 0.0))
+    ties: list[dict[str, Any]] = [{"from": [0.1, y], "to": [1.9, y], "preload": force, **bar} for y, force in rows]
+    scene = scene_from_dict(wall(2.0, 1.0) | {"tie": ties})
+    figure = figure_of(scene)
+    assert sorted(text for text in labels(figure) if "tie" in text) == ["tie 0", "tie 1", "tie 2"]
+    said = [text.get_text() for text in words(figure)]
+    assert [text for text in said if "yields" in text] == [
+        "ties 0, 2: E A = 63 MN, yields at 70 kN",
+        "tie 1: E A = 63 MN, yields at 70 kN, preload 5 kN",
+    ]
+    assert {f"tie {k} [N]" for k in range(3)} <= set(Supports(scene, wall_points(scene)).columns)
+    alone = words(figure_of(scene_from_dict(wall(2.0, 1.0) | {"tie": ties[:1]})))
+    assert [each.get_text() for each in alone if "tie" in each.get_text()] == ["tie: E A = 63 MN, yields at 70 kN"]
 
 
 @pytest.mark.parametrize(
@@ -480,6 +501,21 @@ def test_labels_move_out_of_each_others_way() -> None:
     placed = place_labels([Label("10 kN", spots) for _ in range(10)], np.zeros((0, 2, 2)), 0.01)
     for one, other in combinations(placed, 2):
         assert (np.abs(one.middle - other.middle) >= 0.999 * (one.half + other.half)).any()
+
+
+def test_labels_keep_clear_of_hinges() -> None:
+    """The load on an arch acts beside one, which the halo around its letter would hide."""
+    scene = read_scene(Path(__file__).parents[2] / "examples" / "walls" / "arch_with_tie.toml")
+    figure = figure_of(scene, limit(scene))
+    axes = figure.axes[0]
+    (hinges,) = (line for line in axes.lines if line.get_marker() == "o")
+    at = axes.transData.transform(np.array(hinges.get_xydata()))
+    assert len(at) == 4
+    figure.draw_without_rendering()
+    (load,) = (text for text in axes.texts if text.get_text() == "P")
+    halo = 0.2 * float(load.get_fontsize()) + hinges.get_markersize() / 2
+    box = load.get_window_extent().padded(halo * figure.dpi / 72)
+    assert not [point for point in at if box.contains(*point)]
 
 
 @pytest.mark.parametrize(

@@ -17,9 +17,9 @@ from PIL import Image
 
 from dem.static import dem_static
 from runningbond.limit import limit
-from runningbond.pictures.captions import to_png, to_svg
+from runningbond.pictures.captions import show_extent, to_png, to_svg
 from runningbond.pictures.deformed_shape import DeformedShape, undeformed_shape
-from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of
+from runningbond.pictures.flat import draw_mechanism, draw_wall, figure_of, line_width, paint_mechanism
 from runningbond.pictures.inline import inline_mechanism
 from runningbond.pictures.joint_state import JointState
 from runningbond.pictures.mechanism import mechanism_shape
@@ -159,6 +159,31 @@ def test_where_joints_pull_forces_pass_beside_them() -> None:
         lines, _, beside = resultants(shape, couple)
         assert (len(lines), beside) == (1, 1)
         assert "1 too far off" in texts(figure_of(scene, couple))
+
+
+def test_cracks_that_stay_shut_leave_nothing_of_themselves() -> None:
+    """A wall that slides as one looks the same whether its blocks might crack or not, also where outlines would end."""
+    pictures = []
+    both: list[dict[str, Any]] = [{}, {"inner_joint": CRACK | {"cohesion": 1e7, "tensile_strength": 1e6}}]
+    for tables in both:
+        scene = courses([[1, 1], [0.5, 1, 0.5], [1, 1]], **tables)
+        slide = np.outer(scene.wall, [1.0, 0.0, 0.0])
+        shape = mechanism_shape(scene, Outcome("wall", "model", "collapse", 0.6, motion=slide))
+        assert shape is not None
+        figure = Figure(figsize=(3.5, 2.5), dpi=300)
+        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        show_extent(axes, shape.extent)
+        paint_mechanism(axes, shape, line_width(scene, shape.extent, (3.5, 2.5)))
+        picture = io.BytesIO()
+        figure.savefig(picture)
+        # Where dashes are, of the base and of where the wall was, these begin anew at each half.
+        corners = np.array([shape.placed.min(axis=0) + [0.01, 0.05], shape.placed.max(axis=0) - 0.01])
+        (left, bottom), (right, top) = axes.transData.transform(corners).astype(int)
+        pictures.append(np.asarray(Image.open(picture).convert("L"), dtype=int)[-top:-bottom, left:right])
+    plain, cracked = pictures
+    line = int(plain.max() - plain.min())
+    assert line > 20
+    assert np.abs(plain - cracked).max() < 0.75 * line  # lines end within a pixel
 
 
 def test_a_hinge_is_marked_where_a_block_turns() -> None:
