@@ -6,6 +6,7 @@ from functools import cache
 
 import numpy as np
 import shapely
+from shapely.ops import polylabel
 
 from runningbond.scene import Array, Scene
 
@@ -16,6 +17,9 @@ GAP, PAD = 2.5, 0.8
 
 AWAY = 16
 """Steps of half a line that a label may move farther away."""
+
+SMALLER = (1.0, 0.85, 0.7, 0.55, 0.4)
+"""Sizes of type to be tried for a number in a block in which it does not fit at its usual size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,17 +108,25 @@ def _covered(boxes: Array, others: Array) -> Array:
     return np.asarray(common / np.prod(boxes[:, 1] - boxes[:, 0], axis=1))
 
 
+def _box(middle: shapely.Point, half: Array) -> shapely.Polygon:
+    return shapely.box(middle.x - half[0], middle.y - half[1], middle.x + half[0], middle.y + half[1])
+
+
 def block_numbers(scene: Scene, point: float) -> list[PlacedLabel]:
     """The numbers that ``assign`` knows blocks by, in type as large as fits where a point takes so many metres."""
     placed = []
     for number in range(int(scene.part_of.max()) + 1):
         own = np.flatnonzero(scene.part_of == number)
         outline = shapely.union_all([shapely.Polygon(scene.blocks.polygon(int(k))) for k in own])
-        middle = outline.centroid if outline.contains(outline.centroid) else outline.representative_point()
-        x0, y0, x1, y1 = outline.bounds
+        middle, (x0, y0, x1, y1) = outline.centroid, outline.bounds
         width, height = text_size(str(number), 1.0)
         size = float(min(0.8 * (x1 - x0) / width / point, 0.75 * (y1 - y0) / height / point, SMALL_TYPE))
         half = np.array([width, height]) / 2 * size * point
+        if not outline.contains(_box(middle, half)):  # of an L: in its wider arm, as large as that is
+            largest = max(shapely.get_parts(outline), key=shapely.area)  # halves may not meet to the last bit
+            middle = polylabel(largest, 1e-2 * (y1 - y0))
+            share = next((share for share in SMALLER if outline.contains(_box(middle, share * half))), SMALLER[-1])
+            size, half = share * size, share * half
         label = Label(str(number), (), "black", size)
         placed.append(PlacedLabel(label, np.array([middle.x, middle.y]), half, upright=False))
     return placed

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from matplotlib.collections import LineCollection, PolyCollection
@@ -22,7 +23,7 @@ from runningbond.joints import wall_points
 from runningbond.limit import limit
 from runningbond.pictures.captions import to_png, to_svg
 from runningbond.pictures.flat import figure_of
-from runningbond.pictures.labels import Label, Spot, place_labels
+from runningbond.pictures.labels import Label, Spot, block_numbers, place_labels
 from runningbond.pictures.mechanism import mechanism_shape
 from runningbond.pictures.quantities import counted, millimetres, pair, readable
 from runningbond.pictures.style import BEAM, BLOCK_COLOURS, DARK, DEAD, DRAWN, HELD, JOINT_COLOURS, MOTION
@@ -474,6 +475,19 @@ def test_numbers_are_those_that_assign_knows_and_stand_in_their_blocks() -> None
     chosen["assign"] = [{"block": "oak", "blocks": [137]}]
     again = scene_from_dict(chosen)
     assert np.flatnonzero(again.material_of_block == 1).tolist() == np.flatnonzero(plain.part_of == 137).tolist()
+
+
+def test_numbers_stand_whole_in_blocks_cut_by_openings() -> None:
+    """In the wider arm of an L, and in slivers, in type that can be read."""
+    around = [{"from": [0.7, 0.55], "to": [1.5, 1.1]}, {"from": [2.0, 1.1], "to": [2.4, 1.6]}]
+    tables = wall(2.4, 1.6, (0.4, 0.2))
+    tables["wall"]["opening"] = around
+    scene = scene_from_dict(tables)
+    for number, placed in enumerate(block_numbers(scene, 0.01)):
+        (own,) = np.flatnonzero(scene.part_of == number)
+        outline = shapely.Polygon(scene.blocks.polygon(int(own)))
+        assert outline.contains(shapely.box(*placed.box.ravel())), number
+        assert placed.label.size > 3.0, number
 
 
 @pytest.mark.long
