@@ -219,6 +219,16 @@ def series_scale(size: float, farthest: float) -> float:
     return max(1.0, visible_scale(size, farthest))
 
 
+def usual_side(scene: Scene) -> float:
+    """Smaller side that half of a wall's blocks have at least [m], by which lines and signs on them are measured.
+
+    The smallest block is no measure: a sliver or a course of tiles would thin out the lines of all others.
+    """
+    low, high = scene.blocks.boxes
+    sides = (high - low).min(axis=1)[scene.wall & ~scene.is_beam]
+    return max(scene.block_size, float(np.median(sides))) if len(sides) else scene.block_size
+
+
 def course_numbers(scene: Scene) -> Indices:
     """Course of each block from below, ``(nb,)``, the ground's being −1."""
     course = np.full(len(scene.blocks), -1)

@@ -14,7 +14,7 @@ from runningbond.scene import Array, Mask, Scene
 
 from .annotations import THRUST, Room, annotate, axes_size, metres_of_point, room_for
 from .captions import TALLEST, WIDTH, Caption, colour_key, figure_with_room, mechanism_caption, show_extent
-from .deformed_shape import DeformedShape, Extent, joint_lines, outline, undeformed_shape
+from .deformed_shape import DeformedShape, Extent, joint_lines, outline, undeformed_shape, usual_side
 from .joint_state import JointState
 from .labels import block_numbers
 from .legend import block_colours, joint_colour, used_joint_materials, wall_caption
@@ -137,7 +137,7 @@ def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, 
     shape = mechanism or undeformed_shape(scene)
     key = mechanism_key([shape])
     lines, largest, beside = resultants(shape, outcome)
-    if len(lines) and mechanism and scene.block_size > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
+    if len(lines) and mechanism and usual_side(scene) > LEGIBLE * metres_of_point(shape.extent, (WIDTH, TALLEST)):
         label = f"force ≤ {readable(largest, 'N')}" + (f", {beside} too far off" if beside else "")
         key.append(Line2D([], [], color=THRUST, lw=0.8, label=label))
     else:
@@ -159,8 +159,8 @@ def mechanism_key(shapes: Sequence[DeformedShape]) -> list[Any]:
 
 
 def line_width(scene: Scene, extent: Extent, size: tuple[float, float]) -> float:
-    """Width of the lines of joints [pt]: a share of the smaller side of a block drawn in so many inches."""
-    return float(min(0.14 * scene.block_size / metres_of_point(extent, size), 1.2))
+    """Width of the lines of joints [pt]: a share of the usual smaller side of blocks drawn in so many inches."""
+    return float(min(0.14 * usual_side(scene) / metres_of_point(extent, size), 1.2))
 
 
 def _draw_ghost(axes: "Axes", scene: Scene, width: float) -> None:

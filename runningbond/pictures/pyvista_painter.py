@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from runningbond.scene import Array, Indices
 
-from .deformed_shape import DeformedShape, Extent, outline
+from .deformed_shape import DeformedShape, Extent, outline, usual_side
 from .joint_state import JointState
 from .style import CRUSHED, EDGE, OUTLINE, STATE_COLOURS, tint
 from .vtk_safety import import_pyvista, uninterrupted_imports, vtk_errors_raised
@@ -41,7 +41,7 @@ class Painter:
     def paint(self, shape: DeformedShape, extent: Extent) -> Image:
         """Paint a wall, ``(pixels, pixels, 3)``; the image shows the square around an extent."""
         left, right, *_ = square_around(extent)
-        block = shape.scene.lowest_block * self.pixels / (right - left)
+        block = usual_side(shape.scene) * self.pixels / (right - left)
         with vtk_errors_raised():
             plotter = self._cleared()
             fill_plotter(plotter, shape, self.pixels / REFERENCE, min(block / FINE, 1.0))
@@ -109,7 +109,7 @@ def fill_plotter(plotter: Any, shape: DeformedShape, width: float, strength: flo
             thin = _thin(WIDTHS[state] * width * strength, max(strength, FAINTEST))
             plotter.add_mesh(faces, color=colour, **thin, **flat)
     if len(shape.crosses):
-        ends = shape.crossed_lines(CROSS * shape.scene.block_size).reshape(-1, 2)
+        ends = shape.crossed_lines(CROSS * usual_side(shape.scene)).reshape(-1, 2)
         crosses = _lines(ends, np.arange(len(ends)).reshape(-1, 2), 8.0)
         plotter.add_mesh(crosses, color=CRUSHED, line_width=3.4 * width, **flat)
 

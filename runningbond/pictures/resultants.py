@@ -6,7 +6,7 @@ from runningbond.joints import listed_points
 from runningbond.results import Outcome
 from runningbond.scene import Array
 
-from .deformed_shape import DeformedShape, mid_lines
+from .deformed_shape import DeformedShape, mid_lines, usual_side
 
 LEAST = 0.08
 """Resultant, relative to the largest, below which none is drawn."""
@@ -19,9 +19,9 @@ FARTHEST = 1.0
 def resultants(shape: DeformedShape, outcome: Outcome) -> tuple[Array, float, int]:
     """Lines along the resultants, ``(n, 2, 2)`` [m], the largest resultant [N], and how many pass too far to be drawn.
 
-    The longest is as long as the smaller side of a block; the middle of each is the centre of pressure, carried along
-    with the joint. Where a part of a joint pulls that is beside the joint, and far away where pull and pressure are
-    nearly the same. There are none of a model that does not list the forces in its joints.
+    The longest is as long as the usual smaller side of blocks; the middle of each is the centre of pressure, carried
+    along with the joint. Where a part of a joint pulls that is beside the joint, and far away where pull and pressure
+    are nearly the same. There are none of a model that does not list the forces in its joints.
     """
     scene, joints = shape.scene, shape.scene.joints
     points = listed_points(scene, len(outcome.force))
@@ -42,5 +42,5 @@ def resultants(shape: DeformedShape, outcome: Outcome) -> tuple[Array, float, in
     share = 0.5 + (moment[near] / total[near])[:, None]
     middle = mid_lines(shape.placed_faces[near])
     centre = (1 - share) * middle[:, 0] + share * middle[:, 1]
-    half = 0.5 * scene.block_size / largest * vector[near]
+    half = 0.5 * usual_side(scene) / largest * vector[near]
     return np.stack([centre - half, centre + half], axis=1), largest, int((large & ~near).sum())

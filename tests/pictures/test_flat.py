@@ -161,6 +161,17 @@ def test_where_joints_pull_forces_pass_beside_them() -> None:
         assert "1 too far off" in texts(figure_of(scene, couple))
 
 
+def test_a_course_of_tiles_does_not_thin_out_the_lines_of_a_wall() -> None:
+    """Lines, and lines of force, are as they are without it."""
+    drawn = []
+    for tile in (0.2, 0.01):
+        scene = panel(wall__height=None, wall__block_height=None, wall__course_heights=[0.2, tile, 0.2, 0.2])
+        figure = figure_of(scene, limit(scene))
+        assert "force ≤" in texts(figure)
+        drawn.append(line_width(scene, (0.0, 1.5, 0.0, 1.0), (3.5, 3.0)))
+    assert drawn[1] == pytest.approx(drawn[0], rel=1e-6)
+
+
 def test_cracks_that_stay_shut_leave_nothing_of_themselves() -> None:
     """A wall that slides as one looks the same whether its blocks might crack or not, also where outlines would end."""
     pictures = []
