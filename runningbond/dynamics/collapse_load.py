@@ -108,8 +108,8 @@ def collapse_by_steps(
     -------
     Outcome
         `lower` is the largest multiplier under which the wall came to rest, `upper` the smallest under which
-        it fell. `curve` has every state at rest, and ends in the fall; `motion` is that of the fall. ``failed``
-        where the run makes up energy, as one with too long a time step does.
+        it fell. `curve` has every state at rest, and ends in the fall; `motion` is that of the fall, also under the
+        dead load. ``failed`` where the run makes up energy, as one with too long a time step does.
     """
     system, sizes = run.system, scene.block_sizes[run.system.owner]
     criteria = Criteria(collapse=collapse * sizes, budget=budget)
@@ -138,7 +138,7 @@ def collapse_by_steps(
     stiffness = _note_on_stiffness(scene, run, result, float(np.min(collapse * sizes)))
     if outcome.status == "infeasible" and stiffness:
         message = "moves as far under its dead load as counts as collapse"
-        outcome = replace(outcome, status="undecided", message=message)
+        outcome = replace(outcome, status="undecided", message=message, motion=np.zeros((0, 3)))
     elif outcome.status == result.verdict == "undecided" and not result.interrupted:
         note = joined(note, f"each load was followed for at most {budget * run.dt:.2g} s")
     long = f"time steps of {run.dt:.4g} s are longer than the safe ones of {run.safe_step:.4g} s"
@@ -207,7 +207,10 @@ def _judge(
     if result.borne is None:
         if result.verdict == "collapse":
             status, message = fall_under_dead_load(run.interface.law, bears)
-            return replace(outcome, status=status, message=message)
+            outcome = replace(outcome, status=status, message=message)
+            if status != "infeasible" or result.fallen is None:
+                return outcome
+            return replace(outcome, motion=_mechanism(scene, run, result.fallen.motion))
         why = "interrupted" if result.interrupted else "the budget ran out"
         return replace(outcome, message=f"{why} before the wall came to rest under its dead load")
     outcome = replace(outcome, force=np.column_stack(run.forces(result.borne))[point_order])
@@ -216,7 +219,7 @@ def _judge(
         return replace(outcome, lower=result.lower, upper=result.upper, message=message)
     if result.upper is None or result.lower is None or result.fallen is None:
         return _never_fallen(outcome, result, is_self_locking)
-    motion = fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(_fall(run, result, result.fallen)))
+    motion = _mechanism(scene, run, _fall(run, result, result.fallen))
     # A load that grows by a step overshoots to twice it at most, and what breaks stays broken.
     overshoot = result.upper - result.lower if run.interface.law.can_break else 0.0
     upper = result.upper + overshoot
@@ -253,6 +256,11 @@ def _never_fallen(outcome: Outcome, result: LoadSteps, is_self_locking: Callable
         message = "the budget ran out: the wall neither rested nor fell"
         message += ", though joint forces balance any multiple of the load" if locks else ""
     return replace(outcome, lower=result.lower, message=message)
+
+
+def _mechanism(scene: Scene, run: Run, motion: Array) -> Array:
+    """Motion of the blocks ``(nb, 3)`` in a motion of the run ``(nd,)``, the fastest corner moving by one metre."""
+    return fastest_corner_by_one(scene.blocks, run.system.motion_of_blocks(motion))
 
 
 def _fall(run: Run, result: LoadSteps, fallen: State) -> Array:

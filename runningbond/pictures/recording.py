@@ -151,13 +151,19 @@ class MotionRecorder(SeriesRecorder):
         """Write the fall under the load that brought the wall down, and end the series."""
         if self._moments:
             self._fall = (self._multiplier, self._moments)
+        self._is_begun = True  # by now the outcome that is there is this run's
         if self._fall[0] == self._load_of_fall(outcome):
             for _, frame in self._fall[1]:
                 self.keep(frame)
         super().finish(outcome)
 
     def _load_of_fall(self, outcome: Outcome) -> float | None:
-        """The load under which the wall fell: that of the curve's end, for what breaks takes the bracket beyond it."""
+        """The load under which the wall fell: that of the curve's end, for what breaks takes the bracket beyond it.
+
+        It is none beside the dead load where that brings the wall down.
+        """
+        if outcome.status == "infeasible":
+            return 0.0
         rests = outcome.curve_columns().get(AT_REST, np.ones(0))
         return float(outcome.curve[-1, 1]) if len(rests) and rests[-1] == 0 else None
 
@@ -222,7 +228,6 @@ class ResponseRecorder(MotionRecorder):
         super().__init__(scene, folder)
         self._duration = scene.history.duration if scene.history else 0.0
         self._start = self._now = self._next = self._spacing = 0.0
-        self._is_begun = True  # frames come in the end, when a new outcome has taken the place of an older one
 
     def __call__(self, run: Run, state: State, multiplier: float) -> None:
         """Remember a moment if it is time."""

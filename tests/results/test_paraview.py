@@ -23,6 +23,7 @@ from runningbond.pictures.time_series import MACRO, frame_files, times_shown
 from runningbond.pictures.vtk_grids import DISPLACEMENT, GridBuilder
 from runningbond.results import Outcome
 from runningbond.results.mechanism import turned
+from runningbond.results.store import load_outcome, save_outcome
 from runningbond.scene import Scene, scene_from_dict
 from tests.walls import courses, panel
 
@@ -83,6 +84,27 @@ def test_the_fall_of_a_critical_scale_is_kept_in_seconds_and_its_shape_is_drawn(
     assert outcome.motion[0, 2] > 0.5
     toe = np.hypot(*shape.displacement.T)[(shape.points == 0.0).all(axis=1)]
     assert toe == pytest.approx(0.0, abs=0.05)
+
+
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+def test_a_wall_that_falls_under_its_dead_load_is_seen_to_fall(model: str, tmp_path: Path) -> None:
+    """Two blocks over an opening without a lintel hang in the air: they fall, and what they hung between stays."""
+    scene = courses([[1, -2, 1], [1, 1, 1, 1]], joint=STIFF, block={"density": 2000.0, "young": 1e10})
+    recorder = motion_recorder(scene, tmp_path)
+    outcome = run_model(model, scene, 0.1, recorder)
+    assert outcome.status == "infeasible"
+    save_outcome(outcome, tmp_path)
+    recorder.finish(outcome)
+    assert load_outcome(tmp_path)[0].status == "infeasible"  # moments that come after it are its own
+    hanging = np.isin(np.arange(len(scene.blocks)), [3, 4])
+    assert outcome.motion[hanging, 1] == pytest.approx(-1.0, abs=0.01)
+    assert np.abs(outcome.motion[~hanging]).max() < 0.01
+    assert mechanism_shape(scene, outcome) is not None
+    grids: list[Any] = [pyvista.read(file) for file in frame_files(tmp_path, "blocks")]
+    assert {float(grid.field_data["multiplier"][0]) for grid in grids} == {0.0}
+    fallen = [float(np.asarray(grid.point_data[DISPLACEMENT])[:, 1].min()) for grid in grids]
+    assert fallen == sorted(fallen, reverse=True)
+    assert fallen[-1] < -0.05 * 0.175  # as far as counts as a collapse
 
 
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
