@@ -9,6 +9,7 @@ slides away: it collapses as well.
 
 import math
 import time
+from bisect import bisect_left
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -54,8 +55,9 @@ PARTS, FASTER = 4, 1.1
 """Parts of the time after which a wall would be left undecided, and by how much it has more energy in each than before
 if it slides away: under a force that stays on by a third to a half."""
 
-PATIENCE = 30
-"""Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided.
+PATIENCE, AT_MOST = 30, 120
+"""Swings (`Resting.swing`) after the record until a wall that neither rests nor falls is left undecided, and until one
+is that rocks on by ever less, which is followed by half of the first ones at a time.
 
 One that only sways stands: in the last quarter of them it stays within where it was in the quarter before, and what it
 loses meanwhile goes into viscosity and not into joints that slide, crack or are crushed.
@@ -155,8 +157,13 @@ class _Log:
         parts = [float(part.mean()) for part in np.array_split(energy, PARTS)]
         return all(later > FASTER * before for before, later in pairwise(parts)) and parts[0] > GATHERS * self._calm
 
+    def dies_away(self, since: float) -> bool:
+        """Whether there was less energy in motion in the later half of the time since then [s] than in the other."""
+        before, late = np.array_split([row.kinetic for row in self._since(since)], 2)
+        return bool(late.mean() < before.mean())
+
     def _since(self, time: float) -> list[_Row]:
-        return [row for row in self.rows if row.time >= time]
+        return self.rows[bisect_left(self.rows, time, key=lambda row: row.time) :]
 
     def _where(self, state: State) -> Array:
         return self._outline.points(self._block, self.points, state.motion[self._run.system.rigid].ravel())
@@ -242,29 +249,33 @@ def _followed(
     ground = Ground(run, history, scale, state.time)
     log = _Log(rest, ground, state, points)
     verdict: ResponseVerdict = "undecided"
-    fell, now, swing = math.inf, 0.0, rest.swing
-    end = history.duration + PATIENCE * swing
+    fell, now, swing, sway = math.inf, 0.0, rest.swing, None
+    end, last = (history.duration + swings * swing for swings in (PATIENCE, AT_MOST))
     observe(run, state, scale)
     with threadpool_limits(limits=1, user_api="blas"):
-        while verdict == "undecided" and now < end:
+        while verdict == "undecided" and (now < end or log.first):
             row = min(1.0, history.duration if now < history.duration else 1.0) / rows
             ground.bring(state, now + max(row, run.dt))
             log.look(state)
             observe(run, state, scale)
             now = ground.time(state)
             if log.is_lost:
+                verdict = "collapse" if fell <= now else "undecided"  # debris alters nothing of an answer
                 break
             if log.first:
                 fell = min(fell, now)
                 verdict = "collapse" if now >= fell + after else "undecided"
             elif now >= history.duration + swing and log.is_calm(now - swing):
                 verdict = "stands"
-    sway = None
-    if verdict == "undecided" and now >= end and not log.first:
-        sway = log.swaying(end - PATIENCE / 2 * swing)
-        verdict = "stands" if sway is not None else verdict
-        if log.runs_away(end - PATIENCE / 2 * swing):
-            verdict = "collapse"
+            if now >= end and verdict == "undecided" and not log.first:
+                of_late = now - PATIENCE / 2 * swing
+                sway = log.swaying(of_late)
+                if sway is not None:
+                    verdict = "stands"
+                elif log.runs_away(of_late):
+                    verdict = "collapse"
+                elif end < last and log.dies_away(of_late):
+                    end += PATIENCE / 2 * swing
     return _response(rest, scale, log, run, state, (verdict, fell, sway), time.perf_counter() - begin)
 
 

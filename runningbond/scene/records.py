@@ -28,6 +28,9 @@ PEER_UNITS = {
 NAMES = re.compile(r"[\"']?(?!(nan|inf)\b)[^\W\d_]", re.IGNORECASE)
 """How a first row begins that names the columns."""
 
+DECIMAL = re.compile(r"[^,.]*(\d,\d[^,.]*)?")
+"""A word whose comma, if it has any, is a decimal one."""
+
 GAP, FEWEST = 5.0, 8
 """Time step, in middling ones, that is a gap; and rows of a file below which none is one."""
 
@@ -90,7 +93,15 @@ def _rows(lines: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
     for number, line in enumerate(lines, 1):
         text = line.strip()
         if text and not text.startswith(COMMENTS):
-            yield number, [word.strip() for word in re.split(r"[,;]|\s+", re.sub(r"\s*([,;])\s*", r"\1", text))]
+            yield number, _words(text)
+
+
+def _words(text: str) -> list[str]:
+    """The words of a row; where semicolons or blanks part them, their commas are decimal ones."""
+    words = re.split(r"\s*;\s*|\s+", text)
+    if len(words) > 1 and all(map(DECIMAL.fullmatch, words)):
+        return [word.replace(",", ".") for word in words]
+    return re.split(r"[,;]|\s+", re.sub(r"\s*([,;])\s*", r"\1", text))
 
 
 def _columns(path: Path, lines: Sequence[str]) -> Record:
@@ -126,8 +137,8 @@ def _peer(path: Path, lines: Sequence[str]) -> Record:
     if len(lines) < 5:
         raise SceneError(_line(path, max(1, len(lines))), "ends a file of PEER, which has four lines before its values")
     holds = PEER[path.suffix.lower()]
-    unit = re.search(r"\b(\w+)\s+TIME SERIES IN UNITS OF\s+(\S+)", lines[2].upper())
-    known = PEER_UNITS.get((unit[1], unit[2].rstrip(","))) if unit else None
+    unit = re.search(r"\b(\w+)\s+TIME\s+(?:SERIES|HISTORY)\s+IN\s+UNITS\s+OF\s+(\S+)", lines[2].upper())
+    known = PEER_UNITS.get((unit[1], unit[2].rstrip(",."))) if unit else None
     if known is None:
         units = " or ".join(given for what, given in PEER_UNITS if what == holds)
         what = f'must name the unit, "{holds} TIME SERIES IN UNITS OF …", one of {units}'

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from functools import cache
+from importlib import import_module
 from itertools import pairwise
 
 import numpy as np
@@ -24,6 +25,7 @@ from .spring_bed import peak
 from .walls import block, resting, shaken, still
 
 BLOCK = HousnerBlock()
+FOLLOW = import_module("runningbond.response.follow")
 
 
 @cache
@@ -240,6 +242,31 @@ def test_a_block_that_turns_round_slowly_near_its_balance_does_not_stand_there(s
         for history in (History(time, values, interval=1 / 200), quiet)
     }
     assert verdicts == {"collapse"}
+
+
+def test_a_block_that_rocks_on_by_ever_less_is_followed_to_its_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Slender, and on a bed of springs, it loses a hundredth of its rate in an impact: half a minute is not enough."""
+    slender = HousnerBlock(0.1, 0.8)
+    motion = shaken("half-sine", 1.4 * GRAVITY * math.tan(slender.alpha), math.pi / slender.p)
+    rest = resting(block(slender.b, slender.h, motion, stiffness=1e9).with_joint(compressive_strength=1e9))
+    patience = rest.history.duration + FOLLOW.PATIENCE * rest.swing
+    response = follow(rest, 1.0, rows=50)
+    assert response.verdict == "stands"
+    assert response.time[-1] > 1.2 * patience
+    before, after = (np.abs(response.drift[response.time > share * patience]).max() for share in (0.5, 1.0))
+    assert after < before / 2
+    monkeypatch.setattr(FOLLOW, "AT_MOST", FOLLOW.PATIENCE)
+    assert follow(rest, 1.0, rows=50).verdict == "undecided"
+
+
+def test_a_fall_is_one_though_time_is_up_before_it_has_been_filmed(monkeypatch: pytest.MonkeyPatch) -> None:
+    rest = resting(block(BLOCK.b, BLOCK.h, shaken("half-sine", 2.0 * GRAVITY * BLOCK.b / BLOCK.h, math.pi / BLOCK.p)))
+    bare = follow(rest, 1.0, rows=50)
+    assert bare.verdict == "collapse"
+    monkeypatch.setattr(FOLLOW, "PATIENCE", (bare.time[-1] + 0.1 - rest.history.duration) / rest.swing)
+    filmed = follow(rest, 1.0, rows=50, after=0.5)
+    assert filmed.time[-1] > bare.time[-1] + 0.4
+    assert (filmed.verdict, filmed.message) == (bare.verdict, bare.message)
 
 
 def test_what_the_ground_does_depends_neither_on_rows_nor_on_samples_between() -> None:

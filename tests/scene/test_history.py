@@ -103,6 +103,24 @@ def test_a_ramp_stays_on_whatever_it_is_of() -> None:
     assert of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "acceleration"}).acceleration(0.6)[0] == 2
 
 
+@pytest.mark.parametrize("part", [";", "\t", " ", " ; "])
+def test_where_other_marks_part_the_columns_commas_are_decimal(part: str, tmp_path: Path) -> None:
+    """A record with whole seconds too, whose one comma a row made a third column of a second one."""
+    for time in (["0,00", "0,01", "0,02"], ["0", "1", "2"]):
+        rows = (part.join(row) for row in zip(time, ("0", "-2,5", "1,5e-1"), strict=True))
+        (tmp_path / "record.csv").write_text(f"t{part}a\n" + "\n".join(rows))
+        record = read_record(tmp_path / "record.csv", "file")
+        assert record.time.tolist() == [float(word.replace(",", ".")) for word in time]
+        assert record.values.tolist() == [[0.0, 0.0], [-2.5, 0.0], [0.15, 0.0]]
+
+
+@pytest.mark.parametrize("head", ["TIME HISTORY IN UNITS OF", "TIME HISTORY  IN UNITS OF", "TIME SERIES IN UNITS OF"])
+@pytest.mark.parametrize("after", ["", ". FILTER POINTS: HP=0.1 Hz   LP=40.0 Hz", ", 230"])
+def test_heads_of_all_databases_of_peer(head: str, after: str, tmp_path: Path) -> None:
+    (tmp_path / "el-centro.AT2").write_text(PEER.replace("TIME SERIES IN UNITS OF G", f"{head} G{after}"))
+    assert read_record(tmp_path / "el-centro.AT2", "file").quantity == "g"
+
+
 def test_an_older_head_and_blanks(tmp_path: Path) -> None:
     old = PEER.replace("NPTS=  7, DT=   .0050 SEC,", "    7   .0050   NPTS, DT")
     (tmp_path / "old.vt2").write_text(old.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S"))
