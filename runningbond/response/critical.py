@@ -110,17 +110,22 @@ def critical_scale(
     return replace(outcome, message=message, seconds=seconds)
 
 
-def _bracket(search: Search, scale: float, most: float, tolerance: float) -> None:
+def _bracket(search: Search, first: float, most: float, tolerance: float) -> None:
     """Try scales up to the first fall, bisect it, and go on beyond it."""
-    while search.falls(scale) and scale > most * 1e-9:
-        scale /= RATIO
-    while not search.falls(scale):
-        if scale > most:
+    number = 0
+
+    def scale(beyond: int = 0) -> float:  # from the first one each time, or what was tried would be tried again
+        return first * RATIO ** (number + beyond)
+
+    while search.falls(scale()) and scale() > most * 1e-9:
+        number -= 1
+    while not search.falls(scale()):
+        if scale() > most:
             return
-        scale *= RATIO
-    for beyond in scale * RATIO ** np.arange(1, math.floor(math.log(BEYOND) / math.log(RATIO)) + 1):
-        search.falls(float(beyond))
-    lower, upper = scale / RATIO, scale
+        number += 1
+    for beyond in range(1, math.floor(math.log(BEYOND) / math.log(RATIO)) + 1):
+        search.falls(scale(beyond))
+    lower, upper = scale(-1), scale()
     search.falls(lower)
     while upper - lower > tolerance * upper and search.tried[lower].verdict == "stands":
         middle = (lower + upper) / 2

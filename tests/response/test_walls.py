@@ -127,6 +127,24 @@ def test_scales_at_which_a_wall_neither_rests_nor_falls_lie_between_the_bounds(m
     assert "the wall neither rests nor falls" in outcome.message
 
 
+@pytest.mark.parametrize("falls", [1e-3, 0.03, 0.4, 1.0, 3.0, 20.0])
+def test_no_scale_is_tried_twice(falls: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nor one that differs in its last digit: each is a motion that is followed through."""
+    scene = block(0.25, 1.0, shaken("half-sine", 3.0, 0.5))
+    known = follow(resting(scene), 0.01)
+
+    def told(rest: Any, scale: float, **settings: Any) -> Any:
+        return replace(known, scale=scale, verdict="stands" if scale < falls else "collapse")
+
+    monkeypatch.setattr(import_module("runningbond.response.critical"), "follow", told)
+    outcome = critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), 0.02)
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert outcome.lower < falls <= outcome.upper
+    tried = outcome.curve[:, 1]
+    assert np.diff(tried).min() > 1e-3 * falls
+
+
 def test_the_critical_scale_of_half_a_sine_is_housners() -> None:
     housner = HousnerBlock()
     unit = GRAVITY * housner.b / housner.h
