@@ -58,8 +58,11 @@ def inertia_note(factor: float) -> str:
 
 def beam_note(scene: Scene) -> str:
     """What there is to say of a beam that is too light to move as it is."""
-    beam = None if scene.beam is None else scene.beam.block
-    if beam is None or np.isclose(scene.density[beam], scene.inertial_density[beam]):
+    if scene.beam is None:
         return ""
+    beam = scene.beam.block
     inertia = scene.inertial_density[beam] * scene.thickness * scene.blocks.area[beam]
-    return f"the beam of {scene.mass[beam]:.4g} kg moves with the inertia of {inertia:.4g} kg"
+    if np.isclose(scene.beam.mass, inertia):
+        return ""
+    does = "weighs, and moves with the inertia of," if scene.history else "moves with the inertia of"
+    return f"the beam of {scene.beam.mass:.4g} kg {does} {inertia:.4g} kg"

@@ -173,7 +173,11 @@ class Scene:
 
     @cached_property
     def density(self) -> Array:
-        """Density of each block, ``(nb,)`` [kg/m³]."""
+        """Density of each block, ``(nb,)`` [kg/m³]; where the ground moves a beam weighs what it moves with."""
+        return self.density_in_motion if self.history else self._given_density
+
+    @cached_property
+    def _given_density(self) -> Array:
         density = np.array([material.density for material in self.block_materials])[self.material_of_block]
         if self.beam is not None:
             density[self.beam.block] = self.beam.mass / (self.thickness * self.blocks.area[self.beam.block])
@@ -191,13 +195,13 @@ class Scene:
     @cached_property
     def density_in_motion(self) -> Array:
         """Density of each block as it vibrates, ``(nb,)`` [kg/m³]: its own, a beam's such that it has some mass."""
-        mass = float(self.density[self.masonry] @ self.blocks.area[self.masonry])
+        mass = float(self._given_density[self.masonry] @ self.blocks.area[self.masonry])
         beam = 0.0 if self.beam is None else float(self.blocks.area[self.beam.block].sum())
         return self._with_beam_of(LIGHTEST * mass / beam if beam else 0.0)
 
     def _with_beam_of(self, least: float) -> Array:
         """Densities, that of the beam a least one or its own."""
-        density = self.density.copy()
+        density = self._given_density.copy()
         if self.beam is not None:
             density[self.beam.block] = np.maximum(density[self.beam.block], least)
         return frozen(density)
