@@ -121,6 +121,34 @@ def test_an_impact_takes_what_housners_takes(share: float) -> None:
     assert found[1] - found[0] == pytest.approx(2 * quarter(found[3]), rel=1e-2)
 
 
+@pytest.mark.parametrize(("b", "h"), [(0.25, 0.5), (0.5, 0.1)])
+def test_a_block_that_lands_flat_bounces_as_springs_with_dashpots_do(b: float, h: float) -> None:
+    """The ground falls from under it and stops: it flies as Galilei's, and leaves with e of its speed, to 0.06.
+
+    Of a mass on a spring and a dashpot of ratio ξ that do not pull, e = exp(−ξ φ / √(1 − ξ²)) with the time ω φ of
+    contact, φ = π − atan(2 ξ √(1 − ξ²) / (1 − 2 ξ²)); ξ is 1 at the wall's highest frequency, and half of it at this.
+    """
+    time = np.array([0.0, 1e-4, 0.1, 0.1002, 0.2, 0.2001])
+    fall = 2.5 * GRAVITY * np.array([0.0, -1.0, -1.0, 1.0, 1.0, 0.0])
+    rest = resting(block(b, h, History(time, np.column_stack([0 * fall, fall])), 0.7))
+    response = follow(rest, 1.0, rows=1000)
+    now, above = response.time, response.displacement[:, 0, 1]
+    lands = float(now[np.argmax((now > 0.15) & (above < 0))])
+    flies = (now > 0.01) & (now < lands - 0.01)
+    way = rest.history.velocity(np.linspace(0.0, 0.3, 30_001))[:, 1]
+    ground = np.interp(now, np.linspace(0.0, 0.3, 30_001), np.cumsum(way) * 1e-5)
+    assert above[flies] == pytest.approx(-0.5 * GRAVITY * now[flies] ** 2 - ground[flies], abs=1e-3)
+    assert np.abs(response.reaction[flies]).max() < 1e-9 * float(rest.scene.mass[0]) * GRAVITY
+    speed = GRAVITY * lands + float(rest.history.velocity(lands)[1])
+    back = math.sqrt(2 * GRAVITY * above[now > lands + 0.01].max())
+    own = 1e10 * 2 * b * rest.scene.thickness / float(rest.scene.mass[0])
+    ratio = rest.viscous * math.sqrt(own / rest.system.interface.frequency_squared)
+    root = math.sqrt(1 - ratio**2)
+    contact = math.pi - math.atan2(2 * ratio * root, 1 - 2 * ratio**2)
+    assert back / speed == pytest.approx(math.exp(-ratio * contact / root), abs=0.06)
+    assert response.verdict == "stands"
+
+
 SPECTRUM = [
     # cycles, ω / p, smallest amplitude in g tan α above which it falls (or, −, stands again)
     (0.5, 1.0, 1.3214),
