@@ -61,14 +61,18 @@ class Contacts:
         return np.asarray(self.ends[:, :2].astype(np.int64) @ [2**32, 1] * 2 + (self.inwards > 0))
 
     def points(self, number: int = 0) -> tuple[Indices, Indices]:
-        """A key of each end, or of a number of points along each pair (`along`), and the end that it is or −1."""
+        """A key of each end, or of a number of points along each pair (`along`), and the end that it is or −1.
+
+        All points of an end that is alone are that end, and none of those between two.
+        """
         if not number:
             return self.key, np.arange(len(self))
         low, high = self.pairs.T
         alone, inner = low == high, np.arange(number)[:, None]
-        key, end = 64 * self.key[low] + inner, np.full((number, len(low)), -1)
+        key = 64 * self.key[low] + inner + np.where(alone & (inner > 0), 32, 0)
         key[-1] = np.where(alone, key[-1], 64 * self.key[high])
-        end[0], end[-1] = low, np.where(alone, -1, high)
+        end = np.where(alone, low, np.full((number, len(low)), -1))
+        end[0], end[-1] = low, high
         return key.ravel(), end.ravel()
 
     def geometry(self, outline: Outline) -> RigidSides:
@@ -147,7 +151,11 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     # rests with both, each of which stands for its own area.
     corner, _ = resting(outline, both, motion)
     lean = -both.inwards * np.tile(tilt + turned, 2)
-    return both.chosen(near & (np.abs(lean) <= np.maximum(outline.exterior[corner] / 2, FLAT)))
+    near &= np.abs(lean) <= np.maximum(outline.exterior[corner] / 2, FLAT)
+    # One that is there for the sake of another, which it is not now, might be anywhere: as sides turn across each
+    # other it would go from far away to far inside at once.
+    there = near & close
+    return both.chosen(near & np.tile(there[:n] | there[n:], 2))
 
 
 def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motion: Array) -> Mask:

@@ -41,7 +41,8 @@ class Along(NamedTuple):
 def along(ends: Any, pairs: Indices, area: Array, rule: Rule) -> tuple[Along, Array]:
     """Lay a rule between pairs ``(n, 2)`` of ends of areas ``(ne,)`` [m²].
 
-    A pair of one end twice is an end alone, and stands for its own area.
+    A pair of one end twice is an end alone, and stands for what the first point does: a corner that rolls from a side
+    of which it was one end onto another one would be stiffer at once by many times, and thrown off.
 
     Returns
     -------
@@ -51,7 +52,7 @@ def along(ends: Any, pairs: Indices, area: Array, rule: Rule) -> tuple[Along, Ar
         Area that each point stands for [m²].
     """
     weight, pairs = rule.weights / 2, np.ascontiguousarray(pairs)  # of one layout, for which kernels are compiled
-    whole = area[pairs].sum(axis=1) / np.where(pairs[:, 0] == pairs[:, 1], 2, 1)
+    whole = area[pairs].sum(axis=1) * np.where(pairs[:, 0] == pairs[:, 1], weight[0], 1.0)
     buffers = (np.zeros(len(area)) for _ in range(4))
     scale = whole[:, None] / area[pairs]
     geometry = Along(ends, pairs.astype(np.uint64), (rule.nodes + 1) / 2, weight.copy(), scale, *buffers)

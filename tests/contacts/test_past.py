@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from dem.finite_system import finite_system
 from runningbond.contacts.outline import Outline
-from runningbond.contacts.search import DEEP, find_contacts, jumps
+from runningbond.contacts.search import DEEP, FASTEST_OPENING, find_contacts, jumps
 from runningbond.joints.wall_law import with_impacts
 from runningbond.response import follow
 from runningbond.response.resting import Resting
@@ -100,6 +100,28 @@ def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
     contacts = find_contacts(outline, motion.ravel(), margin)
     opening, _ = jumps(outline, contacts, moved.ravel())
     assert opening.min(initial=0.0) > -DEEP * outline.margin
+
+
+@given(
+    at=st.tuples(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0)),
+    turned=st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)),
+    margin=st.floats(0.005, 0.2),
+)
+@settings(max_examples=200)
+@pytest.mark.parametrize("inset", [0.0, 0.02])
+def test_ends_that_are_far_are_there_for_the_sake_of_near_ones_alone(
+    inset: float, at: tuple[float, float], turned: tuple[float, float], margin: float
+) -> None:
+    """One without a near one went from 0.7 m away to 0.1 m inside at once, as the two sides turned across each other."""
+    scene = courses([[1], [1]], width=0.5, height=0.25, joint={**STIFF, "inset": inset})
+    outline = Outline.of(scene)
+    one, other = np.flatnonzero(scene.wall)
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[one], motion[other] = (0.0, 9.0, turned[0]), (*at, turned[1])
+    motion[other, :2] += scene.blocks.centroid[one] + [0.0, 9.0] - scene.blocks.centroid[other]
+    contacts = find_contacts(outline, motion.ravel(), margin)
+    opening, _ = np.abs(jumps(outline, contacts, motion.ravel()))
+    assert opening[contacts.pairs].min(axis=1).max(initial=0.0) < FASTEST_OPENING * margin
 
 
 def distance(scene: Scene, outline: Outline, motion: Array) -> float:

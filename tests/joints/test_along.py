@@ -25,18 +25,20 @@ def scatter_ends(normal: Array, tangential: Array, geometry: tuple[Array], force
 
 @pytest.mark.parametrize("points", [2, 3, 5])
 def test_points_do_the_work_of_their_ends(points: int) -> None:
-    """Σ A_p t_p δ_p = Σ A_e t_e δ_e for any tractions and jumps; an end alone keeps its jump and its traction."""
+    """Σ A_p t_p δ_p = Σ A_e t_e δ_e for any tractions and jumps; an end alone is as the first point of a pair."""
     rng = np.random.default_rng(points)
     geometry, area = along((), PAIRS, AREA, lobatto(points))
     jump, traction = rng.normal(size=5), rng.normal(size=3 * points)
     at_points, at_ends = np.zeros(3 * points), np.zeros(5)
     to_points(jump, geometry.pairs, geometry.share, at_points)
     to_ends(traction, geometry.pairs, geometry.share, geometry.weight, geometry.scale, at_ends)
-    assert area.sum() == pytest.approx(AREA.sum())
+    assert area.reshape(points, 3)[:, :2].sum() == pytest.approx(AREA[[0, 1, 3, 4]].sum())
+    assert area[2::3].sum() == pytest.approx(lobatto(points).weights[0] * AREA[2])
     assert (area * traction) @ at_points == pytest.approx((AREA * at_ends) @ jump, rel=1e-12)
     assert at_points[2::3] == pytest.approx(jump[2])
     to_ends(np.full(3 * points, 7.0), geometry.pairs, geometry.share, geometry.weight, geometry.scale, at_ends)
-    assert at_ends[[0, 3, 2]] == pytest.approx(7.0)
+    assert at_ends[[0, 3]] == pytest.approx(7.0)
+    assert at_ends[2] == pytest.approx(7.0 * lobatto(points).weights[0])
 
 
 def test_a_kinematics_of_ends_becomes_one_of_points() -> None:
