@@ -112,7 +112,7 @@ def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
 def test_ends_that_are_far_are_there_for_the_sake_of_near_ones_alone(
     inset: float, at: tuple[float, float], turned: tuple[float, float], margin: float
 ) -> None:
-    """One without a near one went from 0.7 m away to 0.1 m inside at once, as the two sides turned across each other."""
+    """One without a near one went from 0.7 m away to 0.1 m inside at once, as two sides turned across each other."""
     scene = courses([[1], [1]], width=0.5, height=0.25, joint={**STIFF, "inset": inset})
     outline = Outline.of(scene)
     one, other = np.flatnonzero(scene.wall)
