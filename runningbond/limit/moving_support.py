@@ -24,9 +24,16 @@ JAMMED = "self-locking: the wall holds the support against any force that drives
 
 
 def may_leave(system: Equilibrium) -> bool:
-    """Whether the support can leave the wall at rest: it runs into no block and opens the joints that it slides on."""
+    """Whether the support can leave the wall at rest, and drags nothing along.
+
+    It runs into no block, opens the joints that it slides on, and breaks neither joints nor ties.
+    """
     opening, slip = (rows[[-1]].toarray()[0] for rows in (system.opening, system.slip))
-    return bool((opening >= system.strength.friction * np.abs(slip) - NOTHING).all())
+    if (opening < system.strength.friction * np.abs(slip) - NOTHING).any():
+        return False
+    alone = np.zeros(len(system.live))
+    alone[-1] = 1.0
+    return system.load(system.kinematic_multiplier(alone)) >= -NOTHING
 
 
 def is_bridged(system: Equilibrium, share: float) -> bool:

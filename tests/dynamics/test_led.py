@@ -22,7 +22,7 @@ from runningbond.dynamics.lead import Lead, formed, goes_both_ways, windows_of_s
 from runningbond.dynamics.peaks import Peaks
 from runningbond.dynamics.ties import tie_rows
 from runningbond.joints import joint_stiffness, wall_points
-from runningbond.limit import limit
+from runningbond.limit import limit, limit_nonassociated
 from runningbond.pictures.recording import MotionRecorder
 from runningbond.results import Outcome
 from runningbond.scene import (
@@ -706,3 +706,22 @@ def test_a_bonded_pier_whose_pressed_corner_passes_that_of_the_beam_makes_up_no_
     moved, force = outcome.curve.T
     before, after = (abs(moved) > 0.0288) & (abs(moved) < 0.0294), abs(moved) > 0.0297
     assert force[after].max() < 1.002 * force[before].mean()
+
+
+@pytest.mark.parametrize("model", [limit, limit_nonassociated, dem_static, *MODELS])
+@pytest.mark.parametrize(("glue", "exact"), [(0.5, -0.5), (4.0, -3.0)])
+def test_a_support_that_is_glued_to_the_wall_drags_at_it(model: Any, glue: float, exact: float) -> None:
+    """A block of weight W whose left quarter, where the ground sinks, is glued to it with T, the rest dry.
+
+    The glue tears, and the block stays: λ W = −T. Or the block turns up about the edge of what stays, its left corner
+    with the ground: half the glue's strength and the weight, as far from the edge, λ W = −(T / 2 + W).
+    """
+    width, thickness, weight = 0.06, 0.12, 0.24 * 0.06 * 0.12 * 1800.0 * 9.81
+    strength = glue * weight / (width * thickness)
+    scene = block(
+        joints={"glue": {"friction": 0.6, "cohesion": 10 * strength, "tensile_strength": strength, "mortar": MORTAR}},
+        assign=[{"joint": "glue", "box": [[-1.0, -0.01], [width, 0.01]]}],
+        load__live={"kind": "settlement", "box": [[-1.0, -1.0], [width, 0.0]], "by": [0, -1e-3]},
+    )
+    outcome = model(scene)
+    brackets(outcome, exact, 0.01)
