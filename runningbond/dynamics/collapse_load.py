@@ -95,7 +95,7 @@ def collapse_by_steps(
         What the message is to say about the run besides.
     collapse
         Displacement at which a wall that does not slow down is in collapse, in block sizes; at least `GIVES` times
-        what the wall gives elastically under the `bound`.
+        what the wall gives elastically under the `bound`, and of one with weight as far as it has come at rest.
     first_step
         First load step; steps grow while they are borne and are bisected once one is not. One beyond the `bound` is
         halved until it is not, or `HALVINGS` times.

@@ -1,4 +1,4 @@
-"""The dead load put on a wall: at once, and slowly where that breaks joints that the load itself would not break.
+"""The dead load put on a wall: at once, and slowly where that breaks joints, or brings down walls, that it need not.
 
 Preloads of ties come with it. A beam that is held at its height from then on keeps what thrust there is: there the load
 comes slowly as well where joints have slid.
@@ -48,9 +48,10 @@ class UnderDeadLoad:
 def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observer) -> UnderDeadLoad:
     """Bring a wall to rest under its dead load.
 
-    A load that is put on at once overshoots to twice itself, which matters to joints alone that keep what it does:
-    where any is damaged, or crushed, the wall is loaded again, slowly. Friction remembers too, of which a mechanism
-    asks nothing unless its beam is held at its height: what bore the overshoot then presses too little.
+    A load that is put on at once overshoots to twice itself, which matters to joints that keep what it does, and to
+    walls that sway far: where any joint is damaged, or crushed, or the wall falls, it is loaded again, slowly. Friction
+    remembers too, of which a mechanism asks nothing unless its beam is held at its height: what bore the overshoot then
+    presses too little.
 
     Raises
     ------
@@ -60,8 +61,8 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
     state, keeps, held = State.at_rest(run.system), keeps_what_it_does(run), len(run.system.late) > 0
     unseen = keeps or held
     verdict = settle(run, state, 0.0, criteria, no_observer if unseen else observe, sudden=True)
-    # What has fallen may have no contacts left to be broken.
-    if _is_broken(run, state) or (keeps and verdict == "collapse"):
+    # What has fallen may have no contacts left to be broken, or have swayed twice as far as the load alone moves it.
+    if _is_broken(run, state) or verdict == "collapse":
         return _slowly(run, criteria, observe, state.steps)
     if held and verdict == "stable" and _has_slid(run, state):
         return _slowly(run, criteria, observe, state.steps, HARDLY)

@@ -1,12 +1,12 @@
 """Steps of constant load, each held until the wall rests or falls, with slow ramps between them."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from runningbond.scene import Array
 
-from .collapse import CALM, Criteria, Verdict, hold_load, settle
+from .collapse import CALM, CollapseDetector, Criteria, Verdict, hold_load, settle
 from .dead_load import put_on_dead_load
 from .growth import FAR, Growth
 from .run import Observer, Run, no_observer
@@ -183,7 +183,7 @@ class _Search:
             (lower, borne), before = result.rests[-1], grows.steps
             trial, state = grows.reach(trial, borne, lower, (trial - lower) / max(self.first, growth * trial))
             held = state.steps
-            verdict, halfway = hold_load(self.run, state, trial, self.criteria, self.observe)
+            verdict, halfway = hold_load(self.run, state, trial, self._criteria(borne), self.observe)
             taken = grows.steps - before + state.steps - held
             result.steps += taken
             result.add(trial, state, verdict, halfway)
@@ -199,6 +199,18 @@ class _Search:
                     step = growth * trial
                 elif len(result.rests) % 3 == 0:
                     step = max(step, min(2 * step, GROWTH * trial))
+
+    def _criteria(self, borne: State) -> Criteria:
+        """When a load brings down a wall that bears the one before: it moves as far again as it has come at rest.
+
+        Where joints are soft beside the load, one more step moves it farther than what is a fall of others. Walls
+        without weight come by another way to the load under which they fell.
+        """
+        if self.run.system.weightless:
+            return self.criteria
+        moved = borne.motion - self.result.rests[0][1].motion
+        come = self.run.system.farthest(moved, self.criteria.collapse)
+        return replace(self.criteria, collapse=self.criteria.collapse * max(1.0, come))
 
     def _load_at_once(self) -> Growth:
         """Put the first step on at once, and the same again while nothing is lost: elastic walls know no order.
@@ -234,8 +246,21 @@ class _Search:
                 return _next_load(result, step, self.undecided, self.tolerance, self.bound)
             result.verdict = "undecided"
             return None
-        # A wall without weight snaps, and may be carried past a rest where the load comes from far away.
-        return result.upper if system.weightless and result.tried_from != result.lower else None
+        # A wall without weight snaps, and may be carried past a rest where the load comes from far away. One that sways
+        # may have been on its way to one.
+        wants_more = result.tried_from != result.lower and (system.weightless or self._sways())
+        return result.upper if wants_more else None
+
+    def _sways(self) -> bool:
+        """Whether the wall, at rest, came half as far as may count as a fall from where the load last grew to one."""
+        result = self.result
+        if result.lower is None or result.tried_from is None:
+            return False
+        start, end = (
+            next(state for load, state in result.rests if load == at) for at in (result.tried_from, result.lower)
+        )
+        moved = self.run.system.farthest(end.motion - start.motion, self.criteria.collapse)
+        return moved > CollapseDetector.EARLY / 2
 
 
 def _next_load(result: LoadSteps, step: float, undecided: UndecidedLoads, tolerance: float, bound: float) -> float:

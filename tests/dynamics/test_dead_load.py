@@ -254,3 +254,31 @@ def test_a_brittle_block_near_its_strength_stands_on_ground_that_hardly_moves(sh
     scene = scene_from_dict(tables)
     response = respond("dem-dynamic", scene)
     assert response.verdict == "stands", response.message
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, *at_length(fem)])
+@pytest.mark.parametrize(("leans", "strength"), [(-0.8, 1.2e4), (-0.7, 8e3)])
+def test_a_slender_pier_that_sways_as_its_dead_load_is_put_on_does_not_fall(
+    model: Any, leans: float, strength: float
+) -> None:
+    """Put on at once the load moves its top by twice what it does in the end, and that was taken for a fall."""
+    foot, pier = [[1, 1, 1], [0.5, 1, 1, 0.5]], [[-1, 0.5, 0.5, -1], [-1, 1, -1]]
+    size = {"block_width": 0.25, "block_height": 0.5, "thickness": 0.2}
+    scene = scene_from_dict(
+        {
+            "wall": size | {"courses": [*3 * foot, foot[0], *2 * pier, pier[0]]},
+            "block": {"density": 2000.0, "young": 1e12},
+            "joint": {
+                "friction": 0.75,
+                "cohesion": 3.5e4,
+                "tensile_strength": strength,
+                "normal_stiffness": 8.6e8,
+                "shear_stiffness": 3.4e8,
+            },
+            "support": {"kind": "base"},
+            "load": {"gravity": [leans, -9.81], "live": {"kind": "lateral", "direction": "left"}},
+        }
+    )
+    outcome = model(scene)
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.multiplier == pytest.approx(limit(scene).multiplier, rel=0.01)
