@@ -16,8 +16,8 @@ from .pushover import NOISE, LoadPath, StaticState, lengthened
 UNCLEAR = 3
 """Loads under which a wall may neither rest nor fall; after one more the bracket around them stays as wide as it is."""
 
-INTERRUPTED, NEITHER = "interrupted", "it neither rested nor fell"
-"""Why a wall is undecided: after Ctrl-C, or after loads that were not."""
+INTERRUPTED, NEITHER, SPENT = "interrupted", "it neither rested nor fell", "the budget ran out"
+"""Why a wall is undecided: after Ctrl-C, after loads that were not, or after too many linear systems."""
 
 
 def climb(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[float] = ()) -> None:
@@ -44,7 +44,7 @@ def climb(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[f
                     bound = _bound(path)
                     path.upper = None if bound is None else max(bound, path.lower)
                 if path.budget <= 0 or path.upper is None or len(path.unclear) > UNCLEAR:
-                    path.undecided = "" if path.fall is not None and path.budget > 0 else NEITHER
+                    path.undecided = SPENT if path.budget <= 0 else "" if path.fall is not None else NEITHER
                     return
             step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
             if path.upper is None and path.lower > most:

@@ -31,7 +31,7 @@ from runningbond.results import Outcome, Supports
 from runningbond.results.outcome import joined, number
 from runningbond.scene import Scene, check_scene
 
-from .climb import INTERRUPTED, NEITHER, climb, ends, look_closer, peak
+from .climb import INTERRUPTED, NEITHER, SPENT, climb, ends, look_closer, peak
 from .led import lead_along
 from .pushover import LoadPath, StaticObserver, no_observer, state_of
 from .relaxation import relax
@@ -221,7 +221,10 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
         unclear = [number(unit * load) for load in path.unclear if best.multiplier < load < (path.upper or np.inf)]
         message += f"; {NEITHER} under {', '.join(unclear)}" if unclear else ""
         return replace(result, status="collapse", multiplier=result.lower, message=message)
-    if path.undecided != INTERRUPTED and path.upper is None and path.budget > 0 and is_self_locking(equations.scene):
+    if path.undecided != INTERRUPTED and path.upper is None and is_self_locking(equations.scene):
+        if path.undecided == SPENT:
+            message = f"no answer: {path.undecided}, though joint forces balance any multiple of the load"
+            return replace(result, message=message)
         message = f"self-locking: {path.undecided}, and joint forces balance any multiple of it"
         return replace(result, status="unbounded", lower=None, motion=np.zeros((0, 3)), message=message)
     return replace(result, message=f"no answer: {path.undecided}")

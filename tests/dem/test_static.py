@@ -409,12 +409,20 @@ def test_block_pressed_onto_the_ground_locks() -> None:
     assert outcome.multiplier is None
 
 
+def test_a_wall_that_locks_is_undecided_where_the_budget_runs_out_before_that_is_seen() -> None:
+    """It was said to have neither rested nor fallen."""
+    outcome = dem_static(pile([rectangle(0, 0, 1, 1)], 0.6, live=PointLoad((0.5, 1.0), (0.0, -1.0))), budget=10)
+    assert outcome.status == "undecided"
+    assert outcome.message.startswith("no answer: the budget ran out, though joint forces balance any multiple")
+
+
 def test_a_budget_that_runs_out_leaves_it_undecided_with_what_was_reached() -> None:
     outcome = dem_static(ferris("W1"), budget=20)
     assert outcome.status == "undecided"
     assert outcome.lower is not None
     assert 0 < outcome.lower < 0.6429
     assert outcome.upper is None
+    assert outcome.message == "no answer: the budget ran out"
 
 
 @pytest.mark.parametrize("after", [0.0, 0.3])
