@@ -115,8 +115,9 @@ def load_steps(
     Every trial starts from the last state at rest, or from the wall as it was when the load grew through that trial
     slowly, so that a fall leaves no trace in the states that count.
     Steps grow while they are borne, so that the first one need not know the answer's size. An undecided load is passed
-    by, just beside it; once a fall is known the bracket closes in on such loads from both sides. A wall without weight
-    is in the end brought to the load under which it fell from the largest that it bore, and goes on if it bears it.
+    by, just beside it; once a fall is known the bracket closes in on such loads from both sides. A wall without weight,
+    and one that came far at rest in the last step, is in the end brought to the load under which it fell from the
+    largest that it bore, and goes on if it bears it.
 
     Parameters
     ----------
