@@ -33,7 +33,7 @@ DEFAULT: dict[str, float] = {REST: SUITE.rest, FAR: U_CRIT, INTERVAL: SUITE.inte
 LOOSE = (0.01, 0.03)  # thresholds of rest so loose that (4) is seen
 TINY, LARGE = (1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6), (1e-4, 1e-3, *LOOSE, 0.1, 0.3)
 RESTS = (*TINY, *(x * SUITE.rest for x in (0.5, 1, 2)), *LARGE)
-FARS = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4, 1.6)
+FARS = (1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4, 1.6)
 FARS_WEIGHTLESS = (1e-3, *(x * U_CRIT for x in (0.5, 1, 2)), 0.4)
 INTERVALS = (1, 20, *(int(x * SUITE.interval) for x in (0.5, 1, 2)), 2000)
 SWEEPS = {(name, REST): RESTS for name in WALLS}  # values of a criterion on a wall, ascending
@@ -124,7 +124,7 @@ def _draw(figure: Figure, rows: Rows) -> None:
         right.errorbar(5, low, [[0], [high - low]], color=colour, lw=1.5, capsize=3)
         right.annotate(f"certified for\n{WEIGHTLESS}", (7, high + 0.005), ha="right", color=colour, fontsize=8)
     right.annotate("×  infeasible\n?  undecided", (2e-6, 0.77), color="0.4", fontsize=8)
-    right.set(xscale="log", xlim=(4e-8, 8), ylim=(0.6, 1.1), xlabel="displacement of a collapse [block sizes]")
+    right.set(xscale="log", xlim=(4e-9, 8), ylim=(0.6, 1.1), xlabel="displacement of a collapse [block sizes]")
     right.set_ylabel("λ / λ known (without weight: / the suite's)")
     right.set_title("fallen", fontsize=10)
     for axes in (left, right):
@@ -158,8 +158,8 @@ STUDY = Study(
     "Verdict: when a wall is at rest, and when it has fallen",
     trusted="λ is the same over decades of each criterion, and the suite's values stand inside",
     beyond="a threshold of rest too loose gives a λ too high by (4), one below rounding `undecided`; a u_crit too "
-    "small gives a λ too low, or `infeasible` where not even the settlement under the weight is allowed; one too "
-    "large costs steps, and in the end is `undecided`",
+    "small gives a wall without weight a λ too low, or `infeasible` where not even the settlement under the weight is "
+    "allowed; one too large costs steps, and in the end is `undecided`",
     parts={PART: Part(("wall", "criterion", "value"), [(*x, y) for x, ys in SWEEPS.items() for y in ys], search)},
     charts=[Chart("λ by the threshold of rest and by the displacement that counts as a collapse", _draw, size=(10, 5))],
     fits=fits,
