@@ -107,6 +107,20 @@ def test_a_wall_that_falls_under_its_dead_load_is_seen_to_fall(model: str, tmp_p
     assert fallen[-1] < -0.05 * 0.175  # as far as counts as a collapse
 
 
+def test_of_a_dead_load_that_is_put_on_twice_the_second_fall_is_seen(tmp_path: Path) -> None:
+    """A block that is glued to another one's side, at once and then slowly: it would fall, jump back and fall again."""
+    glue = {"cohesion": 15e3, "tensile_strength": 15e3}
+    scene = courses([[1, -1], [1, 1]], joint=STIFF | glue, block={"density": 2000.0})
+    recorder = motion_recorder(scene, tmp_path)
+    outcome = run_model("dem-dynamic", scene, 0.1, recorder)
+    recorder.finish(outcome)
+    assert outcome.status == "infeasible"
+    grids: list[Any] = [pyvista.read(file) for file in frame_files(tmp_path, "blocks")]
+    fallen = [float(np.asarray(grid.point_data[DISPLACEMENT])[:, 1].min()) for grid in grids]
+    assert len(fallen) > 1
+    assert fallen == sorted(fallen, reverse=True)
+
+
 @pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
 def test_blocks_that_topple_keep_their_shape(model: str) -> None:
     """Sides are as long as at rest where blocks have turned, and the top is where the response says that it is."""
