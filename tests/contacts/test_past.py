@@ -86,14 +86,10 @@ def test_blocks_that_stay_apart_do_not_come_to_press_on_each_other(
     inset: float, at: tuple[float, float], turned: tuple[float, float], step: tuple[float, ...], margin: float
 ) -> None:
     """One anywhere beside, above or below the other, and both moved by half the margin at most since the search."""
-    scene = courses([[1], [1]], width=0.5, height=0.25, joint={**STIFF, "inset": inset})
-    outline = Outline.of(scene)
-    one, other = np.flatnonzero(scene.wall)
-    motion = np.zeros((len(scene.blocks), 3))
-    motion[one], motion[other] = (0.0, 9.0, turned[0]), (*at, turned[1])
-    motion[other, :2] += scene.blocks.centroid[one] + [0.0, 9.0] - scene.blocks.centroid[other]
+    scene, outline, motion = two_blocks(inset, at, turned)
     moved = motion.copy()
     way = margin / 2 / (np.sqrt(2) + 1) * np.reshape(step, (2, 3))
+    one, other = np.flatnonzero(scene.wall)
     moved[[one, other]] += way / np.column_stack([np.ones((2, 2)), outline.reach[[one, other]]])
     apart = [distance(scene, outline, where) for where in (motion, (motion + moved) / 2, moved)]
     assume(min(apart) > 1e-3)
@@ -113,15 +109,20 @@ def test_ends_that_are_far_are_there_for_the_sake_of_near_ones_alone(
     inset: float, at: tuple[float, float], turned: tuple[float, float], margin: float
 ) -> None:
     """One without a near one went from 0.7 m away to 0.1 m inside at once, as two sides turned across each other."""
+    _, outline, motion = two_blocks(inset, at, turned)
+    contacts = find_contacts(outline, motion.ravel(), margin)
+    opening, _ = np.abs(jumps(outline, contacts, motion.ravel()))
+    assert opening[contacts.pairs].min(axis=1).max(initial=0.0) < FASTEST_OPENING * margin
+
+
+def two_blocks(inset: float, at: tuple[float, float], turned: tuple[float, float]) -> tuple[Scene, Outline, Array]:
+    """Two turned blocks high above the ground, and their motion ``(nb, 3)``; `at` is from one centroid to the other."""
     scene = courses([[1], [1]], width=0.5, height=0.25, joint={**STIFF, "inset": inset})
-    outline = Outline.of(scene)
     one, other = np.flatnonzero(scene.wall)
     motion = np.zeros((len(scene.blocks), 3))
     motion[one], motion[other] = (0.0, 9.0, turned[0]), (*at, turned[1])
     motion[other, :2] += scene.blocks.centroid[one] + [0.0, 9.0] - scene.blocks.centroid[other]
-    contacts = find_contacts(outline, motion.ravel(), margin)
-    opening, _ = np.abs(jumps(outline, contacts, motion.ravel()))
-    assert opening[contacts.pairs].min(axis=1).max(initial=0.0) < FASTEST_OPENING * margin
+    return scene, Outline.of(scene), motion
 
 
 def distance(scene: Scene, outline: Outline, motion: Array) -> float:
