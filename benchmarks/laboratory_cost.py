@@ -3,15 +3,13 @@
     python -m benchmarks.laboratory_cost [WALL …]
 
 Of the shipped dry walls that are pushed to one side where none is named: their own way ends at another displacement
-each. Kernels are compiled before; the median and the range of `REPEATS` runs in one process are printed.
+each. Compilation of kernels does not count; the median and the range of `REPEATS` runs in one process are printed.
 """
 
 import sys
-import time
 from dataclasses import replace
 from statistics import median
 
-from runningbond.joints.compiled import compilation
 from runningbond.laboratory.folder import SHIPPED, read_folder
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
@@ -41,10 +39,8 @@ def main(names: list[str]) -> None:
             blocks = int(scene_of(walls[name], LADDER["limit"].features).wall.sum())
             scene = pushed(scene_of(walls[name], rung.features), TO)
             for _ in range(REPEATS):
-                with compilation() as compiled:
-                    start = time.process_time()
-                    outcome = rung.model.solve(scene, TOLERANCE)
-                    seconds.append(time.process_time() - start - compiled.seconds)
+                outcome = rung.model.solve(scene, TOLERANCE)
+                seconds.append(outcome.seconds)
             bracket = f"{(outcome.lower or 0) / 1e3:.1f} … {(outcome.upper or 0) / 1e3:.1f}"
             spread = f"{median(seconds):.1f} ({min(seconds):.1f} … {max(seconds):.1f})"
             cells = (name, str(blocks), model, outcome.status, bracket, f"{outcome.steps:,}", spread)

@@ -112,20 +112,20 @@ def critical_scale(
 
 def _bracket(search: Search, first: float, most: float, tolerance: float) -> None:
     """Try scales up to the first fall, bisect it, and go on beyond it."""
+
+    def scale(number: int) -> float:  # from the first one each time, or what was tried would be tried again
+        return first * RATIO**number
+
     number = 0
-
-    def scale(beyond: int = 0) -> float:  # from the first one each time, or what was tried would be tried again
-        return first * RATIO ** (number + beyond)
-
-    while search.falls(scale()) and scale() > most * 1e-9:
+    while search.falls(scale(number)) and scale(number) > most * 1e-9:
         number -= 1
-    while not search.falls(scale()):
-        if scale() > most:
+    while not search.falls(scale(number)):
+        if scale(number) > most:
             return
         number += 1
     for beyond in range(1, math.floor(math.log(BEYOND) / math.log(RATIO)) + 1):
-        search.falls(scale(beyond))
-    lower, upper = scale(-1), scale()
+        search.falls(scale(number + beyond))
+    lower, upper = scale(number - 1), scale(number)
     search.falls(lower)
     while upper - lower > tolerance * upper and search.tried[lower].verdict == "stands":
         middle = (lower + upper) / 2
