@@ -5,6 +5,8 @@ Everything here is imported when it is first used, so that the import itself cos
 
 from typing import TYPE_CHECKING
 
+from .own_packages import prefer_to_folders
+
 if TYPE_CHECKING:
     from .draws import Draws
     from .fragilities import Fragility, fragility
@@ -40,6 +42,8 @@ else:
     def __dir__():
         return sorted({*globals(), *_MODULES})
 
+
+prefer_to_folders()
 
 __all__ = [
     "Draws",

@@ -9,6 +9,8 @@ import threading
 import warnings
 from contextlib import suppress
 
+from runningbond.own_packages import prefer_to_files
+
 MOMENT = 0.02
 """Seconds in which a callback is over."""
 
@@ -20,6 +22,7 @@ def main() -> None:
     sys.unraisablehook = _interrupted_again
     # joblib says at its import where processes cannot share a lock; a campaign says so when it matters.
     warnings.filterwarnings("ignore", ".*joblib will operate in serial mode", UserWarning)
+    prefer_to_files()
     from runningbond.commands.command_line import main as run
     from runningbond.commands.terminal import STOPPED
 

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from homog import homog
 from runningbond.limit import elastic_displacement, limit, limit_nonassociated
+from runningbond.own_packages import hidden_package, prefer_to_folders
 from runningbond.results import Outcome
 from runningbond.results.outcome import joined, two_digits
 from runningbond.scene import Scene, SceneError
@@ -49,11 +49,16 @@ OF_BLOCKS = ("cells", "modes", "rule", "points", "cracks", "loads", "mass_scalin
 
 
 def _homog(scene: Scene, tolerance: float) -> Outcome:
-    return homog(scene)
+    outcome: Outcome = _late("homog", "homog", scene)
+    return outcome
 
 
 def _late(module: str, name: str, *arguments: Any, **settings: Any) -> Any:
-    """Call a function or class of a module that needs a compiler or VTK, and is imported only now."""
+    """Call a function or class of a module that is of a method's package, or needs a compiler or VTK: imported now."""
+    prefer_to_folders()  # there may be more of them than when the suite was imported
+    hidden = hidden_package(module)
+    if hidden is not None:
+        raise SceneError("import", hidden)
     return getattr(import_module(module), name)(*arguments, **settings)
 
 

@@ -38,7 +38,7 @@ class Ended(Exception):
 
 def measure_apart(measure: Callable[..., Row], case: Case, stop: Event | None = None) -> Row:
     """Measure a case that JSON has words for in a fresh process, until `stop` is set; `Ended` if that has no answer."""
-    command = [sys.executable, "-m", __name__, measure.__module__, measure.__name__, json.dumps(case)]
+    command = [sys.executable, "-P", "-m", __name__, measure.__module__, measure.__name__, json.dumps(case)]
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     path = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]))
     environment, pipe = {**os.environ, **threads, "PYTHONPATH": path}, subprocess.PIPE

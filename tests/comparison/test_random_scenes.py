@@ -108,13 +108,13 @@ def limit_scale(scene: Scene) -> float:
 
 
 @given(scene=walls())
-@settings(max_examples=120, **FEW)
+@settings(max_examples=60, **FEW)
 def test_limit_analysis_agrees_with_a_second_opinion(scene: dict[str, Any]) -> None:
     _agrees(scene)
 
 
 @given(scene=spoilt(), model=st.sampled_from([*LIMITS, "homog"]))
-@settings(max_examples=300, **FEW)
+@settings(max_examples=150, **FEW)
 def test_any_scene_gets_an_object_or_a_line(scene: dict[str, Any], model: str) -> None:
     _object_or_line(scene, model)
 

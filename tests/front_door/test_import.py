@@ -39,7 +39,8 @@ def python(*arguments: str, cwd: Path | None = None) -> str:
 def test_import_loads_no_library_and_no_room() -> None:
     loaded = python("-c", "import sys, runningbond; print(*sys.modules)").split()
     assert not HEAVY & {name.split(".")[0] for name in loaded}
-    assert [name for name in loaded if name.startswith("runningbond")] == ["runningbond"]
+    ours = {name for name in loaded if name.startswith("runningbond")}
+    assert ours == {"runningbond", "runningbond.own_packages"}
     assert not METHODS & set(loaded)
 
 
@@ -100,6 +101,65 @@ def test_lines_of_the_readme_run_beside_files_named_like_rooms(strangers: Path) 
     (strangers / "wall.toml").write_text(_block("toml"))
     (strangers / "script.py").write_text("import matplotlib\nmatplotlib.use('Agg')\n" + _block("python"))
     assert python("script.py", cwd=strangers).startswith("collapse")
+
+
+EVERY_MODEL = (
+    FIVE_LINES.split("mortar =")[0]
+    + """
+wall = rb.Wall.running_bond(length=0.8, height=0.4, block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0,
+                            friction=0.4, normal_stiffness=1e9, shear_stiffness=1e9, young=1e10)
+for model in ("limit", "homog", "dem-static", "fem"):
+    try:
+        print(wall.run(model).status)
+    except rb.SceneError as error:
+        print(error.remedy)
+"""
+)
+
+
+@pytest.mark.parametrize("name", sorted(METHODS))
+def test_results_may_lie_in_a_folder_named_like_a_method(tmp_path: Path, name: str) -> None:
+    """Which an editable installation would take for an empty package; it finds packages after all that is beside."""
+    (tmp_path / name).mkdir()
+    (tmp_path / "script.py").write_text(_found_last(EVERY_MODEL))
+    answer = subprocess.run([sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert answer.stdout.split() == ["collapse"] * 4, answer.stderr
+
+
+def _found_last(lines: str) -> str:
+    """Lines that find the suite as `pip install -e` lets them: by a finder that is asked after the usual ones."""
+    finder = """
+import sys
+from importlib.machinery import PathFinder
+class Finder:
+    @staticmethod
+    def find_spec(name, path=None, target=None):
+        return PathFinder.find_spec(name, [{root!r}]) if path is None and name in {names!r} else None
+sys.path[:] = [each for each in sys.path if each != {root!r}]
+sys.meta_path[:] = [each for each in sys.meta_path if "editable" not in str(each).lower()] + [Finder]
+"""
+    return finder.format(root=str(ROOT), names={"runningbond", *METHODS}) + lines
+
+
+@pytest.mark.parametrize(
+    ("name", "models"),
+    [("dem", {"dem-static", "fem"}), ("fem_interface", {"fem"}), ("homog", {"homog"}), ("meshing", {"fem"})],
+)
+def test_a_script_named_like_a_method_is_told_so_by_the_models_that_need_it(
+    tmp_path: Path, name: str, models: set[str]
+) -> None:
+    """It would be imported, and with that run, a second time."""
+    (tmp_path / f"{name}.py").write_text(EVERY_MODEL)
+    said = python(f"{name}.py", cwd=tmp_path).splitlines()
+    told = f"{tmp_path / name}.py would be imported in place of the suite's package {name}: let it have another name"
+    assert said == [told if model in models else "collapse" for model in ("limit", "homog", "dem-static", "fem")]
+
+
+def test_commands_take_no_file_of_a_users_for_a_method(tmp_path: Path) -> None:
+    for name in METHODS:
+        (tmp_path / f"{name}.py").write_text(f"raise ImportError('{name}.py of the user was imported')\n")
+    for line in ("run panel-01 --model dem-static", "run panel-01 --model homog", "mesh panel-01 --out wall.vtu"):
+        python("-m", "runningbond", *line.split(), cwd=tmp_path)
 
 
 def _block(language: str) -> str:
