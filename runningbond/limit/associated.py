@@ -13,13 +13,14 @@ import numpy as np
 
 from runningbond.joints import PointStrength
 from runningbond.results import Outcome, Status, collapse_state
+from runningbond.results.outcome import two_digits
 from runningbond.scene import Array, Scene, check_scene
 
 from .crushed import beyond_note, crushed, crushing_note, without_crushing
 from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .moving_support import JAMMED, support_verdict
-from .proved import CLOSE, STOP, falls_at_rest, is_large, proved, resting_forces, tolerance_of
+from .proved import CLOSE, STOP, fall_at_rest, is_large, proved, resting_forces, tolerance_of
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
 INTERRUPTED = "the linear program was interrupted, or ran out of iterations"
@@ -191,8 +192,9 @@ def _proved(system: Equilibrium) -> LimitState | None:
     """What the interior point's answer for a large wall proves; None if that is not enough."""
     dead = system.under_dead_load()
     resting, point = resting_forces(dead)
-    if resting is None and falls_at_rest(dead, point):
-        return LimitState(system, ForceSolution.none("infeasible"), rests=False)
+    fall = fall_at_rest(dead, point) if resting is None else None
+    if fall is not None:
+        return LimitState(system, replace(ForceSolution.none("infeasible"), motion=fall), rests=False)
     state = LimitState(system, proved(system, resting), rests=None if resting is None else True)
     if _wants_more(state):
         # A vertex costs hours where the interior point's last iterations cost seconds.
@@ -331,6 +333,8 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     )
     if status == "collapse":
         outcome = _bracketed(outcome, state, tolerance)
+    elif status == "infeasible":
+        outcome = _falling(outcome, state)
     else:
         outcome = replace(outcome, status=status, **so_far(state))
     return replace(outcome, seconds=time.perf_counter() - start)
@@ -386,6 +390,20 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
     arrays = arrays_of(system, forces.motion, forces)
     known = collapse_state(system.scene, system.points, arrays["force"], arrays["pull"], static)
     return replace(outcome, status="collapse", multiplier=static, lower=lower, upper=upper, **arrays, **known)
+
+
+def _falling(outcome: Outcome, state: LimitState) -> Outcome:
+    """Outcome of a wall that collapses under its dead load: how and, but of a large wall, of how much of it."""
+    dead, motion = state.system.under_dead_load(), state.forces.motion
+    outcome = replace(outcome, status="infeasible")
+    if not is_large(dead):
+        growing = limit_state(replace(dead, live=dead.dead, dead=np.zeros(dead.freedoms), live_unit=1.0))
+        if judge(growing)[0] != "collapse":
+            return outcome
+        motion, share = growing.forces.motion, growing.system.load(growing.kinematic_multiplier)
+        if share > ZERO:
+            outcome = replace(outcome, message=f"{outcome.message}; they balance {two_digits(share)} of it")
+    return replace(outcome, motion=dead.motion(motion)) if len(motion) else outcome
 
 
 def arrays_of(system: Equilibrium, motion: Array, forces: ForceSolution) -> dict[str, Any]:

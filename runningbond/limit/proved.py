@@ -52,17 +52,17 @@ def resting_forces(system: Equilibrium) -> tuple[Array | None, InteriorPoint]:
     return found, point
 
 
-def falls_at_rest(system: Equilibrium, point: InteriorPoint) -> bool:
-    """Whether the interior point of `resting_forces` is a mechanism on which joints dissipate less than the load does.
+def fall_at_rest(system: Equilibrium, point: InteriorPoint) -> Array | None:
+    """The interior point of `resting_forces` as a mechanism ``(nd,)`` that dissipates less than the load does.
 
-    It proves that no admissible forces balance the dead load.
+    It proves that no admissible forces balance the dead load; None if it is none.
     """
     program = force_program(system, coulomb(system.strength), "zero")
     motion = admissible(program, point) if point.status == "infeasible" else None
     if motion is None:
-        return False
+        return None
     power, gained = float(np.abs(system.dead) @ np.abs(motion)), float(system.dead @ motion)
-    return system.dissipated(motion) < gained - OVERTURNED * power
+    return motion if system.dissipated(motion) < gained - OVERTURNED * power else None
 
 
 def proved(system: Equilibrium, resting: Array | None, tolerance: float | None = None) -> ForceSolution:

@@ -19,8 +19,10 @@ from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociate
 from runningbond.limit.associated import is_self_locking, judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
 from runningbond.limit.interior_point import interior_point
+from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.limit.proved import CLOSE, STOP, WIDE, is_large, proved, resting_forces
 from runningbond.limit.repair import ROUNDING, admissible, balanced
+from runningbond.results import check_mechanism
 from runningbond.scene import Scene
 from tests.walls import panel
 
@@ -132,7 +134,11 @@ def test_a_mechanism_proves_that_a_large_wall_falls_at_rest(
     system = equilibrium(panel(**{**SIZE, **changes})).under_live_load()
     assert judge(LimitState(system, solve_forces(system, coulomb(system.strength))))[0] == "infeasible"
     monkeypatch.setattr("runningbond.limit.associated.solve_forces", unasked)
-    assert limit(system.scene).status == "infeasible"
+    outcome = limit(system.scene)
+    assert outcome.status == "infeasible"
+    check = check_mechanism(system.scene, outcome.motion, dead_load(system.scene), live_load(system.scene), 0.0)
+    assert check.is_driven
+    assert not check.warning
 
 
 @pytest.mark.parametrize("friction", [0.102, 0.1042])

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -372,6 +373,49 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible(model: Callable[[Scene
     outcome = model(pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)], 0.5))
     assert outcome.status == "infeasible"  # type: ignore[attr-defined]
     assert outcome.multiplier is None  # type: ignore[attr-defined]
+
+
+def test_it_is_seen_what_of_a_wall_falls_under_its_weight() -> None:
+    """Of three blocks the one that overhangs tips about the corner that it leans on, and only that."""
+    scene = pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1), rectangle(3, 0, 1, 1)], 0.5)
+    corbel = scene.blocks.centroid[:, 1].argmax()
+    u, v, spin = limit(scene).motion[corbel]
+    edge = np.array([1.0, 1.0]) - scene.blocks.centroid[corbel]
+    assert np.array([u - spin * edge[1], v + spin * edge[0]]) == pytest.approx(0.0, abs=1e-9)
+    assert spin < 0
+    assert not np.delete(limit(scene).motion, corbel, axis=0).any()
+
+
+@given(
+    strength=st.floats(0.01, 0.95),  # of a weight as much as can be held
+    overhang=st.floats(0.51, 0.9),
+    crushing=st.booleans(),
+)
+@settings(max_examples=30, deadline=None)
+def test_joints_that_are_too_weak_for_the_weight_say_how_much_of_it_they_bear(
+    strength: float, overhang: float, crushing: bool
+) -> None:
+    """f_t l² t / 2 about the corner, for ρ g l h t (o − 1/2) l of a block of length l that overhangs by o l.
+
+    Where the joint is (1 − o) l long; and a wall with less gravity than that stands.
+    """
+    share, length, density, gravity = strength, 1.0 - overhang, 2000.0, 9.81
+    tension = share * density * gravity * (overhang - 0.5) * 2 / length**2
+    joint = JointMaterial(0.7, cohesion=10 * tension, tensile_strength=tension)
+    if crushing:  # by next to nothing: its joint's end presses on one point
+        joint = replace(joint, compressive_strength=1e6 * tension)
+    blocks = [rectangle(0, 0, 1, 1), rectangle(overhang, 1, 1, 1)]
+
+    def wall(gravity: float) -> Scene:
+        load = Load(gravity=(0.0, -gravity))
+        return build_scene("corbel", blocks, thickness=0.5, block=BlockMaterial(density), joint=joint, load=load)
+
+    outcome = limit(wall(gravity))
+    assert outcome.status == "infeasible"
+    said = float(outcome.message.split("they balance ")[1].split(" of it")[0])
+    assert said == pytest.approx(share, rel=0.06)  # told to two digits
+    assert limit(wall(0.99 * share * gravity)).status != "infeasible"
+    assert limit(wall(1.01 * share * gravity)).status == "infeasible"
 
 
 @pytest.mark.parametrize("model", [limit, limit_nonassociated])
