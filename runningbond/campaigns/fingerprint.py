@@ -135,6 +135,7 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
     if id(given) in seen:
         return
     seen = (*seen, id(given))
+    given = _as_written(given)
     if isinstance(given, partial):
         _feed_values(digest, (*given.args, *sorted((given.keywords or {}).items())), seen)
         _feed_given(digest, given.func, seen)
@@ -142,7 +143,9 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
         closure, defaults = inspect.getclosurevars(given), (given.__defaults__, given.__kwdefaults__)
         outside = {} if _is_in_file(given) else closure.globals
         named = [
-            (name, x) for name, x in outside.items() if isinstance(x, PLAIN) or inspect.isfunction(x) or _is_own(x)
+            (name, x)
+            for name, x in outside.items()
+            if isinstance(x, PLAIN) or inspect.isfunction(_as_written(x)) or _is_own(x)
         ]
         _feed_values(
             digest, (*defaults, *sorted(closure.nonlocals.items()), *sorted(named, key=lambda pair: pair[0])), seen
@@ -151,6 +154,11 @@ def _feed_given(digest: "hashlib._Hash", given: Any, seen: tuple[int, ...] = ())
         _feed_values(digest, (given.__self__, given.__func__), seen)
     elif not inspect.isroutine(given) and not inspect.isclass(given) and not inspect.ismodule(given):
         _feed_values(digest, tuple(sorted(getattr(given, "__dict__", {}).items())), seen)
+
+
+def _as_written(given: Any) -> Any:
+    """The function that something compiled by numba was written as; all else as it is."""
+    return getattr(given, "py_func", given)
 
 
 def _is_own(value: Any) -> bool:
@@ -172,6 +180,7 @@ def _feed_values(digest: "hashlib._Hash", values: tuple[Any, ...], seen: tuple[i
         if inspect.isclass(value) or inspect.ismodule(value):
             digest.update(value.__name__.encode() + _own_files(_module_of(value)))
             continue
+        value = _as_written(value)
         _feed(digest, value)
         if _says_nothing(value):
             if inspect.isfunction(value):
@@ -194,6 +203,7 @@ def _feed(digest: "hashlib._Hash", value: object) -> None:
     """Add a value to a digest: what it says, never where it lies in memory."""
     if isinstance(value, Law):
         digest.update(repr(value.identity).encode())
+        _feed_own_functions(digest, value)
     elif isinstance(value, np.ndarray):
         digest.update(f"{value.dtype}{value.shape}".encode() + value.tobytes())
     elif isinstance(value, (set, frozenset)):
@@ -211,6 +221,16 @@ def _feed(digest: "hashlib._Hash", value: object) -> None:
         digest.update(f"{type(value).__name__} {getattr(value, '__qualname__', '')}".encode())
     else:
         digest.update(repr(value).encode())
+
+
+def _feed_own_functions(digest: "hashlib._Hash", law: Law) -> None:
+    """Add what a user's functions of a law call, which its identity does not know."""
+    for entry in fields(law):
+        given = _as_written(getattr(law, entry.name))
+        own = _own_code(given) if callable(given) else b""
+        if own:
+            digest.update(own)
+            _feed_given(digest, given)
 
 
 def _says_nothing(value: object) -> bool:

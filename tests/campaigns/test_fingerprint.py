@@ -9,12 +9,13 @@ from importlib.metadata import packages_distributions
 from pathlib import Path
 from typing import Any
 
+import numba
 import pytest
 from numba.cloudpickle import dumps, loads
 
 from runningbond.campaigns.fingerprint import COMPUTING_ROOMS, LIBRARIES, fingerprint
 from runningbond.laboratory.ladder import LADDER
-from runningbond.models import Model
+from runningbond.models import MODELS, Model
 from runningbond.results import Outcome
 from runningbond.scene import Scene
 
@@ -83,9 +84,27 @@ def through_another(factor: float) -> Any:
     return lambda scene, tolerance: inner(scene, tolerance)
 
 
-@pytest.mark.parametrize(
-    "made", [closed_over, with_default, lambda x: Solver(x).solve, Solver, named, partial, through_another]
-)
+def compiled(factor: float) -> Any:
+    """One that calls a compiled function, which is closed over the number."""
+
+    def written() -> float:
+        return factor
+
+    inner = numba.njit(written)
+    return lambda scene, tolerance: Outcome(scene.title, "mine", "collapse", inner())
+
+
+def compiled_and_named(factor: float) -> Any:
+    """One without a file that calls a compiled function, which names the number."""
+    names: dict[str, Any] = {"FACTOR": factor, "__name__": "__main__", "njit": numba.njit}
+    exec("@njit\ndef inner(): return FACTOR\ndef solve(scene, tolerance): return inner()", names)
+    return names["solve"]
+
+
+MAKERS = [closed_over, with_default, lambda x: Solver(x).solve, Solver, named, partial, through_another]
+
+
+@pytest.mark.parametrize("made", [*MAKERS, compiled, compiled_and_named])
 def test_a_users_model_is_known_by_what_it_was_given(made: Any) -> None:
     """Wherever it is asked for: a process that it was sent to has its code without a file."""
     made = (lambda x: partial(Solver.solve, Solver(x))) if made is partial else made
@@ -123,6 +142,45 @@ def test_a_users_model_is_known_by_the_files_that_it_imports(
             names = {"__name__": "__main__"}
             exec(source, names)
         keys.append(fingerprint(WALL, Model("mine", "a user's own", names["solve"], frozenset()), 1e-3))
+    assert keys[0] == keys[1] != keys[2]
+
+
+LAW = """
+from dataclasses import replace
+
+from runningbond.joints.coulomb import COULOMB
+
+def worn(factor):
+    return {factor} * factor
+
+def constants(material):
+    k_n, k_t, tension, friction, *others = COULOMB.constants(material)
+    return k_n, k_t, tension, {call}(friction), *others
+
+LAW = replace(COULOMB, name="worn", constants=constants)
+"""
+
+
+@pytest.mark.parametrize("call", ["worn", "helper.worn"])
+@pytest.mark.parametrize("has_file", [True, False])
+def test_a_users_law_is_known_by_what_its_functions_call(
+    call: str, has_file: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A sweep took what the law had given before a function was changed that another one of the law calls."""
+    monkeypatch.syspath_prepend(tmp_path)
+    keys = []
+    for factor in (0.5, 0.5, 0.25):  # another size, as above
+        source = f"import helper\n{LAW.format(call=call, factor=factor if call == 'worn' else 1.0)}"
+        (tmp_path / "helper.py").write_text(f"def worn(friction):\n    return {factor} * friction\n")
+        (tmp_path / "mylaw.py").write_text(source)
+        for name in ("mylaw", "helper"):
+            sys.modules.pop(name, None)
+        names: dict[str, Any] = {"__name__": "__main__"}
+        if has_file:
+            names = vars(import_module("mylaw"))
+        else:
+            exec(source, names)
+        keys.append(fingerprint(panel(joint__law=names["LAW"]), MODELS["dem-dynamic"], 1e-3))
     assert keys[0] == keys[1] != keys[2]
 
 
