@@ -39,10 +39,23 @@ class Draws:
     outcomes: tuple[Outcome, ...]
     scatter: Scatter
 
+    @property
+    def drawn(self) -> tuple[Outcome, ...]:
+        """Outcomes of the walls that are draws, which all numbers below are of.
+
+        Of walls that differ in last bits the one as it is is as good as any. Where sizes or frictions scatter it is
+        none of them: all of its joints are as the median one, and none is the weakest, so that it bears more than most.
+        """
+        return self.outcomes[1:] if self._is_scattered else self.outcomes
+
+    @property
+    def _is_scattered(self) -> bool:
+        return self.scatter != Scatter()
+
     @cached_property
     def multipliers(self) -> Array:
         """λ of the draws that collapse, from the lowest ``(n,)``."""
-        return np.sort([x.multiplier for x in self.outcomes if x.multiplier is not None])
+        return np.sort([x.multiplier for x in self.drawn if x.multiplier is not None])
 
     @cached_property
     def borne(self) -> Array:
@@ -75,7 +88,7 @@ class Draws:
     @property
     def half_width(self) -> float | None:
         """Half the widest bracket of the draws that collapse: so far each λ, and so their mean, may be from its own."""
-        brackets = [(each.lower, each.upper) for each in self.outcomes if each.multiplier is not None]
+        brackets = [(each.lower, each.upper) for each in self.drawn if each.multiplier is not None]
         halves = [(upper - lower) / 2 for lower, upper in brackets if lower is not None and upper is not None]
         return max(halves, default=None)
 
@@ -90,7 +103,7 @@ class Draws:
         return {f"{100 * q:g}": float(value) for q, value in zip(QUANTILES, values, strict=True)}
 
     def _count(self, status: str) -> int:
-        return sum(outcome.status == status for outcome in self.outcomes)
+        return sum(outcome.status == status for outcome in self.drawn)
 
     def summary(self) -> dict[str, Any]:
         """All of this as an object of JSON."""
@@ -98,6 +111,7 @@ class Draws:
         return {
             "scatter": str(self.scatter),
             "number": len(self.outcomes),
+            "drawn": len(self.drawn),
             "collapsed": len(self.multipliers),
             **{status: self._count(status) for status in ("infeasible", "unbounded")},
             **{key: getattr(self, key) for key in ("lowest", "mean", "error", "half_width")},
@@ -108,16 +122,20 @@ class Draws:
     def sheet(self) -> Sheet:
         """A row a draw."""
         heads = ("draw", "status", "λ", "lower", "upper", "seconds")
+        names = ["0, as it is", *map(str, range(1, len(self.outcomes)))]
         rows = [
-            (str(k), each.status, *(_told(x) for x in (each.multiplier, each.lower, each.upper)), f"{each.seconds:.3g}")
-            for k, each in enumerate(self.outcomes)
+            (name, each.status, *(_told(x) for x in (each.multiplier, each.lower, each.upper)), f"{each.seconds:.3g}")
+            for name, each in zip(names, self.outcomes, strict=True)
         ]
         first = self.outcomes[0]
         return Sheet(f"{first.scene}: {first.model}, draws of {self.scatter}", heads, rows)
 
     def __str__(self) -> str:
         """What they come to, in a line."""
-        told = f"{len(self.multipliers)} of {len(self.outcomes)} draws collapse"
+        told = f"{len(self.multipliers)} of {len(self.drawn)} draws collapse"
+        if self._is_scattered:
+            first = self.outcomes[0]
+            told = f"as it is {first.status if first.multiplier is None else _told(first.multiplier)}; {told}"
         for status, words in (("infeasible", "under dead load alone, at 0"), ("unbounded", "at no load, ∞")):
             told += f", {self._count(status)} fall {words}" if self._count(status) else ""
         if len(self.borne) < 2:
@@ -132,7 +150,7 @@ class Draws:
         first, ends = self.outcomes[0], {"lowest": self.lowest, "mean": self.mean}
         known = "".join(f", {name} {number(value)}" for name, value in ends.items() if value is not None)
         spread = "" if self.error is None else f" ± {number(self.error)}"
-        collapse = f"{len(self.multipliers)} of {len(self.outcomes)} collapse"
+        collapse = f"{len(self.multipliers)} of {len(self.drawn)} collapse"
         return f"<Draws of {first.model} on {first.scene!r}, {self.scatter}: {collapse}{known}{spread}>"
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import kstest, norm
 
 import runningbond as rb
 from runningbond.campaigns import Interrupted, tasks
@@ -247,6 +248,41 @@ def test_draws_that_agree_are_no_better_known_than_each_of_them() -> None:
     assert (same.error, same.half_width) == pytest.approx((0.0, 0.002))
     assert str(same).endswith("mean 0.6010 ± 0.0000 (standard error); λ of each is known to ± 0.002")
     assert same.summary()["half_width"] == same.half_width
+
+
+def test_a_wall_as_it_is_is_no_draw_of_a_scatter() -> None:
+    """It is told beside them: here it bears more than any of them, as a wall without a weakest joint does."""
+    walls = tuple(map(outcome, (9.0, 3.0, 1.0, 5.0, 2.0, 4.0)))
+    scattered, bits = Draws(walls, Scatter(friction=0.1)), Draws(walls, Scatter())
+    assert (scattered.lowest, scattered.mean, bits.mean) == (1.0, 3.0, 4.0)
+    assert scattered.error == pytest.approx(np.sqrt(2.5 / 5))
+    assert scattered.quantiles["95"] == pytest.approx(4.8)
+    assert str(scattered).startswith("as it is 9.0000; 5 of 5 draws collapse: lowest 1.0000")
+    assert "5 of 5 collapse" in repr(scattered)
+    said = scattered.summary()
+    assert (said["number"], said["drawn"], said["collapsed"], len(said["each"])) == (6, 5, 5, 6)
+    assert said["half_width"] == scattered.half_width == 0.0
+    weak = Draws((replace(outcome(None), status="infeasible"), outcome(1.0)), Scatter(size=0.1))
+    assert str(weak) == "as it is infeasible; 1 of 1 draws collapse, at 1.0000"
+
+
+def test_draws_of_independent_joints_have_the_quantiles_of_the_weakest() -> None:
+    """Of a stack that slides at its weakest joint: λ is the least of n log-normal frictions, each drawn by itself."""
+    count, spread, number = 10, 0.2, 400
+    scene = courses([[1]] * count, joint__friction=0.05, **STIFF)
+    least = [
+        min(
+            drawn.joint_materials[k].friction
+            for drawn in [Scatter(friction=spread).draw(scene, draw)]
+            for k in drawn.material_of_joint
+        )
+        for draw in range(1, number)
+    ]
+    assert kstest(np.log(np.array(least) / 0.05) / spread, lambda x: 1 - norm.sf(x) ** count).pvalue > 0.01
+    found = Draws(tuple(outcome(x) for x in (0.05, *least)), Scatter(friction=spread))
+    exact = 0.05 * np.exp(spread * norm.isf(0.5 ** (1 / count)))
+    assert found.quantiles["50"] == pytest.approx(exact, rel=0.02)
+    assert found.quantiles["5"] < found.quantiles["95"] < 0.05
 
 
 def test_walls_that_fall_under_their_weight_or_never_are_ranked_among_the_others() -> None:
