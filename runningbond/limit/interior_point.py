@@ -136,6 +136,36 @@ def _ended_by_signals(solver: Any) -> Iterator[list[int]]:
             listeners[received[0]](received[0], None)
 
 
+@contextmanager
+def finishing() -> Iterator[list[int]]:
+    """Finish what takes seconds and makes a proof of hours although Ctrl-C or SIGTERM comes, once.
+
+    Who listens for them hears of it at once, without an end to this; a second one ends it.
+    """
+    received: list[int] = []
+    listeners: dict[int, Callable[[int, FrameType | None], Any]] = {}
+
+    def hear(number: int, frame: FrameType | None) -> None:
+        received.append(number)
+        try:
+            listeners[number](number, frame)
+        except KeyboardInterrupt:
+            if len(received) > 1:
+                raise
+
+    if threading.current_thread() is threading.main_thread():
+        for each in (signal.SIGINT, signal.SIGTERM):
+            if callable(listener := signal.getsignal(each)):
+                listeners[each] = listener
+                signal.signal(each, hear)
+    try:
+        yield received
+    finally:
+        for number, listener in listeners.items():
+            if signal.getsignal(number) is hear:  # who has heard may have let go of it
+                signal.signal(number, listener)
+
+
 def _settings(tolerance: float, equations: int) -> Any:
     settings = clarabel.DefaultSettings()
     settings.verbose = False

@@ -12,7 +12,7 @@ from runningbond.scene import Array
 
 from .equilibrium import Equilibrium
 from .force_program import Aim, ForceSet, ForceSolution, ProgramStatus, coulomb, force_program, solution_of
-from .interior_point import InteriorPoint, interior_point
+from .interior_point import InteriorPoint, finishing, interior_point
 from .kinematics import movable_freedoms
 from .repair import admissible, balanced
 
@@ -79,13 +79,14 @@ def proved(system: Equilibrium, resting: Array | None, tolerance: float | None =
     if point.status in ("infeasible", "unbounded"):
         return ForceSolution.none(point.status, point.iterations)
     within = None if resting is None else loaded(system, program, resting)
-    found, motion = balanced(program, point, within), admissible(program, point)
+    with finishing() as interruptions:
+        found, motion = balanced(program, point, within), admissible(program, point)
+    is_interrupted = point.interrupted or bool(interruptions)
     if found is None or motion is None or system.live @ motion <= 0:
-        status: ProgramStatus = "budget" if point.interrupted else "numerical"
+        status: ProgramStatus = "budget" if is_interrupted else "numerical"
         return ForceSolution.none(status, point.iterations)
-    solution = solution_of(
-        system, forces, "budget" if point.interrupted else "optimal", found, motion, point.iterations
-    )
+    status = "budget" if is_interrupted else "optimal"
+    solution = solution_of(system, forces, status, found, motion, point.iterations)
     return replace(solution, motion=motion / (system.live @ motion))
 
 

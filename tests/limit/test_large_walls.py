@@ -3,6 +3,7 @@
 import signal
 import threading
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from itertools import count
@@ -18,7 +19,7 @@ from runningbond.compare import published_scene
 from runningbond.limit import LimitState, equilibrium, limit, limit_nonassociated, limit_state, proved_bound
 from runningbond.limit.associated import is_self_locking, judge
 from runningbond.limit.force_program import coulomb, force_program, solve_forces
-from runningbond.limit.interior_point import interior_point
+from runningbond.limit.interior_point import finishing, interior_point
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.limit.proved import CLOSE, STOP, WIDE, is_large, proved, resting_forces
 from runningbond.limit.repair import ROUNDING, admissible, balanced
@@ -299,6 +300,51 @@ def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
     if iteration == 8:
         assert outcome.upper is not None
         assert outcome.upper - outcome.lower < 0.5 * exact
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_while_the_proof_is_made_leaves_the_proof(how: signal.Signals, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It takes seconds, of minutes that the interior point took, all of which were lost; who listens hears of it."""
+    scene, heard = wall("dry"), []
+    exact = limit(scene).multiplier
+
+    def interrupted(*given: Any) -> Any:
+        signal.raise_signal(how)
+        return admissible(*given)
+
+    def listen(number: int, frame: object) -> None:
+        heard.append(number)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("runningbond.limit.proved.admissible", interrupted)
+    before = signal.signal(how, listen)
+    try:
+        outcome = limit(scene)
+        assert signal.getsignal(how) is listen
+    finally:
+        signal.signal(how, before)
+    assert heard == [how]
+    assert outcome.status == "undecided"
+    assert "interrupted" in outcome.message
+    assert (outcome.lower, outcome.upper) == pytest.approx((exact, exact), rel=1e-6)
+
+
+@pytest.mark.parametrize("lets_go", [True, False])
+def test_a_second_ctrl_c_while_the_proof_is_made_ends_it(lets_go: bool) -> None:
+    """Also of a listener that leaves the second one to the system: it is not given the first place again."""
+
+    def listen(number: int, frame: object) -> None:
+        if lets_go:
+            signal.signal(number, signal.SIG_IGN)  # in place of the default, which would end the tests
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, listen)
+    with nullcontext() if lets_go else pytest.raises(KeyboardInterrupt), finishing() as received:
+        signal.raise_signal(signal.SIGINT)
+        assert received == [signal.SIGINT]
+        signal.raise_signal(signal.SIGINT)
+    assert len(received) == (1 if lets_go else 2)
+    assert signal.getsignal(signal.SIGINT) is (signal.SIG_IGN if lets_go else listen)
 
 
 def test_ctrl_c_leaves_limit_nonassociated_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
