@@ -91,7 +91,7 @@ def _curves(axes: Axes, predictions: Sequence[Prediction]) -> None:
         axes.plot(1e3 * x, y / 1e3, lw=0.6 if wall.is_cyclic else 1.2, **look)
         if wall.is_cyclic:
             _envelope(axes, each.curve, ends, each.rung.model.colour)
-    if wall.is_cyclic:
+    if wall.is_cyclic and len(wall.curve):
         _envelope(axes, wall.curve, ends, MEASURED, "peaks of its cycles")
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="displacement at the actuator [mm]", ylabel="horizontal force [kN]")

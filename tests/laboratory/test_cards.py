@@ -53,6 +53,19 @@ def test_cracks_of_a_wall_that_was_pushed_to_the_left_are_mirrored(side: int, tm
     assert ("mirrored" in image.axes.get_title()) == (side < 0)
 
 
+@pytest.mark.parametrize("has_curve", [True, False])
+def test_the_legend_has_nothing_that_is_not_drawn(has_curve: bool, tmp_path: Path) -> None:
+    """It had the peaks of cycles of which no record is there."""
+    folder = write_folder(tmp_path / "walls", GRANITE.replace("Monotonic", "Cyclic"))
+    if not has_curve:
+        (folder / "WS.175.csv").unlink()
+    walls, rung = read_folder(folder), LADDER["rocking"]
+    predictions, _ = predict(walls, [rung], scenes_of(walls, [rung]), tmp_path, jobs=1)
+    lines = card(predictions).axes[0].get_legend_handles_labels()
+    assert all(len(np.ravel(line.get_xdata())) for line in lines[0])  # type: ignore[attr-defined]
+    assert ("peaks of its cycles" in lines[1]) == has_curve
+
+
 @pytest.mark.parametrize("mode", ["L", "1", "RGB", "P"])
 def test_cracks_scanned_in_grey_are_drawn_in_grey(mode: str, tmp_path: Path) -> None:
     """Those of one channel were drawn in the colours of a chart: paper yellow, and cracks dark purple."""
