@@ -1,5 +1,6 @@
 """What commands share: exit codes, arguments, tables, a progress bar, and Ctrl-C."""
 
+import os
 import signal
 import sys
 import threading
@@ -206,6 +207,10 @@ def interruptions(model: Model | None = None) -> list[int]:
     def stop(number: int, frame: object) -> None:
         signals.append(number)
         listen(signal.SIG_DFL)
+        if model is not None and sys.stderr.isatty():  # a proof for 100 000 blocks takes minutes
+            told = f"\r\x1b[K{model.name}: ends with what it has by now; Ctrl-C again ends it at once\n"
+            with suppress(OSError):
+                os.write(2, told.encode())  # a signal may come while a line is printed, in which no other may be
         raise KeyboardInterrupt
 
     def listen(handler: Callable[[int, object], None] | signal.Handlers) -> None:

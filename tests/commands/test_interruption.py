@@ -2,14 +2,16 @@
 
 import errno
 import json
+import signal
+import sys
 from pathlib import Path
 
 import pytest
 
 from runningbond.campaigns import Campaign, Interrupted
 from runningbond.commands.command_line import command
-from runningbond.commands.terminal import BAD_INPUT, NO_ANSWER, STOPPED, told_interruption
-from runningbond.models import Model
+from runningbond.commands.terminal import BAD_INPUT, NO_ANSWER, STOPPED, interruptions, told_interruption
+from runningbond.models import MODELS, Model
 
 KEPT = "0 of 5 cases are kept in out; the same command goes on.\n"
 
@@ -61,3 +63,23 @@ def test_what_goes_on_is_the_command_that_makes_nothing_anew(
 ) -> None:
     told_interruption(Interrupted(Campaign(), ""), 5, "cases", folder, fresh=fresh)
     assert capsys.readouterr().err == f"Interrupted: {kept}\n"
+
+
+@pytest.mark.parametrize("is_terminal", [True, False])
+def test_who_waits_for_a_model_to_end_is_told_so(
+    is_terminal: bool, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """On 100 000 blocks it took minutes of silence, in which a second Ctrl-C loses all."""
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: is_terminal)
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        received = interruptions(MODELS["limit"])
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+    finally:
+        for number, listener in before.items():
+            signal.signal(number, listener)
+    assert received == [signal.SIGINT]
+    said = capfd.readouterr().err
+    assert ("limit: ends with what it has by now; Ctrl-C again ends it at once\n" in said) == is_terminal == bool(said)
