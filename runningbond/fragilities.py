@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import ndtr, ndtri, stdtrit
 from scipy.stats import CensoredData, lognorm
 
 from .models import TOLERANCE, Model
@@ -17,6 +17,9 @@ from .scene.ranges import whole
 from .sweeps import check_wall, sweep
 from .tables import Table
 from .wall import Wall
+
+TAILS = (0.05, 0.95)
+"""Shares of medians below the two ends of their interval."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -33,8 +36,8 @@ class Fragility:
         Of the log-normal distribution that fits them by maximum likelihood, `stood` as bounds from below (censored on
         the right): median, and standard deviation of the logarithm.
     interval
-        Of the median, at 90 %, from records drawn again and again with a seed; without an upper end (infinite) where
-        too few of them bring the wall down.
+        Of the median, at 90 %, from records drawn again and again with a seed, as wide as few of them make it; without
+        an upper end (infinite) where too few of them bring the wall down.
     runs
         A row a record: its bracket of λ, and what became of it.
     left_out
@@ -122,11 +125,24 @@ def fragility(
         remedy = "; ".join(["must be two at least that bring the wall down", *refused])
         raise SceneError("records", remedy, len(fallen))
     level, stands = np.concatenate([fallen, stood]), np.arange(len(fallen) + len(stood)) >= len(fallen)
+    left_out = len(names) - len(level)
+    interval = interval_of_median(level, stands, seed, draws)
+    return Fragility(fallen, stood, *fitted(level, stands), interval, runs, left_out)
+
+
+def interval_of_median(level: Array, stands: Mask, seed: int, draws: int) -> tuple[float, float]:
+    """Find the interval of the median of `fitted` at 90 %, from records drawn again and again.
+
+    Medians of records drawn again scatter by √((n−1)/n) times what those of other records do, n being the number of
+    falls, and as if the dispersion were known: the interval is widened by as much, and by Student's distribution over
+    the normal one. That of n log-normal levels is then the exact one.
+    """
     again = np.random.default_rng(seed).integers(len(level), size=(draws, len(level)))
     medians = [fitted(level[drawn], stands[drawn])[0] for drawn in again]
-    low, high = np.quantile(medians, [0.05, 0.95], method="inverted_cdf").tolist()
-    left_out = len(names) - len(level)
-    return Fragility(fallen, stood, *fitted(level, stands), (low, high), runs, left_out)
+    low, high = np.quantile(medians, TAILS, method="inverted_cdf").tolist()
+    n, median = np.count_nonzero(~stands), fitted(level, stands)[0]
+    wider = math.sqrt(n / (n - 1)) * float(stdtrit(n - 1, TAILS[1]) / ndtri(TAILS[1]))
+    return median * (low / median) ** wider, median * (high / median) ** wider
 
 
 def fitted(level: Array, stands: Mask) -> tuple[float, float]:
@@ -147,6 +163,8 @@ def fitted(level: Array, stands: Mask) -> tuple[float, float]:
     if np.count_nonzero(~stands) < 2:
         return math.inf, 0.0
     start = np.log(level)
+    if not stands.any():
+        return float(np.exp(start.mean())), float(start.std())
     known = CensoredData.right_censored(level, stands)
     shape, _, median = lognorm.fit(known, max(float(start.std()), 0.1), scale=float(np.exp(start.mean())), floc=0)
     return float(median), float(shape)

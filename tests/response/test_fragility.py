@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import norm
 
 import runningbond as rb
-from runningbond.fragilities import fitted
+from runningbond.fragilities import fitted, interval_of_median
 from runningbond.scene.history import pulse
 from runningbond.tables import table
 
@@ -81,6 +81,22 @@ def test_all_records_known_have_the_mean_and_deviation_of_their_logarithms() -> 
     logs = np.array([-0.7, 0.1, 0.2, 0.9])
     found = fitted(np.exp(logs), np.zeros(4, dtype=bool))
     assert found == pytest.approx((np.exp(logs.mean()), logs.std()))
+
+
+@pytest.mark.parametrize("n", [5, 12])
+def test_the_interval_of_few_records_holds_the_median_as_often_as_it_says(n: int) -> None:
+    """In 90 % of log-normal samples. Records drawn again alone held it in 79 % of samples of 5, and 86 % of 12."""
+    random, none, held = np.random.default_rng(7), np.zeros(n, dtype=bool), 0
+    for seed in range(400):
+        low, high = interval_of_median(random.lognormal(size=n), none, seed, draws=200)
+        held += low <= 1.0 <= high
+    assert held / 400 == pytest.approx(0.9, abs=3 * np.sqrt(0.9 * 0.1 / 400))
+
+
+def test_an_interval_without_an_upper_end_stays_so() -> None:
+    levels = np.array([0.2, 0.3, 0.6, 0.6, 0.6])
+    low, high = interval_of_median(levels, levels > 0.5, seed=0, draws=30)
+    assert 0 < low < fitted(levels, levels > 0.5)[0] < high == np.inf
 
 
 def test_a_fragility_takes_records_that_never_bring_the_wall_down(
