@@ -198,10 +198,8 @@ def _judge(outcome: Outcome, lead: StaticLead, runs: list[Run], answers: list[fl
 
 
 def _notes(lead: StaticLead, outcome: Outcome) -> str:
-    """What there is to say of a cyclic drive, and of its rate."""
-    drive = lead.scene.drive
-    if lead.settles or drive is None:
+    """What there is to say of a cyclic drive."""
+    if lead.settles or lead.scene.drive is None:
         return ""
     other = -float(outcome.curve[:, 1].min())
-    back = f"; the other way it takes {number(other)}" if goes_both_ways(lead.goals) and other > 0 else ""
-    return back + ("; beam.drive.rate has no influence on states at rest" if drive.rate else "")
+    return f"; the other way it takes {number(other)}" if goes_both_ways(lead.goals) and other > 0 else ""

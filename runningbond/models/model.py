@@ -97,14 +97,21 @@ class Model:
             if key not in self.takes:
                 raise SceneError(key, f"is not taken by model {self.name}; take another model, or leave it out")
 
-    def unread(self, scene: Scene) -> list[str]:
-        """Keys of its file that a scene gives and this model does not take into account."""
+    def unread(self, scene: Scene, *, finite: bool = False) -> list[str]:
+        """Keys of its file that a scene gives and this model does not take into account.
+
+        Displacements are small, unless a beam is led through `finite` ones.
+        """
         unread = []
         for kind, materials in (("block", scene.block_materials), ("joint", scene.materials_of_joints)):
             for material in materials:
                 read = material.name != "inner_joint" or "inner_joint" in self.reads
                 given = [key for key in _given_keys(material) if not (read and f"{kind}.{key}" in self.reads)]
                 unread += [f"{table_of(material)}.{key}" for key in given]
+        if scene.beam is not None and scene.beam.force_line != "moving" and not (finite and scene.drive_path):
+            unread.append("beam.force_line")
+        if scene.drive is not None and scene.drive.rate is not None and "beam.drive.rate" not in self.reads:
+            unread.append("beam.drive.rate")
         return unread
 
 

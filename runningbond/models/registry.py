@@ -35,7 +35,8 @@ CRUSHING = STRENGTH | {"joint.compressive_strength", "joint.cap_shear"}
 STIFFNESS = STRENGTH | {"joint.mortar", "joint.normal_stiffness", "joint.shear_stiffness"}
 SOFTENING = STIFFNESS | {"joint.fracture_energy_1", "joint.fracture_energy_2", "joint.softening"}
 INTERFACE = SOFTENING | CRUSHING | {"joint.compressive_fracture_energy", "joint.peak_closure", "joint.closure"}
-ELASTIC = INTERFACE | {"block.young", "block.poisson"}
+MOTION = INTERFACE | {"beam.drive.rate"}
+ELASTIC = MOTION | {"block.young", "block.poisson"}
 
 LED = {"beam.condition fixed-height", "beam.drive.displacement", "beam.drive.displacement, cyclic"}
 EXTRAS = frozenset({"tie", "beam", "load.live settlement"} | LED)  # of `Scene.extras` what a static model may know,
@@ -128,7 +129,7 @@ _EVERY_MODEL = (
         marker="v",
     ),
     Model(
-        *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, INTERFACE, "history"),
+        *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, MOTION, "history"),
         parameters=(*IN_STEPS, "displacements"),
         cost=Cost(1.0, 1.19, 1.40, weightless=1.2, finer=0.17, start=KERNELS),
         pushover=partial(_late, "dem.dynamic", "finite_pushover"),
@@ -225,7 +226,12 @@ def run_model(
         return Outcome(scene.title, model.name, "failed", message=f"{type(error).__name__}: {error}")
     if not isinstance(outcome, Outcome):
         raise SceneError(f"model {model.name}", "must return an Outcome", outcome)
-    notes = [outcome.message, _moves(model, scene, outcome, parameters.get("collapse")), _left_out(model, scene)]
+    finite = parameters.get("displacements") == "finite"
+    notes = [
+        outcome.message,
+        _moves(model, scene, outcome, parameters.get("collapse")),
+        _left_out(model, scene, finite),
+    ]
     if outcome.multiplier is not None:
         notes += [load.note(outcome.multiplier) for load in scene.load.live]
         notes += [_tilted_with_the_ground(scene)]
@@ -263,9 +269,9 @@ def _tilted_with_the_ground(scene: Scene) -> str:
     return "dead loads at points and along lines turn with the ground, as jacks do and weights do not"
 
 
-def _left_out(model: Model, scene: Scene) -> str:
+def _left_out(model: Model, scene: Scene, finite: bool = False) -> str:
     """The keys of a scene that a model does not take into account; empty if it reads all."""
-    unread = model.unread(scene)
+    unread = model.unread(scene, finite=finite)
     return f"not taken into account: {', '.join(unread)}" if unread else ""
 
 

@@ -29,7 +29,7 @@ from runningbond.compare import PUBLISHED, published_scene
 from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
 from runningbond.compare.published import FURTHER
 from runningbond.compare.table import corrected_homo
-from runningbond.models import MODELS, Model, run_model
+from runningbond.models import MODELS, Model, respond, run_model
 from runningbond.results import Outcome, load_outcome
 from runningbond.scene import Scene, SceneError
 from tests.at_length import at_length
@@ -167,6 +167,29 @@ def test_an_outcome_names_the_keys_that_its_model_does_not_know() -> None:
     assert unread["fem"] == []
     assert run_model("limit", scene).message.endswith("not taken into account: " + ", ".join(unread["limit"]))
     assert "taken into account" not in run_model("limit", panel()).message
+
+
+STIFF = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9, "wall__length": 0.48, "wall__height": 0.12}
+
+
+def test_an_outcome_names_the_keys_of_a_beam_that_its_model_does_not_know() -> None:
+    """The line of its force counts where displacements are finite and lead it; its rate, where blocks move in time."""
+    led = {"displacement": [0.002, 0.0], "rate": 0.01}
+    beam = {"height": 0.1, "force": [0.0, -1e3], "force_line": "fixed", "drive": led}
+    scene = panel(load__live=None, beam=beam, **STIFF)
+    line, rate = "beam.force_line", "beam.drive.rate"
+    unread = {name: [key for key in model.unread(scene) if key.startswith("beam")] for name, model in MODELS.items()}
+    assert unread == {name: [line] if name in ("dem-dynamic", "fem") else [line, rate] for name in MODELS}
+    assert run_model("limit", scene).message.endswith(f"joint.shear_stiffness, {line}, {rate}")
+    assert run_model("dem-dynamic", scene).message.endswith(f"not taken into account: {line}")
+    assert "taken into account" not in run_model("dem-dynamic", scene, displacements="finite").message
+
+
+def test_nor_does_the_line_of_a_force_on_a_beam_count_where_the_ground_moves() -> None:
+    history = {"pulse": {"kind": "sine", "amplitude": 0.1, "period": 0.2}, "quantity": "g"}
+    beam = {"height": 0.1, "force": [0.0, -1e3], "force_line": "fixed"}
+    scene = panel(load__live=None, load__history=history, beam=beam, **STIFF)
+    assert respond("dem-dynamic", scene).message.endswith("not taken into account: beam.force_line")
 
 
 # --- campaigns -----------------------------------------------------------------------------------------------
