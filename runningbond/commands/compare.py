@@ -9,6 +9,7 @@ from runningbond.campaigns import Interrupted, run_campaign
 from runningbond.compare.published import PUBLISHED, PublishedCase, find_scene, published_case
 from runningbond.compare.table import Comparison, cost_sheets, csv_text, multiplier_sheets
 from runningbond.models import MODELS, TOLERANCE, check_tolerance, find_model
+from runningbond.pictures.quantities import counted
 from runningbond.results import make_folder, write_atomically
 from runningbond.scene import Scene, SceneError, read_scene
 from runningbond.scene.file import plain_stem
@@ -131,7 +132,7 @@ def _report(comparison: Comparison, out: Path, tolerance: float) -> None:
     write_atomically(out / "table.md", "\n".join(sheet.markdown() for sheet in sheets).encode())
     for sheet in sheets:
         print_table(sheet)
-    print(f"{len(campaign)} cases, {len(campaign.reused)} of them already in {out}")
+    print(f"{counted(len(campaign), 'case')}, {len(campaign.reused)} of them already in {out}")
     charts = figures.charts_of(comparison.only_published())
     pictures = figures.draw_figures(charts, out) + plates.draw_plates(comparison, out)
     if is_used:  # an earlier comparison's, of walls that are not in this one

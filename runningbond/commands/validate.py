@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from runningbond.campaigns import Interrupted
+from runningbond.pictures.quantities import counted
 from runningbond.results import make_folder
 from runningbond.scene import SceneError
 from runningbond.scene.folder_lock import locked
@@ -90,7 +91,8 @@ def validate(
         for sheet in (score_sheet(predictions), error_sheet(predictions), summary_sheet(sums)):
             print_table(sheet)
         print("\n".join(verdicts(sums)).replace("**", ""))  # marks of the page
-        print(f"{total} cases, {len(campaign.reused)} of them already in {out}; written: {written[0]}, {written[1]}")
+        kept = f"{counted(total, 'case')}, {len(campaign.reused)} of them already in {out}"
+        print(f"{kept}; written: {written[0]}, {written[1]}")
     if refused:
         return BAD_INPUT
     return NO_ANSWER if any(each.status in UNDECIDED for each in predictions) else DONE

@@ -69,6 +69,8 @@ def find_scene(scene: str) -> Path:
         return cases[scene].path
     if path.exists():
         raise SceneError(str(path), f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
-    names = list(cases)
+    names, ending = list(cases), ".toml"
     what = f"there is no such file, nor a published scene of that name ({names[0]} … {names[-1]})"
-    raise SceneError(scene, what + suggestion(scene, names))
+    beside = sorted(str(other) for other in path.parent.glob(f"*{ending}") if str(other).isprintable())
+    whole = f"{path}{ending}"
+    raise SceneError(scene, what + suggestion(whole if whole in beside else scene, [*names, *beside]))

@@ -150,6 +150,8 @@ def _block_material(block: Table) -> BlockMaterial:
 def _material_name(table: Table) -> str:
     """Name of a material: that of its table, without the one that holds it; it may have dots of its own."""
     kind, _, name = table.name.partition(".")
+    if kind != table.name and not name.strip():
+        raise SceneError(table.name, "must have a name, by which [[assign]] knows it")
     if name in RESERVED:
         raise SceneError(table.name, f"is a name that means something else; take another than {', '.join(RESERVED)}")
     return name or kind

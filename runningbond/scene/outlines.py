@@ -140,3 +140,5 @@ def _refuse_mixed_descriptions(wall: Table) -> None:
                     what = f"does not go with wall.{description}; describe the wall in one way"
                     raise SceneError(f"wall.{key}", what)
             return
+    if not any(key in wall for key in by_size):
+        raise SceneError("wall", "must say what its blocks are: by length and height, by courses, or by a drawing")

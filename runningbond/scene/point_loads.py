@@ -118,9 +118,9 @@ class LineLoad(Action):
         if len(blocks) == 1:
             return int(blocks[0])
         at = np.array(self.start) + (low + high) / 2 * np.subtract(self.end, self.start)
-        middle = ", ".join(f"{x:.4g}" for x in at)
+        middle, way = ", ".join(f"{x:.4g}" for x in at), f"the line from there to {list(self.end)}"
         if len(blocks) == 0:
-            what = f"runs at ({middle}) along no block that can move"
+            what = f"{way} runs at ({middle}) along no block that can move"
             raise SceneError("load.live.from", what, list(self.start))
         run, force = np.subtract(self.end, self.start), np.array(self.force)
         normal = np.array([-run[1], run[0]]) / np.hypot(*run)
@@ -129,7 +129,7 @@ class LineLoad(Action):
         within = np.isin(blocks, scene.blocks.containing(ahead))
         pressed = blocks[within & (abs(across) > 1e-6 * float(np.hypot(*force)))]
         if len(pressed) != 1:
-            what = f"is at ({middle}) on more than one block, and presses on neither alone; move the line into one"
+            what = f"{way} is at ({middle}) on more than one block, and presses on neither alone; move it into one"
             raise SceneError("load.live.from", what, list(self.start))
         return int(pressed[0])
 

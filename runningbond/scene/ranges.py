@@ -92,15 +92,20 @@ def one_of(key: str, value: object, options: Iterable[str]) -> str:
     return value
 
 
+LIKE = 0.6
+"""Likeness from which on a word may be a misspelt other one, whatever its capitals."""
+
+
 def suggestion(word: object, options: list[str]) -> str:
     """What a misspelt word may have been meant to be."""
     if not isinstance(word, str) or not options:
         return ""
-    near = difflib.get_close_matches(word, options, n=len(options))
-    # Of several that are as near the first one: difflib would take the last by the alphabet.
-    near = [option for option in options if option in near]
-    likely = max(near, key=lambda option: difflib.SequenceMatcher(None, option, word).ratio(), default="")
-    return f'; did you mean "{likely}"?' if likely else ""
+
+    def likeness(option: str) -> float:
+        return difflib.SequenceMatcher(None, option.casefold(), word.casefold()).ratio()
+
+    likely = max(options, key=likeness)  # the first one of several that are as near
+    return f'; did you mean "{likely}"?' if likeness(likely) >= LIKE else ""
 
 
 def _beyond(value: object, words: str) -> str:

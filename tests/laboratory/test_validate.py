@@ -109,7 +109,7 @@ def test_what_is_kept_is_not_computed_again(tmp_path: Path, capsys: pytest.Captu
         arguments = ["validate", "--data", str(folder), "--out", out, "--models", models, "--jobs", "1", *more]
         assert command(arguments) == 0
         told = capsys.readouterr().out
-        assert f"{cases} cases, {kept} of them already in" in told
+        assert f"{cases} case{'s' * (cases > 1)}, {kept} of them already in" in told
         assert "None reaches all of it." in told
         assert "**" not in told
 

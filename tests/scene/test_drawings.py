@@ -107,7 +107,7 @@ def test_an_area_that_no_outline_goes_round_is_an_opening(tmp_path: Path) -> Non
     around = [box(0, 0, 100, 300), box(200, 0, 300, 300), box(100, 0, 200, 100), box(100, 200, 200, 300)]
     drawing = read_drawing(dxf(tmp_path / "wall.dxf", own_lines(around)), "mm")
     assert len(drawing.blocks) == 4
-    assert "1 areas within them are openings" in drawing.notes[0]
+    assert "one area within them is an opening" in drawing.notes[0]
 
 
 def test_lines_that_cross_are_cut_where_they_do(tmp_path: Path) -> None:

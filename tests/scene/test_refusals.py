@@ -95,6 +95,11 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
         ({"color": "red"}, "color = 'red': is not a key of a scene file"),
         ({"load__live__angle": 3}, "load.live.angle = 3: is not a key of [load.live], which has kind, direction"),
         ({"wall__thickness": None}, "wall.thickness: is missing; it must be a number above 0"),
+        (FREE, "wall: must say what its blocks are: by length and height, by courses, or by a drawing"),
+        ({"wall__length": None}, "wall.length: is missing"),
+        ({"materials": {"": {"density": 700.0}}}, "materials.: must have a name, by which [[assign]] knows it"),
+        ({"joints": {" ": {"friction": 0.7}}}, "joints. : must have a name, by which [[assign]] knows it"),
+        ({"wall__ends": "FLUSH"}, 'must be one of "flush", "toothed"; did you mean "flush"?'),
         ({"block__density": None, "block__densty": 1}, "block.densty = 1: is not a key of [block]; did you mean"),
         ({"support": None}, "support: is missing"),
         ({"support": 3}, "support = 3: must be a table"),
@@ -244,6 +249,8 @@ def test_a_file_that_is_no_scene(text: bytes, said: str, tmp_path: Path, capsys:
         (["run", "", "--model", "limit"], ".: cannot be read: it is a folder"),
         (["run", "panel-01"], "--model"),
         (["run", "panel-01", "--model", "limt"], 'did you mean "limit"?'),
+        (["run", "panel-01", "--model", "LIMIT"], 'did you mean "limit"?'),
+        (["run", "pannel-01", "--model", "limit"], 'did you mean "panel-01"?'),
         (["run", "panel-01", "--model", "fern"], "must be one of homog, limit, limit-nonassociated, dem-static, dem-d"),
         (["run", "panel-01", "--model", "limit", "--tolerance", "nan"], "--tolerance"),
         (["run", "panel-01", "--model", "limit", "--tolerance", "2"], "--tolerance"),
@@ -270,6 +277,21 @@ def test_a_command_that_is_none(
     assert said in printed.err
     assert printed.err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("asked", ["house", "hous.toml", "garden/house.toml", "garden/huose.toml", "garden/house"])
+def test_a_misspelt_file_is_told_which_stands_beside(
+    asked: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Files in the folder that was named, as the ending that was left away: nothing is run in their place."""
+    monkeypatch.chdir(tmp_path)
+    there = Path(asked).parent / "house.toml"
+    if asked == str(there):
+        there = there.with_name("shouse.toml")
+    there.parent.mkdir(exist_ok=True)
+    write_toml(content(), there)
+    assert command(["run", asked, "--model", "limit"]) == 2
+    assert capsys.readouterr().err.endswith(f'did you mean "{there}"?\n')
 
 
 def test_an_output_folder_that_cannot_be_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

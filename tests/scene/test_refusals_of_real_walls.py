@@ -90,7 +90,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (dead(SINK), "load.dead[0].kind = 'settlement': must be one of"),
         (dead(LINE | {"to": [0, 0.72]}), "load.dead[0].to = [0.0, 0.72]: must lie apart from the line's other end"),
         (dead(LINE | {"force": [0, 0]}), "load.dead[0].force = [0.0, 0.0]: must not be zero"),
-        (dead(LINE | {"to": [2, 0.72]}), "load.dead.from = [0.0, 0.72]: runs at (1.72, 0.72) along no block"),
+        (dead(LINE | {"to": [2, 0.72]}), "load.dead.from = [0.0, 0.72]: the line from there to [2.0, 0.72] runs at"),
         (dead(LINE | {"from": [0, 0.66], "to": [1.44, 0.66], "force": [5e3, 0]}), "presses on neither alone"),
         (dead(LINE | {"at": [0, 0]}), "load.dead[0].at = [0, 0]: is not a key"),
         (dead(MOMENT | {"moment": 0}), "load.dead[0].moment = 0.0: must not be zero"),

@@ -66,11 +66,12 @@ def join(
         raise SceneError(f"{KEY}, layer {layer}", f"has a block with a hole, at ({x:.6g}, {y:.6g})")
     own = _own_outlines(faces, edges, [*curves, *closed], tolerance)
     chosen = faces if own is None else faces[own]
-    ways = f"{len(curves)} lines and curves are joined into {len(chosen)} outlines"
+    ways = f"{len(curves)} lines and curves are joined into {len(chosen)} outline{'s' * (len(chosen) > 1)}"
     if own is None and len(faces) > 1:
         ways += "; neighbours share lines, so every area that they enclose is a block, an opening too"
     elif own is not None and not own.all():
-        ways += f"; {np.sum(~own)} areas within them are openings"
+        holes = int(np.sum(~own))
+        ways += "; one area within them is an opening" if holes == 1 else f"; {holes} areas within them are openings"
     return [np.array(face.exterior.coords)[:-1] for face in chosen], cut, f"layer {layer}: {ways}"
 
 
