@@ -19,7 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from runningbond.dynamics import Observer, Run, State, no_observer
 from runningbond.results.mechanism import carried
-from runningbond.scene import Array, SceneError
+from runningbond.scene import Array, Scene, SceneError
 
 from .ground import Ground
 from .response import ENERGIES, MISSED, Response, ResponseVerdict, supplied, unaccounted, until_fallen
@@ -306,9 +306,12 @@ def _response(
     first = log.first[: until_fallen(fallen, fallen)[-1]]
     names = ", ".join(rest.scene.blocks.name(block) for block in first[:3])
     undecided = "neither rests nor falls within" if not log.is_lost else "more energy is missing than was supplied at"
+    motion = run.system.motion_of_blocks(state.motion - rest.state.motion)
+    order = " first" if len(first) > 3 else ""
+    place = ", past the end of the ground" if first and _is_past_the_ground(rest.scene, motion, first[0]) else ""
     message = {
         "stands": f"stands, {left}",
-        "collapse": f"falls: {names} at {fell:.3g} s" + (" first" if len(first) > 3 else "")
+        "collapse": f"falls: {names} at {fell:.3g} s{order}{place}"
         if first
         else f"slides ever faster until {times[-1]:.3g} s",
         "undecided": f"{undecided} {times[-1]:.3g} s",
@@ -332,9 +335,18 @@ def _response(
         energy=energy,
         fallen=fallen,
         first=np.array(log.first, dtype=np.int64),
-        motion=run.system.motion_of_blocks(state.motion - rest.state.motion),
+        motion=motion,
         shape=log.shape,
         unaccounted=lost,
         steps=state.steps - rest.state.steps,
         seconds=seconds,
     )
+
+
+def _is_past_the_ground(scene: Scene, motion: Array, block: int) -> bool:
+    """Whether a block has slid farther than there is ground, of which only so much is modelled."""
+    ground = scene.fixed & ~scene.wall
+    if not ground.any():
+        return False
+    (left, _), (right, _) = scene.blocks.extent(ground)
+    return not left <= scene.blocks.centroid[block, 0] + motion[block, 0] <= right

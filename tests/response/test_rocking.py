@@ -205,6 +205,14 @@ def test_a_block_slides_as_far_as_newmarks(friction: float, peak: float) -> None
     )
 
 
+@pytest.mark.parametrize(("peak", "falls"), [(2.0, False), (20.0, True)])
+def test_a_block_that_slides_off_the_ground_is_said_to(peak: float, falls: bool) -> None:
+    """Its fall says how far the ground goes, thirty sizes, and nothing of the block, which would slide on."""
+    response = follow(resting(block(0.5, 0.1, shaken("half-sine", peak * GRAVITY, 0.8), 0.3)), 1.0, rows=50)
+    assert response.verdict == ("collapse" if falls else "stands")
+    assert (", past the end of the ground;" in response.message) == falls
+
+
 @pytest.mark.parametrize(("slope", "lifts"), [(0.0, 0.4), (0.0, -0.4), (0.14, 0.0), *at_length((0.14, 0.3))])
 def test_a_block_slides_downhill_and_where_the_ground_falls_from_under_it(slope: float, lifts: float) -> None:
     """Newmark's block with all of its terms, to 1e-3: v' = g sin β − a ∓ μ (g cos β + a_v), four pulses of 0.5 s.
