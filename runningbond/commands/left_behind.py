@@ -1,12 +1,35 @@
 """Files that commands leave in a folder, of which the next one there replaces all."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from runningbond.pictures.time_series import KINDS
+from runningbond.results import make_folder
 from runningbond.results.store import ARRAY_FILES, RECORD
+from runningbond.scene import SceneError
+from runningbond.scene.folder_lock import claim
 
 CURVE_FILES, RESPONSE_FILES = ("curve.csv", "curve.png"), ("response.csv", "response.png")
 DRAWS = "draws"
+
+
+@contextmanager
+def own_folder(folder: Path | None) -> Iterator[None]:
+    """Have a folder for this command alone, made where it is missing; what is made for a refused scene goes again."""
+    if folder is None:
+        yield
+        return
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
+    make_folder(folder)
+    try:
+        claim(folder, "--out")
+        yield
+    except SceneError:
+        for path in made:
+            with suppress(OSError):  # somebody else has used it since
+                path.rmdir()
+        raise
 
 
 def holds_results(folder: Path | None) -> bool:

@@ -14,11 +14,10 @@ from runningbond.models import MODELS, check_response
 from runningbond.models import respond as respond_with
 from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
-from runningbond.results import Outcome, make_folder, write_atomically
+from runningbond.results import Outcome, write_atomically
 from runningbond.scene import read_scene
-from runningbond.scene.folder_lock import claim
 
-from .left_behind import RESPONSE_FILES, holds_results, remove_older
+from .left_behind import RESPONSE_FILES, holds_results, own_folder, remove_older
 from .terminal import DONE, NO_ANSWER, Json, SceneName, Together, progress_line, remarks
 
 if TYPE_CHECKING:
@@ -54,12 +53,10 @@ def respond(
         from runningbond.pictures.recording import ResponseRecorder
         from runningbond.response.follow import AFTER
 
-        make_folder(out)
-        claim(out, "--out")
         recorder = ResponseRecorder(wall, out)
         observers.append(recorder)
         settings["after"] = AFTER
-    with progress_line(model, progress.line):
+    with own_folder(out), progress_line(model, progress.line):
         response = respond_with(model, wall, scale, observe=Together(observers), **settings)
     for line in remarks(wall):
         print(line, file=sys.stderr)

@@ -17,12 +17,11 @@ from runningbond.draws import Sampling
 from runningbond.models import MODELS, TOLERANCE, Model, Progress, Recorder, check_tolerance, find_model, run_model
 from runningbond.pictures.sheet import csv_lines
 from runningbond.pictures.time_series import KINDS, MACRO
-from runningbond.results import Outcome, make_folder, save_outcome, write_atomically
+from runningbond.results import Outcome, save_outcome, write_atomically
 from runningbond.results.store import ARRAY_FILES, RECORD
 from runningbond.scene import Scene, SceneError, read_scene
-from runningbond.scene.folder_lock import claim
 
-from .left_behind import CURVE_FILES, DRAWS, remove_older
+from .left_behind import CURVE_FILES, DRAWS, own_folder, remove_older
 from .terminal import (
     DONE,
     NO_ANSWER,
@@ -86,16 +85,14 @@ def run(
     if draws is not None:
         return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
     chosen.check(wall)
-    if out is not None:
-        make_folder(out)
-        claim(out, "--out")
-    stopped = interruptions(chosen)
-    recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
-    progress = _progress(chosen, wall)
-    observers = [each for each in (recorder, progress) if each is not None]
-    tell_cost(chosen, wall, tolerance)
-    with progress_line(chosen.name, progress.line if progress else None):
-        outcome = run_model(chosen, wall, tolerance, Together(observers) if observers else None)
+    with own_folder(out):
+        stopped = interruptions(chosen)
+        recorder = None if out is None or chosen.observer is None else chosen.observer(wall, out)
+        progress = _progress(chosen, wall)
+        observers = [each for each in (recorder, progress) if each is not None]
+        tell_cost(chosen, wall, tolerance)
+        with progress_line(chosen.name, progress.line if progress else None):
+            outcome = run_model(chosen, wall, tolerance, Together(observers) if observers else None)
     for line in remarks(wall):  # not before: a scene that the model refuses is one line
         print(line, file=sys.stderr)
     print(to_json.dumps(outcome.summary(), allow_nan=False) if json else _as_text(outcome), flush=True)
@@ -135,14 +132,11 @@ def _draws(
 ) -> int:
     """Run a model on draws of a wall, and print and keep what came of them."""
     check_jobs(jobs)
-    folder = None if out is None else out / DRAWS
+    folder, bar = None if out is None else out / DRAWS, (f"{model.name}, draws", number)
     with _as_options():
         sampling = Sampling(wall, model, number, scatter)
-    if out is not None:
-        make_folder(out)
-        claim(out, "--out")
     try:
-        with progress_bar(f"{model.name}, draws", number) as advance, _as_options():
+        with own_folder(out), own_folder(folder), progress_bar(*bar) as advance, _as_options():
             found = sampling.run(tolerance, folder, jobs, advance)
     except Interrupted as stopped:
         return told_interruption(stopped, number, "draws", folder)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from runningbond.scene import Scene, SceneError, read_scene
-from runningbond.scene.ranges import suggestion
+from runningbond.scene.ranges import nearest
 
 FOLDER = Path(__file__).parent / "published"
 
@@ -71,6 +71,7 @@ def find_scene(scene: str) -> Path:
         raise SceneError(str(path), f"cannot be read: it is {'a folder' if path.is_dir() else 'no regular file'}")
     names, ending = list(cases), ".toml"
     what = f"there is no such file, nor a published scene of that name ({names[0]} … {names[-1]})"
-    beside = sorted(str(other) for other in path.parent.glob(f"*{ending}") if str(other).isprintable())
-    whole = f"{path}{ending}"
-    raise SceneError(scene, what + suggestion(whole if whole in beside else scene, [*names, *beside]))
+    beside = {other.stem: str(other) for other in sorted(path.parent.glob(f"*{ending}")) if str(other).isprintable()}
+    likely = nearest(path.name.removesuffix(ending), [*names, *beside])
+    hint = f'; did you mean "{beside.get(likely, likely)}"?' if likely else ""
+    raise SceneError(scene, what + hint)

@@ -3,7 +3,7 @@
 import difflib
 import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from numbers import Integral, Real
@@ -96,8 +96,14 @@ LIKE = 0.6
 """Likeness from which on a word may be a misspelt other one, whatever its capitals."""
 
 
-def suggestion(word: object, options: list[str]) -> str:
+def suggestion(word: object, options: Sequence[str]) -> str:
     """What a misspelt word may have been meant to be."""
+    likely = nearest(word, options)
+    return f'; did you mean "{likely}"?' if likely else ""
+
+
+def nearest(word: object, options: Sequence[str]) -> str:
+    """The option that is most like a word; empty where none is like it."""
     if not isinstance(word, str) or not options:
         return ""
 
@@ -105,7 +111,7 @@ def suggestion(word: object, options: list[str]) -> str:
         return difflib.SequenceMatcher(None, option.casefold(), word.casefold()).ratio()
 
     likely = max(options, key=likeness)  # the first one of several that are as near
-    return f'; did you mean "{likely}"?' if likeness(likely) >= LIKE else ""
+    return likely if likeness(likely) >= LIKE else ""
 
 
 def _beyond(value: object, words: str) -> str:

@@ -16,6 +16,7 @@ from tests.walls import content, panel, write_toml
 from .test_scene import drawing
 
 POINT = {"kind": "point", "at": [0.72, 0.72], "force": [0, -1]}
+QUAKE = {"pulse": {"kind": "sine", "amplitude": 0.1, "period": 0.2}, "quantity": "g"}
 FREE = {"wall__length": None, "wall__height": None}
 DIRECT = {"joint__normal_stiffness": 1e10, "joint__shear_stiffness": 4e9}
 CLOSURE = {"growth": 1e4, "stiffest": 1e11}
@@ -279,7 +280,7 @@ def test_a_command_that_is_none(
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("asked", ["house", "hous.toml", "garden/house.toml", "garden/huose.toml", "garden/house"])
+@pytest.mark.parametrize("asked", ["house", "hous.toml", "garden/house.toml", "garden/huose", "garden/house"])
 def test_a_misspelt_file_is_told_which_stands_beside(
     asked: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -289,9 +290,35 @@ def test_a_misspelt_file_is_told_which_stands_beside(
     if asked == str(there):
         there = there.with_name("shouse.toml")
     there.parent.mkdir(exist_ok=True)
-    write_toml(content(), there)
+    for other in (there, there.with_name("arch.toml")):
+        write_toml(content(), other)
     assert command(["run", asked, "--model", "limit"]) == 2
     assert capsys.readouterr().err.endswith(f'did you mean "{there}"?\n')
+
+
+@pytest.mark.parametrize(
+    ("arguments", "changes"),
+    [
+        (["run", "--model", "dem-static"], {}),
+        (["run", "--model", "dem-static", "--draws", "2", "--jobs", "1"], {}),
+        (["run", "--model", "homog"], {"load__live": POINT}),
+        (["respond", "--model", "dem-dynamic"], {"load__live": None, "load__history": QUAKE}),
+    ],
+)
+def test_a_scene_that_a_model_refuses_leaves_no_folder(
+    arguments: list[str], changes: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As joints without a stiffness, which only the model asks for; a folder that was there stays."""
+    scene = write_toml(content(**changes), tmp_path / "wall.toml")
+    line = [*arguments, str(scene), "--out"]
+    assert command([*line, str(tmp_path / "new" / "result")]) == 2
+    *progress, refusal = capsys.readouterr().err.splitlines()
+    assert refusal.startswith("runningbond: ")
+    assert len(progress) == (2 if "--draws" in arguments else 0)
+    assert list(tmp_path.iterdir()) == [scene]
+    (tmp_path / "old").mkdir()
+    assert command([*line, str(tmp_path / "old" / "result")]) == 2
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["old", "wall.toml"]
 
 
 def test_an_output_folder_that_cannot_be_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
