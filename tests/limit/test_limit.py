@@ -391,7 +391,7 @@ def test_it_is_seen_what_of_a_wall_falls_under_its_weight() -> None:
     overhang=st.floats(0.51, 0.9),
     crushing=st.booleans(),
 )
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=12, deadline=None)
 def test_joints_that_are_too_weak_for_the_weight_say_how_much_of_it_they_bear(
     strength: float, overhang: float, crushing: bool
 ) -> None:
