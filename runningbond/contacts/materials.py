@@ -43,15 +43,16 @@ class ContactMaterials:
         for material in scene.joint_materials:
             table = table_of(material)
             joint_stiffness(material)
-            if material.cohesion > 0 and (material.fracture_energy_1 is None or material.fracture_energy_2 is None):
+            if material.is_bonded and (material.fracture_energy_1 is None or material.fracture_energy_2 is None):
                 what = "finite displacements need dry joints, or both fracture energies, with which they break"
-                raise SceneError(f"{table}.cohesion", what, material.cohesion)
+                key = "cohesion" if material.cohesion > 0 else "tensile_strength"
+                raise SceneError(f"{table}.{key}", what, getattr(material, key))
             if material.inset != scene.joint.inset:
                 what = f"finite displacements need one inset, and joint.inset is {scene.joint.inset:g}"
                 raise SceneError(f"{table}.inset", what, material.inset)
         own, self._of_joint = scene.joint_materials, scene.material_of_joint
         self._broken = tuple(map(dry, own))
-        self._all = (*(each if each.cohesion > 0 else dry(each) for each in own), *self._broken)
+        self._all = (*(each if each.is_bonded else dry(each) for each in own), *self._broken)
         # Alike ones are taken for one, so that there are few rows of points.
         self._alike = np.array([self._all.index(each) for each in self._all])
 

@@ -50,7 +50,8 @@ class Law:
         ``stored(points, opening, normal, tangential)``: energy that points would give back, ``(np,)`` [J/m²]; the
         opening counts from where they close (`PLASTIC_CLOSURE`).
     damage
-        The row that says how far points are broken, from 0 to 1; None for a law that knows no damage.
+        The row that says how far points are broken, from 0 to 1; None for a law that knows no damage. Joints of a law
+        that does are evaluated all along, at nine points, those of another at their two ends.
     cone
         ``cone(material)``: tan φ, f_t [Pa] and shear at that tension [Pa] of the strength, which limit analysis reads.
     response

@@ -12,7 +12,8 @@ come back, to nothing at s_c = 2 G_II / c. Each encloses its fracture energy exa
     D = 1 − e^(−2x),    f_t (1 − D) = f_t exp(−(δ − δ_e) / (G_I / f_t − δ_e / 2)),    c (1 − D) = c exp(−c s_p / G_II)
 
 (Lourenço & Rots 1997; only `interface` follows them). A joint whose δ_c lies before δ_e breaks at once: it has stored
-more than G_I.
+more than G_I. One without a tensile strength has no G_I to spend: however far it opens, it keeps its cohesion; with
+G_I = 0 it loses it as soon as it opens.
 """
 
 import math
@@ -55,10 +56,13 @@ def softening_constants(material: JointMaterial) -> tuple[float, ...]:
 
 
 def _end_of_softening(energy: float | None, strength: float, never: float) -> float:
-    """Jump at which a linear branch from a strength has spent an energy [m]; tiny for none of either."""
-    if energy is None:
+    """Jump at which a linear branch from a strength has spent an energy [m]; tiny for none.
+
+    Without a strength an energy is never spent, as with one that is as small as you like.
+    """
+    if energy is None or (energy > 0 and strength == 0):
         return never
-    return max(2 * energy / strength if strength > 0 else 0.0, 1e-15)
+    return min(never, max(2 * energy / strength if strength > 0 else 0.0, 1e-15))
 
 
 def weakens_in_fracture(constants: Array) -> Mask:

@@ -43,7 +43,12 @@ def spreads(scene: Scene, *, finite: bool = False) -> bool:
     At `finite` displacements sides may meet anew, which are of the default material even if no joint was.
     """
     materials = scene.joint_materials if finite else scene.materials_of_joints
-    return any(each.compressive_strength or each.closure or each.softens for each in materials)
+    return any(each.compressive_strength or each.closure or each.softens or _breaks(each.law) for each in materials)
+
+
+def _breaks(law: object) -> bool:
+    """Whether a material's own law is one that knows damage."""
+    return isinstance(law, Law) and law.damage is not None
 
 
 def impact_note(scene: Scene) -> str:

@@ -206,9 +206,14 @@ class JointMaterial:
             raise SceneError("joint.closure.stiffest", what, self.closure.stiffest)
 
     @property
+    def is_bonded(self) -> bool:
+        """Whether it can bear anything without pressure."""
+        return self.tension > 0.0 or self.cohesion > 0.0
+
+    @property
     def softens(self) -> bool:
         """Whether it loses with its opening and slip what it can bear beyond friction."""
-        return self.fracture_energy_1 is not None and (self.tension > 0.0 or self.cohesion > 0.0)
+        return self.fracture_energy_1 is not None and self.is_bonded
 
     @property
     def tension(self) -> float:

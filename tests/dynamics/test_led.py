@@ -184,14 +184,24 @@ SNAPS = {
 }
 
 
+def under_a_light_beam(path: float, joint: dict[str, Any], condition: str = "fixed-height") -> Scene:
+    """One joint, of 0.1 m² and without weight, under a beam that slides along it."""
+    beam = {"height": 0.1, "mass": 100.0, "condition": condition, "drive": {"displacement": [path, 0], "at": 0.1}}
+    size = {"block_width": 0.5, "block_height": 0.1, "thickness": 0.2, "courses": [[1]]}
+    support = {"support__kind": "fixed-first-course", "load__gravity": 0.0, "load__live": None}
+    return panel(wall=size, joint=joint, block__young=5e10, beam=beam, **support)
+
+
+def test_a_joint_without_tension_that_nothing_presses_bears_its_cohesion() -> None:
+    """c A, though it opens by some 1e-15 m on the way, of which its fracture energy knows nothing."""
+    joint = {**SNAPS, "cohesion": 1e5, "tensile_strength": 0.0, "fracture_energy_1": 10.0, "fracture_energy_2": 100.0}
+    brackets(dem_dynamic(under_a_light_beam(3e-3, joint, "free"), 0.01), 1e5 * 0.1, 0.011)
+
+
 @pytest.mark.parametrize("way", [1e-3, 2e-2, *at_length(0.3)])
 def test_a_joint_that_snaps_bears_its_strength_however_long_the_way(way: float) -> None:
     """c A of a joint without weight, whose force rises over 0.08 mm and falls over 2 mm; rows are up to 1.5 mm long."""
-    beam = {"height": 0.1, "mass": 100.0, "condition": "fixed-height", "drive": {"displacement": [way, 0], "at": 0.1}}
-    size = {"block_width": 0.5, "block_height": 0.1, "thickness": 0.2, "courses": [[1]]}
-    support = {"support__kind": "fixed-first-course", "load__gravity": 0.0, "load__live": None}
-    scene = panel(wall=size, joint=SNAPS, block__young=5e10, beam=beam, **support)
-    outcome = dem_dynamic(scene, 0.01)
+    outcome = dem_dynamic(under_a_light_beam(way, SNAPS), 0.01)
     brackets(outcome, 3e5 * 0.1, 0.011)
     assert outcome.curve[:, 1].max() == pytest.approx(outcome.multiplier, rel=1e-12)
     assert (np.diff(outcome.curve[:, 0]) >= 0).all()
@@ -538,6 +548,14 @@ def test_finite_displacements_refuse_joints_of_several_insets(pushover: Any) -> 
     assign = [{"joint": "lime", "box": [[0, 0], [1, 0.01]]}]
     with pytest.raises(SceneError, match="joints.lime.inset = 0.01: finite displacements need one inset"):
         pushover(block(joints=joints, assign=assign), 0.01)
+
+
+@pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
+def test_finite_displacements_do_not_forget_what_holds_without_cohesion(pushover: Any) -> None:
+    """Joints without friction and cohesion may have a tensile strength."""
+    scene = block().with_joint(friction=0.0, cohesion=0.0, tensile_strength=1e4)
+    with pytest.raises(SceneError, match="joint.tensile_strength = 10000.0: finite displacements need dry joints"):
+        pushover(scene, 0.01)
 
 
 @pytest.mark.parametrize(

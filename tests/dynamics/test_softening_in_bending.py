@@ -1,5 +1,6 @@
 """A stone mortared to its base and pushed over: its joint tears from the edge on, along all of its length."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,10 @@ from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.fracture import fractured
 from fem_interface.model import fem, fem_pushover
-from runningbond.joints import lobatto
+from runningbond.joints import Law, lobatto
+from runningbond.joints.softening import HISTORY, softening_constants, softening_kernel, stored_by_secant
 from runningbond.limit import limit
-from runningbond.scene import Mortar
+from runningbond.scene import JointMaterial, Mortar
 from tests.at_length import at_length
 from tests.walls import courses
 
@@ -59,6 +61,21 @@ def test_mortar_tears_from_its_edge_on(model: Any, off: float, energy: float) ->
     plastic = limit(scene).multiplier
     assert plastic is not None
     assert plastic > 1.6 * exact
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_mortar_of_ones_own_law_tears_from_its_edge_on_too(model: Any) -> None:
+    """A law that knows damage is followed along the joint, whatever energies the scene gives, here none."""
+
+    def constants(material: JointMaterial) -> tuple[float, ...]:
+        return softening_constants(replace(material, fracture_energy_1=10.0, fracture_energy_2=10.0))
+
+    law = Law("of one's own", constants, softening_kernel, HISTORY, stored_by_secant, damage="damage")
+    scene = stone(10.0).with_joint(law=law, fracture_energy_1=None, fracture_energy_2=None)
+    exact, outcome = borne_by_springs(10.0), model(scene)
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert 0.97 * exact < outcome.lower <= outcome.upper < 1.03 * exact
 
 
 def test_mortar_tears_from_its_edge_on_at_finite_displacements_too() -> None:

@@ -384,7 +384,9 @@ def test_a_corner_on_the_flank_of_the_cap_shears_off_without_pressure() -> None:
         ({"closure": CLOSING}, False),
         ({"fracture_energy_1": 20.0, "fracture_energy_2": 20.0}, False),  # dry: nothing to lose
         ({"cohesion": 3e5, "tensile_strength": 2e5, "fracture_energy_1": 0.0}, True),
-        ({"cohesion": 3e5, "tensile_strength": 0.0, "fracture_energy_1": 20.0}, True),
+        ({"cohesion": 3e5, "tensile_strength": 0.0, "fracture_energy_1": 20.0}, False),  # nor in opening alone
+        ({"cohesion": 3e5, "tensile_strength": 0.0, "fracture_energy_1": 20.0, "fracture_energy_2": 20.0}, True),
+        ({"cohesion": 3e5, "tensile_strength": 0.0, "fracture_energy_1": 0.0}, True),
         ({"compressive_strength": STRENGTH, "compressive_fracture_energy": ENERGY}, True),
     ],
 )

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -86,6 +87,23 @@ def test_a_broken_joint_is_a_dry_one() -> None:
     normal, tangential, _ = follow(law(), opening, slip)
     assert normal[0] == 0
     assert tangential[2:] == pytest.approx(-0.6 * normal[2:])
+
+
+@pytest.mark.parametrize("branch", ["linear", "exponential"])
+def test_a_joint_without_tensile_strength_is_the_limit_of_weak_ones(branch: Any) -> None:
+    """However far it has opened it keeps its cohesion, for G_I is not spent; without any it loses that at once."""
+    opening, slip = np.array([0.0, 1e-15, 1e-3, -1e-6, -1e-6]), np.array([0.0, 0.0, 0.0, 0.0, 1e-5])
+    joint = replace(JOINT, softening=branch, fracture_energy_1=0.0)
+    shear = {
+        (strength, energy): follow(law(replace(joint, tensile_strength=strength), energy), opening, slip)[1][-1]
+        for strength in (0.0, 1e-3)
+        for energy in (0.0, 20.0)
+    }
+    assert shear[0.0, 20.0] == pytest.approx(1e5 + 0.6 * 1e5, rel=1e-6)
+    assert shear[0.0, 0.0] == pytest.approx(0.6 * 1e5, rel=1e-6)
+    assert [shear[0.0, energy] for energy in (0.0, 20.0)] == pytest.approx(
+        [shear[1e-3, energy] for energy in (0.0, 20.0)], rel=1e-6
+    )
 
 
 def test_no_strength_and_no_energy_is_dry_friction_and_not_a_number_too_many() -> None:
