@@ -230,6 +230,7 @@ def run_model(
     notes = [
         outcome.message,
         _moves(model, scene, outcome, parameters.get("collapse")),
+        _keeps_strength(model, scene),
         _left_out(model, scene, finite),
     ]
     if outcome.multiplier is not None:
@@ -267,6 +268,17 @@ def _tilted_with_the_ground(scene: Scene) -> str:
     if not tilts or not len(scene.dead_forces.force):
         return ""
     return "dead loads at points and along lines turn with the ground, as jacks do and weights do not"
+
+
+def _keeps_strength(model: Model, scene: Scene) -> str:
+    """What is to be said of joints that lose strength, where a model knows nothing of that; empty elsewhere."""
+    joints = scene.materials_of_joints
+    loses = {
+        "joint.fracture_energy_1": any(each.softens for each in joints),
+        "joint.compressive_fracture_energy": any(each.compressive_fracture_energy is not None for each in joints),
+    }
+    kept = any(lost and key not in model.reads for key, lost in loses.items())
+    return "joints are taken to keep the strength that they lose as they break: the wall may bear less" if kept else ""
 
 
 def _left_out(model: Model, scene: Scene, finite: bool = False) -> str:

@@ -192,6 +192,28 @@ def test_nor_does_the_line_of_a_force_on_a_beam_count_where_the_ground_moves() -
     assert respond("dem-dynamic", scene).message.endswith("not taken into account: beam.force_line")
 
 
+@pytest.mark.parametrize("energy", ["fracture_energy_1", "compressive_fracture_energy"])
+def test_models_that_know_no_softening_say_that_the_wall_may_bear_less(energy: str) -> None:
+    """A block glued to its base, of which `limit` and `dem-static` promise what a brittle joint does not hold."""
+    size = {"length": 0.24, "height": 0.24, "block_width": 0.24, "block_height": 0.24, "thickness": 0.12}
+    joint = {"cohesion": 1e4, "tensile_strength": 5e3, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    if energy == "compressive_fracture_energy":
+        joint["compressive_strength"] = 3e4
+    scene = panel(wall=size, **{f"joint__{key}": value for key, value in joint.items()})
+    brittle = scene.with_joint(**{energy: 0.1})
+    note = "the wall may bear less"
+    bound, path = run_model("limit", brittle), run_model("dem-dynamic", brittle)
+    assert note in bound.message
+    assert note not in path.message
+    assert note not in run_model("limit", scene).message
+    assert bound.lower is not None
+    assert path.upper is not None
+    assert path.upper < 0.9 * bound.lower
+    if energy == "fracture_energy_1":
+        assert note in run_model("dem-static", brittle).message
+        assert note not in run_model("dem-static", scene).message
+
+
 # --- campaigns -----------------------------------------------------------------------------------------------
 
 
