@@ -58,14 +58,16 @@ def impact_note(scene: Scene) -> str:
 
 
 def ends_note(scene: Scene, points: JointPoints) -> str:
-    """What a message says of joints that bear at two points, under a beam held at its height; empty elsewhere.
+    """What a message says of joints that bear at a few points, under a beam held at its height; empty elsewhere.
 
-    What turns under it presses on the near end of a joint as if all of the pressure along it were there: a strut is
+    What turns under it presses on the near end of a joint as if all of the pressure about it were there: a strut is
     then steeper than it is, and slides where friction is enough for that which it is.
     """
-    if not len(scene.late_pins) or not len(points) or np.bincount(points.joint).max() > 2:
+    fewest = int(np.bincount(points.joint).min()) if len(points) else BETWEEN
+    if not len(scene.late_pins) or fewest >= BETWEEN:
         return ""
-    return "joints bear at their ends alone, and slide under a beam held at its height where whole ones may lock"
+    where = "their ends" if fewest == 2 else "few points"
+    return f"joints bear at {where} alone, and slide under a beam held at its height where whole ones may lock"
 
 
 def spread_rule(parts: int = 1) -> Rule:

@@ -212,11 +212,15 @@ def test_a_strut_under_a_beam_held_at_its_height_locks_by_where_its_joint_bears(
         assert fem(scene, modes=3, rule=lobatto(points), points="joints").status == status
 
 
-def test_models_with_joints_that_bear_at_their_ends_say_what_that_means_under_a_beam_held_at_its_height() -> None:
-    for model in (dem_static, dem_dynamic):
-        locks, spread = held([[1, 1], [2]], 1e4), held([[1, 1], [2]], 1e4, compressive_strength=1e9)
-        assert "ends alone" in model(locks).message
-    assert "ends alone" not in dem_dynamic(spread).message
+@pytest.mark.parametrize("model", [dem_static, dem_dynamic, fem])
+def test_models_say_under_a_beam_held_at_its_height_that_joints_bear_at_a_few_points(model: Any) -> None:
+    """In `fem` where a block lies on two as well: its joints are in parts, and each of them has its ends alone."""
+    note = "alone, and slide under a beam held at its height"
+    patterns: tuple[list[list[float]], ...] = ([[1, 1], [2]], [[1], [1]])
+    for pattern in patterns:
+        assert note in model(held(pattern, 1e4)).message
+        if model is not dem_static:
+            assert note not in model(held(pattern, 1e4, compressive_strength=1e9)).message
 
 
 def test_the_ledger_has_a_preload_that_grows_do_all_of_its_work() -> None:
