@@ -145,6 +145,8 @@ def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, dra
     key = [*key, *held_key(scene)]
     columns = 5 if sum(len(handle.get_label()) for handle in key) < 45 else 3
     what = "shape in the fall; the farthest corner" if scene.history else "mechanism; its fastest corner"
+    if outcome.status == "infeasible":
+        what = "under dead load; its fastest corner"
     size = f"{what} is drawn to move {DRAWN * scene.size:.2g} m"
     return Caption(title, load, [size, warning] if warning else [size], key, columns)
 

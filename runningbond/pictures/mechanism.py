@@ -1,5 +1,7 @@
 """The collapse mechanism of an outcome, checked before it is drawn."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from runningbond.joints import listed_points, wall_points
@@ -64,4 +66,6 @@ def mechanism_shape(scene: Scene, outcome: Outcome) -> DeformedShape | None:
     frame, check = mechanism_frame(scene, outcome), outcome_check(scene, outcome)
     if frame is None or check is None or not check.is_driven:
         return None
+    if outcome.status == "infeasible" and scene.settlement is None:
+        scene = replace(scene, load=replace(scene.load, live=()))  # falls without it
     return DeformedShape.of_rigid_blocks(scene, frame.motion, frame.state.reshape(-1, 2), frame.multiplier)

@@ -1,7 +1,7 @@
 """A motion is drawn as a mechanism only if its loads can drive it; what its joints do is read from their jumps."""
 
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from runningbond.joints import wall_points
 from runningbond.limit import limit
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.models import run_model
-from runningbond.pictures.captions import to_png
+from runningbond.pictures.captions import mechanism_caption, to_png
 from runningbond.pictures.curve import curve_figure
 from runningbond.pictures.flat import figure_of
 from runningbond.pictures.frame import Discretisation, Frame
@@ -99,6 +99,19 @@ def test_a_wall_that_falls_under_its_dead_load_is_not_asked_of_the_live_one() ->
     assert check is not None
     assert check.live is None
     assert check.is_driven
+
+
+@pytest.mark.parametrize("load", [{"kind": "lateral"}, {"kind": "point", "at": [0.2, 0.35], "force": [0, -1]}])
+def test_no_live_load_is_drawn_where_the_dead_one_brings_the_wall_down(load: dict[str, Any]) -> None:
+    scene = courses([[1], [1]], load__live=load)
+    answers: tuple[tuple[Literal["collapse", "infeasible"], int], ...] = (("collapse", 1), ("infeasible", 0))
+    for status, drawn in answers:
+        outcome = Outcome("", "a model", status, 0.6 if drawn else None, motion=moving(scene, 0.6, -0.01))
+        shape = mechanism_shape(scene, outcome)
+        assert shape is not None
+        assert len(shape.scene.load.live) == drawn
+        said = mechanism_caption(scene, outcome, [], drawn=True).notes[0]
+        assert said.startswith("under dead load; its fastest corner is drawn to move") == (status == "infeasible")
 
 
 def states(scene: Scene, x: float, y: float) -> set[int]:
