@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from .arrays import Array, Indices, Mask, frozen
-from .errors import SceneError
+from .errors import SceneError, place
 
 CONTACT_TOLERANCE = 1e-4
 """Gap that still counts as contact, as a fraction of the smallest block's size (root of its area).
@@ -172,8 +172,17 @@ class Blocks:
 
     def name(self, block: int) -> str:
         """What a message calls a block: its number and its centre in metres."""
-        x, y = np.mean(self.extent(block), axis=0)
-        return f"block {block} at ({x:.4g}, {y:.4g})"
+        return f"block {block} at {self.place(np.mean(self.extent(block), axis=0))}"
+
+    def place(self, at: Array) -> str:
+        """What a message says of where a point ``(2,)`` [m] is."""
+        return place(at, self.span)
+
+    @cached_property
+    def span(self) -> float:
+        """Larger side of the box around all blocks [m]."""
+        low, high = self.extent()
+        return float((high - low).max())
 
     def neighbours(self) -> tuple[Indices, Indices]:
         """Pairs ``a < b`` of blocks whose bounding boxes touch."""

@@ -1,7 +1,11 @@
 """How bad input is refused: one line that names the key, its value and what would be right."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import NDArray
 
 LONGEST = 60
 """Characters of a value that are shown."""
@@ -27,6 +31,24 @@ class SceneError(ValueError):
     def __str__(self) -> str:
         value = "" if self.value is None else f" = {_abbreviated(self.value)}"
         return f"{self.key}{value}: {' '.join(self.remedy.split())}"
+
+
+def coordinate(value: float, size: float, digits: int = 4) -> str:
+    """A coordinate in so many digits, and as many more as it is farther from the origin than what lies there is large.
+
+    Parameters
+    ----------
+    size
+        Of the wall or drawing [as the coordinate].
+    """
+    far = abs(value) / size if size > 0 else 0.0
+    more = math.floor(math.log10(far)) if 10 <= far < math.inf else 0
+    return f"{value:.{min(digits + more, 17)}g}"
+
+
+def place(at: Sequence[float] | NDArray[np.float64], size: float, digits: int = 4) -> str:
+    """A point ``(2,)`` as messages tell it; see `coordinate`."""
+    return f"({', '.join(coordinate(float(x), size, digits) for x in at)})"
 
 
 @contextmanager

@@ -14,6 +14,7 @@ import shapely
 
 from .arrays import Array, Mask
 from .blocks import touching_boxes
+from .errors import coordinate
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
 from .ties import ANCHOR
 from .wall import Scene, table_of
@@ -196,8 +197,9 @@ def _courses(scene: Scene) -> Iterator[str]:
     gaps = np.diff(levels)
     close = np.flatnonzero(gaps < LEVEL * size[:, 1].min())
     if len(close):
-        y, gap = levels[close[0]], gaps[close[0]]
-        yield f"wall: courses do not line up: blocks stand at y = {y:.6g} and {y + gap:.6g} m, {1e3 * gap:.3g} mm apart"
+        gap, two = gaps[close[0]], levels[close[0] :][:2]
+        low_y, high_y = (coordinate(float(y), scene.blocks.span, 6) for y in two)
+        yield f"wall: courses do not line up: blocks stand at y = {low_y} and {high_y} m, {1e3 * gap:.3g} mm apart"
         return
     middle = (levels + np.append(levels[1:], high[:, 1].max())) / 2
     half = float(np.median(size[:, 0])) / 2 * (1 + 1e-6)
@@ -205,8 +207,9 @@ def _courses(scene: Scene) -> Iterator[str]:
     for side, ends, sign in (("left", -low[:, 0], -1.0), ("right", high[:, 0], 1.0)):
         reach = np.array([ends[here].max(initial=-np.inf) for here in there])
         for k in np.flatnonzero(_short(reach, half)):
-            what = f"the course there ends at x = {sign * reach[k]:.4g} m on the {side}"
-            yield f"wall: at y = {middle[k]:.4g} m: {what}, more than half a block short of its neighbours"
+            x, y = (coordinate(float(value), scene.blocks.span) for value in (sign * reach[k], middle[k]))
+            what = f"the course there ends at x = {x} m on the {side}"
+            yield f"wall: at y = {y} m: {what}, more than half a block short of its neighbours"
 
 
 def _distinct(values: Array, tolerance: float) -> Array:

@@ -10,7 +10,7 @@ import shapely
 
 from .actions import Action, nonzero_vector, unit_vector
 from .arrays import Array, Indices
-from .errors import SceneError
+from .errors import SceneError, coordinate
 from .forces import Arrow, Forces
 from .ranges import Range, vector
 from .table import Table
@@ -47,7 +47,8 @@ class PointLoad(Action):
         """Refuse a point that nothing is at."""
         if len(self.blocks(scene)) == 0:
             (x0, y0), (x1, y1) = scene.blocks.extent(scene.wall)
-            spans = f"x {x0:.4g} … {x1:.4g} m, y {y0:.4g} … {y1:.4g} m"
+            x0, x1, y0, y1 = (coordinate(float(value), scene.blocks.span) for value in (x0, x1, y0, y1))
+            spans = f"x {x0} … {x1} m, y {y0} … {y1} m"
             raise SceneError(f"{key}.at", f"touches no block that can move; the wall spans {spans}", list(self.at))
 
 
@@ -118,9 +119,9 @@ class LineLoad(Action):
         if len(blocks) == 1:
             return int(blocks[0])
         at = np.array(self.start) + (low + high) / 2 * np.subtract(self.end, self.start)
-        middle, way = ", ".join(f"{x:.4g}" for x in at), f"the line from there to {list(self.end)}"
+        middle, way = scene.blocks.place(at), f"the line from there to {list(self.end)}"
         if len(blocks) == 0:
-            what = f"{way} runs at ({middle}) along no block that can move"
+            what = f"{way} runs at {middle} along no block that can move"
             raise SceneError("load.live.from", what, list(self.start))
         run, force = np.subtract(self.end, self.start), np.array(self.force)
         normal = np.array([-run[1], run[0]]) / np.hypot(*run)

@@ -1,5 +1,6 @@
 """Parts of polygons that were cut, as shapely gives them, and their corners."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,3 +25,10 @@ def outer_corners(polygon: Any) -> Array:
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     return np.asarray(ring[np.abs(turn) > STRAIGHT * np.hypot(*before.T) * np.hypot(*after.T)])
+
+
+def smaller_sides(shapes: Sequence[Any]) -> Array:
+    """Smaller side of the smallest rectangle around each polygon, ``(n,)``."""
+    boxes = shapely.get_coordinates(shapely.oriented_envelope(shapes)).reshape(-1, 5, 2)
+    found: Array = np.hypot(*np.moveaxis(boxes[:, 1:3] - boxes[:, :2], 2, 0)).min(axis=1)
+    return found

@@ -7,8 +7,12 @@ import numpy as np
 import shapely
 
 from .arrays import Array, Indices, Mask, frozen
-from .blocks import Blocks, touching_boxes
+from .blocks import CONTACT_TOLERANCE, Blocks, touching_boxes
 from .errors import SceneError
+from .polygons import smaller_sides
+
+NEAR = 0.1
+"""Overlap, in sizes of the smallest block, that looks like one of a survey."""
 
 MEETING = 1e-9
 """Distance between two points, in lengths of their joint, that is rounding: forces in them have no lever."""
@@ -113,7 +117,20 @@ def _refuse_overlaps(blocks: Blocks, joined: Indices) -> None:
     deep = ~shapely.is_empty(shapely.buffer(common, -blocks.tolerance / 2))
     if deep.any():
         first = int(np.argmax(deep))
-        raise SceneError(
-            blocks.name(int(a[first])),
-            f"overlaps {blocks.name(int(b[first]))}; blocks may touch, not share an area",
-        )
+        raise SceneError(blocks.name(int(a[first])), _overlap(blocks, int(a[first]), int(b[first]), common[first]))
+
+
+def _overlap(blocks: Blocks, a: int, b: int, common: shapely.Geometry) -> str:
+    """What is wrong with block a, which shares an area with b, and what would be right."""
+    other = f"overlaps {blocks.name(b)}"
+    inside = common.area > (1 - CONTACT_TOLERANCE) * blocks.area[[a, b]]
+    if inside.all():
+        return f"{other}, which lies in the same place; draw it once"
+    if inside.any():
+        which = "it lies in that one" if inside[0] else "that one lies in it"
+        return f"{other}: {which}; draw what is left of the larger"
+    part = max(shapely.get_parts(common), key=lambda shape: shape.area)
+    depth = float(smaller_sides([part])[0])
+    where = f"by {depth:.2g} m at {blocks.place(np.array(part.representative_point().coords[0]))}"
+    heal = "; wall.heal closes small overlaps of drawings" if depth < NEAR * np.sqrt(blocks.area.min()) else ""
+    return f"{other} {where}; blocks may touch, not share an area{heal}"

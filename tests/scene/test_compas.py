@@ -97,7 +97,12 @@ def model(**how: Any) -> dict[str, Any]:
     }
 
 
-@pytest.mark.parametrize("layout", [assembly, first_version, untyped, model])
+def analysis() -> dict[str, Any]:
+    """The same model as compas_dem 0.6 writes it beside the problems that are asked of it."""
+    return {"dtype": "compas_dem.models/Analysis", "data": {"name": None, "model": model(), "problems": []}}
+
+
+@pytest.mark.parametrize("layout", [assembly, first_version, untyped, model, analysis])
 def test_an_assembly_is_the_wall_that_a_drawing_of_it_is(layout: Any, tmp_path: Path) -> None:
     exact = scene_of(dxf(tmp_path / "wall.dxf", closed()))
     (tmp_path / "wall.json").write_text(json.dumps(layout()))
@@ -188,10 +193,10 @@ def test_a_flat_pier_is_seen_across_its_plane(tmp_path: Path) -> None:
     assert multiplier(scene_of(tmp_path / "wall.json", units="m", thickness=0.3)) == pytest.approx(0.5, rel=1e-6)
 
 
-def moving(x: float, z: float, turned: bool = False) -> dict[str, Any]:
+def moving(x: float, z: float, turned: bool = False, across: float = 0.0) -> dict[str, Any]:
     """A motion, as COMPAS writes it; `turned` by a quarter about the thickness, from z towards x."""
     turn = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]] if turned else np.eye(3).tolist()
-    matrix = [[*row, by] for row, by in zip(turn, (x, 0.0, z), strict=True)] + [[0.0, 0.0, 0.0, 1.0]]
+    matrix = [[*row, by] for row, by in zip(turn, (x, across, z), strict=True)] + [[0.0, 0.0, 0.0, 1.0]]
     return {"dtype": "compas.geometry/Transformation", "data": {"matrix": matrix}}
 
 

@@ -10,8 +10,8 @@ import pytest
 
 from runningbond.scene import SceneError, scene_from_dict
 
-from .drafting import BRICKS, Draw, box, closed, dxf, lines, own_lines, scene_of, tables
-from .test_compas import assembly, mesh, model, untyped
+from .drafting import BRICKS, GROUND, Draw, Outline, box, closed, dxf, lines, own_lines, scene_of, tables
+from .test_compas import assembly, mesh, model, moving, untyped
 
 
 def polyline(*corners: tuple[float, ...], close: bool = True) -> Draw:
@@ -47,7 +47,7 @@ SQUARE = [(0, 0, 200, 0), (200, 0, 200, 100), (200, 100, 0, 100), (0, 100, 0, 0)
 @pytest.mark.parametrize(
     ("draw", "said"),
     [
-        (texts, "holds 1 closed outlines (left out: 1 TEXT on layer 0); it needs the ground and at least one block"),
+        (texts, "holds 1 closed outline (left out: 1 TEXT on layer 0); it needs the ground and at least one block"),
         (closed(BRICKS, "soil"), "has all its outlines on layer soil, which is the ground's"),
         (
             polyline((0, 0), (200, 0), (200, 100), close=False),
@@ -57,14 +57,25 @@ SQUARE = [(0, 0, 200, 0), (200, 0, 200, 100), (200, 100, 0, 100), (0, 100, 0, 0)
         (lines(*SQUARE[:3], (0, 100, 0, 0.1)), "is open at (0, 0) and (0, 0.1)"),
         (lines(*SQUARE, (200, 50, 260, 50)), "is open at (260, 50); each"),
         (lines(*SQUARE, (0, 500, 9, 500), (0, 600, 9, 600)), "is open at (0, 500) and (9, 500) and 2 more"),
-        (lines((0, 0, 0, 0), layer="beds"), "layer beds: is open at (0, 0)"),
+        (lines((0, 0, 0, 0), layer="beds"), "holds 1 closed outline (left out: 1 LINE of no length on layer beds)"),
         (lambda _, space: space.add_arc((0, 0), 50, 0, 180), "is open at (50, 0) and (-50, 0)"),
-        (polyline((0, 0), (200, 100), (200, 0), (0, 100)), "crosses itself"),
+        (polyline((0, 0), (200, 100), (200, 0), (0, 100)), "crosses itself at (0.1, 0.05) m"),
         (polyline((0, 0), (200, 0), (0, 0), (200, 0)), "crosses itself"),
         (polyline((0, 0), (200, 0)), "must have at least three corners"),
         (own_lines([box(0, 0, 300, 300), box(100, 100, 200, 200)]), "has a block with a hole, at (100, 100)"),
-        (closed([box(0, 0, 300, 300), box(100, 100, 200, 200)]), "overlaps"),
-        (closed([BRICKS[0], BRICKS[0]]), "overlaps"),
+        (
+            closed([box(0, 0, 300, 300), box(100, 100, 200, 200)]),
+            "overlaps block 1 at (0.15, 0.15): that one lies in it",
+        ),
+        (closed([BRICKS[0], BRICKS[0]]), "overlaps block 1 at (0.1, 0.05), which lies in the same place; draw it once"),
+        (
+            closed([BRICKS[0], box(0, 99.8, 200, 199)]),
+            "overlaps block 1 at (0.1, 0.1494) by 0.0002 m at (0.1, 0.0999); blocks may touch, not share an area; wal",
+        ),
+        (
+            lines(*SQUARE, (0, 50, 199.9, 50)),
+            "is open at (199.9, 50), where a line ends 0.1 drawing units from the next one",
+        ),
         (lambda _, space: space.add_line((0, 0, 0), (0, 9, 1)), "LINE 2F: does not lie in the drawing's plane"),
         (
             lambda _, space: space.add_polyline3d([(0, 0, 0), (9, 0, 0), (9, 9, 1)], close=True),
@@ -87,6 +98,63 @@ def test_what_is_drawn_is_no_wall(draw: Draw, said: str, tmp_path: Path) -> None
     assert "\n" not in str(refused.value)
 
 
+EAST, NORTH = 512_345e3, 5_412_345e3
+"""Where a wall may stand on a map [mm]."""
+
+
+@pytest.mark.parametrize(
+    ("outlines", "how", "said"),
+    [
+        ([box(0, 300.1, 400, 400)], {}, "block 7 at (512345.2, 5412345.35): is a floating block"),
+        ([box(0, 299.9, 400, 400)], {}, "by 0.0001 m at (512345.1, 5412345.3); blocks may touch"),
+        ([], {"heal": 0.02}, "that of block 7 at (512345.2, 5412344.975)"),
+        ([], {"live": [512345.0, 0.0]}, "the wall spans x 512345 … 512345.4 m, y 5412345 … 5412345.3 m"),
+    ],
+)
+def test_a_wall_on_a_map_is_told_where_it_stands(
+    outlines: list[Outline], how: dict[str, Any], said: str, tmp_path: Path
+) -> None:
+    """In four digits all of it was at (5.123e+05, 5.412e+06)."""
+    here = [[(x + EAST, y + NORTH) for x, y in outline] for outline in [*BRICKS, *outlines]]
+    ground = [[(x + EAST, y + NORTH) for x, y in GROUND]]
+    dxf(tmp_path / "wall.dxf", closed(here), closed(ground, "ground"), ground=False)
+    table = tables(**{key: value for key, value in how.items() if key != "live"})
+    if "live" in how:
+        table["load"]["live"] = {"kind": "point", "at": how["live"], "force": [1.0, 0.0]}
+    with pytest.raises(SceneError) as refused:
+        scene_from_dict(table, folder=tmp_path)
+    assert said in str(refused.value)
+
+
+def test_open_lines_on_a_map_are_told_where_they_are(tmp_path: Path) -> None:
+    segments = [(a + EAST, b + NORTH, c + EAST, d + NORTH) for a, b, c, d in SQUARE[:3]]
+    with pytest.raises(SceneError, match=r"is open at \(512345000, 5412345000\) and \(512345000, 5412345100\); each"):
+        scene_of(dxf(tmp_path / "wall.dxf", lines(*segments), ground=False))
+
+
+@pytest.mark.parametrize("hide", ["off", "freeze"])
+def test_a_ground_that_is_not_seen_is_pointed_out(hide: str, tmp_path: Path) -> None:
+    def hidden(document: Any, _: Any) -> None:
+        getattr(document.layers.add("GROUND"), hide)()
+
+    state = {"off": "off", "freeze": "frozen"}[hide]
+    said = (
+        rf"has no outline on a layer named ground \(left out: 1 LWPOLYLINE on layer GROUND, which is {state}\), and 2"
+    )
+    with pytest.raises(SceneError, match=said):
+        scene_of(dxf(tmp_path / "wall.dxf", closed(), hidden))
+
+
+def test_a_wall_drawn_on_a_sheet_is_pointed_out(tmp_path: Path) -> None:
+    """Sheets show the model; what is drawn on them, in paper space, is a frame and titles, or a mistake."""
+
+    def on_paper(document: Any, _: Any) -> None:
+        closed()(document, document.layout("Layout1"))
+
+    with pytest.raises(SceneError, match=r"holds 1 closed outline \(left out: 7 LWPOLYLINE in paper space\); it needs"):
+        scene_of(dxf(tmp_path / "wall.dxf", on_paper))
+
+
 @pytest.mark.parametrize(
     ("wall", "said"),
     [
@@ -96,7 +164,10 @@ def test_what_is_drawn_is_no_wall(draw: Draw, said: str, tmp_path: Path) -> None
         ({"heal": -1e-3}, "wall.heal = -0.001: must be a number above 0"),
         ({"heal": "1 mm"}, "wall.heal = '1 mm': must be a number above 0"),
         ({"heal": True}, "wall.heal = True: must be a number above 0"),
-        ({"heal": 0.02}, "wall.heal = 0.02: must be at most a tenth of the smallest block's smaller side, 0.005"),
+        (
+            {"heal": 0.02},
+            "= 0.02: must be at most a tenth of the smallest block's smaller side, 0.005: that of block 7 at (0.2",
+        ),
         ({"healing": 1e-3}, 'wall.healing = 0.001: is not a key of [wall]; did you mean "heal"?'),
         ({"drawing": 3}, "wall.drawing = 3: must be a string"),
         ({"course_heights": [0.1]}, "wall.course_heights: does not go with wall.drawing"),
@@ -151,6 +222,14 @@ def without_x(found: dict[str, Any]) -> None:
     del nodes(found)["0"]["block"]["data"]["default_vertex_attributes"]["x"]
 
 
+def slanted(found: dict[str, Any]) -> None:
+    """The wall turned in plan, so that it runs between the axes."""
+    for node in nodes(found).values():
+        for vertex in node["block"]["data"]["vertex"].values():
+            x, y = vertex["x"], vertex["y"]
+            vertex.update(x=0.8 * x - 0.6 * y, y=0.6 * x + 0.8 * y)
+
+
 def holed(found: dict[str, Any]) -> None:
     """A frame of four prisms about a hole, as one mesh."""
     parts = [mesh(o) for o in (box(0, 0, 3, 1), box(2, 1, 3, 2), box(0, 2, 3, 3), box(0, 1, 1, 2))]
@@ -188,16 +267,24 @@ def holed(found: dict[str, Any]) -> None:
         ),
         (
             spoilt(lambda a: [v.update(y=v["y"] + 0.3) for v in vertices(a).values()]),
-            "node 0: is not as thick along any",
+            "node 0: does not reach as far as the others do along x, y or z",
         ),
-        (spoilt(lambda a: [v.update(y=2 * v["y"]) for v in vertices(a).values()]), "node 0: is not as thick along any"),
+        (
+            spoilt(lambda a: [v.update(y=2 * v["y"]) for v in vertices(a).values()]),
+            "node 0: does not reach as far as the others do along x, y or z",
+        ),
+        (spoilt(slanted), "wall.drawing: is an assembly in no plane across x, y or z: along none of them do"),
         (spoilt(lambda a: [n.update(is_support=True) for n in nodes(a).values()]), "is an assembly of supports"),
         (spoilt(holed), "node 0: is not a prism across the wall, with one outline a side and no hole"),
         (spoilt(lambda a: a["blocks"]["0"].pop("face"), untyped), "is not a COMPAS assembly: KeyError, 'face'"),
         (spoilt(lambda a: a["data"].update(transformation={}), model), "is not a COMPAS assembly: KeyError, 'data'"),
         (
             spoilt(lambda a: a["data"]["elements"]["0"]["data"].pop("geometry"), model),
-            "element Block 0: has no geometry",
+            "element 0 (Block 0): has no geometry",
+        ),
+        (
+            spoilt(lambda a: a["data"]["elements"]["1"]["data"].update(transformation=moving(0, 0, across=1)), model),
+            "element 1 (Block 1): does not reach as far as the others do along x, y or z; read are walls in a plane",
         ),
         (
             spoilt(lambda a: a["data"]["tree"]["root"].update(children=[{"element": "none"}]), model),

@@ -5,13 +5,14 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import ezdxf
 import numpy as np
 import pytest
 
 from runningbond.scene import SceneError
 from runningbond.scene.drawings import curves, read_drawing
 
-from .drafting import BRICKS, COURSES, Draw, box, closed, dxf, lines, multiplier, own_lines, scene_of
+from .drafting import BRICKS, COURSES, GROUND, Draw, box, closed, dxf, lines, multiplier, own_lines, scene_of
 
 
 def nearly_closed(_: Any, space: Any) -> None:
@@ -149,6 +150,48 @@ def test_everything_left_out_is_counted_by_type_and_layer(tmp_path: Path) -> Non
         assert part in note
 
 
+def test_frames_of_sheets_and_points_are_left_out_and_said(tmp_path: Path) -> None:
+    """A line that a command left where it began and ended is no open outline, and a polyline of one point no block."""
+
+    def more(document: Any, space: Any) -> None:
+        closed([box(0, 0, 420, 297)])(document, document.layout("Layout1"))
+        space.add_line((5, 5), (5, 5))
+        space.add_lwpolyline([(5, 5), (5, 5)], close=True, dxfattribs={"layer": "X"})
+        space.add_lwpolyline([(5, 5)])
+
+    scene = scene_of(dxf(tmp_path / "wall.dxf", closed(), more))
+    assert len(scene.joints) == 14
+    assert scene.notes == (
+        "left out: 1 LINE of no length, 1 LWPOLYLINE of no length on layer 0; 1 LWPOLYLINE of no length on layer X; "
+        "1 LWPOLYLINE in paper space",
+    )
+
+
+@pytest.mark.parametrize("version", ["R2000", "R2004", "R2007", "R2018"])
+@pytest.mark.parametrize("form", ["asc", "bin"])
+def test_layers_are_named_in_any_letters(version: str, form: str, tmp_path: Path) -> None:
+    """Files before 2007 have a code page, and write what it lacks by number; layers that are off are known by it."""
+    document = ezdxf.new(version)  # type: ignore[attr-defined]
+    space = document.modelspace()
+    document.layers.add("Оси").off()
+    closed([*BRICKS], "Mörtel, Кладка")(document, space)
+    closed([GROUND], "ground")(document, space)
+    lines((0, -99, 0, 999), layer="Оси")(document, space)
+    document.saveas(tmp_path / "wall.dxf", fmt=form)
+    drawing = read_drawing(tmp_path / "wall.dxf", "m")
+    assert set(drawing.layers) == {"Mörtel, Кладка"}
+    assert drawing.notes == ("left out: 1 LINE on layer Оси, which is off",)
+
+
+def test_an_outline_too_thin_for_a_stone_is_pointed_out(tmp_path: Path) -> None:
+    """What two strokes a hundredth of a millimetre apart enclose makes contact anywhere a matter of 0.2 µm."""
+    strip = closed([box(0, 300, 400, 300.01)])
+    (note,) = read_drawing(dxf(tmp_path / "wall.dxf", closed(), strip), "mm").notes
+    assert note == (
+        "slivers: block 7 at (0.2, 0.3) is 1e-05 m thin; the smallest block sets how wide a gap is contact, 2e-07 m"
+    )
+
+
 def test_what_is_on_layer_0_of_a_block_is_on_the_layer_of_its_insert(tmp_path: Path) -> None:
     def draw(document: Any, space: Any) -> None:
         block = document.blocks.new("BRICK")
@@ -192,7 +235,7 @@ def test_without_such_a_layer_the_lowest_outline_is_the_ground_and_is_said_to_be
 def test_of_several_outlines_that_lie_lowest_none_is_taken_for_the_ground(tmp_path: Path) -> None:
     """Three stones side by side, drawn without ground: one would be held, and the others hang in the air."""
     path = dxf(tmp_path / "wall.dxf", closed([box(x, 0, x + 300, 200) for x in (0, 300, 600)]), ground=False)
-    with pytest.raises(SceneError, match="has no layer named ground, and 3 outlines lie as low"):
+    with pytest.raises(SceneError, match="has no outline on a layer named ground, and 3 outlines lie as low"):
         read_drawing(path, "mm")
 
 

@@ -1,7 +1,7 @@
 """Assemblies of COMPAS, as its packages write them in JSON, read without them.
 
 The layouts are those of compas_assembly 0.7 (COMPAS 1 and 2), of its files before there were types in them, and of
-the BlockModel of compas_dem 0.3 to 0.6.
+the BlockModel of compas_dem 0.3 to 0.6, by itself or in an Analysis.
 """
 
 import json
@@ -17,6 +17,9 @@ from ..errors import SceneError
 from .dxf import KEY
 
 ASSEMBLY, MODEL = "compas_assembly.datastructures/Assembly", "compas_dem.models/BlockModel"
+
+ANALYSIS = "compas_dem.models/Analysis"
+"""A model with the problems that are asked of it."""
 
 GROUP = "compas_model.elements/Group"
 
@@ -95,6 +98,9 @@ def _blocks(content: Any) -> Iterator[tuple[str, Any, bool]]:
             yield f"block {key}", (_payload(block), None), assembly["vertex"][key].get("is_support", usual)
         return
     kind = content.get("dtype") if isinstance(content, dict) else None
+    if kind == ANALYSIS:
+        content = content["data"]["model"]
+        kind = content["dtype"]
     if kind not in (ASSEMBLY, MODEL):
         raise SceneError(f"{KEY}, dtype", f'must be "{ASSEMBLY}" or "{MODEL}"', kind if kind else "(none)")
     if kind == ASSEMBLY:
@@ -109,9 +115,9 @@ def _blocks(content: Any) -> Iterator[tuple[str, Any, bool]]:
 def _elements(model: Any) -> Iterator[tuple[str, Any, bool]]:
     """Name, mesh and support of each element of a model, with its motion."""
     placed = _placed(model)
-    for key, element in model["elements"].items():
+    for number, (key, element) in enumerate(model["elements"].items()):
         data = element["data"]
-        name = f"element {data.get('name')}"
+        name = f"element {number} ({data.get('name')})"
         if "geometry" in data:
             yield name, (_payload(data["geometry"]), placed[key]), data["is_support"]
         elif element["dtype"] != GROUP:
@@ -160,9 +166,17 @@ def _plane(meshes: list[tuple[str, Array]], unit: float, thickness: float | None
         thick = {name: unit * float((high - low)[0, "xyz".index(name)]) for name in fits}
         name = _across(thick, thickness, SAME * size * unit)
         return "xyz".index(name), AXES[name], size
-    across = int(np.argmin(scatter))
-    odd = int(np.argmax(np.maximum(abs(low - np.median(low, axis=0)), abs(high - np.median(high, axis=0)))[:, across]))
-    what = "is not as thick along any axis, or not in one plane with the others; read are walls in a plane"
+    # The axis across the wall is that along which most blocks reach as far as one another.
+    off = np.maximum(abs(low - np.median(low, axis=0)), abs(high - np.median(high, axis=0)))
+    alike = (off <= SAME * size).mean(axis=0)
+    across = int(np.argmax(alike))
+    if alike[across] <= 0.5:
+        what = (
+            "is an assembly in no plane across x, y or z: along none of them do its blocks reach as far as one another"
+        )
+        raise SceneError(KEY, f"{what}; turn it until its thickness lies along one")
+    odd = int(np.argmax(off[:, across]))
+    what = "does not reach as far as the others do along x, y or z; read are walls in a plane across one of these"
     raise SceneError(f"{KEY}, {meshes[odd][0]}", what)
 
 

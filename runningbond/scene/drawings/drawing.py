@@ -1,5 +1,6 @@
 """Blocks from a drawing: DXF curves or a COMPAS assembly, closed, cut into chords and healed."""
 
+import re
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +9,9 @@ import numpy as np
 import shapely
 
 from ..arrays import Array
-from ..errors import SceneError
+from ..blocks import Blocks
+from ..errors import SceneError, place
+from ..polygons import smaller_sides
 from ..ranges import one_of
 from .compas import read_compas
 from .curves import ROUNDING, Arc, Chords
@@ -19,6 +22,9 @@ from .loops import join
 
 STRAIGHT = 2e-5
 """How far a corner may lie off a straight side, in sizes of the smallest block: rounding, below any contact."""
+
+SLIVER = 0.01
+"""Smaller side, in those of the middling block, below which an outline is what was left over, and no stone."""
 
 METRES = {"mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 0.0254, "ft": 0.3048}
 
@@ -94,8 +100,8 @@ def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness
         joined, note = healed([*blocks, *grounds], heal)
         blocks, grounds = joined[: len(blocks)], joined[len(blocks) :]
         notes += [note] if note else []
-    missed = missed_joints([*blocks, *grounds], heal or 0.0)
-    return Drawing(blocks, tuple(layers), grounds, (*notes, missed) if missed else tuple(notes))
+    said = (missed_joints([*blocks, *grounds], heal or 0.0), _slivers([*blocks, *grounds]))
+    return Drawing(blocks, tuple(layers), grounds, (*notes, *(note for note in said if note)))
 
 
 def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], list[str]]:
@@ -139,9 +145,9 @@ def _traced(curve: Drawn, chords: Chords) -> Array:
 
 def _listed(left_out: Counter[tuple[str, str]]) -> str:
     by_place: dict[str, list[str]] = {}
-    for (kind, place), number in left_out.items():
-        by_place.setdefault(place, []).append(f"{number} {kind}")
-    return "; ".join(f"{', '.join(kinds)} {place}" for place, kinds in by_place.items())
+    for (kind, where), number in left_out.items():
+        by_place.setdefault(where, []).append(f"{number} {kind}")
+    return "; ".join(f"{', '.join(kinds)} {where}" for where, kinds in by_place.items())
 
 
 def _without_ground(
@@ -149,7 +155,8 @@ def _without_ground(
 ) -> tuple[list[Array], list[str], list[Array], list[str]]:
     """Blocks with their layers, pieces of the ground, and notes where it was guessed, or lies on several layers."""
     if len(outlines) < 2:
-        what = f"holds {len(outlines)} closed outlines{passed_over}; it needs the ground and at least one block"
+        number = f"{len(outlines) or 'no'} closed outline{'s' * (len(outlines) != 1)}"
+        what = f"holds {number}{passed_over}; it needs the ground and at least one block"
         raise SceneError(KEY, what, path)
     ground = [k for k, layer in enumerate(layers) if layer.lower() in GROUND_LAYERS]
     notes, own = list[str](), list(dict.fromkeys(layers[k] for k in ground))
@@ -161,14 +168,33 @@ def _without_ground(
         lowest = np.array([outline[:, 1].min() for outline in outlines])
         beside = int((lowest < middle[ground[0]]).sum())
         if beside > 1:
-            what = f"has no layer named ground, and {beside} outlines lie as low; put the ground on one of that name"
-            raise SceneError(KEY, what, path)
-        x, y = outlines[ground[0]].mean(axis=0)
-        notes.append(f"ground: no layer is named ground, so it is the lowest outline, at ({x:.4g}, {y:.4g})")
+            what = f"has no outline on a layer named ground{passed_over}, and {beside} outlines lie as low"
+            raise SceneError(KEY, f"{what}; put the ground on one of that name", path)
+        at = place(outlines[ground[0]].mean(axis=0), float(np.ptp(np.vstack(outlines), axis=0).max()))
+        notes.append(f"ground: no layer is named ground, so it is the lowest outline, at {at}")
     if len(ground) == len(outlines):
         raise SceneError(KEY, f"has all its outlines on layer {layers[0]}, which is the ground's", path)
     wall = [k for k in range(len(outlines)) if k not in set(ground)]
     return [outlines[k] for k in wall], [layers[k] for k in wall], [outlines[k] for k in ground], notes
+
+
+def _slivers(polygons: list[Array]) -> str:
+    """Say which outlines are too thin to be stones; nothing where none is."""
+    sides = smaller_sides([shapely.Polygon(polygon) for polygon in polygons])
+    thin = int(np.sum(sides < SLIVER * np.median(sides)))
+    if not thin:
+        return ""
+    blocks, k = Blocks.from_polygons(polygons), int(sides.argmin())
+    which = f"{blocks.name(k)} is {sides[k]:.2g} m thin" + (f", and {thin - 1} more are so" if thin > 1 else "")
+    return f"slivers: {which}; the smallest block sets how wide a gap is contact, {blocks.tolerance:.2g} m"
+
+
+def _where(polygon: shapely.Polygon) -> str:
+    """Where a polygon crosses itself, as far as shapely says it."""
+    found = re.search(r"\[(\S+) (\S+)\]$", shapely.is_valid_reason(polygon))
+    at = np.array(found.groups() if found else (np.nan, np.nan), dtype=float)
+    low, high = np.reshape(polygon.bounds, (2, 2))
+    return f" at {place(at, float((high - low).max()))} m" if np.isfinite(at).all() else ""
 
 
 def _cleaned(outlines: list[Array], names: list[str]) -> list[Array]:
@@ -181,7 +207,7 @@ def _cleaned(outlines: list[Array], names: list[str]) -> list[Array]:
         first = int(np.lexsort(outline.T[::-1])[0])
         polygon = shapely.Polygon(np.roll(outline, -first, axis=0))
         if not polygon.is_valid:
-            raise SceneError(name, "crosses itself")
+            raise SceneError(name, f"crosses itself{_where(polygon)}")
         polygons.append(polygon)
     if not polygons:
         return []

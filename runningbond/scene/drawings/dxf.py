@@ -21,6 +21,9 @@ MOST = 300_000
 DEEPEST = 32
 """INSERTs within INSERTs."""
 
+VIEWPORT = "VIEWPORT"
+"""A window of a sheet in paper space onto the model: it draws nothing of its own."""
+
 HEADER_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 """Codes of $INSUNITS."""
 
@@ -33,6 +36,11 @@ class Drawn:
     name: str
     pieces: tuple[Array | Arc, ...]
     closed: bool
+
+    @property
+    def has_length(self) -> bool:
+        """Whether it is more than a point."""
+        return any(isinstance(piece, Arc) or (piece != piece[:1]).any() for piece in self.pieces)
 
 
 @dataclass(frozen=True)
@@ -69,8 +77,15 @@ def read_dxf(path: Path) -> ModelSpace:
             curve = _curve(entity, layer, name)
             if curve is None:
                 left_out[entity.dxftype(), f"on layer {layer}"] += 1
-            elif curve.pieces:
+            elif curve.has_length:
                 drawn.append(curve)
+            else:
+                left_out[f"{entity.dxftype()} of no length", f"on layer {layer}"] += 1
+        for sheet in document.layouts:
+            if not sheet.is_modelspace:
+                left_out.update(
+                    (entity.dxftype(), "in paper space") for entity in sheet if entity.dxftype() != VIEWPORT
+                )
         return ModelSpace(drawn, left_out, HEADER_UNITS.get(document.header.get("$INSUNITS", 0)))
     except SceneError:
         raise
@@ -85,7 +100,7 @@ class _Walk:
 
     def __init__(self, document: Any, left_out: Counter[tuple[str, str]]) -> None:
         self._document, self._left_out, self._seen = document, left_out, 0
-        self._layers = {layer.dxf.name.lower(): layer for layer in document.layers}
+        self._layers = {_decoded(layer.dxf.name).lower(): layer for layer in document.layers}
 
     def all(self) -> Iterator[tuple[Any, str, str]]:
         """The entities that are seen."""
@@ -125,8 +140,8 @@ class _Walk:
 
     def _spelt(self, layer: str) -> str:
         """A layer as the document's table spells it: names that differ in capitals alone are one layer's."""
-        entry = self._layers.get(layer.lower())
-        return layer if entry is None else str(entry.dxf.name)
+        entry = self._layers.get(_decoded(layer).lower())
+        return _decoded(layer if entry is None else entry.dxf.name)
 
     def _hidden(self, layer: str) -> str:
         entry = self._layers.get(layer.lower())
@@ -138,6 +153,13 @@ class _Walk:
         self._seen += more
         if self._seen > MOST:
             raise SceneError(KEY, f"holds more than {MOST} entities, its INSERTs exploded")
+
+
+def _decoded(name: str) -> str:
+    """A name, in which files before 2007 write what their code page lacks as U+ and its number after a backslash."""
+    from ezdxf.lldxf.encoding import decode_dxf_unicode
+
+    return str(decode_dxf_unicode(name))
 
 
 def _curve(entity: Any, layer: str, name: str) -> Drawn | None:

@@ -12,11 +12,15 @@ from scipy.spatial import cKDTree
 from ..arrays import Array, Indices, components
 from ..blocks import Blocks, touching_boxes
 from ..errors import SceneError
+from ..polygons import smaller_sides
 
 KEY = "wall.heal"
 
 SWEEPS = 200
 """Most corrections of the corners; a dozen are enough where the gaps are as small beside the blocks as they may be."""
+
+ROUNDED = 1e-13
+"""Distance, in sizes of the drawing, that is rounding."""
 
 NOTICED = 0.01
 """Gap between facing edges, in sizes of the smaller block, below which a joint was surely meant."""
@@ -66,13 +70,17 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
         For a reach above a tenth of the smallest block's smaller side, or that joins corners of one block, and where
         corners would have to move further.
     """
-    boxes = shapely.get_coordinates(shapely.oriented_envelope([shapely.Polygon(p) for p in polygons])).reshape(-1, 5, 2)
-    least = float(np.hypot(*(boxes[:, 1:3] - boxes[:, :2]).T).min())
-    if reach > least / 10:
-        what = f"must be at most a tenth of the smallest block's smaller side, {least / 10:.4g}"
-        raise SceneError(KEY, what, reach)
     blocks = Blocks.from_polygons(polygons)
-    drawn = blocks.vertices
+    sides = smaller_sides([shapely.Polygon(p) for p in polygons])
+    least = float(sides.min())
+    if reach > least / 10:
+        smallest = blocks.name(int(sides.argmin()))
+        what = f"must be at most a tenth of the smallest block's smaller side, {least / 10:.4g}: that of {smallest}"
+        raise SceneError(KEY, what, reach)
+    # From the drawing's middle: maps have walls a million sizes from their origin, where corners are rounded as much
+    # as gaps are to be closed.
+    origin = blocks.vertices.mean(axis=0)
+    drawn = blocks.vertices - origin
     touches, gap = _touches(blocks, reach)
     _check_corners(blocks, touches, reach)
     number = np.bincount(touches.node)[:, None]
@@ -80,17 +88,18 @@ def heal(polygons: Sequence[Array], reach: float) -> tuple[list[Array], str]:
     size = float(np.ptp(drawn, axis=0).max())
     for _ in range(SWEEPS):
         apart = _apart(touches, nodes)
-        if np.abs(apart).max(initial=0.0) <= 1e-13 * size:
+        if np.abs(apart).max(initial=0.0) <= ROUNDED * size:
             break
         nodes = nodes + _step(touches, nodes, apart, least)
     corners = nodes[touches.node]
     moved = np.hypot(*(corners - drawn).T)
     worst = int(np.argmax(moved))
-    x, y = drawn[worst]
     if moved[worst] > reach or np.abs(_apart(touches, nodes)).max(initial=0.0) > blocks.tolerance / 10:
-        what = f"closes no gaps near ({x:.4g}, {y:.4g}): the corner would move by {moved[worst]:.2g} m; draw it anew"
+        at = blocks.place(blocks.vertices[worst])
+        what = f"closes no gaps near {at}: the corner would move by {moved[worst]:.2g} m; draw it anew"
         raise SceneError(KEY, what, reach)
-    healed = np.split(corners, blocks.first[1:-1])
+    still = moved[:, None] <= ROUNDED * size
+    healed = np.split(np.where(still, blocks.vertices, corners + origin), blocks.first[1:-1])
     for k in np.flatnonzero(~shapely.is_valid([shapely.Polygon(p) for p in healed])):
         raise SceneError(KEY, f"makes {blocks.name(int(k))} cross itself; choose a smaller one", reach)
     changed = int(np.sum(moved > blocks.tolerance / 100))
@@ -107,7 +116,7 @@ def _check_corners(blocks: Blocks, touches: _Touches, reach: float) -> None:
     again = np.flatnonzero(first[number.ravel()] != np.arange(len(pair)))
     if len(again):
         one, other = blocks.vertices[[first[number.ravel()[again[0]]], again[0]]]
-        side = f"{np.hypot(*(other - one)):.2g} m apart, at ({one[0]:.4g}, {one[1]:.4g})"
+        side = f"{np.hypot(*(other - one)):.2g} m apart, at {blocks.place(one)}"
         what = f"joins two corners of {blocks.name(int(pair[again[0], 0]))}, {side}; choose a smaller one"
         raise SceneError(KEY, what, reach)
 

@@ -9,8 +9,11 @@ import shapely
 from scipy.spatial import cKDTree
 
 from ..arrays import Array, Indices, Mask, components
-from ..errors import SceneError
+from ..errors import SceneError, place
 from .dxf import KEY
+
+NEAR = 0.01
+"""Gap between a line's end and the next line, in lengths of the longest, that was surely to be none."""
 
 
 def join(
@@ -47,6 +50,7 @@ def join(
         For a loop that does not close, with the places of its ends.
     """
     edges, loose = _network(curves, tolerance)
+    size = float(np.ptp(np.vstack(curves), axis=0).max())
     cut: list[int] = []
     closed: list[Array] = []
     if len(loose) and outlines:
@@ -56,14 +60,14 @@ def join(
         closed = [np.vstack([outlines[k], outlines[k][:1]]) for k in cut]
         edges, loose = _network([*curves, *closed], tolerance)
     if len(loose):
-        places = " and ".join(f"({x:.6g}, {y:.6g})" for x, y in loose[:2].round(9) + 0.0)
+        places = " and ".join(place(at, size, 6) for at in loose[:2].round(9) + 0.0)
         more = f" and {len(loose) - 2} more" if len(loose) > 2 else ""
         remedy = "each block needs a closed outline; what is no block may lie on a layer that is off"
-        raise SceneError(f"{KEY}, layer {layer}", f"is open at {places}{more}; {remedy}")
+        raise SceneError(f"{KEY}, layer {layer}", f"is open at {places}{more}{_missed(loose[0], edges)}; {remedy}")
     faces = shapely.get_parts(shapely.polygonize(list(shapely.linestrings(edges))))
     if any(len(face.interiors) for face in faces):
-        x, y = next(face for face in faces if len(face.interiors)).interiors[0].coords[0]
-        raise SceneError(f"{KEY}, layer {layer}", f"has a block with a hole, at ({x:.6g}, {y:.6g})")
+        at = next(face for face in faces if len(face.interiors)).interiors[0].coords[0]
+        raise SceneError(f"{KEY}, layer {layer}", f"has a block with a hole, at {place(at, size, 6)}")
     own = _own_outlines(faces, edges, [*curves, *closed], tolerance)
     chosen = faces if own is None else faces[own]
     ways = f"{len(curves)} lines and curves are joined into {len(chosen)} outline{'s' * (len(chosen) > 1)}"
@@ -73,6 +77,16 @@ def join(
         holes = int(np.sum(~own))
         ways += "; one area within them is an opening" if holes == 1 else f"; {holes} areas within them are openings"
     return [np.array(face.exterior.coords)[:-1] for face in chosen], cut, f"layer {layer}: {ways}"
+
+
+def _missed(end: Array, edges: Array) -> str:
+    """By how little an end ``(2,)`` misses the next of some edges ``(n, 2, 2)``, where it surely was to meet it."""
+    own = (edges == end).all(axis=2).any(axis=1)
+    if own.all():
+        return ""
+    gap = float(shapely.distance(shapely.Point(end), shapely.linestrings(edges[~own])).min())
+    length = float(np.hypot(*np.ptp(edges[~own], axis=1).T).max())
+    return f", where a line ends {gap:.2g} drawing units from the next one" if gap < NEAR * length else ""
 
 
 def _network(curves: Sequence[Array], tolerance: float) -> tuple[Array, Array]:
