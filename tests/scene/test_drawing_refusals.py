@@ -311,3 +311,19 @@ def test_a_folder_is_no_assembly(tmp_path: Path) -> None:
         scene_of(tmp_path / "wall.json", units="m")
     with pytest.raises(SceneError, match="cannot be read as JSON: No such file"):
         scene_of(tmp_path / "none.json", units="m")
+
+
+@pytest.mark.parametrize(
+    ("head", "said"),
+    [
+        (b"AC1032", "is a DWG file; save the drawing as DXF"),
+        (b"<svg/>", "is not a DXF file"),
+        (b"", "is not a DXF file"),
+    ],
+)
+def test_a_file_of_another_kind_is_called_so(head: bytes, said: str, tmp_path: Path) -> None:
+    (tmp_path / "wall.dxf").write_bytes(head + bytes(200 * bool(head)))
+    with pytest.raises(SceneError) as refused:
+        scene_of(tmp_path / "wall.dxf")
+    assert str(refused.value).startswith("wall.drawing = ")
+    assert str(refused.value).endswith(f": {said}")

@@ -12,7 +12,7 @@ import pytest
 from runningbond.scene import SceneError
 from runningbond.scene.drawings import curves, read_drawing
 
-from .drafting import BRICKS, COURSES, GROUND, Draw, box, closed, dxf, lines, multiplier, own_lines, scene_of
+from .drafting import BRICKS, COURSES, GROUND, Draw, Outline, box, closed, dxf, lines, multiplier, own_lines, scene_of
 
 
 def nearly_closed(_: Any, space: Any) -> None:
@@ -245,6 +245,27 @@ def test_a_header_with_other_units_is_pointed_out(tmp_path: Path) -> None:
 
     (note,) = read_drawing(dxf(tmp_path / "wall.dxf", closed(), header), "mm").notes
     assert note == "units: the drawing's header says cm, wall.units says mm, which counts"
+
+
+def test_a_drawing_without_a_header_is_not_said_to_have_one(tmp_path: Path) -> None:
+    """What scripts write: entities and nothing else."""
+
+    def polyline(outline: Outline, layer: str) -> str:
+        corners = "".join(f"0\nVERTEX\n8\n{layer}\n10\n{x}\n20\n{y}\n" for x, y in outline)
+        return f"0\nPOLYLINE\n8\n{layer}\n66\n1\n70\n1\n{corners}0\nSEQEND\n"
+
+    text = "".join(polyline(outline, "S") for outline in BRICKS) + polyline(GROUND, "ground")
+    (tmp_path / "wall.dxf").write_text(f"0\nSECTION\n2\nENTITIES\n{text}0\nENDSEC\n0\nEOF\n")
+    scene = scene_of(tmp_path / "wall.dxf")
+    assert len(scene.joints) == 14
+    assert scene.notes == ()
+
+
+def test_a_block_below_what_is_called_the_ground_is_pointed_out(tmp_path: Path) -> None:
+    """A first course on a layer named base, and soil on one whose name says nothing here."""
+    plinth, soil = closed(BRICKS[:2], "Base"), closed([GROUND], "Soil model")
+    drawing = read_drawing(dxf(tmp_path / "wall.dxf", closed(BRICKS[2:]), plinth, soil, ground=False), "mm")
+    assert drawing.notes == ("ground: layer Base; block 5, on layer Soil model, lies lower",)
 
 
 # --- arcs ------------------------------------------------------------------------------------------------------------

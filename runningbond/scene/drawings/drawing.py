@@ -175,6 +175,12 @@ def _without_ground(
     if len(ground) == len(outlines):
         raise SceneError(KEY, f"has all its outlines on layer {layers[0]}, which is the ground's", path)
     wall = [k for k in range(len(outlines)) if k not in set(ground)]
+    if own:  # by its layer, which may be another's name for a plinth
+        low = [float(outline[:, 1].min()) for outline in outlines]
+        under = min(wall, key=low.__getitem__)
+        if low[under] < min(low[k] for k in ground) - STRAIGHT * float(np.ptp(outlines[under][:, 1])):
+            named = f"block {wall.index(under)}, on layer {layers[under]}"
+            notes.append(f"ground: layer {' and '.join(own)}; {named}, lies lower")
     return [outlines[k] for k in wall], [layers[k] for k in wall], [outlines[k] for k in ground], notes
 
 

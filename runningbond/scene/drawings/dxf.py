@@ -24,6 +24,8 @@ DEEPEST = 32
 VIEWPORT = "VIEWPORT"
 """A window of a sheet in paper space onto the model: it draws nothing of its own."""
 
+UNITS_KEY = "$INSUNITS"
+
 HEADER_UNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
 """Codes of $INSUNITS."""
 
@@ -86,11 +88,16 @@ def read_dxf(path: Path) -> ModelSpace:
                 left_out.update(
                     (entity.dxftype(), "in paper space") for entity in sheet if entity.dxftype() != VIEWPORT
                 )
-        return ModelSpace(drawn, left_out, HEADER_UNITS.get(document.header.get("$INSUNITS", 0)))
+        said = UNITS_KEY.encode() in path.read_bytes()  # ezdxf takes metres where a file says nothing
+        return ModelSpace(drawn, left_out, HEADER_UNITS.get(document.header.get(UNITS_KEY, 0)) if said else None)
     except SceneError:
         raise
     except OSError as error:
-        raise SceneError(KEY, f"cannot be read as DXF: {error.strerror or error}", str(path)) from error
+        if error.strerror is None:  # of ezdxf's, for a file of another kind
+            dwg = path.read_bytes()[:4] == b"AC10"
+            what = "is a DWG file; save the drawing as DXF" if dwg else "is not a DXF file"
+            raise SceneError(KEY, what, str(path)) from error
+        raise SceneError(KEY, f"cannot be read as DXF: {error.strerror}", str(path)) from error
     except Exception as error:  # whatever its parsers raise on a file that is damaged
         raise SceneError(KEY, f"is not a valid DXF file: {str(error) or type(error).__name__}", str(path)) from error
 
