@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.joints import wall_points, wall_rule
 from runningbond.pictures.legend import CONDITIONS, strength, used_block_materials, used_joint_materials
-from runningbond.pictures.quantities import beginning, counted, millimetres, minus, pair, readable
+from runningbond.pictures.quantities import beginning, counted, millimetres, minus, pair, readable, signed
 from runningbond.scene import (
     ANCHOR,
     Action,
@@ -41,8 +41,9 @@ def _blocks(scene: Scene) -> Iterator[Row]:
         mass = float(scene.mass[own].sum())
         count = counted(len(set(scene.part_of[own])), "block")
         yield f"  of {material.name}", f"{count} of {material.density:g} kg/m³, {_mass(scene, mass)}"
-    x, y = (f"{minus(low[i])} … {minus(high[i])} m" for i in (0, 1))
-    yield "extent", f"x {x}, y {y}, {scene.thickness:.4g} m thick"
+    ends = [[signed(scene.blocks.coordinate(float(value))) for value in corner] for corner in (low, high)]
+    x, y = (" … ".join(both) for both in zip(*ends, strict=True))
+    yield "extent", f"x {x} m, y {y} m, {scene.thickness:.4g} m thick"
     yield "mass of the wall", f"{float(scene.mass[scene.wall].sum()):.5g} kg"
     gravity = float(np.hypot(*scene.load.gravity))
     yield "weight of what moves", readable(gravity * float(scene.mass[~scene.fixed].sum()), "N")
@@ -76,8 +77,8 @@ def _held(scene: Scene) -> Iterator[Row]:
     pins = scene.pins.direction.any(axis=1)
     for block in np.unique(scene.pins.block[pins]):
         own = (scene.pins.block == block) & pins
-        x, y = scene.pins.point[own][0]
-        held.append(f"{'roller' if own.sum() == 1 else 'pin'} at ({minus(x)}, {minus(y)}) m")
+        at = signed(scene.blocks.place(scene.pins.point[own][0]))
+        held.append(f"{'roller' if own.sum() == 1 else 'pin'} at {at} m")
     yield "supports", ", ".join(held) or "none"
     if scene.beam is not None:
         beam, on = scene.beam, f"on joints of {scene.beam.joint or scene.joint.name}"
@@ -85,8 +86,8 @@ def _held(scene: Scene) -> Iterator[Row]:
     ties = scene.ties
     for k in range(len(ties)):
         ends = " to ".join(
-            f"({minus(x)}, {minus(y)}) m, {_body(scene, int(block))},"
-            for block, (x, y) in zip(ties.block[k], ties.ends[k], strict=True)
+            f"{signed(scene.blocks.place(end))} m, {_body(scene, int(block))},"
+            for block, end in zip(ties.block[k], ties.ends[k], strict=True)
         )
         stiffness = readable(float(ties.stiffness[k]), "N/m")
         preload = f", preload {readable(float(ties.preload[k]), 'N')}" if ties.preload[k] else ""
@@ -109,7 +110,7 @@ def _loads(scene: Scene) -> Iterator[Row]:
     x, y = scene.load.gravity
     yield "gravity", f"({minus(x)}, {minus(y)}) m/s²"
     corner = scene.blocks.extent(scene.wall)[0]
-    about = f"about ({minus(corner[0])}, {minus(corner[1])})"
+    about = f"about {signed(scene.blocks.place(corner))}"
     for key, load in scene.load.named():
         if isinstance(load, Settlement):
             yield key, _settlement(scene, load)

@@ -282,7 +282,7 @@ def crushing_note(system: Equilibrium, forces: ForceSolution) -> str:
     most = turns[np.argsort(-spent[turns], kind="stable")][:LISTED]
     run = np.diff(system.points.position[joints.ends[:, most]], axis=0)[0]
     at = system.points.position[joints.ends[0, most]] + (first[most] / (first - second)[most])[:, None] * run
-    places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in at)
+    places = ", ".join(system.scene.blocks.place(p, 6) for p in at)
     hinges = f"; turning about points inside them: {len(turns)}, foremost about {places}" if len(most) else ""
     return f"joints with a compressive strength: {len(joints)}, plastic within p² + C_ss τ² ≤ f_m²{hinges}"
 

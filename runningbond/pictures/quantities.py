@@ -39,7 +39,12 @@ def round_length(most: float) -> float:
 
 def minus(value: float) -> str:
     """A number with four digits and a true minus sign."""
-    return f"{value + 0.0:.4g}".replace("-", "−")
+    return signed(f"{value + 0.0:.4g}")
+
+
+def signed(text: str) -> str:
+    """Numbers in a text with true minus signs."""
+    return text.replace("-", "−")
 
 
 def times_lambda(text: str, *, live: bool) -> str:

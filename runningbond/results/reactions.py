@@ -95,12 +95,11 @@ class Supports:
     def columns(self) -> list[str]:
         """Names of the numbers that `reactions` gives, and of the ties' forces."""
         ties = [f"tie {k} [N]" for k in range(len(self._scene.ties))]
-        heads = ("horizontal [N]", "vertical [N]", "moment about ({:.6g}, {:.6g}) [N m]")
+        heads = ("horizontal [N]", "vertical [N]", "moment about {} [N m]")
         places = np.where(np.abs(self.about) < UNSEEN * self._scene.size, 0.0, self.about)
+        told = [self._scene.blocks.place(place, 6) for place in places]
         return [
-            f"{name} {head.format(*about)}"
-            for name, about in zip(self._names(), places.tolist(), strict=True)
-            for head in heads
+            f"{name} {head.format(about)}" for name, about in zip(self._names(), told, strict=True) for head in heads
         ] + ties
 
     def _names(self) -> list[str]:

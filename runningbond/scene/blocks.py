@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from .arrays import Array, Indices, Mask, frozen
-from .errors import SceneError, place
+from .errors import SceneError, coordinate, place
 
 CONTACT_TOLERANCE = 1e-4
 """Gap that still counts as contact, as a fraction of the smallest block's size (root of its area).
@@ -174,12 +174,16 @@ class Blocks:
         """What a message calls a block: its number and its centre in metres."""
         return f"block {block} at {self.place(np.mean(self.extent(block), axis=0))}"
 
-    def place(self, at: Array) -> str:
-        """What a message says of where a point ``(2,)`` [m] is."""
-        return place(at, self.span)
+    def place(self, at: Array, digits: int = 4) -> str:
+        """What a message says of where a point ``(2,)`` [m] is; `coordinate` has it in so many digits."""
+        return place(at, self._span, digits)
+
+    def coordinate(self, value: float, digits: int = 4) -> str:
+        """What a message says of a coordinate [m]."""
+        return coordinate(value, self._span, digits)
 
     @cached_property
-    def span(self) -> float:
+    def _span(self) -> float:
         """Larger side of the box around all blocks [m]."""
         low, high = self.extent()
         return float((high - low).max())

@@ -43,7 +43,7 @@ def coordinate(value: float, size: float, digits: int = 4) -> str:
     """
     far = abs(value) / size if size > 0 else 0.0
     more = math.floor(math.log10(far)) if 10 <= far < math.inf else 0
-    return f"{value:.{min(digits + more, 17)}g}"
+    return f"{value + 0.0:.{min(digits + more, 17)}g}"
 
 
 def place(at: Sequence[float] | NDArray[np.float64], size: float, digits: int = 4) -> str:

@@ -14,7 +14,6 @@ import shapely
 
 from .arrays import Array, Mask
 from .blocks import touching_boxes
-from .errors import coordinate
 from .materials import BlockMaterial, JointMaterial, Mortar, Stiffness
 from .ties import ANCHOR
 from .wall import Scene, table_of
@@ -198,7 +197,7 @@ def _courses(scene: Scene) -> Iterator[str]:
     close = np.flatnonzero(gaps < LEVEL * size[:, 1].min())
     if len(close):
         gap, two = gaps[close[0]], levels[close[0] :][:2]
-        low_y, high_y = (coordinate(float(y), scene.blocks.span, 6) for y in two)
+        low_y, high_y = (scene.blocks.coordinate(float(y), 6) for y in two)
         yield f"wall: courses do not line up: blocks stand at y = {low_y} and {high_y} m, {1e3 * gap:.3g} mm apart"
         return
     middle = (levels + np.append(levels[1:], high[:, 1].max())) / 2
@@ -207,7 +206,7 @@ def _courses(scene: Scene) -> Iterator[str]:
     for side, ends, sign in (("left", -low[:, 0], -1.0), ("right", high[:, 0], 1.0)):
         reach = np.array([ends[here].max(initial=-np.inf) for here in there])
         for k in np.flatnonzero(_short(reach, half)):
-            x, y = (coordinate(float(value), scene.blocks.span) for value in (sign * reach[k], middle[k]))
+            x, y = (scene.blocks.coordinate(float(value)) for value in (sign * reach[k], middle[k]))
             what = f"the course there ends at x = {x} m on the {side}"
             yield f"wall: at y = {y} m: {what}, more than half a block short of its neighbours"
 

@@ -10,7 +10,7 @@ import shapely
 
 from .actions import Action, nonzero_vector, unit_vector
 from .arrays import Array, Indices
-from .errors import SceneError, coordinate
+from .errors import SceneError
 from .forces import Arrow, Forces
 from .ranges import Range, vector
 from .table import Table
@@ -47,7 +47,7 @@ class PointLoad(Action):
         """Refuse a point that nothing is at."""
         if len(self.blocks(scene)) == 0:
             (x0, y0), (x1, y1) = scene.blocks.extent(scene.wall)
-            x0, x1, y0, y1 = (coordinate(float(value), scene.blocks.span) for value in (x0, x1, y0, y1))
+            x0, x1, y0, y1 = (scene.blocks.coordinate(float(value)) for value in (x0, x1, y0, y1))
             spans = f"x {x0} … {x1} m, y {y0} … {y1} m"
             raise SceneError(f"{key}.at", f"touches no block that can move; the wall spans {spans}", list(self.at))
 

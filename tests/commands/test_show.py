@@ -8,7 +8,9 @@ import pytest
 from runningbond.commands.command_line import command
 from runningbond.commands.inventory import rows
 from runningbond.compare import published_scene
-from runningbond.scene import scene_from_dict
+from runningbond.joints import wall_points
+from runningbond.results.reactions import Supports
+from runningbond.scene import BlockMaterial, JointMaterial, Lateral, Load, build_scene, scene_from_dict
 
 from ..pictures.scenes import SCENES, line, point, wall
 from ..walls import panel
@@ -156,3 +158,21 @@ def test_show_refuses_in_one_line(
     assert says in err
     assert err.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_a_wall_on_a_map_is_shown_where_it_stands() -> None:
+    """Two blocks of 0.4 × 0.2 m; four digits left 5.123e+05 … 5.123e+05 of them."""
+    low = np.array([512_345.1, 5_412_345.2])
+    blocks = [low + [[0, y], [0.4, y], [0.4, y + 0.2], [0, y + 0.2]] for y in (0.0, 0.2)]
+    scene = build_scene(
+        "map",
+        blocks,
+        thickness=0.1,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.7),
+        load=Load(live=(Lateral(),)),
+    )
+    told = dict(rows(scene))
+    assert told["extent"] == "x 512345.1 … 512345.5 m, y 5412345.2 … 5412345.6 m, 0.1 m thick"
+    assert told["live load at λ = 1"].endswith(" about (512345.1, 5412345.2)")
+    assert "ground moment about (512345.3, 5412345.2) [N m]" in Supports(scene, wall_points(scene)).columns
