@@ -261,6 +261,16 @@ def test_a_drawing_without_a_header_is_not_said_to_have_one(tmp_path: Path) -> N
     assert scene.notes == ()
 
 
+@pytest.mark.parametrize("stones", [closed, own_lines])
+def test_what_lies_far_off_leaves_stones_their_corners(stones: Any, tmp_path: Path) -> None:
+    """A wall on a map, and a sample of the ground's hatching at the origin: ends half a metre apart were one."""
+    there = [[(x + 512_345e3, y + 5_412_345e3) for x, y in outline] for outline in [*BRICKS, GROUND]]
+    ground, sample = closed(there[-1:], "ground"), closed([box(0, 0, 50, 20)], "ground")
+    scene = scene_of(dxf(tmp_path / "wall.dxf", stones(there[:-1]), ground, sample, ground=False))
+    assert scene.blocks.area[scene.wall].sum() == pytest.approx(0.12, rel=1e-6)
+    assert len(scene.joints) == 14
+
+
 def test_a_block_below_what_is_called_the_ground_is_pointed_out(tmp_path: Path) -> None:
     """A first course on a layer named base, and soil on one whose name says nothing here."""
     plinth, soil = closed(BRICKS[:2], "Base"), closed([GROUND], "Soil model")

@@ -23,6 +23,9 @@ from .loops import join
 STRAIGHT = 2e-5
 """How far a corner may lie off a straight side, in sizes of the smallest block: rounding, below any contact."""
 
+STROKE = 1e-4
+"""Most that rounding may be taken for, in middling pieces of what is drawn: a drawing may have strays far off."""
+
 SLIVER = 0.01
 """Smaller side, in those of the middling block, below which an outline is what was left over, and no stone."""
 
@@ -108,7 +111,11 @@ def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], lis
     """Closed outlines of a space with their layers and names, and what there is to say."""
     ends = [piece.ends if isinstance(piece, Arc) else piece for curve in space.drawn for piece in curve.pieces]
     corners = np.vstack([np.zeros((0, 2)), *ends])
-    tolerance = ROUNDING * float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
+    tolerance = 0.0
+    if len(corners):
+        strokes = np.array([np.ptp(points, axis=0).max() for points in ends])
+        stroke = float(np.median(strokes[strokes > 0])) if strokes.any() else np.inf
+        tolerance = min(ROUNDING * float(np.ptp(corners, axis=0).max()), STROKE * stroke)
     arcs = [piece for curve in space.drawn for piece in curve.pieces if isinstance(piece, Arc)]
     chords = Chords(arcs, corners, tolerance)
     found: list[tuple[Array, str, str]] = []
