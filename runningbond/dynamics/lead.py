@@ -86,6 +86,8 @@ class Way:
     verdict: Verdict = "stable"
     unseen: float = 0.0  # what the answer may be larger, for means over windows take from peaks
     inertia: float = 0.0  # and smaller, for bodies that speed up; or either, where motion takes from friction
+    lasting: float = 0.0  # largest mean force over a whole row of a motion
+    resolved: bool = True  # whether means over ever shorter parts of its way add next to nothing to the answer
 
     @property
     def curve(self) -> Array:
@@ -226,8 +228,8 @@ class Lead:
             self.note(way, state, self.moved(state), way.rows[-1].force)
             motions.append(state.motion.copy())
         way.calm()
-        peak, between, way.unseen = peaks.resolved()
-        way.best, way.inertia = peak.state, peak.inertia
+        peak, between, way.unseen, way.resolved = peaks.resolved()
+        way.best, way.inertia, way.lasting = peak.state, peak.inertia, peaks.longest.force
         if between:
             self.note(way, peak.state, self.moved(peak.state), peak.force)
             way.rows.insert(peak.row, way.rows.pop())

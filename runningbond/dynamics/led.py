@@ -115,10 +115,15 @@ def _bracket(ways: list[Way]) -> tuple[float, float]:
     """The answer as far on either side of the last one as that lies from the one at twice its speed.
 
     What speed adds falls at least as fast as speed, and what a mean over a window takes from a peak as its length. A
-    force that sets the wall in motion is no less, in the end, than without what does.
+    force that sets the wall in motion is no less, in the end, than without what does. One that shakes is the larger the
+    shorter the windows: where those do not settle what the peak is, the lower end is that of means over whole rows.
     """
-    fast, slow = (way.answer for way in ways[-2:])
-    return slow - max(abs(fast - slow), ways[-1].inertia), slow + abs(fast - slow) + ways[-1].unseen
+    fast, slow = ways[-2:]
+    change = abs(fast.answer - slow.answer)
+    lower = slow.answer - max(change, slow.inertia)
+    if not slow.resolved:
+        lower = min(lower, slow.lasting - abs(fast.lasting - slow.lasting) - slow.inertia)
+    return lower, slow.answer + change + slow.unseen
 
 
 def _spread(lead: Lead, ways: list[Way]) -> float:

@@ -81,8 +81,15 @@ class Peaks:
         force, inertia = ((self._sums[-1] - self._sums[-1 - windows]) / steps).tolist()
         return force, inertia
 
-    def resolved(self) -> tuple[Peak, bool, float]:
+    @property
+    def longest(self) -> Peak:
+        """The peak by means over whole rows, which shake least."""
+        return self._peaks[0]
+
+    def resolved(self) -> tuple[Peak, bool, float, bool]:
         """The peak, whether it is of windows shorter than a row, and what its windows may miss, shaking included.
+
+        And whether windows half as long add next to nothing to it: else it may be the larger for what shakes.
 
         The shortest miss as much as they add, for what a mean takes from a peak falls as its length.
         """
@@ -90,4 +97,5 @@ class Peaks:
         more = np.diff(force)
         seen = np.flatnonzero(more <= SEEN * force[1:])
         level = int(seen[0]) if len(seen) else len(more) - 1
-        return self._peaks[level], level > 0, max(0.0, float(more[level]), float(force[-1] - force[level] + more[-1]))
+        unseen = max(0.0, float(more[level]), float(force[-1] - force[level] + more[-1]))
+        return self._peaks[level], level > 0, unseen, len(seen) > 0
