@@ -224,7 +224,8 @@ def _judge(
     overshoot = result.upper - result.lower if run.interface.law.can_break else 0.0
     upper = result.upper + overshoot
     outcome = replace(outcome, lower=result.lower, upper=upper, motion=motion)
-    lost = run.unaccounted(result.fallen)
+    # The dead load came on at once, in a motion of no account, and may do all but no work later on.
+    lost = run.unaccounted(result.fallen, since=result.rests[0][1])
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     moved = run.system.farthest(result.borne.motion - result.rests[0][1].motion, criteria.collapse)
