@@ -35,6 +35,12 @@ STILL = 0.02
 """Farthest that a point of a wall that stands comes meanwhile, in sizes of a block: one near its balance may turn round
 so slowly that it has hardly any energy, and fall."""
 
+ELSEWHERE = 4
+"""Swings for which a wall must be calm that is farther than `STILL` from where it stood; of others one is enough.
+
+A block near its balance may be calm for one. In each its distance from that grows some fifteen times.
+"""
+
 ROWS = 200
 """Rows of a response in a second, and in a record that is shorter, one a time step at most; `follow` may be asked for
 fewer."""
@@ -141,6 +147,11 @@ class _Log:
         if max(before, late) > self._calm or late > max(before, GATHERS * self._calm):
             return False
         return bool(np.ptp([row.places for row in rows], axis=0).max() <= self._still)
+
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether a point is not where it was before the ground moved."""
+        return bool(np.hypot(*self.rows[-1].places.T).max() > self._still)
 
     def swaying(self, since: float) -> Array | None:
         """Least and largest drift ``(2,)`` of late of a wall that from a time on [s] has only swayed, and ever less."""
@@ -265,8 +276,9 @@ def _followed(
             if log.first:
                 fell = min(fell, now)
                 verdict = "collapse" if now >= fell + after else "undecided"
-            elif now >= history.duration + swing and log.is_calm(now - swing):
-                verdict = "stands"
+            else:
+                calm = now - swing * (ELSEWHERE if log.is_elsewhere else 1)
+                verdict = "stands" if calm >= history.duration and log.is_calm(calm) else "undecided"
             if now >= end and verdict == "undecided" and not log.first:
                 of_late = now - PATIENCE / 2 * swing
                 sway = log.swaying(of_late)

@@ -280,6 +280,18 @@ def test_a_block_that_turns_round_slowly_near_its_balance_does_not_stand_there(s
     assert verdicts == {"collapse"}
 
 
+@pytest.mark.parametrize(("peak", "verdict"), [(1.4785, "stands"), (1.47852, "stands"), (1.47858, "collapse")])
+def test_no_block_stands_on_its_corner(peak: float, verdict: str) -> None:
+    """Brought to within a fiftieth of its balance it is calm for a swing, and then comes back, or falls."""
+    squat = HousnerBlock(0.25, 0.35)
+    balanced = math.sin(squat.alpha) + squat.b / (2 * squat.h) * (1 - math.cos(squat.alpha))
+    rest = resting(block(squat.b, squat.h, shaken("half-sine", peak * GRAVITY, 0.6), stiffness=1e9))
+    response = follow(rest, 1.0, rows=50)
+    assert np.abs(response.drift[response.time < 2.0]).max() == pytest.approx(balanced, rel=0.03)
+    assert response.verdict == verdict
+    assert verdict == "collapse" or abs(response.drift[-1]) < 0.05 * balanced
+
+
 def test_a_block_that_rocks_on_by_ever_less_is_followed_to_its_rest(monkeypatch: pytest.MonkeyPatch) -> None:
     """Slender, and on a bed of springs, it loses a hundredth of its rate in an impact: half a minute is not enough."""
     slender = HousnerBlock(0.1, 0.8)
