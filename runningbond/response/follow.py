@@ -103,7 +103,7 @@ class _Log:
         low, high = rest.scene.blocks.boxes
         smaller = float(np.median((high - low).min(axis=1)[~rest.scene.fixed]))
         size = min(rest.scene.block_size, smaller)  # a slender block falls over its width
-        self._still, self._calm = STILL * size, RISE * rest.gravity * float(ground.inertia[0].sum()) * size
+        self._still, self.calm = STILL * size, RISE * rest.gravity * float(ground.inertia[0].sum()) * size
         self._dead = ground.dead()
         self._height = np.maximum(points[:, 1] - rest.top[:, 1].min() + rest.height, 1e-9).mean()
         self._blocks, self._far = rest.scene.blocks, SHAPE * rest.scene.size
@@ -137,14 +137,14 @@ class _Log:
     def is_lost(self) -> bool:
         """Whether more energy is missing, by more than rest has, than works have gone through."""
         energy = self.rows[-1].energy
-        return not abs(supplied(energy[None])[0] - energy[2:].sum()) <= self._gone + self._calm
+        return not abs(supplied(energy[None])[0] - energy[2:].sum()) <= self._gone + self.calm
 
     def is_calm(self, since: float) -> bool:
         """Whether hardly any energy was in motion from a time on [s], no more of it later, and nothing came far."""
         rows = self._since(since)
         energy = np.array([row.kinetic for row in rows])
         before, late = energy[: len(energy) // 2].max(initial=0.0), energy[len(energy) // 2 :].max(initial=0.0)
-        if max(before, late) > self._calm or late > max(before, GATHERS * self._calm):
+        if max(before, late) > self.calm or late > max(before, GATHERS * self.calm):
             return False
         return bool(np.ptp([row.places for row in rows], axis=0).max() <= self._still)
 
@@ -166,7 +166,7 @@ class _Log:
         """Whether a wall has gathered energy ever since a time [s], as one that slides under a load that stays on."""
         energy = np.array([row.kinetic for row in self._since(since)])
         parts = [float(part.mean()) for part in np.array_split(energy, PARTS)]
-        return all(later > FASTER * before for before, later in pairwise(parts)) and parts[0] > GATHERS * self._calm
+        return all(later > FASTER * before for before, later in pairwise(parts)) and parts[0] > GATHERS * self.calm
 
     def dies_away(self, since: float) -> bool:
         """Whether there was less energy in motion in the later half of the time since then [s] than in the other."""
@@ -328,7 +328,7 @@ def _response(
         else f"slides ever faster until {times[-1]:.3g} s",
         "undecided": f"{undecided} {times[-1]:.3g} s",
     }[verdict]
-    lost = unaccounted(until_fallen(energy, fallen))
+    lost = unaccounted(until_fallen(energy, fallen), log.calm)
     close = f"energy accounted for to {max(lost, 1e-6):.0e}"
     if not lost <= MISSED:
         close = f"{lost:.1%} of the energy supplied is unaccounted for: beyond {MISSED:.0%} this is not to be relied on"

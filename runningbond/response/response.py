@@ -54,7 +54,8 @@ class Response:
         Displacement of each block's centroid [m] and its rotation [rad] since the wall was at rest: at the end, and at
         the last moment at which no corner had gone farther than a tenth of the wall's size.
     unaccounted
-        Largest share of the energy supplied that the ledger misses, until a block has fallen.
+        Largest share of the energy supplied that the ledger misses, until a block has fallen; of that which a wall at
+        rest may have, where no more is supplied.
     steps
         Time steps taken.
     seconds
@@ -143,12 +144,12 @@ def supplied(energy: Array) -> Array:
     return np.asarray(energy[:, 0] + energy[:, 1])
 
 
-def unaccounted(energy: Array) -> float:
-    """Largest share of the energy supplied at any time that the ledger misses.
+def unaccounted(energy: Array, least: float) -> float:
+    """Largest share of the energy supplied at any time, or of a least one [J], that the ledger misses.
 
     Works of the ground and of the weight each count, by how far they have gone: on the way through its middle a wall
     that rocks has been supplied with next to nothing in sum.
     """
     missing = np.abs(supplied(energy) - energy[:, 2:].sum(axis=1))
-    gone = np.ptp(energy[:, :2], axis=0).sum()
+    gone = max(float(np.ptp(energy[:, :2], axis=0).sum()), least)
     return float(missing.max(initial=0.0) / gone) if gone else 0.0

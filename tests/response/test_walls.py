@@ -208,6 +208,14 @@ def test_a_wall_whose_energy_is_made_by_too_long_a_step_is_not_followed_on(monke
     assert "unaccounted for: beyond 1% this is not to be relied on" in response.message
 
 
+@pytest.mark.parametrize("scale", [0.0, 1e-9])
+def test_a_motion_that_is_next_to_none_supplies_no_energy_to_miss_a_share_of(scale: float) -> None:
+    response = follow(resting(wall(shaken("sine", 1.0, 0.2))), scale)
+    assert response.verdict == "stands"
+    assert response.unaccounted < 1e-4
+    assert "relied" not in response.message
+
+
 @pytest.mark.long
 def test_a_verdict_whose_ledger_does_not_close_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     """A corner that bounces, for hardly any viscosity, loses more than is counted at each of its blows.
