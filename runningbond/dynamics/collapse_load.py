@@ -218,7 +218,7 @@ def _judge(
         message = "interrupted: the bracket so far"
         return replace(outcome, lower=result.lower, upper=result.upper, message=message)
     if result.upper is None or result.lower is None or result.fallen is None:
-        return _never_fallen(outcome, result, is_self_locking)
+        return _never_fallen(outcome, scene, run, result, is_self_locking)
     motion = _mechanism(scene, run, _fall(run, result, result.fallen))
     # A load that grows by a step overshoots to twice it at most, and what breaks stays broken.
     overshoot = result.upper - result.lower if run.interface.law.can_break else 0.0
@@ -246,13 +246,21 @@ def _judge(
     )
 
 
-def _never_fallen(outcome: Outcome, result: LoadSteps, is_self_locking: Callable[[], bool]) -> Outcome:
+def _never_fallen(
+    outcome: Outcome, scene: Scene, run: Run, result: LoadSteps, is_self_locking: Callable[[], bool]
+) -> Outcome:
     """Outcome of a wall that no load brought down."""
     locks = is_self_locking()
     if locks and result.verdict == "stable":
         message = "self-locking: it bore every load up to the largest, and joint forces balance any multiple of it"
         return replace(outcome, status="unbounded", message=message)
     message = f"it bore every load tried, the largest of them {result.lower:.3g}"
+    if result.far and result.borne is not None:
+        moved = np.hypot(*run.system.motion_of_blocks(result.borne.motion - result.rests[0][1].motion)[:, :2].T)
+        block = scene.blocks.name(int(moved.argmax()))
+        message += (
+            f", at which {block} has come {moved.max():.2g} m: too far for small displacements, or nothing holds it"
+        )
     if result.verdict != "stable":
         message = "the budget ran out: the wall neither rested nor fell"
         message += ", though joint forces balance any multiple of the load" if locks else ""

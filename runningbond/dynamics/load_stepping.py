@@ -55,6 +55,7 @@ class LoadSteps:
     rests: list[tuple[float, State]] = field(default_factory=list)
     steps: int = 0  # steps taken, on every path
     interrupted: bool = False  # whether Ctrl-C ended it
+    far: bool = False  # whether it ended as a body, at rest, had come beyond the largest displacement
 
     @property
     def width(self) -> float:
@@ -195,6 +196,7 @@ class _Search:
             if verdict == "stable":
                 moved = system.farthest(state.motion - result.rests[0][1].motion, self.farthest)
                 if result.upper is None and moved > 1:
+                    result.far = True
                     return
                 if growth > GROWTH:
                     step = growth * trial

@@ -23,7 +23,7 @@ from runningbond.limit import limit
 from runningbond.scene import Array, Scene, read_scene
 from tests.fem_interface.walls import MORTAR
 from tests.scenes import write_drawing
-from tests.walls import panel, write_toml
+from tests.walls import courses, panel, write_toml
 
 FIRST = 0.05
 SIZE = {"wall__length": 0.24, "wall__height": 0.06, "joint__mortar": MORTAR}
@@ -64,6 +64,23 @@ def test_falls_on_either_side_of_a_load_without_an_answer_end_it() -> None:
     assert found.upper is not None
     assert found.lower < 0.24 <= found.upper
     assert found.upper - found.lower <= 0.005 * found.upper
+
+
+def test_a_block_that_nothing_holds_and_that_drifts_away_is_named() -> None:
+    """Of two blocks without weight, side by side, all loads are on one, which pushes the other off its bed."""
+    live = {"kind": "point", "at": [0.24, 0.2], "force": [18.0, -6.0]}
+    dead = {"kind": "point", "at": [0.48, 0.2], "force": [-6.0, -220.0]}
+    scene = courses(
+        [[1, 1, 1], [-0.5, 1, 1, -0.5]],
+        width=0.4,
+        height=0.1,
+        joint={"friction": 0.3, "normal_stiffness": 1.4e7, "shear_stiffness": 1.4e7},
+        load={"gravity": 0.0, "live": live, "dead": [dead]},
+    )
+    outcome = dem_dynamic(scene)
+    assert outcome.status == "undecided"
+    assert "it bore every load tried" in outcome.message
+    assert "at which block 4 at (0.8, 0.15) has come 1 m" in outcome.message
 
 
 def test_a_wall_without_weight_takes_loads_that_are_put_on_at_once() -> None:
