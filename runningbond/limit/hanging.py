@@ -5,7 +5,10 @@ stretch, at the end of the levers of its mechanism: a soft bar lets a slender wa
 one that nothing holds.
 """
 
-from runningbond.scene import Scene
+from dataclasses import replace
+
+from runningbond.scene import Array, Scene
+from runningbond.scene.ties import NO_TIES
 
 from .associated import proved_outcome
 from .elastic import elastic_displacement
@@ -23,11 +26,15 @@ def given_displacement(scene: Scene, multiplier: float) -> float:
 def hanging_displacement(scene: Scene) -> float:
     """Displacement of the fastest corner [m] in the associated mechanism until its ties yield; 0 without such ties.
 
-    Ties that yield one after the other count by the work they take. Ctrl-C is raised.
+    Or in that of the wall without ties, if that is more: they may hold it until the wall gives way elsewhere. Ties that
+    yield one after the other count by the work they take. Ctrl-C is raised.
     """
     if not len(scene.ties):
         return 0.0
-    motion = proved_outcome(scene).motion
+    return max(_until_ties_yield(scene, proved_outcome(each).motion) for each in (scene, replace(scene, ties=NO_TIES)))
+
+
+def _until_ties_yield(scene: Scene, motion: Array) -> float:
     if not len(motion):
         return 0.0
     ties, longer = scene.ties, tie_operator(scene) @ motion.ravel()

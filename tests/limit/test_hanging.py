@@ -62,3 +62,29 @@ def test_a_pier_bears_the_yield_force_of_its_bar_however_soft_that_is(model: str
     assert outcome.lower <= exact * (1 + 1e-6)
     assert exact < outcome.upper <= 1.01 * outcome.lower
     assert "of its smaller side, beyond small displacements" in outcome.message
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic", "fem"])
+def test_a_soft_tie_holds_what_slides_until_the_wall_gives_way_beside_it(model: str) -> None:
+    """A portal slides at tan φ + c A / W, but for the strap at its left pier; without that pier it slides at last.
+
+    A is of two joints either way. The strap would be a metre longer when it yields.
+    """
+    glue = {"cohesion": 1000.0, "tensile_strength": 1000.0}
+    tie = {"from": [-2.0, 0.1], "to": [0.0, 0.1], "area": 1e-5, "young": 1.2e8, "yield": 320.0}
+    scene = courses(
+        [[1, -1, 1], [3]],
+        width=0.4,
+        height=0.2,
+        joint={"friction": 0.3, "normal_stiffness": 1e10, "shear_stiffness": 4e9, **glue},
+        block__young=1e11,
+        tie=[tie],
+    )
+    exact = 0.3 + 1000.0 * 0.8 * 0.12 / (scene.mass[1:3].sum() * 9.81)
+    assert hanging_displacement(scene) > 0.1
+    outcome = run_model(model, scene)
+    assert outcome.status == "collapse"
+    assert outcome.lower is not None
+    assert outcome.upper is not None
+    assert 0.99 * exact < outcome.lower <= exact * (1 + 1e-6)
+    assert exact < outcome.upper < 1.01 * exact
