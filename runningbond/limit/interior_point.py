@@ -109,18 +109,22 @@ def near(system: Equilibrium, forces: ForceSet, aim: Aim = "largest") -> ForceSo
     return replace(solution_of(system, forces, "optimal", point.forces, point.motion, 0), status=point.status)
 
 
+def _listeners() -> dict[int, Callable[[int, FrameType | None], Any]]:
+    """Who listens for Ctrl-C and SIGTERM; nobody in a thread, where no other may be put in their place."""
+    if threading.current_thread() is not threading.main_thread():
+        return {}
+    found = {int(number): signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    return {number: listener for number, listener in found.items() if callable(listener)}
+
+
 @contextmanager
 def _ended_by_signals(solver: Any) -> Iterator[list[int]]:
     """Let Ctrl-C and SIGTERM, from which it would not look up, end a solver after its iteration.
 
     Who listens for them hears of it.
     """
-    received: list[int] = []
-    listeners: dict[int, Callable[[int, FrameType | None], Any]] = {}
-    for each in (signal.SIGINT, signal.SIGTERM):
-        if callable(listener := signal.getsignal(each)):
-            listeners[each] = listener
-    if threading.current_thread() is not threading.main_thread() or not listeners:
+    received, listeners = list[int](), _listeners()
+    if not listeners:
         yield received
         return
     solver.set_termination_callback(lambda _: bool(received))
@@ -142,8 +146,7 @@ def finishing() -> Iterator[list[int]]:
 
     Who listens for them hears of it at once, without an end to this; a second one ends it.
     """
-    received: list[int] = []
-    listeners: dict[int, Callable[[int, FrameType | None], Any]] = {}
+    received, listeners = list[int](), _listeners()
 
     def hear(number: int, frame: FrameType | None) -> None:
         received.append(number)
@@ -153,11 +156,8 @@ def finishing() -> Iterator[list[int]]:
             if len(received) > 1:
                 raise
 
-    if threading.current_thread() is threading.main_thread():
-        for each in (signal.SIGINT, signal.SIGTERM):
-            if callable(listener := signal.getsignal(each)):
-                listeners[each] = listener
-                signal.signal(each, hear)
+    for number in listeners:
+        signal.signal(number, hear)
     try:
         yield received
     finally:

@@ -14,6 +14,7 @@ from runningbond.scene import Scene
 from .deformed_shape import Extent
 from .joint_state import JointState
 from .mechanism import mechanism_warning
+from .quantities import signed
 from .style import AT_REST, CRUSHED, DARK, DRAWN, FASTEST, HELD, SMALL_TYPE, STATE_COLOURS, STATE_NAMES, TYPE, Colouring
 
 if TYPE_CHECKING:
@@ -123,17 +124,12 @@ def load_text(scene: Scene, multiplier: float) -> str:
 def multiplier_text(scene: Scene, outcome: Outcome) -> tuple[str, str]:
     """Load at collapse, or what there is instead, and its bracket; empty where that adds nothing."""
     name, unit = load_symbol(scene), " N" if is_force(scene) else ""
-    low, high = (None if x is None else _signed(x) for x in (outcome.lower, outcome.upper))
+    low, high = (None if x is None else signed(number(x)) for x in (outcome.lower, outcome.upper))
     if outcome.status != "collapse" or outcome.multiplier is None:
         bounds = [f"{name} ≥ {low}{unit}"] * (low is not None) + [f"{name} ≤ {high}{unit}"] * (high is not None)
         return outcome.status, ", ".join(bounds)
     bracket = "" if low is None or high is None or low == high else f"[{low}, {high}]{unit}"
-    return f"{name} = {_signed(outcome.multiplier)}{unit}", bracket
-
-
-def _signed(value: float) -> str:
-    """A number with a true minus sign."""
-    return number(value).replace("-", "−")
+    return f"{name} = {signed(number(outcome.multiplier))}{unit}", bracket
 
 
 def mechanism_caption(scene: Scene, outcome: Outcome, key: Sequence[Any], *, drawn: bool) -> Caption:

@@ -38,7 +38,7 @@ so slowly that it has hardly any energy, and fall."""
 ELSEWHERE = 4
 """Swings for which a wall must be calm that is farther than `STILL` from where it stood; of others one is enough.
 
-A block near its balance may be calm for one. In each its distance from that grows some fifteen times.
+A block near its balance may be calm for one. In each its distance from that grows, where it is slender, by e^√6.
 """
 
 ROWS = 200

@@ -130,7 +130,7 @@ class LineLoad(Action):
         within = np.isin(blocks, scene.blocks.containing(ahead))
         pressed = blocks[within & (abs(across) > 1e-6 * float(np.hypot(*force)))]
         if len(pressed) != 1:
-            what = f"{way} is at ({middle}) on more than one block, and presses on neither alone; move it into one"
+            what = f"{way} is at {middle} on more than one block, and presses on neither alone; move it into one"
             raise SceneError("load.live.from", what, list(self.start))
         return int(pressed[0])
 

@@ -91,7 +91,7 @@ def beam(**changes: Any) -> dict[str, Any]:
         (dead(LINE | {"to": [0, 0.72]}), "load.dead[0].to = [0.0, 0.72]: must lie apart from the line's other end"),
         (dead(LINE | {"force": [0, 0]}), "load.dead[0].force = [0.0, 0.0]: must not be zero"),
         (dead(LINE | {"to": [2, 0.72]}), "load.dead.from = [0.0, 0.72]: the line from there to [2.0, 0.72] runs at"),
-        (dead(LINE | {"from": [0, 0.66], "to": [1.44, 0.66], "force": [5e3, 0]}), "presses on neither alone"),
+        (dead(LINE | {"from": [0, 0.66], "to": [1.44, 0.66], "force": [5e3, 0]}), "is at (0.06, 0.66) on more than"),
         (dead(LINE | {"at": [0, 0]}), "load.dead[0].at = [0, 0]: is not a key"),
         (dead(MOMENT | {"moment": 0}), "load.dead[0].moment = 0.0: must not be zero"),
         (dead(MOMENT | {"at": [9, 9]}), "load.dead.at = [9.0, 9.0]: must lie in one block that can move"),
