@@ -1,0 +1,29 @@
+"""The order of joints in which the kernels of rigid blocks walk straight ahead."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from dem.joint_order import PER_MATERIAL, joint_order
+from dem.rigid_system import rigid_system
+from runningbond.compare import published_scene
+from runningbond.draws import Scatter
+
+
+@pytest.mark.parametrize("name", ["panel-01", "panel-06", "point-load-2"])
+def test_joints_each_of_its_own_friction_have_runs_as_long_as_joints_of_one(name: str) -> None:
+    scene = published_scene(name)
+    drawn = Scatter.read("friction=0.1").draw(scene, 1)
+    alike, order = joint_order(scene), joint_order(drawn)
+    assert len(order.runs.shape) == len(alike.runs.shape) < len(scene.joints) / PER_MATERIAL
+    friction = [drawn.joint_materials[k].friction for k in drawn.material_of_joint[order.points.joint]]
+    np.testing.assert_array_equal(rigid_system(drawn).interface.law.of_points(4), friction)
+
+
+def test_joints_of_two_materials_stand_together() -> None:
+    scene = published_scene("panel-06")
+    weaker = replace(scene.joint, friction=scene.joint.friction / 2)
+    of_joint = np.arange(len(scene.joints)) % 2
+    two = replace(scene, joint_materials=(scene.joint, weaker), material_of_joint=of_joint)
+    assert len(rigid_system(two).interface.law.constants) == 2 * 2  # of first points, and of second ones
