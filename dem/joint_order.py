@@ -11,16 +11,13 @@ import numpy as np
 
 from runningbond.joints import JointPoints, lobatto, wall_points, wall_rule
 from runningbond.joints.along import Along, along
+from runningbond.joints.wall_law import row_of_joint
 from runningbond.scene import Array, Indices, Scene
 
 from .rigid_kernels import RigidJoints
 
 RESOLUTION = 1e-9
 """Difference, in sizes of the wall, below which two joints are of one kind: far below the contact tolerance."""
-
-PER_MATERIAL = 4
-"""Joints a material from which on those of one stand together. Where each has its own (draws), so that the law has no
-rows of points of one material anyway, joints of all materials make up the runs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,9 +40,7 @@ def joint_order(scene: Scene) -> JointOrder:
     shape = np.column_stack([normal, half, _arms(scene, normal)])
     size = float(np.ptp(scene.blocks.extent(scene.wall), axis=0).max())
     rounded = np.rint(shape / [RESOLUTION, RESOLUTION, *[RESOLUTION * size] * 5]).astype(np.int64)
-    apart = len(scene.joints) >= PER_MATERIAL * len(scene.joint_materials)
-    alike = np.column_stack([apart * scene.material_of_joint, rounded])
-    kind = np.unique(alike, axis=0, return_inverse=True)[1].ravel()
+    kind = np.unique(np.column_stack([row_of_joint(scene), rounded]), axis=0, return_inverse=True)[1].ravel()
     a, b = place[scene.joints.block].T
     order = np.lexsort((a, kind))
     a, b, kind = a[order], b[order], kind[order]

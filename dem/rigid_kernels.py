@@ -30,6 +30,18 @@ class RigidJoints(NamedTuple):
 
 
 @kernel
+def jumps(
+    apart: tuple[float, float], spin_a: float, spin_b: float, of_run: tuple[float, ...]
+) -> tuple[float, float, float]:
+    """Openings of a joint's two points and their slip [m], from motions of block b less a's, and both rotations."""
+    (du, dv), (nx, ny, half, normal_a, normal_b, tangent_a, tangent_b) = apart, of_run
+    middle = du * nx + dv * ny + (spin_b * normal_b - spin_a * normal_a)
+    along = dv * nx - du * ny + (spin_b * tangent_b - spin_a * tangent_a)
+    turn = (spin_b - spin_a) * half
+    return middle + turn, middle - turn, along
+
+
+@kernel
 def gather_rigid(motion: Array, geometry: RigidJoints, opening: Array, slip: Array) -> None:
     """Opening and slip ``(2 nj,)`` of all joints' first points, then of their second ones, from motions ``(3 nb,)``.
 
@@ -40,17 +52,20 @@ def gather_rigid(motion: Array, geometry: RigidJoints, opening: Array, slip: Arr
     u, v, spin = motion[:nb], motion[nb : 2 * nb], motion[2 * nb :]
     opening_1, opening_2, slip_1, slip_2 = opening[:n], opening[n:], slip[:n], slip[n:]
     for run in range(shape.shape[0]):
-        nx, ny, half = shape[run, 0], shape[run, 1], shape[run, 2]
-        normal_a, normal_b, tangent_a, tangent_b = shape[run, 3], shape[run, 4], shape[run, 5], shape[run, 6]
-        a, b = first[run], second[run]
-        for j in range(start[run], start[np.uint64(run + 1)]):
-            du, dv = u[b + j] - u[a + j], v[b + j] - v[a + j]
-            spin_a, spin_b = spin[a + j], spin[b + j]
-            middle = du * nx + dv * ny + (spin_b * normal_b - spin_a * normal_a)
-            along = dv * nx - du * ny + (spin_b * tangent_b - spin_a * tangent_a)
-            turn = (spin_b - spin_a) * half
-            opening_1[j] = middle + turn
-            opening_2[j] = middle - turn
+        nx, ny, half, normal_a, normal_b = shape[run, 0], shape[run, 1], shape[run, 2], shape[run, 3], shape[run, 4]
+        of_run = (nx, ny, half, normal_a, normal_b, shape[run, 5], shape[run, 6])
+        a, b, low, high = first[run], second[run], start[run], start[np.uint64(run + 1)]
+        if high - low == 1:  # no loop to set up, as in walls whose stones differ
+            p, q = a + low, b + low
+            apart = (u[q] - u[p], v[q] - v[p])
+            opening_1[low], opening_2[low], slip_1[low] = jumps(apart, spin[p], spin[q], of_run)
+            slip_2[low] = slip_1[low]
+            continue
+        for j in range(low, high):
+            apart = (u[b + j] - u[a + j], v[b + j] - v[a + j])
+            one, two, along = jumps(apart, spin[a + j], spin[b + j], of_run)
+            opening_1[j] = one
+            opening_2[j] = two
             slip_1[j] = along
             slip_2[j] = along
 
@@ -76,6 +91,16 @@ def scatter_rigid(normal: Array, tangential: Array, geometry: RigidJoints, force
         tangent_a, tangent_b = area * shape[run, 5], area * shape[run, 6]
         a, b = first[run], second[run]
         low, high = start[run], start[np.uint64(run + 1)]
+        if high - low == 1:
+            p, q = a + low, b + low
+            x, y = pull[low] * nx - shear[low] * ny, pull[low] * ny + shear[low] * nx
+            fx[p] += x
+            fy[p] += y
+            moment[p] += pull[low] * normal_a + shear[low] * tangent_a + turn[low] * half
+            fx[q] -= x
+            fy[q] -= y
+            moment[q] -= pull[low] * normal_b + shear[low] * tangent_b + turn[low] * half
+            continue
         for j in range(low, high):
             fx[a + j] += pull[j] * nx - shear[j] * ny
         for j in range(low, high):

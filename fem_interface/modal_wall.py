@@ -7,6 +7,7 @@ import numpy as np
 
 from meshing import WallMesh, wall_mesh
 from runningbond.joints import Rule, wall_rule
+from runningbond.joints.wall_law import row_of_joint
 from runningbond.scene import Array, Forces, Indices, Scene
 
 from .cracks import Cracks, Pieces, pieces
@@ -213,7 +214,7 @@ def element_runs(wall: ModalWall) -> tuple[Indices, Indices]:
     area = joint.points.area.reshape(n, ne).T
     values = [joint.normal, joint.weights.transpose(1, 0, 2).reshape(ne, 2 * n), area / area.max(initial=1e-300)]
     rounded = np.rint(np.column_stack(values) / RESOLUTION).astype(np.int64)
-    material = wall.scene.material_of_joint[joint.points.joint[:ne]]
+    material = row_of_joint(wall.scene)[joint.points.joint[:ne]]
     _, kind = np.unique(np.column_stack([material, template, local, rounded]), axis=0, return_inverse=True)
     kind = kind.ravel()
     order = np.lexsort((np.where(held[:, 0], row[:, 1], row[:, 0]), kind))

@@ -12,6 +12,9 @@ from .interface import INTERFACE
 from .law import KernelLaw, Law
 from .softening import SOFTENING
 
+PER_MATERIAL = 4
+"""Joints a material from which on those of one stand together."""
+
 
 def law_of(material: JointMaterial) -> Law:
     """Law of a material: its own, or Coulomb's, which softens where there is an energy; or the one with all else."""
@@ -43,6 +46,15 @@ def with_impacts(scene: Scene) -> Scene:
     if common_law(scene.joint_materials) is not COULOMB:
         return scene
     return replace(scene, joint_materials=tuple(replace(each, law=IMPACTS) for each in scene.joint_materials))
+
+
+def row_of_joint(scene: Scene) -> Indices:
+    """Material by which joints stand together in kernels ``(nj,)``, or 0 for all where most joints have their own.
+
+    The law has no rows of points of one material then, and what is alike in shape goes on from joint to joint.
+    """
+    apart = len(scene.joints) >= PER_MATERIAL * len(scene.joint_materials)
+    return scene.material_of_joint if apart else np.zeros_like(scene.material_of_joint)
 
 
 def kernel_law(materials: Sequence[JointMaterial], of_point: Indices) -> KernelLaw:

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dem.joint_order import PER_MATERIAL, joint_order
+from dem.joint_order import joint_order
 from dem.rigid_system import rigid_system
 from runningbond.compare import published_scene
 from runningbond.draws import Scatter
+from runningbond.joints.wall_law import PER_MATERIAL
 
 
 @pytest.mark.parametrize("name", ["panel-01", "panel-06", "point-load-2"])

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from dem.dynamic import dem_dynamic
 from dem.rigid_system import contact_points, rigid_system
+from runningbond.draws import Scatter
 from runningbond.dynamics import (
     BlockSystem,
     Criteria,
@@ -164,10 +165,11 @@ def test_mass_scaling_leaves_rigid_modes_alone_and_brings_stiff_ones_inside_the_
 # --- the system ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("scatter", ["bits", "size=0.05,friction=0.1"])
 @pytest.mark.parametrize("changes", [{}, {"support__kind": "fixed-first-course"}, {"wall__ends": "toothed"}])
-def test_kernels_are_the_jump_operator_and_its_transpose(changes: dict[str, Any]) -> None:
-    """Against the sparse operators that limit analysis uses."""
-    scene = panel(joint__mortar=STIFF, **changes)
+def test_kernels_are_the_jump_operator_and_its_transpose(changes: dict[str, Any], scatter: str) -> None:
+    """Against the sparse operators that limit analysis uses; of alike stones, and where no two joints are alike."""
+    scene = Scatter.read(scatter).draw(panel(joint__mortar=STIFF, **changes), 1)
     system, points = rigid_system(scene), contact_points(scene)
     jump = jump_operator(points, scene.blocks.centroid)
     rng = np.random.default_rng(1)
