@@ -24,8 +24,7 @@ from threadpoolctl import threadpool_limits
 
 from runningbond.joints import ends_note, stiffness_note
 from runningbond.limit import elastic_displacement, hanging_displacement
-from runningbond.limit.associated import NO_EQUILIBRIUM, is_self_locking, stands_under_dead_load
-from runningbond.limit.equilibrium import equilibrium
+from runningbond.limit.associated import is_self_locking, proved_outcome
 from runningbond.limit.kinematics import control_row, dead_load, live_load
 from runningbond.results import Outcome, Supports
 from runningbond.results.outcome import joined, number
@@ -231,7 +230,10 @@ def _judge(result: Outcome, path: LoadPath) -> Outcome:
 
 
 def _fallen(result: Outcome, system: StaticSystem) -> Outcome:
-    """Outcome of a wall that was not brought to rest under its dead load."""
-    if not stands_under_dead_load(equilibrium(system.equilibrium.scene)):
-        return replace(result, status="infeasible", message=NO_EQUILIBRIUM)
-    return replace(result, message="no equilibrium was found under the dead load, though forces exist that balance it")
+    """Outcome of a wall that was not brought to rest under its dead load; how it falls is known to limit analysis."""
+    fall = proved_outcome(system.equilibrium.scene)
+    if fall.status == "infeasible":
+        return replace(result, status="infeasible", message=fall.message, motion=fall.motion)
+    message = "no equilibrium was found under the dead load"
+    told = "" if fall.status == "failed" else ", though forces exist that balance it"
+    return replace(result, message=message + told)

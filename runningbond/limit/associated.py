@@ -334,7 +334,7 @@ def limit(scene: Scene, tolerance: float = 0.01) -> Outcome:
     if status == "collapse":
         outcome = _bracketed(outcome, state, tolerance)
     elif status == "infeasible":
-        outcome = _falling(outcome, state)
+        outcome = falling(outcome, state)
     else:
         outcome = replace(outcome, status=status, **so_far(state))
     return replace(outcome, seconds=time.perf_counter() - start)
@@ -392,7 +392,7 @@ def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome
     return replace(outcome, status="collapse", multiplier=static, lower=lower, upper=upper, **arrays, **known)
 
 
-def _falling(outcome: Outcome, state: LimitState) -> Outcome:
+def falling(outcome: Outcome, state: LimitState) -> Outcome:
     """Outcome of a wall that collapses under its dead load: how and, but of a large wall, of how much of it."""
     dead, motion = state.system.under_dead_load(), state.forces.motion
     outcome = replace(outcome, status="infeasible")

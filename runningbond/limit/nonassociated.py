@@ -13,7 +13,7 @@ from functools import partial
 from runningbond.results import Outcome, collapse_state
 from runningbond.scene import Array, Scene, SceneError, check_scene, table_of
 
-from .associated import LimitState, arrays_of, judge, limit_state, remarks, so_far, spends_cut_strength
+from .associated import LimitState, arrays_of, falling, judge, limit_state, remarks, so_far, spends_cut_strength
 from .canonical import Order, canonical_order
 from .certificates import Certificate, certified_loads, certify, least_multiplier
 from .coarse import POINTS, CoarseSearch
@@ -88,6 +88,8 @@ def limit_nonassociated(
     if status in ("collapse", "unbounded"):
         look = partial(_look, starts=starts, workers=workers, observe=observe, most=programs)
         outcome = _collapse(outcome, system, state, tolerance, look)
+    elif status == "infeasible":
+        outcome = falling(outcome, state)
     else:
         outcome = replace(outcome, status=status, upper=so_far(state).get("upper"))
     return replace(outcome, message=remarks(scene, outcome.message), seconds=time.perf_counter() - start)

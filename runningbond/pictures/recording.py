@@ -96,6 +96,12 @@ class StaticRecorder(SeriesRecorder):
         kinds = states_under_load(scene, points, opening, normal, tangential, np.zeros(len(points)))
         self.keep(Frame(reaction(system, state), motion, opening, slip, normal, tangential, kinds))
 
+    def finish(self, outcome: Outcome) -> None:
+        """End the series: of a wall that has no equilibrium it is the mechanism by which it falls."""
+        super().finish(outcome)
+        if self._folder is not None and not len(self._series):
+            record_mechanism(self.discretisation.scene, outcome, self._folder)
+
 
 class MotionRecorder(SeriesRecorder):
     """Writes every state at rest of blocks in motion, and in the end the fall.

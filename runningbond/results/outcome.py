@@ -136,7 +136,8 @@ def two_digits(value: float) -> str:
 
 
 def number(value: float) -> str:
-    """Four decimals for a multiplier of order one, whole newtons for a force."""
+    """Four decimals for a multiplier of order one, whole newtons for a force of a thousand or more."""
     if value != 0 and abs(value) < 0.01:
         return f"{value:.3g}"
-    return f"{value:.4f}" if abs(value) < 100 else f"{value:,.0f}"
+    decimals = 4 if abs(value) < 100 else 1 if abs(value) < 1000 else 0
+    return f"{value:,.{decimals}f}"

@@ -1,10 +1,12 @@
 """Static rigid blocks: the joint's law, exact collapses, published walls, and honest answers where there is none."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import pyvista
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -19,6 +21,9 @@ from runningbond.compare import published_scene
 from runningbond.joints import PointLaw, PointStrength, ResultantLaw, point_strength
 from runningbond.limit import equilibrium, limit
 from runningbond.pictures.recording import StaticRecorder
+from runningbond.pictures.style import DRAWN
+from runningbond.pictures.time_series import frame_files
+from runningbond.pictures.vtk_grids import DISPLACEMENT
 from runningbond.results import Outcome
 from runningbond.scene import (
     Array,
@@ -397,10 +402,20 @@ def test_wall_without_joint_stiffness_is_refused() -> None:
         dem_static(courses([[1, 1]]))
 
 
-def test_overhanging_block_falls_under_its_dead_load() -> None:
-    outcome = dem_static(pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)], 0.6))
+def test_overhanging_block_falls_under_its_dead_load(tmp_path: Path) -> None:
+    """It turns about the corner of the one below, 0.1 m from its centroid, which is all of its series."""
+    scene = pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1)], 0.6)
+    recorder = StaticRecorder(scene, tmp_path)
+    outcome = dem_static(scene, observe=recorder)
+    recorder.finish(outcome)
     assert outcome.status == "infeasible"
     assert outcome.lower is outcome.upper is None
+    down, turn = outcome.motion[scene.blocks.centroid[:, 1].argmax(), 1:]
+    assert down / turn == pytest.approx(0.1)
+    assert turn < 0
+    first, *_, last = (pyvista.read(file).point_data[DISPLACEMENT] for file in frame_files(tmp_path, "blocks"))
+    assert not first.any()
+    assert np.hypot(*last.T[:2]).max() == pytest.approx(DRAWN * scene.size)
 
 
 def test_block_pressed_onto_the_ground_locks() -> None:

@@ -23,6 +23,7 @@ from runningbond.limit.kinematics import (
     movable_freedoms,
     pin_operator,
 )
+from runningbond.results import Outcome
 from runningbond.scene import (
     Array,
     BlockMaterial,
@@ -375,15 +376,16 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible(model: Callable[[Scene
     assert outcome.multiplier is None  # type: ignore[attr-defined]
 
 
-def test_it_is_seen_what_of_a_wall_falls_under_its_weight() -> None:
+@pytest.mark.parametrize("model", [limit, limit_nonassociated])
+def test_it_is_seen_what_of_a_wall_falls_under_its_weight(model: Callable[[Scene], Outcome]) -> None:
     """Of three blocks the one that overhangs tips about the corner that it leans on, and only that."""
     scene = pile([rectangle(0, 0, 1, 1), rectangle(0.6, 1, 1, 1), rectangle(3, 0, 1, 1)], 0.5)
-    corbel = scene.blocks.centroid[:, 1].argmax()
-    u, v, spin = limit(scene).motion[corbel]
+    corbel, motion = scene.blocks.centroid[:, 1].argmax(), model(scene).motion
+    u, v, spin = motion[corbel]
     edge = np.array([1.0, 1.0]) - scene.blocks.centroid[corbel]
     assert np.array([u - spin * edge[1], v + spin * edge[0]]) == pytest.approx(0.0, abs=1e-9)
     assert spin < 0
-    assert not np.delete(limit(scene).motion, corbel, axis=0).any()
+    assert not np.delete(motion, corbel, axis=0).any()
 
 
 @given(

@@ -239,6 +239,7 @@ def test_brackets_are_told_as_they_are() -> None:
     assert multiplier_text(lateral, Outcome("", "", "undecided", upper=0.28)) == ("undecided", "λ ≤ 0.2800")
     assert multiplier_text(pushed, Outcome("", "", "collapse", 52345.6)) == ("P = 52,346 N", "")
     assert number(0.00123456) == "0.00123"
+    assert [number(x) for x in (99.99994, 785.14, -785.14, 1234.5)] == ["99.9999", "785.1", "-785.1", "1,234"]
 
 
 @drawing
