@@ -199,6 +199,9 @@ class Wall:
                 nested = {part: nested}
             nested_changes.append(nested)
         for name, value in tables.items():
+            full_name = name.replace("__", ".")
+            if "." in full_name:
+                raise SceneError(name, f'is within a table; give it as {{"{full_name}": {value!r}}}', value)
             _check_has_its_table(name, value)
         return Wall(_changed(self._description, [*nested_changes, tables]), self.folder)
 

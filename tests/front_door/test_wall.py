@@ -271,6 +271,8 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
         (lambda wall: wall.with_({".joint": 1}), "with_ = '.joint': takes keys by their full names"),
         (lambda wall: wall.with_({"joint..friction": 1}), "with_ = 'joint..friction': takes keys by their full names"),
         (lambda wall: wall.with_({"friction": 0.3}), 'give it as {"joint.friction": 0.3}'),
+        (lambda wall: wall.with_(joint__friction=0.3), 'give it as {"joint.friction": 0.3}'),
+        (lambda wall: wall.with_(**{"load.live.kind": "body"}), """give it as {"load.live.kind": 'body'}"""),
         (lambda wall: wall.with_(mortar={"young": 1e9}), """give it as {"joint.mortar": {'young': 1000000000.0}}"""),
         (lambda wall: wall.with_(length=2.0), 'length = 2.0: is a key of [wall]; give it as {"wall.length": 2.0}'),
         (lambda wall: rb.fragility(wall.scene, [], "dem-dynamic"), "must be a Wall, as rb.read gives one"),
