@@ -303,14 +303,19 @@ def nearest(points: np.ndarray) -> np.ndarray:
 
 
 class Result:
-    """A collapse of a scene, with the forces and motions that belong to it, or of the `far` end of its interval."""
+    """A collapse of a scene, with the forces and motions that belong to it, or of the `far` end of its interval.
+
+    Of an interrupted analysis the forces are those of the lower bound.
+    """
 
     def __init__(self, scene: Any, record: dict[str, Any], arrays: dict[str, np.ndarray], far: bool = False) -> None:
         self.scene, self.record, self.wall = scene, record, Wall(scene)
         wall, loads = self.wall, scene.load
         self.dilatant = record["model"] == "limit"
         self.settles = any(load.part == "Settlement" for load in loads.live)
-        self.multiplier = record[("lower" if self.settles else "upper") if far else "multiplier"]
+        self.decided = record["status"] == "collapse"
+        near = "multiplier" if self.decided else "lower"
+        self.multiplier = record[("lower" if self.settles else "upper") if far else near]
         force, pull, held, self.motion = (
             arrays[f"{'far_' if far else ''}{n}"] for n in ("force", "pull", "held", "motion")
         )
@@ -428,7 +433,7 @@ class Result:
         found = {
             "multiplier of the mechanism": abs((spent - by_dead) / by_live - proved),
             "multiplier outside its bracket": max(lower - here, here - upper, 0.0),
-            "width of the bracket": (upper - lower) * MOST / widest if self.dilatant else 0.0,
+            "width of the bracket": (upper - lower) * MOST / widest if self.decided and self.dilatant else 0.0,
         }
         if not self.dilatant:  # the load that is certified is an end of the interval
             found["nearer end of the interval"] = abs((upper if self.settles else lower) - self.record["multiplier"])
@@ -472,7 +477,8 @@ def check(folder: Path) -> bool:
     """Check a folder, print what was found, and say whether all is well."""
     scene, record, arrays = read(folder)
     print(f"{folder}: {record['model']}, {record['status']}, λ = {record['multiplier']}")
-    if record["status"] != "collapse":
+    interrupted = record["model"] == "limit" and record["lower"] is not None and len(arrays["force"]) > 0
+    if record["status"] != "collapse" and not interrupted:
         print("  no collapse: nothing to check")
         return True
     right = True

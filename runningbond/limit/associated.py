@@ -370,7 +370,7 @@ def proved_outcome(scene: Scene) -> Outcome:
 
 
 def so_far(state: LimitState) -> dict[str, Any]:
-    """Bounds that forces and mechanism of an interrupted program prove; of a wall at rest, that it bears its load."""
+    """What an interrupted program has proved: bounds, and forces and mechanism that prove them, or rest alone."""
     system, forces = state.system, state.forces
     if forces.status != "budget" or system.has_support:
         return {}
@@ -378,7 +378,8 @@ def so_far(state: LimitState) -> dict[str, Any]:
         return {"lower": 0.0} if state.rests else {}
     if not state.admissible:
         return {}
-    return {"lower": system.load(forces.multiplier), "upper": system.load(state.kinematic_multiplier)}
+    arrays = arrays_of(system, forces.motion, forces)
+    return {"lower": system.load(forces.multiplier), "upper": system.load(state.kinematic_multiplier), **arrays}
 
 
 def _bracketed(outcome: Outcome, state: LimitState, tolerance: float) -> Outcome:

@@ -7,6 +7,7 @@ from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from itertools import count
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,8 +24,9 @@ from runningbond.limit.interior_point import finishing, interior_point
 from runningbond.limit.kinematics import dead_load, live_load
 from runningbond.limit.proved import CLOSE, STOP, WIDE, is_large, proved, resting_forces
 from runningbond.limit.repair import ROUNDING, admissible, balanced
-from runningbond.results import check_mechanism
+from runningbond.results import check_mechanism, save_outcome
 from runningbond.scene import Scene
+from tests.checker import check
 from tests.walls import panel
 
 SIZE = {"wall__length": 2.88, "wall__height": 1.32}
@@ -283,9 +285,12 @@ def interrupt_at(
 @pytest.mark.parametrize("iteration", [3, 6, 8])
 @pytest.mark.parametrize("name", ["dry", "opening", "tied", "cohesive"])
 def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
-    name: str, iteration: int, monkeypatch: pytest.MonkeyPatch
+    name: str, iteration: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    """Wide, never called a collapse, and with the multiplier in it; a bound that is not proved is not there."""
+    """Wide, never called a collapse, and with the multiplier in it; a bound that is not proved is not there.
+
+    The forces and the mechanism that prove it are kept, and the checker finds both bounds in them.
+    """
     scene = wall(name)
     exact = limit(scene).multiplier
     assert exact is not None
@@ -297,8 +302,13 @@ def test_ctrl_c_leaves_the_bracket_that_is_proved_by_then(
     assert 0 <= outcome.lower <= exact
     assert outcome.upper is None or outcome.upper > exact - 1e-9
     assert outcome.multiplier is None
+    save_outcome(outcome, tmp_path, scene=scene)
+    assert check(tmp_path)
+    assert (len(outcome.force) > 0) == (len(outcome.motion) > 0) == (outcome.upper is not None)
     if iteration == 8:
         assert outcome.upper is not None
+        save_outcome(replace(outcome, upper=1.001 * outcome.upper), tmp_path, scene=scene)
+        assert not check(tmp_path)
         assert outcome.upper - outcome.lower < 0.5 * exact
 
 
