@@ -21,6 +21,7 @@ from .equilibrium import Equilibrium, equilibrium
 from .force_program import ForceSolution, coulomb, frozen_friction, solve_forces
 from .moving_support import JAMMED, support_verdict
 from .proved import CLOSE, STOP, fall_at_rest, is_large, proved, resting_forces, tolerance_of
+from .repair import ROUNDING
 
 NO_EQUILIBRIUM = "collapses under its dead load: no admissible forces balance it"
 INTERRUPTED = "the linear program was interrupted, or ran out of iterations"
@@ -185,7 +186,13 @@ def _solved(system: Equilibrium) -> LimitState:
     forces = solve_forces(system, coulomb(system.strength))
     if forces.status in ("infeasible", "numerical"):  # simplex settles what the interior point is unsure of
         forces = solve_forces(system, coulomb(system.strength), method="highs-ds")
-    return LimitState(system, forces)
+    state = LimitState(system, forces)
+    if forces.status == "optimal" and state.measures["penetration"] > ROUNDING and not is_large(system):
+        # Simplex takes joints of hardly any friction for frictionless ones, and those may bear any pressure.
+        exact = _proved(system)
+        if exact is not None and exact.forces.status == "optimal":
+            return exact
+    return state
 
 
 def _proved(system: Equilibrium) -> LimitState | None:

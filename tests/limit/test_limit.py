@@ -376,6 +376,26 @@ def test_a_wall_that_falls_under_its_weight_is_infeasible(model: Callable[[Scene
     assert outcome.multiplier is None  # type: ignore[attr-defined]
 
 
+@pytest.mark.parametrize("friction", [1e-6, 3e-6, 1e-5, 1e-3])
+def test_joints_of_hardly_any_friction_are_not_taken_for_frictionless(friction: float) -> None:
+    """Slender blocks that may split, on held corners: pressure between their halves is a million weights, and bears.
+
+    λ is linear in the friction of the splits; simplex, whose tolerance is a tenth of the least, had two thirds of it.
+    """
+    pier = {"block_width": 0.01, "block_height": 0.5, "length": 0.015, "height": 1.5, "thickness": 0.12}
+
+    def answer(between: float) -> Outcome:
+        walls = {"wall": {**pier, "first_course": "full"}, "inner_joint": {"friction": between}}
+        return limit(panel(**walls, support__kind="pinned-corners", joint={"friction": 0.75}))
+
+    low, high = (answer(between).multiplier for between in (0.05, 0.1))
+    assert low is not None
+    assert high is not None
+    outcome = answer(friction)
+    expected = low + (high - low) * (friction - 0.05) / 0.05
+    assert (outcome.lower, outcome.upper) == pytest.approx((expected, expected), rel=1e-6)
+
+
 @pytest.mark.parametrize("model", [limit, limit_nonassociated])
 def test_it_is_seen_what_of_a_wall_falls_under_its_weight(model: Callable[[Scene], Outcome]) -> None:
     """Of three blocks the one that overhangs tips about the corner that it leans on, and only that."""
