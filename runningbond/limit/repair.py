@@ -8,6 +8,7 @@ negative; points that go on closing count ten times more from time to time. The 
 to `ROUNDING`.
 """
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -41,7 +42,7 @@ Solve = Callable[[Array], tuple[Array, float]]
 def metric(program: dict[str, Any], weights: Array) -> Solve:
     """Factorise A W Aᵀ, bordered by the column of the multiplier, the last one, which takes what no force balances.
 
-    The result maps right-hand sides ``(m,)`` to multipliers ``(m,)`` and the change of λ.
+    The result maps right-hand sides ``(m,)`` to multipliers ``(m,)`` and the change of λ; to no numbers if singular.
     """
     matrix = program["A_eq"]
     forces = matrix[:, :-1]  # the last column is full, and so would be the product
@@ -54,7 +55,10 @@ def metric(program: dict[str, Any], weights: Array) -> Solve:
     border = csc_array(column[:, None] / size)
     parts: list[list[csc_array]] = [[stiffness, border], [csc_array(border.T), csc_array([[-DAMPING]])]]
     bordered = csc_array(block_array(parts))
-    factors = splu(bordered, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    try:
+        factors = splu(bordered, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    except RuntimeError:  # so SuperLU says that a pivot is zero
+        return lambda right: (np.full_like(right, np.nan), math.nan)
 
     def solve(right: Array) -> tuple[Array, float]:
         found = factors.solve(np.append(scale * right, 0.0))

@@ -36,6 +36,7 @@ from runningbond.scene import (
     build_scene,
     scene_from_dict,
 )
+from runningbond.scene.materials import MOST_FRICTION
 from tests.walls import content, courses, panel
 
 EXACT = 1e-9
@@ -394,6 +395,14 @@ def test_joints_of_hardly_any_friction_are_not_taken_for_frictionless(friction: 
     outcome = answer(friction)
     expected = low + (high - low) * (friction - 0.05) / 0.05
     assert (outcome.lower, outcome.upper) == pytest.approx((expected, expected), rel=1e-6)
+
+
+def test_split_blocks_of_the_largest_friction_topple() -> None:
+    """λ = b / (n h). The mechanism closes by rounding times tan φ, and the repair that is tried meets a zero pivot."""
+    size = {"block_width": 0.2, "block_height": 0.1, "length": 0.2, "height": 0.3, "thickness": 0.12}
+    joints = {"joint": {"friction": MOST_FRICTION}, "inner_joint": {"friction": 1.0}}
+    outcome = limit(panel(wall={**size, "first_course": "full"}, **joints))
+    assert (outcome.lower, outcome.upper) == pytest.approx((2 / 3, 2 / 3), rel=1e-6)
 
 
 @pytest.mark.parametrize("model", [limit, limit_nonassociated])
