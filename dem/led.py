@@ -183,7 +183,7 @@ def _judge(outcome: Outcome, lead: StaticLead, runs: list[Run], answers: list[fl
         message = f"no answer: the budget ran out in steps half as long, which are to say how sure it is; {what}"
         return replace(so_far, message=message)
     if ends:
-        message = f"no answer: other steps change it by more than the bracket; {what}"
+        message = f"no answer: other steps change it by more than the tolerance; {what}"
         return replace(outcome, lower=lower, upper=upper, message=message)
     ended = outcome.curve[-1, 0] if lead.settles else outcome.curve[:, 0].max()
     reached = f"{number(answers[-1])} at {ended:.4g} m"

@@ -186,6 +186,6 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
         bounds = (None, most) if falls else (least, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if _spread(lead, ways) > tolerance and not _rate(lead.scene):
-        return replace(outcome, message=f"no answer: another speed changes it by more than the bracket; {what}")
+        return replace(outcome, message=f"no answer: another speed changes it by more than the tolerance; {what}")
     fall = f"; the wall falls beyond {at}" + (", this is of its last rest" if lead.settles else "") if fell else ""
     return replace(outcome, status="collapse", multiplier=way.answer, message=what + fall)

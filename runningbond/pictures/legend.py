@@ -65,8 +65,8 @@ def strength(material: JointMaterial) -> str:
     cohesion = f", c = {_stress(material.cohesion)}" if material.cohesion else ""
     tension = f", fₜ = {_stress(material.tensile_strength)}" if material.tensile_strength else ""
     crushing = f", fₘ = {_stress(material.compressive_strength)}" if material.compressive_strength else ""
-    energy = material.fracture_energy_1
-    toughness = f", G₁ = {readable(energy, 'J/m²')}" if energy else ""
+    energies = {"G₁": material.fracture_energy_1, "G₂": material.fracture_energy_2}
+    toughness = "".join(f", {name} = {readable(energy, 'J/m²')}" for name, energy in energies.items() if energy)
     return f"tan φ = {material.friction:.3g}{cohesion}{tension}{crushing}{toughness}"
 
 

@@ -49,6 +49,7 @@ class LoadDrawing:
         self.low, self.high = self.scene.blocks.extent(self.scene.wall)
         self.rows: list[Array] = []
         self.alone: list[Array] = []
+        self.turns: list[tuple[Array, float]] = []
         self.pushes: dict[tuple[bool, float, float], list[str]] = {}
         load = shape.scene.load
         self.largest = {live: _largest(loads) for live, loads in ((False, load.dead), (True, load.live))}
@@ -253,14 +254,17 @@ class LoadDrawing:
         return f"u = {span}\n{moves} moves", MOTION, "motion", True
 
     def _turn(self, at: Array, moment: float, live: bool, colour: str, name: str, said: str | None = "") -> None:
-        """A moment's arrow, and its size after what is to be said of it; None for no word."""
+        """A moment's arrow, around those at the same point, and its size after what is to be said; None for no word."""
         a = self.a
-        self.sketch.turn(name, at, 0.9 * a, colour, clockwise=moment < 0)
+        about_it = [radius for other, radius in self.turns if np.hypot(*(other - at)) < 0.5 * a]
+        radius = max(about_it, default=0.3 * a) + 0.6 * a
+        self.turns.append((at, radius))
+        self.sketch.turn(name, at, radius, colour, clockwise=moment < 0)
         if said is None:
             return
         text = times_lambda(said + readable(abs(moment), "N m"), live=live)
         sides = [(0.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
-        self.sketch.label(text, [Spot(at + 0.9 * a * np.array(side), side) for side in sides], colour)
+        self.sketch.label(text, [Spot(at + radius * np.array(side), side) for side in sides], colour)
 
     def _on_mass(self, direction: Array, size: str, live: bool) -> None:
         """Note a load on the mass of all blocks: those along one direction share their arrows."""

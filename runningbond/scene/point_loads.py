@@ -44,12 +44,17 @@ class PointLoad(Action):
         return Forces.on(scene, block=block, at=self.at, force=np.array(self.force) / max(1, len(block)))
 
     def check(self, scene: "Scene", key: str) -> None:
-        """Refuse a point that nothing is at."""
+        """Refuse a point that nothing is at, and say which is the nearest that would do."""
         if len(self.blocks(scene)) == 0:
-            (x0, y0), (x1, y1) = scene.blocks.extent(scene.wall)
-            x0, x1, y0, y1 = (scene.blocks.coordinate(float(value)) for value in (x0, x1, y0, y1))
-            spans = f"x {x0} … {x1} m, y {y0} … {y1} m"
-            raise SceneError(f"{key}.at", f"touches no block that can move; the wall spans {spans}", list(self.at))
+            blocks, movable = scene.blocks, np.flatnonzero(~scene.fixed)
+            (x0, y0), (x1, y1) = blocks.extent(scene.wall)
+            x0, x1, y0, y1 = (blocks.coordinate(float(value)) for value in (x0, x1, y0, y1))
+            point, shapes = shapely.Point(self.at), blocks.shapes(movable)
+            nearest = int(shapely.distance(shapes, point).argmin())
+            there = shapely.get_coordinates(shapely.shortest_line(shapes[nearest], point))[0]
+            near = f"the nearest is block {movable[nearest]} at {blocks.place(there, digits=6)}"
+            what = f"touches no block that can move; {near}, and the wall spans x {x0} … {x1} m, y {y0} … {y1} m"
+            raise SceneError(f"{key}.at", what, list(self.at))
 
 
 @dataclass(frozen=True)

@@ -289,9 +289,11 @@ def test_joints_have_the_colour_of_their_material(drawn: Any) -> None:
 
 
 def test_strengths_of_joints_have_their_symbols_with_indices() -> None:
-    strengths = {"cohesion": 3e5, "tensile_strength": 1e5, "compressive_strength": 8e6, "fracture_energy_1": 20.0}
-    said = [text.get_text() for text in words(figure_of(scene_from_dict(wall(2.0, 1.0, joint=MORTAR | strengths))))]
-    assert "joints: tan φ = 0.75, c = 0.3 MPa, fₜ = 0.1 MPa,\nfₘ = 8 MPa, G₁ = 20 J/m²" in said
+    strengths = {"cohesion": 3e5, "tensile_strength": 1e5, "compressive_strength": 8e6}
+    energies = {"fracture_energy_1": 20.0, "fracture_energy_2": 150.0}
+    scene = scene_from_dict(wall(2.0, 1.0, joint=MORTAR | strengths | energies))
+    said = [text.get_text() for text in words(figure_of(scene))]
+    assert "joints: tan φ = 0.75, c = 0.3 MPa, fₜ = 0.1 MPa,\nfₘ = 8 MPa, G₁ = 20 J/m², G₂ = 150 J/m²" in said
 
 
 def test_a_tie_runs_from_plate_to_plate_and_to_its_anchor(drawn: Any) -> None:
@@ -447,6 +449,19 @@ def test_a_force_pulls_at_a_corner_from_outside(rise: float) -> None:
     figure = figure_of(scene_from_dict(wall(2.0, 1.0, load=load)))
     (arrow,) = named(figure, "live load", FancyArrowPatch)
     assert arrow._path_original.vertices[0] == pytest.approx([2.0, 1.0])
+
+
+def test_moments_about_one_point_are_drawn_around_one_another() -> None:
+    """A dead one and two live ones on one block: three arrows at three distances, none on another."""
+    turned = [{"kind": "moment", "at": [0.5, 0.5], "moment": size} for size in (1e3, -1e3, 2e3)]
+    load = {"gravity": 9.81, "dead": turned[0], "live": turned[1:]}
+    figure = figure_of(scene_from_dict(wall(1.0, 1.0, (1.0, 1.0), load=load)))
+    drawn = [*named(figure, "dead load", FancyArrowPatch), *named(figure, "live load", FancyArrowPatch)]
+    middle = np.array([0.5, 0.5])
+    radii = sorted(float(np.hypot(*(arrow._path_original.vertices - middle).T).mean()) for arrow in drawn)
+    assert len(radii) == 3
+    assert np.diff(radii).min() > 0.25 * radii[0]
+    assert_legible(figure)
 
 
 def test_a_support_that_moves_farther_than_its_wall_is_drawn_to_move_no_farther_than_walls_are() -> None:

@@ -15,6 +15,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PIL import Image
 
 from runningbond.commands.command_line import command
@@ -240,6 +242,11 @@ def test_brackets_are_told_as_they_are() -> None:
     assert multiplier_text(pushed, Outcome("", "", "collapse", 52345.6)) == ("P = 52,346 N", "")
     assert number(0.00123456) == "0.00123"
     assert [number(x) for x in (99.99994, 785.14, -785.14, 1234.5)] == ["99.9999", "785.1", "-785.1", "1,234"]
+
+
+@given(st.floats(0.01, 1e9))
+def test_numbers_that_are_told_have_four_digits_at_least(value: float) -> None:
+    assert float(number(value).replace(",", "")) == pytest.approx(value, rel=5e-3 if value < 0.1 else 6e-4)
 
 
 @drawing

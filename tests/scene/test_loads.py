@@ -1,6 +1,8 @@
 """Loads: several of them, of a user's own, and what a file and Python may say of them."""
 
 import math
+import re
+import tomllib
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -30,6 +32,7 @@ from runningbond.scene import (
     Scene,
     SceneError,
     build_scene,
+    scene_from_dict,
 )
 from tests.walls import courses, panel
 
@@ -171,6 +174,21 @@ class Push(Action):
     def forces(self, scene: Scene) -> Forces:
         """The push, unless something else is given."""
         return Forces.on(scene, block=self.block, at=self.at, force=(1.0, 0.0)) if self.given == () else self.given
+
+
+def test_a_point_beside_the_wall_is_told_the_nearest_place_where_its_load_is_taken() -> None:
+    """On an arch of chords, where a drawn curve says little of where a voussoir's side is."""
+    walls = Path(__file__).parents[2] / "examples" / "walls"
+    arch = tomllib.loads((walls / "arch_with_tie.toml").read_text(encoding="utf-8"))
+    load = arch["load"]["live"][0]
+    load["at"] = [1.47, 4.6]
+    with pytest.raises(SceneError, match="touches no block that can move") as refused:
+        scene_from_dict(arch, folder=walls)
+    said = re.search(r"the nearest is block (\d+) at \((\S+), (\S+)\)", str(refused.value))
+    assert said is not None
+    load["at"] = [float(said[2]), float(said[3])]
+    scene = scene_from_dict(arch, folder=walls)
+    assert scene.load.live[0].blocks(scene).tolist() == [int(said[1])]  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize(
