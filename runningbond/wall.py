@@ -1,5 +1,6 @@
 """A wall in Python: the tables of a scene file, checked like one, changed by copies, run and drawn."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from os.path import relpath
@@ -172,7 +173,7 @@ class Wall:
         Parameters
         ----------
         changes
-            Values by the keys' full names: ``{"joint.friction": 0.7}``. None takes a key out.
+            Values by the keys' full names: ``{"joint.friction": 0.7, "tie[0].yield": 5e4}``. None takes a key out.
         tables
             Keys by table: ``joint={"friction": 0.7}``. Tables are merged with those that are there, but one that
             names its ``kind`` takes the place of the old one.
@@ -393,39 +394,58 @@ def _changed(description: dict[str, Any], changes: Iterable[Mapping[str, Any]]) 
     return _merged(description, together)
 
 
-def _together(one: Mapping[str, Any], other: Mapping[str, Any], name: str = "") -> dict[str, Any]:
+def _together(one: Mapping[Any, Any], other: Mapping[Any, Any], name: str = "") -> dict[Any, Any]:
     """The keys of two nested tables; one that both have is refused by a `SceneError`."""
     together = dict(one)
     for key, value in other.items():
-        before, full_name = together.get(key), f"{name}{key}"
+        before, full_name = together.get(key), _full_name(name, key)
         if key not in together:
             together[key] = value
         elif isinstance(before, Mapping) and isinstance(value, Mapping):
-            together[key] = _together(before, value, f"{full_name}.")
+            together[key] = _together(before, value, full_name)
         else:
             raise SceneError(full_name, "is given twice; give it once", value)
     return together
 
 
-def _path(name: str, table: Mapping[str, Any]) -> list[str]:
-    """Keys that a full name leads through; those that are there already are whole, with the dots they have."""
+def _full_name(name: str, key: str | int) -> str:
+    """The name of a key of a named table, or of an entry of a named list by its number."""
+    if isinstance(key, int):
+        return f"{name}[{key}]"
+    return f"{name}.{key}" if name else key
+
+
+def _path(name: str, table: Mapping[Any, Any]) -> list[str | int]:
+    """Keys that a full name leads through, and numbers in lists; keys there already are whole, with their dots."""
     known = [key for key in table if f"{name}.".startswith(f"{key}.")]
     key = max(known, key=len, default=name.partition(".")[0])
+    rest, path, inner = name[len(key) + 1 :], [key], table.get(key)
+    numbered = re.fullmatch(r"(.+?)((?:\[\d+\])+)", key)
+    if inner is None and numbered and isinstance(table.get(numbered[1]), list):
+        numbers = [int(number) for number in re.findall(r"\d+", numbered[2])]
+        path, inner = [numbered[1], *numbers], table[numbered[1]]
+        for number in numbers:
+            inner = inner[number] if isinstance(inner, list) and number < len(inner) else None
     if key == name:
-        return [key]
-    inner = table.get(key)
-    return [key, *_path(name[len(key) + 1 :], inner if isinstance(inner, Mapping) else {})]
+        return path
+    return [*path, *_path(rest, inner if isinstance(inner, Mapping) else {})]
 
 
-def _merged(old: Mapping[str, Any], new: Mapping[str, Any], name: str = "") -> dict[str, Any]:
-    """A table with the keys of another one put in or, where they are None, taken out."""
+def _merged(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> dict[Any, Any]:
+    """A table with the keys of another one put in or, where they are None, taken out; entries of lists by number."""
     merged = dict(old)
     for key, value in new.items():
-        before, full_name = merged.get(key), f"{name}{key}"
+        before, full_name = merged.get(key), _full_name(name, key)
+        if isinstance(key, int) and key not in old:
+            raise SceneError(full_name, f"is not there; {name} has {len(old)}, numbered from 0", value)
         if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material of that name
-            if isinstance(before, list):
-                raise SceneError(full_name, "is a list, which is changed as a whole", before)
-            merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, f"{full_name}.")
+            if not isinstance(before, list):
+                merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, full_name)
+            elif all(isinstance(number, int) for number in value):
+                merged[key] = list(_merged(dict(enumerate(before)), value, full_name).values())
+            else:
+                what = f"is a list, which is changed as a whole, or by entry, {full_name}[0]"
+                raise SceneError(full_name, what, before)
         elif value is None:
             merged.pop(key, None)
         else:

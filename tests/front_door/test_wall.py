@@ -25,6 +25,8 @@ PANEL: dict[str, Any] = {
     "friction": 0.6,
 }
 
+SOLID = {"density": 1800.0, "friction": 0.6}
+
 
 def same(one: Scene, other: Scene) -> bool:
     """Whether models see the same wall."""
@@ -162,6 +164,39 @@ def test_a_material_may_be_called_kind() -> None:
     assert heavier.description["materials"] == {"kind": {"density": 800.0}, "oak": {"density": 600.0}}
 
 
+def test_entries_of_lists_are_changed_by_their_numbers_as_refusals_name_them() -> None:
+    """Of ties, loads, vectors and courses; what stands beside them stays."""
+    tie = {"from": [0.12, 0.03], "to": [1.32, 0.03], "area": 1e-4, "young": 2.1e11, "yield": 1e3, "preload": 500.0}
+    floor = {"kind": "line", "from": [0.0, 0.72], "to": [1.44, 0.72], "force": [0.0, -1e3]}
+    live = [{"kind": "lateral"}, {"kind": "point", "at": [0.0, 0.69], "force": [1e3, 0.0]}]
+    wall = rb.Wall.running_bond(**PANEL, tie=[tie, tie | {"yield": 2e3}], dead=[floor], live=live)
+    with pytest.raises(SceneError, match=re.escape("tie[1].preload = 9000.0: must be at most the yield force")):
+        wall.with_({"tie[1].preload": 9e3})
+    changed = wall.with_({"tie[1].preload": 9e2, "load.dead[0].force[1]": -2e3, "tie[0].yield": 4e3})
+    assert changed.description["tie"] == [tie | {"yield": 4e3}, tie | {"yield": 2e3, "preload": 9e2}]
+    assert changed.description["load"]["dead"] == [floor | {"force": [0.0, -2e3]}]
+    assert changed.scene.ties.yield_force.tolist() == [4e3, 2e3]
+    turned = wall.with_({"load.live[0]": {"kind": "tilt"}, "load.live[1]": None, "tie[0]": {"preload": None}})
+    assert turned.description["load"]["live"] == [{"kind": "tilt"}]
+    assert turned.description["tie"][0] == {key: value for key, value in tie.items() if key != "preload"}
+    courses = rb.Wall.courses([[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2, **SOLID)
+    assert courses.with_({"wall.courses[1][0]": 0.25, "wall.courses[1][1]": 1.25}).description["wall"]["courses"] == [
+        [1, 1],
+        [0.25, 1.25, 0.5],
+    ]
+
+
+def test_a_sweep_over_the_yield_force_of_a_tie() -> None:
+    """A block leant on by 1 N and held at its top by a tie: λ is what the tie and its weight bear."""
+    block = rb.Wall.courses([[1]], block_width=0.4, block_height=1.0, thickness=1.0, density=1000.0, friction=5.0)
+    tie = {"from": [-1.0, 0.5], "to": [0.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 1.0}
+    push = {"kind": "point", "at": [0.0, 1.0], "force": [1.0, 0.0]}
+    wall = block.with_({"tie": [tie], "load.live": push})
+    found = rb.sweep(wall, {"tie[0].yield": [1e3, 2e3]}, "limit", jobs=1)
+    weight = 400.0 * 9.81
+    assert list(found["multiplier"]) == pytest.approx([weight * 0.2 + 0.5 * 1e3, weight * 0.2 + 0.5 * 2e3])
+
+
 REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"density": -1.0}, "block.density = -1.0: must be a number above 0"),
     ({"friction": -0.1}, "joint.friction = -0.1: must be a number at least 0"),
@@ -270,6 +305,17 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
         (lambda wall: wall.with_({3: 1}), "with_ = 3: takes keys by their full names"),
         (lambda wall: wall.with_({".joint": 1}), "with_ = '.joint': takes keys by their full names"),
         (lambda wall: wall.with_({"joint..friction": 1}), "with_ = 'joint..friction': takes keys by their full names"),
+        (
+            lambda wall: wall.with_({"load.dead": [{"kind": "body", "acceleration": [0, -1]}]}).with_(
+                {"load.dead[1].acceleration": [0, -2]}
+            ),
+            "load.dead[1] = {'acceleration': [0, -2]}: is not there; load.dead has 1, numbered from 0",
+        ),
+        (lambda wall: wall.with_({"load.live[0].direction": "left"}), "load.live[0] = 'a table': is not a key"),
+        (
+            lambda wall: wall.with_({"load.live": [{"kind": "lateral"}]}).with_({"load.live.direction": "left"}),
+            "is a list, which is changed as a whole, or by entry, load.live[0]",
+        ),
         (lambda wall: wall.with_({"friction": 0.3}), 'give it as {"joint.friction": 0.3}'),
         (lambda wall: wall.with_(joint__friction=0.3), 'give it as {"joint.friction": 0.3}'),
         (lambda wall: wall.with_(**{"load.live.kind": "body"}), """give it as {"load.live.kind": 'body'}"""),
