@@ -441,7 +441,7 @@ def _merged(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> d
         if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material of that name
             if not isinstance(before, list):
                 merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, full_name)
-            elif all(isinstance(number, int) for number in value):
+            elif value and all(isinstance(number, int) for number in value):
                 merged[key] = list(_merged(dict(enumerate(before)), value, full_name).values())
             else:
                 what = f"is a list, which is changed as a whole, or by entry, {full_name}[0]"

@@ -147,7 +147,7 @@ def _sizes(scene: Scene) -> Iterator[str]:
 
 
 def _ties(scene: Scene) -> Iterator[str]:
-    """Numbers of ties, and ends that are anchors in space just beside the wall."""
+    """Numbers of ties, and ends that are anchors in space just beside the wall, or in its openings."""
     ties = scene.ties
     for k, (young, area, most) in enumerate(zip(ties.young, ties.area, ties.yield_force, strict=True)):
         yield from OF_TIES.doubts(f"tie[{k}].young", young)
@@ -157,8 +157,9 @@ def _ties(scene: Scene) -> Iterator[str]:
     anchors = np.argwhere(ties.block == ANCHOR).tolist()
     wall = [shapely.Polygon(scene.blocks.polygon(int(b))) for b in np.flatnonzero(scene.wall)] if anchors else []
     for k, side in anchors:
-        away = float(shapely.distance(wall, shapely.Point(ties.ends[k, side])).min())
-        if 0 < away <= scene.block_size:
+        at = shapely.Point(ties.ends[k, side])
+        away = float(shapely.distance(wall, at).min())
+        if away > 0 and (away <= scene.block_size or shapely.GeometryCollection(wall).convex_hull.contains(at)):
             end = f"tie[{k}].{('from', 'to')[side]} = {ties.ends[k, side].tolist()}"
             yield f"{end}: is an anchor fixed in space, {away:.3g} m beside the wall; is a point on the wall meant?"
 

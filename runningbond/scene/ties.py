@@ -117,13 +117,14 @@ def place_ties(ties: Sequence[Tie], blocks: Blocks, fixed: Mask) -> Ties:
                 what = f"lies on the joint of {names}; move it into the one that holds the tie"
                 raise SceneError(f"tie[{k}].{key}", what, list(at))
             owner[k, end] = touching[0] if len(touching) else ANCHOR
-        if owner[k, 0] == owner[k, 1] or not any(block != ANCHOR and not fixed[block] for block in owner[k]):
-            raise SceneError(
-                f"tie[{k}].to", "must lie on another block than tie.from, one of them movable", list(tie.end)
-            )
+        if not any(block != ANCHOR and not fixed[block] for block in owner[k]):
+            bodies = ["no block" if block == ANCHOR else f"block {block}, which is held" for block in owner[k]]
+            what = f"is at {bodies[1]}, and tie[{k}].from at {bodies[0]}; one of them must be at a block that can move"
+            raise SceneError(f"tie[{k}].to", what, list(tie.end))
+        if owner[k, 0] == owner[k, 1]:
+            raise SceneError(f"tie[{k}].to", f"must lie on another block than tie[{k}].from", list(tie.end))
     ends = np.array([(tie.start, tie.end) for tie in ties])
-    if (length := np.hypot(*(ends[:, 1] - ends[:, 0]).T)).min() <= blocks.tolerance:
-        raise SceneError(
-            f"tie[{int(length.argmin())}].to", "must lie apart from tie.from", list(ties[length.argmin()].end)
-        )
+    length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    if length[k := int(length.argmin())] <= blocks.tolerance:
+        raise SceneError(f"tie[{k}].to", f"must lie apart from tie[{k}].from", list(ties[k].end))
     return Ties(owner, ends, *np.array([(tie.area, tie.young, tie.yield_force, tie.preload) for tie in ties]).T)

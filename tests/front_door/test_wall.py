@@ -313,6 +313,10 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
         ),
         (lambda wall: wall.with_({"load.live[0].direction": "left"}), "load.live[0] = 'a table': is not a key"),
         (
+            lambda wall: wall.with_({"load.live": [{"kind": "lateral"}]}).with_({"load.live": {}}),
+            "is a list, which is changed as a whole, or by entry, load.live[0]",
+        ),
+        (
             lambda wall: wall.with_({"load.live": [{"kind": "lateral"}]}).with_({"load.live.direction": "left"}),
             "is a list, which is changed as a whole, or by entry, load.live[0]",
         ),

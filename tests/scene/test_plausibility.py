@@ -220,3 +220,16 @@ def test_a_wall_whose_ground_moves_is_shown_with_its_motion(tmp_path: Path, caps
     printed = " ".join(capsys.readouterr().out.replace("│", " ").split())
     assert "sine, 0.5 s, the ground is accelerated by up to 0.3 g" in printed
     assert "warning" not in printed
+
+
+def test_a_tie_that_ends_in_an_opening_looks_like_a_slip() -> None:
+    """Half a metre from the jambs, farther than a block is wide; as far beside the wall it is an anchor."""
+    opening = {"from": [1.0, 0.0], "to": [2.0, 1.5], "lintel": {"height": 0.25, "bearing": 0.25}}
+    said = {}
+    for x in (1.5, -0.5):
+        tie = {"from": [0.4, 1.6], "to": [x, 0.9], "area": 1e-4, "young": 2.1e11, "yield": 2e4}
+        size = {"block_width": 0.5, "block_height": 0.25, "length": 3.0, "height": 2.0, "thickness": 0.4}
+        said[x] = warnings(panel(wall=size | {"opening": [opening]}, tie=[tie]))
+    assert said[-0.5] == ()
+    assert len(said[1.5]) == 1
+    assert said[1.5][0].startswith("tie[0].to = [1.5, 0.9]: is an anchor fixed in space, 0.5 m beside the wall")

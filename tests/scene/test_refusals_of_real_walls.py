@@ -129,8 +129,15 @@ def beam(**changes: Any) -> dict[str, Any]:
         (tie(young=None), "tie[0].young: is missing"),
         (tie(preload=8e4), "tie[0].preload = 80000.0: must be at most the yield force"),
         (tie(to=[1.44, 0.42]), "tie[0].to = [1.44, 0.42]: lies on the joint of"),
-        (tie(to=[0.1, 0.39]), "tie[0].to = [0.1, 0.39]: must lie on another block than tie.from"),
-        (tie(**{"from": [0.3, 9], "to": [1.44, 9]}), "tie[0].to = [1.44, 9.0]: must lie on another block"),
+        (tie(to=[0.1, 0.39]), "tie[0].to = [0.1, 0.39]: must lie on another block than tie[0].from"),
+        (
+            tie(**{"from": [-0.1, 0.3], "to": [1.5, 0.3]}),
+            "tie[0].to = [1.5, 0.3]: is at no block, and tie[0].from at no block; one of them must be at a block that",
+        ),
+        (
+            tie(**{"from": [0.3, 9], "to": [0.3, -0.1]}),
+            "tie[0].to = [0.3, -0.1]: is at block 78, which is held, and tie[0].from at no block",
+        ),
         (tie(diameter=0.02), "tie[0].diameter = 0.02: is not a key"),
         # beams
         (beam(height=0), "beam.height = 0: must be a number above 0"),
