@@ -26,7 +26,6 @@ class Rung:
     model: Model
     features: Features
     base: str = ""  # the model of the package that it is; empty for what is worked out by hand
-    is_finite: bool = False
     is_by_hand: bool = False
 
     @property
@@ -41,7 +40,9 @@ class Rung:
         if is_cyclic:
             return "left out: walls that are pushed to and fro take it too long"
         rocks = scene.beam is not None and scene.beam.condition == "free"
-        return "left out: a wall that rocks goes beyond small displacements" if rocks and not self.is_finite else ""
+        return (
+            "left out: a wall that rocks goes beyond small displacements" if rocks and not self.model.is_finite else ""
+        )
 
 
 def _run(
@@ -75,9 +76,10 @@ def _rung(
     name: str, title: str, base: str, features: Features, colour: str, marker: str, line: Any = "-", **settings: Any
 ) -> Rung:
     solve = partial(_run, base=base, settings=settings)
-    looks: dict[str, Any] = {"colour": colour, "marker": marker, "line": line}
-    model = replace(MODELS[base], name=name, title=title, solve=solve, parameters=(), **looks)
-    return Rung(model, features, base, settings.get("displacements") == "finite")
+    own: dict[str, Any] = {"colour": colour, "marker": marker, "line": line}
+    own["is_finite"] = settings.get("displacements") == "finite"
+    model = replace(MODELS[base], name=name, title=title, solve=solve, parameters=(), **own)
+    return Rung(model, features, base)
 
 
 FINITE: dict[str, Any] = {"displacements": "finite"}

@@ -72,7 +72,7 @@ def model_errors(predictions: Sequence[Prediction]) -> list[ModelError]:
     found = []
     for (kind, name), own in groups.items():
         rung, errors = own[0].rung, [each.error or 0.0 for each in own]
-        features = rung.is_finite, rung.features.crushes, rung.features.splits
+        features = rung.model.is_finite, rung.features.crushes, rung.features.splits
         walls, middle = " ".join(each.wall.name for each in own), median(map(abs, errors))
         found.append(ModelError(name, rung.base, kind, *features, walls, middle, min(errors), max(errors)))
     return found

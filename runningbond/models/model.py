@@ -78,6 +78,7 @@ class Model:
     progress: Callable[[], Progress] | None = None  # says how far a run has come
     interruptible: bool = False  # whether it ends with what it has found so far on KeyboardInterrupt
     cost: Cost | None = None  # `advise` runs no model without
+    is_finite: bool = False  # leads beams through finite displacements, whatever its settings
     takes: frozenset[str] = frozenset()  # what it can do of `Scene.extras`; scenes with others it refuses by name
     pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed
     respond: Callable[..., "Response"] | None = None  # response to a motion of the ground, of scene, scale
@@ -100,15 +101,16 @@ class Model:
     def unread(self, scene: Scene, *, finite: bool = False) -> list[str]:
         """Keys of its file that a scene gives and this model does not take into account.
 
-        Displacements are small, unless a beam is led through `finite` ones.
+        Displacements are small, unless a beam is led through `finite` ones, as settings or the model itself have it.
         """
+        finite = (finite or self.is_finite) and bool(scene.drive_path)
         unread = []
         for kind, materials in (("block", scene.block_materials), ("joint", scene.materials_of_joints)):
             for material in materials:
                 read = material.name != "inner_joint" or "inner_joint" in self.reads
                 given = [key for key in _given_keys(material) if not (read and f"{kind}.{key}" in self.reads)]
                 unread += [f"{table_of(material)}.{key}" for key in given]
-        if scene.beam is not None and scene.beam.force_line != "moving" and not (finite and scene.drive_path):
+        if scene.beam is not None and scene.beam.force_line != "moving" and not finite:
             unread.append("beam.force_line")
         if scene.drive is not None and scene.drive.rate is not None and "beam.drive.rate" not in self.reads:
             unread.append("beam.drive.rate")

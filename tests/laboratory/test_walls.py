@@ -17,7 +17,8 @@ from runningbond.laboratory.predictions import scenes_of
 from runningbond.laboratory.rig import Features, _tables, scene_of, vertical_load
 from runningbond.laboratory.scores import marks_of
 from runningbond.laboratory.stones import STONES
-from runningbond.scene import Closure, SceneError, Stiffness
+from runningbond.models import run_model
+from runningbond.scene import Closure, SceneError, Stiffness, scene_from_dict
 from tests.walls import write_toml
 
 from .folders import CURVE, GRANITE, HEADS, SANDSTONE, write_folder
@@ -220,6 +221,17 @@ def test_joints_of_every_material_have_the_features_that_are_asked_for(rung: Run
         (73e6, 1e-4, 4.0) if rung.features.crushes else (None, 0.0, 9.0)
     )
     assert (foot.closure is not None) == rung.features.closes
+
+
+@pytest.mark.parametrize("name", [name for name, rung in LADDER.items() if rung.base == "dem-dynamic"])
+def test_rungs_at_finite_displacements_do_not_say_that_the_line_of_the_load_is_left_out(name: str) -> None:
+    """They read it, as a model of the package does that is told to; pages said of all that they did not."""
+    rung = LADDER[name]
+    tables = _tables(shipped()["WS.250"], rung.features)
+    tables["wall"]["height"] = 0.3
+    tables["beam"] |= {"height": 0.2, "drive": {"displacement": [2e-5, 0], "at": 0.4}}
+    said = run_model(rung.model, scene_from_dict(tables)).message
+    assert ("beam.force_line" in said) == (name == "rigid")
 
 
 def test_unit_in_the_head_of_a_column_counts(tmp_path: Path) -> None:
