@@ -13,8 +13,8 @@ from matplotlib.image import imread
 
 from runningbond.scene import Array, SceneError
 
-from .measured import SWING, MeasuredWall
-from .table_row import TableRow
+from .measured import CYCLIC, MONOTONIC, SWING, MeasuredWall
+from .table_row import NOTHING, TableRow
 
 DATA = Path(__file__).parent / "data"
 SHIPPED = (DATA / "dry", DATA / "mortared")
@@ -72,23 +72,35 @@ def unused(folder: Path) -> list[str]:
     """Files of a folder that would be a wall's by their names, and are of none in its table."""
     table, lines = _table(folder)
     named = {cell.strip() for _, cells in lines for cell in cells}
-    own = {table.name, *(f"{name}{ending}" for name in named for ending in ENDINGS)}
-    return sorted(path.name for ending in ENDINGS for path in folder.glob(f"*{ending}") if path.name not in own)
+    own = {table, *(_files(folder).get(f"{name}{ending}") for name in named for ending in ENDINGS)}
+    return sorted(path.name for name, path in _files(folder).items() if name.endswith(ENDINGS) and path not in own)
+
+
+def _files(folder: Path) -> dict[str, Path]:
+    """Files of a folder that are not hidden, by their names with endings in small letters."""
+    files = (path for path in sorted(folder.iterdir()) if path.is_file() and not path.name.startswith("."))
+    return {path.with_suffix(path.suffix.lower()).name: path for path in files}
 
 
 def _table(folder: Path) -> tuple[Path, list[tuple[int, list[str]]]]:
     """The table of a folder, and its lines that are not empty, with their numbers."""
     if not folder.is_dir():
         raise SceneError(str(folder), "must be a folder that holds tests.csv")
-    tables = []
-    for path in sorted(folder.glob("*.csv")):
-        lines = list(_lines(path))
-        if lines and any(cell.strip().lstrip("\ufeff").casefold().startswith(NAME) for cell in lines[0][1]):
-            tables.append((path, lines))
+    tables, unread = list[Path](), list[SceneError]()
+    for name, path in _files(folder).items():
+        try:
+            heads = next(_lines(path), (0, []))[1] if name.endswith(CURVE) else []
+        except SceneError as error:  # of a wall that is refused, unless it is the table
+            unread.append(error)
+        else:
+            if any(cell.strip().lstrip("\ufeff").casefold().startswith(NAME) for cell in heads):
+                tables.append(path)
+    if unread and not tables:
+        raise unread[0]
     if len(tables) != 1:
-        found = f"has {len(tables)}: {', '.join(path.name for path, _ in tables)}" if tables else "has none"
+        found = f"has {len(tables)}: {', '.join(path.name for path in tables)}" if tables else "has none"
         raise SceneError(str(folder), f'must hold one table, a CSV file with a column "Test unit name"; it {found}')
-    return tables[0]
+    return tables[0], list(_lines(tables[0]))
 
 
 def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
@@ -120,8 +132,12 @@ def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
         raise SceneError(row.key("Test unit name"), "must be a name, as it may be that of a file, without $", name)
     if name in others:
         raise SceneError(row.key("Test unit name"), "is the second row of that name", name)
-    files = {ending: folder / f"{name}{ending}" for ending in ENDINGS}
-    there = {ending: path for ending, path in files.items() if path.is_file()}
+    files = _files(folder)
+    there = {ending: files[f"{name}{ending}"] for ending in ENDINGS if f"{name}{ending}" in files}
+    kind = row.text("cyclic / monotonic")
+    if kind.casefold() not in NOTHING and not any(word in kind.casefold() for word in (CYCLIC, MONOTONIC)):
+        what = 'must be "Cyclic" or "Monotonic"; or empty, where the record says it'
+        raise SceneError(row.key("Cyclic / Monotonic"), what, kind)
     curve = read_curve(there[CURVE]) if CURVE in there else np.zeros((0, 2))
     if len(curve) and np.nansum(curve[:, 0] * curve[:, 1]) <= 0:
         raise SceneError(f"{name}.csv", "has its forces against its displacements; change the sign of one of them")

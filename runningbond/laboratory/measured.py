@@ -18,6 +18,9 @@ BOTH = 0.2
 LARGER = 1.1
 """Cycles not larger than the last one by this factor repeat it, and are left out of a prediction."""
 
+CYCLIC, MONOTONIC = "cycl", "monoton"
+"""In the word that a table has for how a wall was pushed."""
+
 SHOWN = "SW.30"
 """Walls of this load are shown and not scored: their beam was not as free as it is said."""
 
@@ -63,8 +66,8 @@ class MeasuredWall:
     def is_cyclic(self) -> bool:
         """Whether it was pushed to both sides."""
         said = self.row.text("cyclic / monotonic").casefold()
-        if said:
-            return said.startswith("cyc")
+        if CYCLIC in said or MONOTONIC in said:
+            return CYCLIC in said
         return min(self.reach) > BOTH * max(self.reach)
 
     @property

@@ -17,6 +17,9 @@ USUAL = {"h": "mm", "l": "mm", "t": "mm", "h0": "mm", "hb": "mm", "lb": "mm", "n
 USUAL |= {"vmax,+": "kN", "vmax,-": "kN", "fc": "MPa", "eb": "MPa", "σ0,pc": "MPa"}
 """Units of columns that do not say theirs."""
 
+NOTHING = ("", "-", "–", "nan", "n/a")
+"""Entries that say nothing, in small letters."""
+
 HEAD = re.compile(r"^(.*?)\s*(?:\[(.*)\])?\s*$", re.DOTALL)
 
 
@@ -77,7 +80,7 @@ class TableRow:
     def optional(self, column: str) -> float | None:
         """A number above 0, in SI units; None where the entry is empty."""
         text, unit = self.entries.get(column.casefold(), ("", ""))
-        if text in ("", "-", "–") or text.casefold() in ("nan", "n/a"):
+        if text.casefold() in NOTHING:
             return None
         try:
             value = float(text)

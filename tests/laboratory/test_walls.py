@@ -10,7 +10,7 @@ import pytest
 
 from runningbond.joints import joint_stiffness
 from runningbond.laboratory import SHIPPED, MeasuredWall, read_folder
-from runningbond.laboratory.folder import DATA
+from runningbond.laboratory.folder import DATA, unused
 from runningbond.laboratory.ladder import LADDER, Rung
 from runningbond.laboratory.measured import growing, turning_points
 from runningbond.laboratory.predictions import scenes_of
@@ -394,15 +394,71 @@ def test_a_curve_in_another_unit_than_the_table_is_refused(factor: float, tmp_pa
     assert len(read_folder(write_folder(tmp_path, GRANITE.replace(",61,", ",,"), curve=curve))) == 1
 
 
-def test_folder_that_is_none_or_holds_two_tables_or_bytes_is_refused(tmp_path: Path) -> None:
+BROKEN = {
+    "bytes": b"PK\x03\x04\xff",
+    "UTF-16": CURVE.encode("utf-16"),
+    "a quote left open": CURVE.replace("1,30", '"1,30').encode(),
+}
+
+
+@pytest.mark.parametrize("content", BROKEN.values(), ids=BROKEN)
+def test_a_curve_that_cannot_be_read_does_not_lose_other_walls(content: bytes, tmp_path: Path) -> None:
+    """The table was looked for in all of every file, and one that is damaged was the end of them all."""
+    folder = write_folder(tmp_path, SANDSTONE, GRANITE)
+    (folder / "SW.100.1.csv").write_bytes(content)
+    refused = list[SceneError]()
+    assert [wall.name for wall in read_folder(folder, refused.append)] == ["WS.175"]
+    assert [error.key.split(",")[0] for error in refused] == ["SW.100.1.csv"]
+
+
+def test_a_table_that_cannot_be_read_is_told_of(tmp_path: Path) -> None:
+    folder = write_folder(tmp_path, GRANITE)
+    (folder / "tests.csv").write_bytes((folder / "tests.csv").read_text(encoding="utf-8").encode("utf-16"))
+    with pytest.raises(SceneError, match=r"tests\.csv: is not a table: it is not UTF-8 text"):
+        read_folder(folder)
+
+
+def test_what_systems_leave_in_folders_is_passed_over(tmp_path: Path) -> None:
+    """The hidden companions of a Macintosh, of which one was refused as no text, a folder, and a link to nowhere."""
+    folder = write_folder(tmp_path, GRANITE)
+    for name in ("._tests.csv", "._WS.175.csv"):
+        (folder / name).write_bytes(b"\x00\x05\x16\x07\xff")
+    (folder / "old.csv").mkdir()
+    (folder / "gone.csv").symlink_to(folder / "nowhere.csv")
+    assert len(read_folder(folder)[0].curve) == 4
+    assert unused(folder) == []
+
+
+def test_the_case_of_an_ending_does_not_matter(tmp_path: Path) -> None:
+    """WS.175.CSV was passed over without a word, and the wall pushed as one without a record."""
+    folder = write_folder(tmp_path, GRANITE)
+    (folder / "WS.175.csv").rename(folder / "WS.175.CSV")
+    (folder / "WS.250.csv").write_text(CURVE)
+    assert len(read_folder(folder)[0].curve) == 4
+    assert unused(folder) == ["WS.250.csv"]
+
+
+@pytest.mark.parametrize(
+    ("word", "is_cyclic"), [("Quasi-static cyclic", True), ("CYCLIC", True), ("monotone", False), ("–", False)]
+)
+def test_the_word_for_how_a_wall_was_pushed_may_be_part_of_a_longer_one(
+    word: str, is_cyclic: bool, tmp_path: Path
+) -> None:
+    """A wall that was pushed to and fro was predicted to one side where its table began otherwise."""
+    assert one(tmp_path, GRANITE.replace("Monotonic", word)).is_cyclic == is_cyclic
+
+
+def test_another_word_for_how_a_wall_was_pushed_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(SceneError, match=r'line 2: Cyclic / Monotonic = .C.: must be "Cyclic" or "Monotonic"'):
+        one(tmp_path, GRANITE.replace("Monotonic", "C"))
+
+
+def test_folder_that_is_none_or_holds_two_tables_is_refused(tmp_path: Path) -> None:
     with pytest.raises(SceneError, match="must be a folder that holds tests.csv"):
         read_folder(tmp_path / "nowhere")
     write_folder(tmp_path, GRANITE)
     write_folder(tmp_path, SANDSTONE, table="more.csv")
     with pytest.raises(SceneError, match="it has 2: more.csv, tests.csv"):
-        read_folder(tmp_path)
-    (tmp_path / "more.csv").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(SceneError, match="more.csv: is not a table: it is not UTF-8 text"):
         read_folder(tmp_path)
 
 
