@@ -114,7 +114,8 @@ def turning_points(moved: Array) -> list[float]:
 def growing(turns: list[float]) -> tuple[float, ...]:
     """The first of several cycles of one size: turns that go farther than any before, and the one after each.
 
-    Where those between two to one side were left out, the second one takes the first one's place.
+    Where those between two to one side were left out, the second one takes the first one's place. Where the record goes
+    on, the last one is let go back, if no farther than to rest: that closes the largest loop.
     """
     kept, last, farthest, owed = list[float](), -1, 0.0, False
     for k, turn in enumerate(turns):
@@ -125,4 +126,6 @@ def growing(turns: list[float]) -> tuple[float, ...]:
             kept.append(turn)
             last, owed = k, grows
             farthest = max(farthest, abs(turn))
+    if kept and last + 1 < len(turns):
+        kept.append(turns[last + 1] if turns[last + 1] * kept[-1] > 0 else 0.0)
     return tuple(kept)

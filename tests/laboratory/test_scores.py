@@ -12,6 +12,7 @@ from runningbond.laboratory import read_folder
 from runningbond.laboratory.folder import SHIPPED
 from runningbond.laboratory.formulas import by_hand, formula
 from runningbond.laboratory.ladder import LADDER, find_rungs
+from runningbond.laboratory.measured import growing, turning_points
 from runningbond.laboratory.modes import DIAGONAL, ROCKING, SLIDING, bed_slips, measured_modes, predicted_mode
 from runningbond.laboratory.predictions import Prediction
 from runningbond.laboratory.rig import Features, scene_of
@@ -249,6 +250,16 @@ def test_a_part_of_a_record_is_a_loop_if_it_comes_back_to_where_it_began() -> No
         assert loops(record) == [pytest.approx((3.0, 80.0), rel=1e-3)]
     assert loops(whole[:3000]) == []
     assert loops(np.concatenate([whole, gap, whole[:2500]])) == [pytest.approx((3.0, 80.0), rel=1e-3)]
+
+
+def test_the_largest_loop_of_a_record_is_predicted_and_compared() -> None:
+    """A slider that is let go to rest after ±4 m, and one of half the friction along the path that is made of it."""
+    record = elastic_plastic(10.0, 10.0, (2.0, -2.0, 4.0, -4.0, 0.0))
+    along = growing(turning_points(record[:, 0]))
+    (small, large), half = loops(record)[:2], loops(elastic_plastic(10.0, 5.0, along))
+    assert [round(loop.reach) for loop in (small, large)] == [2, 4]
+    works = sum(loop.work for loop in half if loop.reach > 1)
+    assert energy_ratio(half, loops(record)) == pytest.approx(works / (small.work + large.work))
 
 
 def test_energies_are_compared_loop_by_loop() -> None:
