@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from runningbond.joints import JointPoints
-from runningbond.scene import Array, Mask, Scene
+from runningbond.joints import JointPoints, wall_caps
+from runningbond.scene import Array, Indices, Mask, Scene
 
 from .collapse import Criteria, Verdict, hold_load
 from .growth import NEARLY_AT_REST
@@ -86,6 +86,7 @@ class Way:
     verdict: Verdict = "stable"
     unseen: float = 0.0  # what the answer may be larger, for means over windows take from peaks
     inertia: float = 0.0  # and smaller, for bodies that speed up; or either, where motion takes from friction
+    crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # of joints' ends there [m], closed for good
     lasting: float = 0.0  # largest mean force over a whole row of a motion
     resolved: bool = True  # whether means over ever shorter parts of its way add next to nothing to the answer
 
@@ -190,6 +191,21 @@ class Lead:
         (self._settle if self.settles else self._drive)(way, state, speed)
         return state
 
+    def crushed(self, state: State) -> Array:
+        """How far joints have closed for good at their ends [m], ``(nj, 2)``; empty where none crushes."""
+        crush = np.isfinite(wall_caps(self.scene, self.points.joint[self._ends].ravel())[0]).any()
+        return np.asarray(self.run.at_joints(state)[5, self._ends]) if crush else np.zeros((0, 2))
+
+    @cached_property
+    def _ends(self) -> Indices:
+        """The first and the last point of each joint of the scene ``(nj, 2)``."""
+        own = np.flatnonzero(self.points.joint < len(self.scene.joints))
+        joint, (start, end) = self.points.joint[own], self.scene.joints.ends.swapaxes(0, 1)
+        along = ((self.points.position[own] - start[joint]) * (end - start)[joint]).sum(axis=1)
+        order = np.lexsort((along, joint))
+        last = np.cumsum(np.bincount(joint, minlength=len(start)))
+        return np.asarray(own[order[np.column_stack([np.append(0, last[:-1]), last - 1])]])
+
     def _drive(self, way: Way, state: State, speed: float) -> None:
         run, at = self.run, 0.0
         self.observe(run, state, 0.0)
@@ -197,7 +213,7 @@ class Lead:
         knock = run.system.contacts is not None
         self.note(way, state, 0.0, 0.0)
         mobility = float((run.system.live**2 / run.system.mass).sum())
-        given, motions = run.given(state), [state.motion.copy()]
+        given, seen = run.given(state), [(state.motion.copy(), self.crushed(state))]
         peaks = Peaks(way.best, self.longest / (ROWS * speed * run.dt))
         for goal in self.goals.tolist():
             if goal == at or way.verdict != "stable":
@@ -218,7 +234,7 @@ class Lead:
                         middle = state.copy()
                 # What a row's forces are the mean of is there in its middle.
                 self.note(way, middle, self.moved(middle), peaks.mean(peaks.windows))
-                motions.append(middle.motion)
+                seen.append((middle.motion, self.crushed(middle)))
                 if (k + 1) % SEEN == 0:
                     self.observe(run, state, way.rows[-1].force)
                 if self._falls(state):
@@ -226,16 +242,19 @@ class Lead:
                     break
             at = goal
             self.note(way, state, self.moved(state), way.rows[-1].force)
-            motions.append(state.motion.copy())
+            seen.append((state.motion.copy(), self.crushed(state)))
         way.calm()
         peak, between, way.unseen, way.resolved = peaks.resolved()
         way.best, way.inertia, way.lasting = peak.state, peak.inertia, peaks.longest.force
         if between:
             self.note(way, peak.state, self.moved(peak.state), peak.force)
             way.rows.insert(peak.row, way.rows.pop())
-            motions.insert(peak.row, peak.state.motion)
+            seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
         row = failing(way.curve)
-        way.motion = motions[row] - motions[max(0, row - SEEN)]
+        way.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
+        way.crushed = np.max(
+            [crushed for _, crushed in seen[: row + 1]], axis=0
+        )  # what has parted has been crushed too
 
     def _falls(self, state: State) -> bool:
         """Whether the dead load has come down far, and most of its work is in motion: what is led does little of any.
@@ -285,7 +304,7 @@ class Lead:
             state.velocity[motion != 0] = 0.0
             rest = self.criteria.rest if number == len(stages) else NEARLY_AT_REST
             way.verdict, _ = hold_load(run, state, 0.0, replace(self.criteria, rest=rest))
-            way.motion = state.motion - self.start.motion
+            way.motion, way.crushed = state.motion - self.start.motion, self.crushed(state)
             if way.verdict != "stable":
                 return
             bears = self.share(state, 0.0, self.criteria.interval, given)

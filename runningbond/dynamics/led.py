@@ -139,7 +139,7 @@ def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Out
     run = lead.run
     force, motion = run.at_joints(way.best)[2:4].T[point_order], run.system.motion_of_blocks(way.motion)
     if motion.any():
-        outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion))
+        outcome = replace(outcome, motion=fastest_corner_by_one(lead.scene.blocks, motion), crushed=way.crushed)
     return replace(outcome, force=force)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from runningbond.joints import JointPoints, wall_caps, wall_cones, wall_stiffness
 from runningbond.results.mechanism import MAX_OVERLAP
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Indices, Mask, Scene
 
 VISIBLE = 0.01
 """Jump of a mechanism, in motions of its fastest corner, below which a picture does not show it."""
@@ -46,19 +46,23 @@ def joint_states(state: Indices) -> Indices:
     return np.asarray(np.array(_BY_WEIGHT)[most], dtype=np.int64)
 
 
-def states_of_mechanism(scene: Scene, points: JointPoints, opening: Array, slip: Array) -> Indices:
+def states_of_mechanism(
+    scene: Scene, points: JointPoints, opening: Array, slip: Array, closure: Array | None = None
+) -> Indices:
     """States of joint points ``(np,)`` by the jumps of a mechanism whose fastest corner moves by one metre.
 
     A joint opens if a picture shows it open. Where flow is associated, as in `limit`, a joint that slides opens by
     tan φ times its slip, and only what exceeds that is opening. Such a mechanism is recognised by its jumps: nowhere
     does it open by less. One with a compressive strength is crushed where its blocks overlap by more than elastic
-    joints leave in a mechanism.
+    joints leave in a mechanism; where its plastic closure [m] is known, it has crushed as well, for gaps close too.
     """
     dilation = wall_cones(scene, points.joint)[0] * np.abs(slip)
     associated = bool((opening >= dilation - NORMALITY).all())
     opens = opening > (dilation if associated else 0.0) + VISIBLE
     slides = np.abs(slip) > VISIBLE
     crushed = np.isfinite(wall_caps(scene, points.joint)[0]) & (opening < -MAX_OVERLAP)
+    if closure is not None:
+        crushed &= _has_crushed(scene, points, closure)
     kinds = [JointState.OPEN, JointState.CRUSHED, JointState.SLIDE]
     return np.select([opens, crushed, slides], kinds, JointState.STICK)
 
@@ -85,7 +89,13 @@ def states_under_load(
     none = ROUNDING * float(np.abs([normal, tangential]).max(initial=0.0))
     opens = opening > np.where(damage < 1, tension / stiffness, 0.0) * (1 + 1e-9) + none / stiffness
     slides = (np.abs(tangential) >= (1 - AT_THE_LIMIT) * strength) & (np.hypot(normal, tangential) > none)
-    cap, peak = wall_caps(scene, points.joint)
-    crushed = closure > np.maximum(peak, CRUSHED * cap / stiffness)
+    crushed = _has_crushed(scene, points, closure)
     kinds = [JointState.OPEN, JointState.CRUSHED, JointState.SLIDE, JointState.DEBONDED]
     return np.select([opens, crushed, slides, damage >= 1], kinds, JointState.STICK)
+
+
+def _has_crushed(scene: Scene, points: JointPoints, closure: Array | float) -> Mask:
+    """Whether joint points ``(np,)`` have closed for good [m] by more than what counts."""
+    cap, peak = wall_caps(scene, points.joint)
+    stiffness, _ = wall_stiffness(scene, points.joint)
+    return np.asarray(closure > np.maximum(peak, CRUSHED * cap / stiffness))

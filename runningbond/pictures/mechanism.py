@@ -28,7 +28,8 @@ def mechanism_frame(scene: Scene, outcome: Outcome) -> Frame | None:
     if listed is not None and len(points):
         of_joint = (outcome.force / listed.area[:, None]).reshape(len(scene.joints), -1, 2)
         traction = of_joint[:, [0, -1]].reshape(-1, 2)
-    state = states_of_mechanism(scene, points, opening, slip)
+    crushed = outcome.crushed.ravel() if len(outcome.crushed) else None
+    state = states_of_mechanism(scene, points, opening, slip, crushed)
     multiplier = outcome.multiplier if outcome.multiplier is not None else outcome.upper or 0.0
     return Frame(multiplier, outcome.motion, opening, slip, traction[:, 0], traction[:, 1], state)
 

@@ -63,6 +63,9 @@ class Outcome:
         λ at those moments.
     fall
         Smallest load under which the wall was seen to fall, where `upper` takes in others that fell later; else None.
+    crushed : (nj, 2) float
+        How far each joint has closed for good at its ends [m], up to where the mechanism was seen. Empty where no joint
+        crushes, or a model does not follow how it does.
     """
 
     scene: str
@@ -89,6 +92,7 @@ class Outcome:
     path: Array = field(repr=False, default_factory=lambda: np.zeros((0, 0)))
     path_columns: tuple[str, ...] = ()
     fall: float | None = None
+    crushed: Array = field(repr=False, default_factory=lambda: np.zeros((0, 2)))
 
     def __post_init__(self) -> None:
         for name, columns in ARRAYS.items():
@@ -121,7 +125,7 @@ class Outcome:
 SCALARS = ("scene", "model", "status", "multiplier", "lower", "upper", "dofs", "steps", "seconds", "message")
 FORCES = {"motion": 3, "force": 2, "pull": 1, "held": 1}
 ARRAYS = {**FORCES, **{f"far_{name}": columns for name, columns in FORCES.items()}, "curve": 2}
-ARRAYS |= {"moments": 3, "moment_loads": 1}
+ARRAYS |= {"crushed": 2, "moments": 3, "moment_loads": 1}
 """Array fields and their number of columns."""
 
 

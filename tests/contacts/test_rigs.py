@@ -12,6 +12,7 @@ from dem.dynamic import dem_dynamic, finite_pushover
 from dem.finite_system import finite_system
 from runningbond.dynamics import Carried, Run, State
 from runningbond.dynamics.contact_update import contacts_of
+from runningbond.dynamics.lead import failing
 from runningbond.joints import wall_rule
 from runningbond.models import run_model
 from runningbond.pictures.recording import MotionRecorder
@@ -151,6 +152,18 @@ def test_points_along_a_joint_have_the_stiffness_of_a_line(joint: dict[str, floa
     assert column(outcome, "ground vertical [N]") == pytest.approx(2e4, rel=1e-3)
     exact = 2 * force / (STIFFNESS * 0.2 * length) + force * height**2 / (STIFFNESS * 0.2 * length**3 / arm)
     assert outcome.curve[-1, 0] == pytest.approx(exact, rel=5e-3)
+
+
+@pytest.mark.parametrize("displacements", ["small", "finite"])
+@pytest.mark.parametrize("side", [1, -1])
+def test_an_outcome_has_where_joints_were_crushed(side: int, displacements: Any) -> None:
+    """A block that rocks crushes the toe it is pushed to, at the base and, as its beam is loose, nowhere else."""
+    scene = rig(joint__compressive_strength=1e6, beam__drive={"displacement": [0.02 * side, 0], "at": 0.6})
+    outcome = dem_dynamic(scene, displacements=displacements)
+    places = scene.joints.ends[outcome.crushed > 1e-4]
+    assert places == pytest.approx(scene.blocks.extent(scene.wall)[0] + np.array([[0.4 if side > 0 else 0.0, 0.0]]))
+    assert outcome.crushed.max() == pytest.approx(column(outcome, "broken toe [m]")[failing(outcome.curve)])
+    assert len(dem_dynamic(rig(), displacements=displacements).crushed) == 0
 
 
 def test_a_toe_that_crushes_shortens_the_lever() -> None:

@@ -133,6 +133,20 @@ def test_a_joint_that_visibly_opens_is_open_however_far_it_slides() -> None:
 CRUSHING = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9, "compressive_strength": 2e6}
 
 
+@pytest.mark.parametrize(("crushed", "crosses"), [([0.0, 1e-3], 1), ([0.0, 1e-7], 0), ([1e-3, 0.0], 0)])
+def test_a_gap_that_closes_is_not_crushed(crushed: list[float], crosses: int) -> None:
+    """A block that turns closes its joint at the right, which was crushed there by 1 mm, by next to none, or elsewhere.
+
+    A wall that snaps back as it gives way closes gaps all over, and was drawn as if it were crushed all over.
+    """
+    scene = courses([[1]], width=0.4, height=0.8, joint=CRUSHING)
+    motion = np.array([[0.4, -0.2, -1.0], [0.0, 0.0, 0.0]])
+    outcome = Outcome("", "dem-dynamic", "collapse", 0.4, motion=motion, crushed=np.array([crushed]))
+    shape = mechanism_shape(scene, outcome)
+    assert shape is not None
+    assert len(shape.crosses) == crosses
+
+
 def test_ends_that_crush_are_crosses_and_no_fault() -> None:
     """A block turns about a point a quarter of its width from its toe: its heel opens, its toe crushes the joint."""
     scene = courses([[1]], width=0.4, height=0.8, joint=CRUSHING)
