@@ -337,7 +337,7 @@ class Run:
 
     def crushing_note(self, state: State) -> str:
         """What is to be said of joints that are crushed in a state; empty where none is."""
-        crushed = self.interface.law.plastic_closure(state.history).any()
+        crushed = self.interface.law.crushed(state.history).any()
         return "crushed joints bear bending on their points to 3 to 5 %, which is not in the bracket" if crushed else ""
 
     def at_joints(self, state: State) -> Array:
@@ -347,7 +347,7 @@ class Run:
         """
         jumps, tractions = np.split(np.array(self.tractions(state)), 2)
         law, search = self.interface.law, self.system.contacts
-        broken = law.damage(state.history), law.plastic_closure(state.history)
+        broken = law.damage(state.history), law.crushed(state.history)
         values = np.vstack([jumps, self.interface.area * tractions, *broken])
         return values if search is None else search.at_joints(contacts_of(state), values)
 

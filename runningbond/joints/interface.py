@@ -16,12 +16,22 @@ from .compiled import kernel
 from .coulomb import PLASTIC_SLIP, work_of_slip
 from .crushing import breaks_suddenly, crushing_cap, return_to_cap, strength_at, work_until
 from .dry_points import CRUSHED, SEAT, SLIPPED, dry_points, dry_within, is_beyond
-from .law import DAMPED_WORK, FRICTION_WORK, OPENING_BEFORE, PLASTIC_CLOSURE, SLIP_BEFORE, KernelLaw, Law, Parameters
+from .law import (
+    CRUSHING,
+    DAMPED_WORK,
+    FRICTION_WORK,
+    OPENING_BEFORE,
+    PLASTIC_CLOSURE,
+    SLIP_BEFORE,
+    KernelLaw,
+    Law,
+    Parameters,
+)
 from .softening import DAMAGE, damage_at, softening_constants, way_to, weakens_in_fracture
 from .softening import HISTORY as SOFTENING_HISTORY
 from .sound_points import are_sound, can_be_sound, sound_points
 
-HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, "crushed")
+HISTORY = (*SOFTENING_HISTORY, PLASTIC_CLOSURE, CRUSHING)
 """Beside the rows of softening points: plastic closure δ_p and κ of the cap, both [m]."""
 
 ROW = np.uint64(64)

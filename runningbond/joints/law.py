@@ -24,6 +24,9 @@ FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
 PLASTIC_CLOSURE = "plastic closure"
 """Row, in laws of joints that crush, of how far a point has been crushed [m]: there it closes again."""
 
+CRUSHING = "crushed"
+"""Row, in laws of joints that crush, of κ of the cap [m]: above zero where a point has been crushed."""
+
 Parameters: TypeAlias = tuple[Unsigned, Array]
 
 
@@ -176,9 +179,17 @@ class KernelLaw:
         return np.repeat(self.constants[:, constant], np.diff(self.segments).astype(np.int64))
 
     def plastic_closure(self, history: Array) -> Array:
-        """How far each point has been crushed with a history ``(rows, np)`` [m]; zero for a law that knows none."""
+        """By how much less than touching each point closes with a history ``(rows, np)`` [m]; zero without such a row.
+
+        How far it has been crushed, and how far blocks overlapped where they have met since.
+        """
         known = PLASTIC_CLOSURE in self.law.history
         return history[self.law.row(PLASTIC_CLOSURE)].copy() if known else np.zeros(self.points)
+
+    def crushed(self, history: Array) -> Array:
+        """How far each point has been crushed with a history ``(rows, np)`` [m]; zero for a law that knows none."""
+        closure = self.plastic_closure(history)
+        return np.where(history[self.law.row(CRUSHING)] > 0, closure, 0.0) if CRUSHING in self.law.history else closure
 
     def damage(self, history: Array) -> Array:
         """Damage of each point with a history ``(rows, np)``; zero for a law that knows none."""

@@ -234,6 +234,16 @@ def test_rungs_at_finite_displacements_do_not_say_that_the_line_of_the_load_is_l
     assert ("beam.force_line" in said) == (name == "rigid")
 
 
+@pytest.mark.parametrize(("load", "is_crushed"), [(-2e5, False), (-1.05e7, True)])
+def test_only_what_has_been_crushed_is_said_to_bear_bending_on_its_points(load: float, is_crushed: bool) -> None:
+    """Corners that have met other blocks sit as they met: of walls that are nowhere crushed it was said as well."""
+    tables = _tables(shipped()["SW.200.1"], LADDER["rigid-splitting"].features)
+    tables["wall"]["height"] = 0.5
+    tables["beam"] |= {"height": 0.2, "force": [0, load], "drive": {"displacement": [3e-3, 0], "at": 0.6}}
+    outcome = LADDER["rigid-splitting"].model.solve(scene_from_dict(tables), 0.05)
+    assert ("crushed joints" in outcome.message) == is_crushed
+
+
 def test_unit_in_the_head_of_a_column_counts(tmp_path: Path) -> None:
     heads = HEADS.replace("L [mm]", "L [m]").replace("Ntot [kN]", "Ntot")
     wall = read_folder(write_folder(tmp_path, GRANITE.replace(",1000,", ",1.0,"), heads=heads))[0]
