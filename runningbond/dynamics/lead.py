@@ -252,9 +252,8 @@ class Lead:
             seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
         row = failing(way.curve)
         way.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
-        way.crushed = np.max(
-            [crushed for _, crushed in seen[: row + 1]], axis=0
-        )  # what has parted has been crushed too
+        # The most so far: joints that have parted since have been crushed too.
+        way.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)
 
     def _falls(self, state: State) -> bool:
         """Whether the dead load has come down far, and most of its work is in motion: what is led does little of any.
