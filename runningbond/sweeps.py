@@ -57,6 +57,11 @@ def sweep(
     Table
         A row a combination, the last key varying fastest: the values of the keys, then `ANSWER`. Combinations that
         describe no wall, or to which the model does not apply, have the status ``refused`` and say why.
+
+    Raises
+    ------
+    SceneError
+        No combination describes a wall, for example because a key is misspelt.
     """
     model = find_model(model)
     check_wall(wall)
@@ -72,23 +77,25 @@ def sweep(
     cases = [dict(zip(changes, values, strict=True)) for values in product(*changes.values())]
     scenes: dict[str, Scene] = {}
     names: list[str] = []
-    refusals: dict[tuple[str, str], str] = {}
+    refusals: dict[tuple[str, str], SceneError] = {}
     for number, case in enumerate(cases):
         try:
             scene = wall.with_(case).scene
         except SceneError as refusal:
             names.append(f"case {number}")
-            refusals[names[-1], model.name] = str(refusal)
+            refusals[names[-1], model.name] = refusal
         else:  # named after what it is computed from, an outcome is used again when keys or values are added
             names.append(fingerprint(scene, model, tolerance)[:16])
             scenes[names[-1]] = scene
+    if refusals and not scenes:
+        raise next(iter(refusals.values()))
     kept_in = None if folder is None else path_of("folder", folder)
     if kept_in is not None:
         make_folder(kept_in)
     with ctrl_c_passed_on():
         campaign = run_campaign(scenes, [model], folder=kept_in, tolerance=tolerance, jobs=jobs)
     answers = {cell: outcome.summary() for cell, outcome in campaign.outcomes.items()}
-    for cell, message in (refusals | campaign.inapplicable).items():
-        answers[cell] = {"status": "refused", "message": message}
+    for cell, reason in (refusals | campaign.inapplicable).items():
+        answers[cell] = {"status": "refused", "message": str(reason)}
     rows = [{**answers[name, model.name], **case} for name, case in zip(names, cases, strict=True)]
     return table({key: [row.get(key) for row in rows] for key in (*changes, *ANSWER)})

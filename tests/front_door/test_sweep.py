@@ -14,7 +14,7 @@ from runningbond.campaigns import tasks
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.models import run_model
 from runningbond.results import Outcome
-from runningbond.scene import Action, Array, Forces, Indices, Scene
+from runningbond.scene import Action, Array, Forces, Indices, Scene, SceneError
 
 WALL = rb.Wall.courses(
     [[1, 1], [0.5, 1, 0.5]], block_width=0.4, block_height=0.2, thickness=0.2, density=1800.0, friction=0.4
@@ -49,6 +49,14 @@ def test_refusals_are_rows() -> None:
     table = rb.sweep(WALL, {"joint.cohesion": [0.0, 10.0]}, "homog", jobs=1)
     assert list(table["status"]) == ["collapse", "refused"]
     assert "dry joints" in table["message"][1]
+
+
+@pytest.mark.parametrize("changes", [{"joint.frictoin": [0.3, 0.4]}, {"joint.friction": [-1.0]}])
+def test_a_sweep_over_no_wall_at_all_is_refused(changes: dict[str, list[float]], tmp_path: Path) -> None:
+    """Before anything is kept: a misspelt key would otherwise be a table without a number in it."""
+    with pytest.raises(SceneError, match="is not a key of|must be a number at least 0"):
+        rb.sweep(WALL, changes, "limit", jobs=1, folder=tmp_path / "kept")
+    assert not (tmp_path / "kept").exists()
 
 
 def test_a_model_that_breaks_is_a_row(monkeypatch: pytest.MonkeyPatch) -> None:
