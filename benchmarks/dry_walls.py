@@ -14,7 +14,7 @@ from typing import Any
 from unittest.mock import patch
 
 from runningbond.joints import joint_stiffness
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.measured import MeasuredWall
 from runningbond.laboratory.predictions import Prediction
@@ -78,7 +78,7 @@ def row(wall: MeasuredWall, case: str) -> str:
 
 def main() -> None:
     """Print a row a case of each wall."""
-    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    walls = shipped_walls()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("walls", nargs="*", default=["SW.200.1", "WS.100"])
     names = parser.parse_args().walls

@@ -19,7 +19,7 @@ from dem.finite_system import finite_system
 from dem.rigid_system import contact_points
 from runningbond.dynamics import Run, State, collapse_by_steps
 from runningbond.dynamics.run import MOVING
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.laboratory.scores import Marks, marks_of
@@ -77,7 +77,7 @@ def change(now: float | None, before: float | None) -> str:
 
 def main(names: list[str]) -> None:
     """Print a row a change of each wall."""
-    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    walls = shipped_walls()
     print("| wall | what | V [kN] | V | stiffness | at the peak | at 0.8 | energy unaccounted | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for name in names:

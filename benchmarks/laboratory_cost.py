@@ -10,7 +10,7 @@ import sys
 from dataclasses import replace
 from statistics import median
 
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.models import TOLERANCE
@@ -30,7 +30,7 @@ def pushed(scene: Scene, displacement: float) -> Scene:
 
 def main(names: list[str]) -> None:
     """Print a row a wall and model."""
-    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    walls = shipped_walls()
     print("| wall | blocks | model | status | V [kN] | time steps | CPU s |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for name in names:

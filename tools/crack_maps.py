@@ -12,7 +12,7 @@ from fem_interface.modal_wall import ModalWall
 from fem_interface.model import fem
 from runningbond.dynamics import Run, State
 from runningbond.joints.law import PLASTIC_CLOSURE
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.pictures.charts import bare
@@ -65,7 +65,7 @@ def draw(axes: Axes, seen: LastLook) -> None:
 
 def main(path: Path, names: list[str]) -> None:
     """Draw some walls side by side."""
-    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    walls = shipped_walls()
     figure = Figure(figsize=(3.6 * (len(names) + 1), 3.9), layout="constrained")
     *maps, curves = figure.subplots(1, len(names) + 1)
     for axes, name, colour in zip(maps, names, CHART_COLOURS, strict=False):

@@ -15,7 +15,7 @@ from typing import Any
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond.joints import joint_stiffness
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.rig import Features, scene_of, with_inner_stiffness
 from runningbond.laboratory.scores import marks_of
 from runningbond.models import TOLERANCE
@@ -100,7 +100,7 @@ CASES = (
 
 def main(names: list[str], words: str) -> None:
     """Print a row a case of each wall, of those cases that have some words in their names."""
-    walls = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    walls = shipped_walls()
     print("| wall | what | V [kN] | ΔV | CPU s |\n| --- | --- | --- | --- | --- |")
     for name in names:
         for case in (case for case in CASES if words in case.what):

@@ -193,8 +193,12 @@ class Lead:
 
     def crushed(self, state: State) -> Array:
         """How far joints have closed for good at their ends [m], ``(nj, 2)``; empty where none crushes."""
-        crush = np.isfinite(wall_caps(self.scene, self.points.joint[self._ends].ravel())[0]).any()
-        return np.asarray(self.run.at_joints(state)[5, self._ends]) if crush else np.zeros((0, 2))
+        return np.asarray(self.run.at_joints(state)[5, self._ends]) if self._has_caps else np.zeros((0, 2))
+
+    @cached_property
+    def _has_caps(self) -> bool:
+        """Whether a joint of the scene crushes."""
+        return bool(np.isfinite(wall_caps(self.scene, self.points.joint[self._ends].ravel())[0]).any())
 
     @cached_property
     def _ends(self) -> Indices:

@@ -22,7 +22,9 @@ FRICTION_WORK, DAMPED_WORK, OPENING_BEFORE, SLIP_BEFORE = range(4)
 """Their numbers."""
 
 PLASTIC_CLOSURE = "plastic closure"
-"""Row, in laws of joints that crush, of how far a point has been crushed [m]: there it closes again."""
+"""Row, in laws of joints that crush, of by how much less than touching a point closes [m].
+
+How far it has been crushed, and how far blocks overlapped where they have met since."""
 
 CRUSHING = "crushed"
 """Row, in laws of joints that crush, of κ of the cap [m]: above zero where a point has been crushed."""

@@ -1,6 +1,6 @@
 """The laboratory: walls that were broken, predicted blind, and scored beside two formulas that anyone works out."""
 
-from .folder import SHIPPED, read_folder
+from .folder import read_folder, shipped_walls
 from .measured import MeasuredWall
 
-__all__ = ["SHIPPED", "MeasuredWall", "read_folder"]
+__all__ = ["MeasuredWall", "read_folder", "shipped_walls"]

@@ -68,6 +68,11 @@ def read_folder(folder: Path, refuse: Callable[[SceneError], None] = raised) -> 
     return list(walls.values())
 
 
+def shipped_walls() -> dict[str, MeasuredWall]:
+    """Walls that the package ships, by their names."""
+    return {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+
+
 def unused(folder: Path) -> list[str]:
     """Files of a folder that would be a wall's by their names, and are of none in its table."""
     table, lines = _table(folder)

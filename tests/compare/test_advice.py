@@ -21,7 +21,7 @@ from runningbond.compare.advice.experiment import ModelError, error_of, read_err
 from runningbond.compare.advice.knowledge import Knowledge
 from runningbond.compare.advice.steps import DRAWS, Step, next_step
 from runningbond.joints.stiffness import block_compliance
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.limit import limit
 from runningbond.limit.kinematics import sliding_dilates
@@ -591,7 +591,7 @@ def test_json_is_one_object(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_shipped_errors_are_of_walls_that_were_tested_and_of_models_that_there_are() -> None:
-    tested = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    tested = shipped_walls()
     errors = read_errors()
     for each in errors:
         assert each.base in MODELS

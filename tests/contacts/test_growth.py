@@ -11,7 +11,7 @@ from runningbond.dynamics import Run, State
 from runningbond.dynamics.contact_update import ContactUpdate, _spread
 from runningbond.joints.law import PLASTIC_CLOSURE
 from runningbond.joints.wall_law import with_impacts
-from runningbond.laboratory.folder import SHIPPED, read_folder
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.ladder import LADDER
 from runningbond.laboratory.rig import scene_of
 from runningbond.scene import BlockMaterial, JointMaterial, Load, Stiffness, build_scene
@@ -96,7 +96,7 @@ def test_a_corner_that_rolls_onto_its_next_side_is_no_stiffer_there(
 @pytest.mark.long
 def test_a_wall_whose_blocks_split_and_slide_over_each_other_loses_no_energy() -> None:
     """SW.200.1 along the test's path: works and energies add up to 2e-3, as contacts are found anew many times over."""
-    wall = next(wall for folder in SHIPPED for wall in read_folder(folder) if wall.name == "SW.200.1")
+    wall = shipped_walls()["SW.200.1"]
     scene, lost = scene_of(wall, LADDER["rigid-splitting"].features), list[float]()
 
     def observe(run: Run, state: State, multiplier: float) -> None:

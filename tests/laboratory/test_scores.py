@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from runningbond.dynamics.lead import TOE, failing
-from runningbond.laboratory import read_folder
-from runningbond.laboratory.folder import SHIPPED
+from runningbond.laboratory import shipped_walls
 from runningbond.laboratory.formulas import by_hand, formula
 from runningbond.laboratory.ladder import LADDER, find_rungs
 from runningbond.laboratory.measured import growing, turning_points
@@ -35,7 +34,7 @@ from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError, scene_from_dict
 from runningbond.scene.beam import Condition
 
-WALLS = {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+WALLS = shipped_walls()
 
 
 def curve(*points: tuple[float, float]) -> Array:

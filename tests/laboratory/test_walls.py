@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from runningbond.joints import joint_stiffness
-from runningbond.laboratory import SHIPPED, MeasuredWall, read_folder
+from runningbond.laboratory import MeasuredWall, read_folder, shipped_walls
 from runningbond.laboratory.folder import DATA, unused
 from runningbond.laboratory.ladder import LADDER, Rung
 from runningbond.laboratory.measured import growing, turning_points
@@ -27,7 +27,7 @@ ALL = Features(closes=True, crushes=True, splits=True)
 
 
 def shipped() -> dict[str, MeasuredWall]:
-    return {wall.name: wall for folder in SHIPPED for wall in read_folder(folder)}
+    return shipped_walls()
 
 
 def one(tmp_path: Path, row: str = GRANITE) -> MeasuredWall:
