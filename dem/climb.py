@@ -16,6 +16,10 @@ from .pushover import NOISE, LoadPath, StaticState, lengthened
 UNCLEAR = 3
 """Loads under which a wall may neither rest nor fall; after one more the bracket around them stays as wide as it is."""
 
+HARD = 200
+"""Linear systems of a rest after which the wall is loaded by no more than the bracket may be wide at once: a fall takes
+more of them than a rest, and a longer step ends in two, that of the step and that of its half."""
+
 INTERRUPTED, NEITHER, SPENT = "interrupted", "it neither rested nor fell", "the budget ran out"
 """Why a wall is undecided: after Ctrl-C, after loads that were not, or after too many linear systems."""
 
@@ -46,7 +50,8 @@ def climb(path: LoadPath, first_step: float, tolerance: float, asked: Sequence[f
                 if path.budget <= 0 or path.upper is None or len(path.unclear) > UNCLEAR:
                     path.undecided = SPENT if path.budget <= 0 else "" if path.fall is not None else NEITHER
                     return
-            step = max(step * lengthened(held.solves), 2 * tolerance * path.lower)
+            least = tolerance if held.solves > HARD else 2 * tolerance
+            step = max(step * lengthened(held.solves), least * path.lower)
             if path.upper is None and path.lower > most:
                 most = BEYOND_BOUND * (_bound(path) or 0.0)
                 if path.lower > most:

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from dem import relaxation, static
-from dem.climb import climb, ends
+from dem.climb import HARD, climb, ends
 from dem.pushover import LoadPath, StaticState
 from dem.relaxation import Rest, RestVerdict, relax
 from dem.static import dem_static
@@ -570,6 +570,23 @@ def test_every_path_starts_from_the_rest_under_the_dead_load(monkeypatch: pytest
     assert second.rests[1].multiplier == pytest.approx(first.rests[1].multiplier / 2)
     assert second.rests[0] is first.rests[0]
     assert second.rests is not first.rests
+
+
+@pytest.mark.parametrize(("solves", "falls"), [(HARD + 1, 1), (HARD, 2)])
+def test_a_wall_that_rests_hard_falls_once(solves: int, falls: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """W1 with inset contacts, .5856: hard to bring to rest, it is loaded by a tolerance at a time, and not bisected."""
+    hold, fallen = LoadPath.hold, list[LoadPath]()
+
+    def held(path: LoadPath, *others: Any) -> Rest:
+        rest = replace(hold(path, *others), solves=solves)
+        fallen.extend([path] * (rest.verdict == "fall"))
+        return rest
+
+    monkeypatch.setattr(LoadPath, "hold", held)
+    lower, upper = bracket(dem_static(ferris("W1", 0.02), past=0))
+    assert fallen.count(fallen[0]) == falls
+    assert lower <= 0.5856 * 1.001
+    assert 0.5856 * 0.999 <= upper <= lower / 0.99
 
 
 def undecided_at(least: float, most: float, monkeypatch: pytest.MonkeyPatch) -> None:
