@@ -150,7 +150,7 @@ def _wall(folder: Path, row: TableRow, others: Container[str]) -> MeasuredWall:
         _check_picture(there[CRACKS])
     said = re.split(r"[,;/+&]", row.text("from test report: failure type"))
     modes = tuple(mode.strip().upper() for mode in said if mode.strip())
-    printed = [row.optional(column) for column in ("Vmax,+", "Vmax,-")]
+    printed = [row.optional("Vmax,+"), row.optional("Vmax,-", magnitude=True)]
     peaks = tuple(value for value in printed if value is not None)
     if len(curve) and peaks:
         largest, told = float(np.nanmax(np.abs(curve[:, 1]))), max(peaks)

@@ -77,8 +77,8 @@ class TableRow:
             raise SceneError(self.key(column), "is missing; it must be a number above 0, or a scene NAME.toml be there")
         return value
 
-    def optional(self, column: str) -> float | None:
-        """A number above 0, in SI units; None where the entry is empty."""
+    def optional(self, column: str, *, magnitude: bool = False) -> float | None:
+        """A number above 0, or the `magnitude` of one that may be below, in SI units; None where the entry is empty."""
         text, unit = self.entries.get(column.casefold(), ("", ""))
         if text.casefold() in NOTHING:
             return None
@@ -86,6 +86,7 @@ class TableRow:
             value = float(text)
         except ValueError:
             value = math.nan
+        value = abs(value) if magnitude else value
         if not (math.isfinite(value) and value > 0):
             raise SceneError(self.key(column), "must be a number above 0", text)
         units = units_of(column)

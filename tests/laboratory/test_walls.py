@@ -1,5 +1,6 @@
 """Rows of tables become scenes: facts of the campaigns, and one line for what is wrong."""
 
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
@@ -564,3 +565,11 @@ def test_a_wall_that_was_pushed_back_to_where_it_stood_was_not_pushed_to_both_si
     curve = "displacement_mm,force_kN\n0,0\n1,50\n10,61\n9,-55\n0,-60\n"
     row = GRANITE.replace("Monotonic", kind).replace(",61,", ",,")
     assert read_folder(write_folder(tmp_path, row, curve=curve))[0].peaks == (61e3,)
+
+
+def test_the_force_of_the_other_side_may_have_its_sign(tmp_path: Path) -> None:
+    """Tables give ``Vmax,-`` as a magnitude or as a force; that of the first side is above zero."""
+    row = GRANITE.replace("Monotonic", "Cyclic").replace(",61,,", ",61,-43,")
+    assert one(tmp_path, row).peaks == (61e3, 43e3)
+    with pytest.raises(SceneError, match=re.escape("Vmax,+ = '-61': must be a number above 0")):
+        one(tmp_path, row.replace(",61,", ",-61,"))
