@@ -24,9 +24,6 @@ AT_REST = "at rest"
 UNFELT = 1e-6
 """Force, beside the largest in any joint, that counts as none."""
 
-UNSEEN = 1e-9
-"""Coordinate, in sizes of the wall, that is told as zero: cosines of a right angle leave 6e-17."""
-
 COME_FREE = "it bridges the support, which bears nothing of it where the settlement ends"
 """What is said of a wall at rest whose supports have come free."""
 
@@ -96,8 +93,7 @@ class Supports:
         """Names of the numbers that `reactions` gives, and of the ties' forces."""
         ties = [f"tie {k} [N]" for k in range(len(self._scene.ties))]
         heads = ("horizontal [N]", "vertical [N]", "moment about {} [N m]")
-        places = np.where(np.abs(self.about) < UNSEEN * self._scene.size, 0.0, self.about)
-        told = [self._scene.blocks.place(place, 6) for place in places]
+        told = [self._scene.blocks.place(place, 6) for place in self.about]
         return [
             f"{name} {head.format(about)}" for name, about in zip(self._names(), told, strict=True) for head in heads
         ] + ties

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 LONGEST = 60
 """Characters of a value that are shown."""
 
+UNSEEN = 1e-9
+"""Coordinate, in sizes of the wall, that is told as zero: cosines of a right angle leave 6e-17."""
+
 
 class SceneError(ValueError):
     """Input that describes no wall.
@@ -43,7 +46,8 @@ def coordinate(value: float, size: float, digits: int = 4) -> str:
     """
     far = abs(value) / size if size > 0 else 0.0
     more = math.floor(math.log10(far)) if 10 <= far < math.inf else 0
-    return f"{value + 0.0:.{min(digits + more, 17)}g}"
+    told = 0.0 if 0 < far < UNSEEN else value
+    return f"{told + 0.0:.{min(digits + more, 17)}g}"
 
 
 def place(at: Sequence[float] | NDArray[np.float64], size: float, digits: int = 4) -> str:

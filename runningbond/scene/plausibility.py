@@ -194,10 +194,11 @@ def _courses(scene: Scene) -> Iterator[str]:
     levels = _distinct(low[:, 1], scene.blocks.tolerance)
     if full.mean() < REGULAR or 2 * len(levels) > max(len(full), 4):
         return
-    gaps = np.diff(levels)
-    close = np.flatnonzero(gaps < LEVEL * size[:, 1].min())
+    beds = _distinct(low[full, 1], scene.blocks.tolerance)  # the lowest corner of a stone cut along an arch is in none
+    gaps = np.diff(beds)
+    close = np.flatnonzero(gaps < LEVEL * size[full, 1].min())
     if len(close):
-        gap, two = gaps[close[0]], levels[close[0] :][:2]
+        gap, two = gaps[close[0]], beds[close[0] :][:2]
         low_y, high_y = (scene.blocks.coordinate(float(y), 6) for y in two)
         yield f"wall: courses do not line up: blocks stand at y = {low_y} and {high_y} m, {1e3 * gap:.3g} mm apart"
         return

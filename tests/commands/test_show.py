@@ -176,3 +176,17 @@ def test_a_wall_on_a_map_is_shown_where_it_stands() -> None:
     assert told["extent"] == "x 512345.1 … 512345.5 m, y 5412345.2 … 5412345.6 m, 0.1 m thick"
     assert told["live load at λ = 1"].endswith(" about (512345.1, 5412345.2)")
     assert "ground moment about (512345.3, 5412345.2) [N m]" in Supports(scene, wall_points(scene)).columns
+
+
+def test_what_a_cosine_leaves_of_zero_is_told_as_zero() -> None:
+    """The springing of a drawn arch is the sine of 180°, 1.2e-16; `show` had it as "y −1.225e−16 … 1 m"."""
+    corners = np.array([[1.0, -np.sin(np.pi)], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0]])
+    scene = build_scene(
+        "springing",
+        [corners],
+        thickness=0.1,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.7),
+        load=Load(live=(Lateral(),)),
+    )
+    assert dict(rows(scene))["extent"] == "x 1 … 2 m, y 0 … 1 m, 0.1 m thick"

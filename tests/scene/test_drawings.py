@@ -1,6 +1,7 @@
 """A drawing is read as what it shows, however it was drawn."""
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -190,6 +191,29 @@ def test_an_outline_too_thin_for_a_stone_is_pointed_out(tmp_path: Path) -> None:
     assert note == (
         "slivers: block 7 at (0.2, 0.3) is 1e-05 m thin; the smallest block sets how wide a gap is contact, 2e-07 m"
     )
+
+
+@pytest.mark.parametrize("off", [0.0, 3e-13])
+@pytest.mark.parametrize(
+    ("tip", "spiked"),
+    [
+        ((50, -70), lambda off: [(0, 0), (50, 0), (50, -70), (50 + off, -70), (50, 0), (200, 0), (200, 100), (0, 100)]),
+        ((150, 40), lambda off: [(0, 0), (200, 0), (200, 100), (150 + off, 100), (150, 40), (150, 100), (0, 100)]),
+        ((200, 180), lambda off: [(0, 0), (200 + off, 0), (200, 180), (200, 100), (0, 100)]),
+        ((0, -20), lambda off: [(0, -20), (0, 0), (200, 0), (200, 100), (off, 100)]),
+    ],
+    ids=["out of a side", "into it", "along a head joint", "at its first corner"],
+)  # fmt: skip
+def test_a_spike_of_no_width_is_no_part_of_a_stone(
+    tip: tuple[int, int], spiked: Callable[[float], Outline], off: float, tmp_path: Path
+) -> None:
+    """Shapes that were cut and joined have such spikes, which would make joints with stones that they pass."""
+    path = dxf(tmp_path / "wall.dxf", closed([spiked(off), *BRICKS[1:]]))
+    scene, plain = scene_of(path), scene_of(dxf(tmp_path / "plain.dxf", closed()))
+    assert np.sort(scene.blocks.vertices, axis=0) == pytest.approx(np.sort(plain.blocks.vertices, axis=0))
+    assert scene.joints.length == pytest.approx(plain.joints.length)
+    at = f"({1e-3 * tip[0]:g}, {1e-3 * tip[1]:g})"
+    assert f"spikes: an outline turns back on itself at {at} m; what has no width is left out" in scene.notes
 
 
 def test_what_is_on_layer_0_of_a_block_is_on_the_layer_of_its_insert(tmp_path: Path) -> None:

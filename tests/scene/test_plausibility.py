@@ -149,6 +149,17 @@ def test_courses_that_do_not_line_up(drop: float, is_odd: bool) -> None:
         assert "y = 0.098 and 0.1 m, 2 mm apart" in lines[0]
 
 
+def test_stones_cut_along_an_arch_are_in_no_course_of_their_own() -> None:
+    """The lowest corner of a stone above an arch lies 2 mm below its bed, where the arch cuts it."""
+    course = [(x, y, 0.2, 0.1) for y in (0.0, 0.1) for x in (0.0, 0.4, 0.6, 0.8)]
+    cut = [[(0.2, 0.0), (0.4, 0.0), (0.4, 0.1), (0.3, 0.098), (0.2, 0.1)]]
+    cut += [[(0.2, 0.1), (0.3, 0.098), (0.4, 0.1), (0.4, 0.2), (0.2, 0.2)]]
+    corners = [np.array([[x, y], [x + w, y], [x + w, y + h], [x, y + h]]) for x, y, w, h in course]
+    corners += [np.array(stone) for stone in cut]
+    brick, dry = BlockMaterial(1800.0), JointMaterial(0.6)
+    assert warnings(build_scene("arch", corners, thickness=0.12, load=Load(), block=brick, joint=dry)) == ()
+
+
 @pytest.mark.parametrize(("gap", "is_odd"), [(0.002, True), (0.0, False), (0.08, False)])
 def test_blocks_side_by_side_that_never_touch(gap: float, is_odd: bool) -> None:
     """Head joints of 2 mm that were drawn open; piers are apart, and blocks that touch have their joints."""

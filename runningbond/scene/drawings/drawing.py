@@ -11,7 +11,7 @@ import shapely
 from ..arrays import Array
 from ..blocks import Blocks
 from ..errors import SceneError, place
-from ..polygons import smaller_sides
+from ..polygons import smaller_sides, without_spikes
 from ..ranges import one_of
 from .compas import read_compas
 from .curves import ROUNDING, Arc, Chords
@@ -91,7 +91,8 @@ def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness
         grounds = []
         if space.units not in (None, units):
             notes.append(f"units: the drawing's header says {space.units}, wall.units says {units}, which counts")
-    outlines = _cleaned([scale * outline for outline in [*blocks, *grounds]], names)
+    outlines, spikes = _cleaned([scale * outline for outline in [*blocks, *grounds]], names)
+    notes += [spikes] if spikes else []
     blocks, grounds = outlines[: len(blocks)], outlines[len(blocks) :]
     if path.suffix.lower() != ".json":
         passed_over = f" (left out: {_listed(space.left_out)})" if space.left_out else ""
@@ -210,20 +211,35 @@ def _where(polygon: shapely.Polygon) -> str:
     return f" at {place(at, float((high - low).max()))} m" if np.isfinite(at).all() else ""
 
 
-def _cleaned(outlines: list[Array], names: list[str]) -> list[Array]:
-    """Outlines counter-clockwise, without corners in the middle of a straight side, which would cut a joint in two."""
-    polygons = []
+def _cleaned(outlines: list[Array], names: list[str]) -> tuple[list[Array], str]:
+    """Outlines counter-clockwise, without spikes and corners in the middle of a straight side; and a note on spikes.
+
+    Corners on a side would cut a joint in two, spikes make joints beside stones that they are no part of.
+    """
     for outline, name in zip(outlines, names, strict=True):
         if len(outline) < 3:
             raise SceneError(name, "must have at least three corners at finite coordinates")
+    if not outlines:
+        return [], ""
+    least = STRAIGHT * float(np.sqrt(shapely.area([shapely.Polygon(outline) for outline in outlines]).min()))
+    polygons, tips = [], []
+    for outline, name in zip(outlines, names, strict=True):
+        ring, its_tips = without_spikes(outline, least)
+        tips.append(its_tips)
         # A side is straight from its first corner on, so the first one must be none in a side's middle.
-        first = int(np.lexsort(outline.T[::-1])[0])
-        polygon = shapely.Polygon(np.roll(outline, -first, axis=0))
+        first = int(np.lexsort(ring.T[::-1])[0])
+        polygon = shapely.Polygon(np.roll(ring, -first, axis=0))
         if not polygon.is_valid:
             raise SceneError(name, f"crosses itself{_where(polygon)}")
         polygons.append(polygon)
-    if not polygons:
-        return []
-    least = STRAIGHT * float(np.sqrt(min(polygon.area for polygon in polygons)))
     straight = shapely.simplify(polygons, least)
-    return [np.array(shapely.geometry.polygon.orient(polygon).exterior.coords)[:-1] for polygon in straight]
+    cleaned = [np.array(shapely.geometry.polygon.orient(polygon).exterior.coords)[:-1] for polygon in straight]
+    return cleaned, _spikes(np.vstack(tips), float(np.ptp(np.vstack(outlines), axis=0).max()))
+
+
+def _spikes(tips: Array, span: float) -> str:
+    """Say where outlines of a wall of some size [m] turned back on themselves; nothing where none did."""
+    if not len(tips):
+        return ""
+    where = f"{len(tips)} places, the first at " * (len(tips) > 1) + place(tips[0], span)
+    return f"spikes: an outline turns back on itself at {where} m; what has no width is left out"
