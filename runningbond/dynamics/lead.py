@@ -340,7 +340,7 @@ def last_leg(curve: Array) -> Array:
     return np.column_stack([np.abs(curve[start:, 0] - curve[start, 0]), curve[start:, 1]])
 
 
-def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0) -> bool:
+def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0, still: float = 0.0) -> bool:
     """Whether a mechanism has formed: whether nothing grows, or changes, over the last part of a way.
 
     Parameters
@@ -353,11 +353,13 @@ def formed(curve: Array, tolerance: float, *, settles: bool, least: float = 0.0)
         Whether supports are led. An elastic wall sheds load too: of a short way hardly any, and the same all along.
     least
         Force below which growth need not be small.
+    still
+        Change of a share that motion may have made, which counts as none: one that was there from the start may be all.
     """
     value, force = (last_leg(curve) if settles else curve).T
     late = value >= (1 - LAST) * value.max()
     if settles:
-        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + STILL)
+        return bool(np.ptp(force[late]) <= tolerance * np.ptp(force) + max(still, STILL))
     most = float(force[late].max())
     return most - float(force[~late].max(initial=0.0)) <= tolerance * max(most, least)
 

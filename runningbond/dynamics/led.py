@@ -179,7 +179,7 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
     if lead.settles and not fell and supports.have_come_free(way.rows[-1].carried, way.rows[-1].tie):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
-    if not fell and not formed(outcome.curve, tolerance, settles=lead.settles):
+    if not fell and not formed(outcome.curve, tolerance, settles=lead.settles, still=way.answer - least):
         falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
         still = f"the support still {changes}" if lead.settles else "the wall still hardens"
         message = f"no answer: {still} at the displacement asked for, {at}: {number(way.answer)}; {what}"
