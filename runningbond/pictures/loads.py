@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import shapely
 
 from runningbond.scene import (
     Action,
@@ -22,15 +23,16 @@ from runningbond.scene import (
     Tilt,
 )
 from runningbond.scene.actions import unit_vector
+from runningbond.scene.arrays import components
 from runningbond.scene.history import STANDARD_GRAVITY
 
 from .captions import is_force
 from .deformed_shape import DeformedShape
 from .gravity import draw_gravity, draw_tilt
-from .labels import Spot
-from .quantities import millimetres, minus, readable, times_lambda
+from .labels import Spot, text_size
+from .quantities import millimetres, minus, readable, span, times_lambda
 from .sketch import Sketch
-from .style import DARK, DEAD, MOTION
+from .style import DARK, DEAD, MOTION, TYPE
 
 EARTH = (0.0, -9.81)
 
@@ -38,7 +40,7 @@ SHORTEST = 0.4
 """Length of arrows of next to no load along a line, beside those of the largest; others are in between."""
 
 MANY = 4
-"""Forces of one load from which on each has an arrow, but not a size of its own."""
+"""Forces of one load, and loads along one line, up to which each has a size of its own; of more, if there is room."""
 
 
 class LoadDrawing:
@@ -47,12 +49,15 @@ class LoadDrawing:
     def __init__(self, sketch: Sketch, shape: DeformedShape) -> None:
         self.sketch, self.shape, self.scene, self.a = sketch, shape, shape.scene, sketch.a
         self.low, self.high = self.scene.blocks.extent(self.scene.wall)
+        ground = np.flatnonzero(~self.scene.wall)
+        self.ground = shapely.union_all([shapely.Polygon(self.scene.blocks.polygon(int(k))) for k in ground])
         self.rows: list[Array] = []
         self.alone: list[Array] = []
         self.turns: list[tuple[Array, float]] = []
         self.pushes: dict[tuple[bool, float, float], list[str]] = {}
         load = shape.scene.load
         self.largest = {live: _largest(loads) for live, loads in ((False, load.dead), (True, load.live))}
+        self.sizes = self._sizes_along(load.dead, live=False) | self._sizes_along(load.live, live=True)
 
     def draw(self) -> None:
         """Draw all loads: along lines first, then at points, and on the whole wall last."""
@@ -66,6 +71,32 @@ class LoadDrawing:
             self._push(np.array([x, y]), "\n+ ".join(texts), *_look(live))
         if load.gravity != EARTH and any(load.gravity):
             draw_gravity(self.sketch, self.low, self.high, load.gravity)
+
+    def _sizes_along(self, loads: Sequence[Action], *, live: bool) -> dict[int, str]:
+        """What is said at each load along a line, by its `id`: of many that go on from one another once, from … to.
+
+        So a filling on an arch is given, a load a stone. Of pressures each is said as long as its words are no larger.
+        """
+        lines = [each for each in loads if isinstance(each, LineLoad)]
+        sizes = [math.hypot(*each.force) for each in lines]
+        said = [times_lambda(readable(size, "N/m"), live=live) for size in sizes]
+        chains = _chains(lines, 1e-6 * self.scene.size) if lines else np.zeros(0, dtype=np.int64)
+        for chain in np.unique(chains):
+            own = np.flatnonzero(chains == chain)
+            if len(own) <= MANY or all(self._has_room(lines[k], said[k]) for k in own):
+                continue
+            middles = np.array([np.add(lines[k].start, lines[k].end) / 2 for k in own])
+            middle = own[np.hypot(*(middles - middles.mean(axis=0)).T).argmin()]
+            whole = times_lambda(span([sizes[k] for k in own], "N/m"), live=live)
+            for k in own:
+                said[k] = whole if k == middle else ""
+        return {id(each): text for each, text in zip(lines, said, strict=True)}
+
+    def _has_room(self, load: LineLoad, text: str) -> bool:
+        """Whether a text beside a load along a line is no longer than that."""
+        run, (width, height) = np.abs(np.subtract(load.end, load.start)), text_size(text, TYPE)
+        beside = abs(load.force[0]) > abs(load.force[1])
+        return bool(run[1] >= height * self.sketch.point if beside else run[0] >= width * self.sketch.point)
 
     def _draw(self, action: Action, live: bool) -> None:
         colour, name = _look(live)
@@ -177,7 +208,6 @@ class LoadDrawing:
         of = block[np.minimum(np.searchsorted(parts[:, 1], places), len(block) - 1)]
         along_it = zip(np.array(load.start) + places[:, None] * run, of, strict=True)
         tips = np.array([self.shape.drawn_at(*end) for end in along_it])
-        text = times_lambda(readable(math.hypot(*load.force), "N/m"), live=live)
         middle = np.add(load.start, load.end) / 2
         is_shear = abs(along @ direction) > 0.97
         away = np.array([-along[1], along[0]]) if is_shear else -direction
@@ -205,7 +235,8 @@ class LoadDrawing:
         ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
         outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ away))
         spots = [Spot(outer, _side(away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
-        self.sketch.label(text, spots, colour)
+        if text := self.sizes[id(load)]:
+            self.sketch.label(text, spots, colour)
 
     def _beam(self, load: BeamLoad, live: bool) -> None:
         """A force on the beam, up to its edge; a displacement that it is given in the colour of motions."""
@@ -288,6 +319,11 @@ class LoadDrawing:
             ends = ends - 0.6 * a * inwards
         self.rows.append(np.array([ends.min(axis=0), ends.max(axis=0)]))
         tails, tips = ends[: len(places)], ends[len(places) :]
+        outside = [
+            not shapely.intersects(self.ground, shapely.LineString(ends)) for ends in zip(tails, tips, strict=True)
+        ]
+        if any(outside):
+            tails, tips = tails[outside], tips[outside]
         for tail, tip in zip(tails, tips, strict=True):
             self.sketch.arrow(name, [tail, tip], colour)
         highest = max(tails, key=lambda tail: float(tail[1])) + 0.3 * a * direction
@@ -305,6 +341,15 @@ def _look(live: bool) -> tuple[str, str]:
 def _largest(loads: Sequence[Action]) -> float:
     """The largest size of loads along lines [N/m]; 0 without one."""
     return max((math.hypot(*each.force) for each in loads if isinstance(each, LineLoad)), default=0.0)
+
+
+def _chains(loads: Sequence[LineLoad], reach: float) -> Indices:
+    """Which chain each load along a line is of ``(n,)``: of loads of one direction that end where others begin."""
+    ends = np.array([(each.start, each.end) for each in loads]).reshape(-1, 2, 2)
+    ways = np.array([unit_vector(np.array(each.force)) for each in loads]).reshape(-1, 2)
+    apart = np.abs(ends[:, None, :, None] - ends[None, :, None, :]).max(axis=4).min(axis=(2, 3))
+    meet = (apart <= reach) & (np.abs(ways[:, None] - ways[None]).max(axis=2) <= 1e-6)
+    return components(np.argwhere(meet), len(loads))
 
 
 def _side(direction: Array) -> tuple[float, float]:

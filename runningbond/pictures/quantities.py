@@ -15,6 +15,13 @@ def readable(value: float, unit: str) -> str:
     return f"{minus(value / size)} {PREFIXES[size]}{unit}"
 
 
+def span(values: Sequence[float], unit: str) -> str:
+    """The least and the largest of some values in SI, in the multiple of their unit that suits the largest."""
+    size = _multiple(max(values, key=abs))
+    least, most = (minus(one / size) for one in (min(values), max(values)))
+    return f"{least} … {most} {PREFIXES[size]}{unit}" if least != most else f"{most} {PREFIXES[size]}{unit}"
+
+
 def pair(vector: Array, unit: str) -> str:
     """A vector ``(2,)`` in SI, in the multiple of its unit that suits the larger component."""
     size = _multiple(float(np.abs(vector).max()))

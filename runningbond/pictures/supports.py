@@ -1,10 +1,12 @@
 """What holds a wall: hatched ground, pins and rollers, supports that move, and what guides the beam."""
 
 import numpy as np
+import shapely
 from numpy.typing import ArrayLike
 
 from runningbond.results.mechanism import carried
 from runningbond.scene import Array, Mask, Settlement
+from runningbond.scene.polygons import outer_corners, polygonal_parts
 
 from .deformed_shape import DeformedShape
 from .labels import Spot
@@ -13,6 +15,9 @@ from .sketch import Sketch
 from .style import DARK, MOTION, SMALL_TYPE
 
 GREY = "0.45"
+
+DEPTH = 0.55
+"""How far ground is drawn below the lowest block, in lengths that marks are measured in: the scale is under it."""
 
 
 def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
@@ -25,7 +30,7 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
     for block in np.flatnonzero(scene.fixed & scene.wall):
         (x0, _), (x1, _) = scene.blocks.extent(int(block))
         colour = MOTION if moving[block] else GREY
-        _hatched(sketch, "support", [(x0, low[1]), (x1, low[1])], 0.55 * a, colour)
+        _hatched(sketch, "support", [(x0, low[1]), (x1, low[1])], DEPTH * a, colour)
     for block in ground:
         colour = MOTION if moving[block] else GREY
         outline = scene.blocks.polygon(int(block))
@@ -34,10 +39,11 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
             outline = np.array([(x0, low[1]), (x1, low[1])])
         drawn = np.array([shape.drawn_at(at, block) for at in outline])
         if is_level:
-            _hatched(sketch, "support", drawn, 0.55 * a, colour)
+            _hatched(sketch, "support", drawn, DEPTH * a, colour)
         else:
             look = {"fc": "0.87", "ec": DARK if colour == GREY else colour, "lw": 0.6, "zorder": 1.5}
-            sketch.area("support", drawn, counts=False, hatch="////" if moving[block] else "", **look)
+            for part in _above(drawn, low[1] - DEPTH * a):
+                sketch.area("support", part, counts=False, hatch="////" if moving[block] else "", **look)
     pins = scene.pins
     for block in np.unique(pins.block[pins.direction.any(axis=1)]):
         own = (pins.block == block) & pins.direction.any(axis=1)
@@ -130,11 +136,21 @@ def draw_scale(sketch: Sketch, shape: DeformedShape) -> None:
     (left, base), (right, _) = shape.scene.blocks.extent(shape.scene.wall)
     length, a = round_length((right - left) / 4), sketch.a
     lowest = (sketch.room() or (0.0, 0.0, base))[2]
-    level = min(lowest, float(shape.placed[:, 1].min()), base - 0.55 * a) - 0.8 * a
+    level = min(lowest, float(shape.placed[:, 1].min()), base - DEPTH * a) - 0.8 * a
     for x in (left, left + length):
         sketch.line("scale", [(x, level - 0.25 * a), (x, level + 0.25 * a)], lw=0.7)
     sketch.line("scale", [(left, level), (left + length, level)], lw=0.7)
     sketch.label(f"{length:g} m", [Spot(np.array([left + length, level]), (1.0, 0.0))], size=SMALL_TYPE)
+
+
+def _above(outline: Array, level: float) -> list[Array]:
+    """Parts of a polygon ``(n, 2)`` above a level [m]."""
+    (left, _), (right, top) = outline.min(axis=0), outline.max(axis=0)
+    if outline[:, 1].min() >= level or top <= level:
+        return [outline]
+    return [
+        outer_corners(part) for part in polygonal_parts(shapely.Polygon(outline) & shapely.box(left, level, right, top))
+    ]
 
 
 def _hatched(sketch: Sketch, name: str, surface: ArrayLike, depth: float, colour: str = GREY) -> None:

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import FancyArrowPatch, Patch
+from matplotlib.patches import FancyArrowPatch, Patch, Polygon
 from matplotlib.text import Text
 
 from runningbond.joints import wall_points
@@ -29,7 +29,19 @@ from runningbond.pictures.quantities import counted, millimetres, pair, readable
 from runningbond.pictures.style import BEAM, BLOCK_COLOURS, DARK, DEAD, DRAWN, HELD, JOINT_COLOURS, MOTION
 from runningbond.results import Outcome
 from runningbond.results.reactions import Supports
-from runningbond.scene import Action, Array, Forces, Scene, read_scene, scene_from_dict
+from runningbond.scene import (
+    Action,
+    Array,
+    BlockMaterial,
+    Forces,
+    JointMaterial,
+    Lateral,
+    Load,
+    Scene,
+    build_scene,
+    read_scene,
+    scene_from_dict,
+)
 
 from ..scene.test_loads import Wind
 from .scenes import MORTAR, SCENES, facade, large, line, on_a_step, point, settling_portal, wall
@@ -235,6 +247,59 @@ def test_pressures_beside_one_another_are_drawn_in_proportion_and_at_the_wall() 
     least, middle, most = sorted(lengths)
     assert most - middle == pytest.approx(middle - least, abs=1e-5)
     assert max(lengths[most]) == pytest.approx(min(lengths[middle]))
+
+
+@pytest.mark.parametrize(
+    ("count", "said"),
+    [(4, ["1 kN/m", "2 kN/m", "3 kN/m", "4 kN/m", "λ · weight"]), (21, ["1 … 21 kN/m", "λ · weight"])],
+)
+def test_a_filling_of_many_loads_is_said_once(count: int, said: list[str]) -> None:
+    """On an arch a load a stone: 21 sizes stood in a heap above it, some of them on its stones."""
+    ends = np.linspace(0.0, 2.0, count + 1)
+    fill = [{"kind": "line", "from": [a, 1], "to": [b, 1]} for a, b in pairwise(ends)]
+    dead = [one | {"force": [0, -1e3 * (k + 1)]} for k, one in enumerate(fill)]
+    load = {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": dead}
+    figure = figure_of(scene_from_dict(wall(2.0, 1.0) | {"load": load}))
+    assert sorted(labels(figure)) == said
+    assert_legible(figure)
+    assert arrows(figure)["dead load"] >= 2 * count
+
+
+def test_pressures_that_have_room_keep_their_sizes() -> None:
+    """Earth in eight steps beside a wall of 4 m, each higher than its words."""
+    levels = np.linspace(0.0, 4.0, 9)
+    earth = [{"kind": "line", "from": [0, a], "to": [0, b], "force": [1e3 * (4 - a), 0]} for a, b in pairwise(levels)]
+    load = {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": earth}
+    figure = figure_of(scene_from_dict(wall(1.0, 4.0) | {"load": load}))
+    assert len(labels(figure)) == 9
+
+
+def on_a_slope(sense: float) -> Scene:
+    """A block of 1 m by 2 m across ground that rises by a quarter of its way, 3 m deep."""
+    foot, lean = np.array([1.0, 0.25]), np.array([-0.5, 2.0])
+    return build_scene(
+        "slope",
+        [np.array([[0.0, 0.0], foot, foot + lean, lean])],
+        grounds=[np.array([[-2.0, -3.0], [4.0, -3.0], [4.0, 1.0], [-2.0, -0.5]])],
+        thickness=0.3,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.7),
+        load=Load(live=(Lateral((sense, 0.0)),)),
+    )
+
+
+@pytest.mark.parametrize(("sense", "pushes"), [(1.0, 5), (-1.0, 4)])
+def test_drawn_ground_leaves_the_scale_and_the_loads_free(sense: float, pushes: int) -> None:
+    """The scale stands below what is drawn of it, however deep it is, and no arrow lies in it."""
+    scene = on_a_slope(sense)
+    figure = figure_of(scene)
+    (ground,) = named(figure, "support", Polygon)
+    bar = max(line.get_ydata().max() for line in named(figure, "scale", Line2D))
+    assert bar < ground.get_xy()[:, 1].min() < 0
+    body = shapely.Polygon(scene.blocks.polygon(1))
+    found = named(figure, "live load", FancyArrowPatch)
+    assert len(found) == pushes
+    assert not any(shapely.LineString(arrow._path_original.vertices).intersects(body) for arrow in found)
 
 
 def faces(figure: Figure) -> Array:
