@@ -157,7 +157,7 @@ def _kind(scene: Scene, load: Action) -> str:
 
 def _settlement(scene: Scene, load: Settlement) -> str:
     moving = counted(int(load.moving(scene).sum()), "support")
-    parts = [f"by ({', '.join(millimetres(x) for x in load.by)})"] if any(load.by) else []
+    parts = [f"moved by ({', '.join(millimetres(x) for x in load.by)})"] if any(load.by) else []
     parts += [f"turned by {minus(load.rotation_angle)}°"] if load.rotation_angle else []
     times = "" if load.path == (1.0,) else f", {beginning([f'{share:g}' for share in load.path])} times that"
-    return f"{moving} moved {' and '.join(parts)}{times}; λ is the share of the reaction"
+    return f"{moving} {' and '.join(parts)}{times}; λ is the share of the reaction"

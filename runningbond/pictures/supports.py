@@ -35,15 +35,13 @@ def draw_supports(sketch: Sketch, shape: DeformedShape) -> None:
         colour = MOTION if moving[block] else GREY
         outline = scene.blocks.polygon(int(block))
         if is_level:
-            x0, x1 = outline[:, 0].min(), outline[:, 0].max()
-            outline = np.array([(x0, low[1]), (x1, low[1])])
-        drawn = np.array([shape.drawn_at(at, block) for at in outline])
-        if is_level:
-            _hatched(sketch, "support", drawn, DEPTH * a, colour)
-        else:
-            look = {"fc": "0.87", "ec": DARK if colour == GREY else colour, "lw": 0.6, "zorder": 1.5}
-            for part in _above(drawn, low[1] - DEPTH * a):
-                sketch.area("support", part, counts=False, hatch="////" if moving[block] else "", **look)
+            ends = np.array([(outline[:, 0].min(), low[1]), (outline[:, 0].max(), low[1])])
+            _hatched(sketch, "support", [shape.drawn_at(at, block) for at in ends], DEPTH * a, colour)
+            continue
+        look = {"fc": "0.87", "ec": DARK if colour == GREY else colour, "lw": 0.6, "zorder": 1.5}
+        for part in _above(outline, low[1] - DEPTH * a):
+            drawn = [shape.drawn_at(at, block) for at in part]
+            sketch.area("support", drawn, counts=False, hatch="////" if moving[block] else "", **look)
     pins = scene.pins
     for block in np.unique(pins.block[pins.direction.any(axis=1)]):
         own = (pins.block == block) & pins.direction.any(axis=1)
@@ -69,7 +67,8 @@ def _draw_motion(sketch: Sketch, shape: DeformedShape, settlement: Settlement, m
     surface = np.stack([ends, np.repeat(level[:, None], 2, axis=1)], axis=2)
     moved = carried(scene.blocks, np.repeat(numbers, 2), surface.reshape(-1, 2), farthest * settlement.motion(scene))
     visible = 1.1 * a / np.hypot(*moved.T).max() * moved.reshape(-1, 2, 2)
-    at = np.array([(ends.min() + ends.max()) / 2, level.min() - 0.9 * a])
+    below = min(float(level.min()), low[1] - DEPTH * a)  # of what is drawn of the ground
+    at = np.array([(ends.min() + ends.max()) / 2, below - 0.75 * a])
     drawn = shape.drawn_displacement(numbers[:1], at)
     for line in surface + visible if not drawn.any() else []:
         sketch.line("motion", line, color=MOTION, lw=1.0, ls=(0, (3, 1.5)))
@@ -135,8 +134,9 @@ def draw_scale(sketch: Sketch, shape: DeformedShape) -> None:
     """A bar of a round length, below everything else."""
     (left, base), (right, _) = shape.scene.blocks.extent(shape.scene.wall)
     length, a = round_length((right - left) / 4), sketch.a
-    lowest = (sketch.room() or (0.0, 0.0, base))[2]
-    level = min(lowest, float(shape.placed[:, 1].min()), base - DEPTH * a) - 0.8 * a
+    lowest = [(sketch.room() or (0.0, 0.0, base))[2], float(shape.placed[:, 1].min()), base - DEPTH * a]
+    ground = [float(mark.points[:, 1].min()) for mark in sketch.marks if mark.name == "support"]
+    level = min(*lowest, *ground) - 0.8 * a
     for x in (left, left + length):
         sketch.line("scale", [(x, level - 0.25 * a), (x, level + 0.25 * a)], lw=0.7)
     sketch.line("scale", [(left, level), (left + length, level)], lw=0.7)

@@ -112,6 +112,9 @@ def test_supports_are_told() -> None:
     assert told["supports"] == "ground in 2 pieces"
     assert told["load.live"] == "1 support moved by (−5 mm, 0 mm) and turned by 0.5°; λ is the share of the reaction"
     assert "live load at λ = 1" not in told
+    turns = {"kind": "settlement", "box": [[1.0, -1.0], [3.0, 0.0]], "rotation_angle": -1.0}
+    told = dict(rows(scene_from_dict(wall(2.0, 1.0, load={"gravity": 9.81, "live": turns}))))
+    assert told["load.live"] == "1 support turned by −1°; λ is the share of the reaction"
     held = scene_from_dict(wall(2.0, 1.0, support={"kind": "fixed-first-course"}))
     assert dict(rows(held))["supports"] == "4 fixed blocks"
 

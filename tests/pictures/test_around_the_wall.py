@@ -38,6 +38,7 @@ from runningbond.scene import (
     Lateral,
     Load,
     Scene,
+    Settlement,
     build_scene,
     read_scene,
     scene_from_dict,
@@ -300,6 +301,40 @@ def test_drawn_ground_leaves_the_scale_and_the_loads_free(sense: float, pushes: 
     found = named(figure, "live load", FancyArrowPatch)
     assert len(found) == pushes
     assert not any(shapely.LineString(arrow._path_original.vertices).intersects(body) for arrow in found)
+
+
+@pytest.mark.parametrize("by", [(0.02, 0.0), (0.0, -0.02), (0.0, 0.02)])
+@pytest.mark.parametrize("step", [0.0, 0.1])
+def test_the_motion_of_ground_is_said_beside_it(step: float, by: tuple[float, float]) -> None:
+    """Level ground or one in steps, of which the lower one moves: its arrow and size stood on what is drawn of it.
+
+    Where it has moved to it is as deep as it was.
+    """
+    rows = [(0.0, 0.0), (2.0, -step)]
+    scene = build_scene(
+        "two piers",
+        [np.array([[x, y], [x + 1, y], [x + 1, 2.0], [x, 2.0]]) for x, y in rows],
+        grounds=[np.array([[x - 1, -3.0], [x + 1, -3.0], [x + 1, y], [x - 1, y]]) for x, y in rows],
+        thickness=0.3,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.7),
+        load=Load(live=(Settlement(((1.1, -4.0), (9.0, 0.0)), by),)),
+    )
+    motion = np.where(scene.blocks.centroid[:, :1] > 1.5, [[*by, 0.0]], 0.0) / 0.02
+    depths = []
+    for outcome in (None, Outcome("", "limit", "collapse", 0.4, motion=motion)):
+        figure = figure_of(scene, outcome)
+        ground = [one.get_xy() for one in named(figure, "support", Patch) if same_color(one.get_edgecolor(), MOTION)]
+        (own,) = [one for one in ground if one[:, 0].min() > 0.9]
+        depths.append(np.ptp(own[:, 1]))
+        figure.draw_without_rendering()
+        inverse = figure.axes[0].transData.inverted()
+        (size,) = [text for text in figure.axes[0].texts if text.get_text() == "20 mm"]
+        top = inverse.transform(size.get_window_extent())[1, 1]
+        assert top < own[:, 1].min() + 0.01
+        (arrow,) = named(figure, "motion", FancyArrowPatch)
+        assert arrow._path_original.vertices[:, 1].max() < own[:, 1].min()
+    assert depths[0] == pytest.approx(depths[1], rel=0.1)
 
 
 def faces(figure: Figure) -> Array:
