@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from shapely import affinity
 
 from runningbond.scene import (
     Action,
@@ -43,6 +44,10 @@ MANY = 4
 """Forces of one load, and loads along one line, up to which each has a size of its own; of more, if there is room."""
 
 
+ONWARD = 0.5
+"""Cosine of the turn up to which a load along a line goes on where another ends."""
+
+
 class LoadDrawing:
     """Draws the loads of a wall into a sketch, one after another, each clear of those before it."""
 
@@ -52,6 +57,7 @@ class LoadDrawing:
         ground = np.flatnonzero(~self.scene.wall)
         self.ground = shapely.union_all([shapely.Polygon(self.scene.blocks.polygon(int(k))) for k in ground])
         self.rows: list[Array] = []
+        self.strips: list[shapely.Geometry] = []
         self.alone: list[Array] = []
         self.turns: list[tuple[Array, float]] = []
         self.pushes: dict[tuple[bool, float, float], list[str]] = {}
@@ -222,10 +228,11 @@ class LoadDrawing:
         both = np.concatenate([tips - (0.9 if is_shear else 1.5) * share * a * direction, tips])
         air = 0.35 * a * away if is_shear else np.zeros(2)
         inner = 1e-3 * (np.mean(both @ along) - both @ along)[:, None] * along  # rows may go on where others end
-        while not within and any(
-            _meet(np.concatenate([both - air, both + air]) + np.tile(inner, (2, 1)), box) for box in self.rows
-        ):
-            both = both + 0.5 * a * away
+        strip = shapely.MultiPoint(np.concatenate([both - air, both + air]) + np.tile(inner, (2, 1))).convex_hull
+        step = 0.5 * a * away
+        while not within and any(shapely.area(strip & other) > 1e-9 * strip.area for other in self.strips):
+            both, strip = both + step, affinity.translate(strip, *step)
+        self.strips.append(strip)
         tails, tips = both[:n], both[n:]
         self.rows.append(np.array([both.min(axis=0), both.max(axis=0)]))
         for tail, tip in zip(tails, tips, strict=True):
@@ -344,12 +351,12 @@ def _largest(loads: Sequence[Action]) -> float:
 
 
 def _chains(loads: Sequence[LineLoad], reach: float) -> Indices:
-    """Which chain each load along a line is of ``(n,)``: of loads of one direction that end where others begin."""
+    """Which chain each load along a line is of ``(n,)``: of loads that go on where others end, and do not turn back."""
     ends = np.array([(each.start, each.end) for each in loads]).reshape(-1, 2, 2)
-    ways = np.array([unit_vector(np.array(each.force)) for each in loads]).reshape(-1, 2)
-    apart = np.abs(ends[:, None, :, None] - ends[None, :, None, :]).max(axis=4).min(axis=(2, 3))
-    meet = (apart <= reach) & (np.abs(ways[:, None] - ways[None]).max(axis=2) <= 1e-6)
-    return components(np.argwhere(meet), len(loads))
+    away = (ends[:, ::-1] - ends) / np.hypot(*(ends[:, 1] - ends[:, 0]).T)[:, None, None]
+    apart = np.abs(ends[:, None, :, None] - ends[None, :, None, :]).max(axis=4)
+    straight = np.einsum("aik,bjk->abij", away, away) < -ONWARD
+    return components(np.argwhere(((apart <= reach) & straight).any(axis=(2, 3))), len(loads))
 
 
 def _side(direction: Array) -> tuple[float, float]:

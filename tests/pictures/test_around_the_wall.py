@@ -36,6 +36,7 @@ from runningbond.scene import (
     Forces,
     JointMaterial,
     Lateral,
+    LineLoad,
     Load,
     Scene,
     Settlement,
@@ -273,6 +274,31 @@ def test_pressures_that_have_room_keep_their_sizes() -> None:
     load = {"gravity": 9.81, "live": {"kind": "lateral"}, "dead": earth}
     figure = figure_of(scene_from_dict(wall(1.0, 4.0) | {"load": load}))
     assert len(labels(figure)) == 9
+
+
+def test_earth_around_an_arch_is_drawn_at_it_and_said_once() -> None:
+    """A load a stone, of its own size and direction: rows that slant do not push each other away from it."""
+    ray = np.exp(1j * np.linspace(np.pi, 0, 14))
+    stones = [[0.8 * ray[k + 1], ray[k + 1], ray[k], 0.8 * ray[k]] for k in range(13)]
+    inwards = -(ray[1:] + ray[:-1]) / np.abs(ray[1:] + ray[:-1])
+    xy = [np.column_stack([np.real(one), np.imag(one)]) for one in stones]
+    earth = [
+        LineLoad(tuple(xy[k][2]), tuple(xy[k][1]), ((8e3 + 100 * k) * way.real, (8e3 + 100 * k) * way.imag))
+        for k, way in enumerate(inwards)
+    ]
+    scene = build_scene(
+        "cellar",
+        xy,
+        thickness=1.0,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.7),
+        load=Load(live=(Lateral(),), dead=tuple(earth)),
+    )
+    figure = figure_of(scene)
+    assert sorted(labels(figure)) == ["8 … 9.2 kN/m", "λ · weight"]
+    tips = [arrow._path_original.vertices[-1] for arrow in named(figure, "dead load", FancyArrowPatch)]
+    around = shapely.LineString(np.column_stack([ray.real, ray.imag]))
+    assert max(around.distance(shapely.Point(tip)) for tip in tips) < 1e-9
 
 
 def on_a_slope(sense: float) -> Scene:
