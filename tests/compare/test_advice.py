@@ -213,6 +213,16 @@ def test_no_fall_is_told_above_the_bound() -> None:
     assert found.lowest == 0.85
 
 
+def test_others_are_said_to_end_from_a_load_on_that_is_below_the_answer() -> None:
+    """A fall of the histories themselves is in their bracket, and no other end."""
+    certified_lower = known(1.0, (0.5, 0.9), (0.8, 0.81))
+    assert "; others may end from 0.5000 on, or lower; above 1.0000" in certified_lower.meaning()
+    alone = Knowledge(published_scene("wall-w3"), 0.05)
+    alone.bound = 1.0
+    alone.learn(HISTORY, collapse(HISTORY.name, 0.8, 0.81))
+    assert "; others may end lower; above 1.0000" in alone.meaning()
+
+
 def bracket_of(found: Knowledge) -> tuple[float | None, float | None]:
     assert found.answer is not None
     return found.answer.lower, found.answer.upper

@@ -175,9 +175,9 @@ class Knowledge:
             if self.answer.upper is None:
                 seen = ", but a history locks: it takes other forces in joints than the load alone brings about"
             return f"{self._certified(self.answer)}{seen}; smaller ones are not excluded{above}"
-        below = "" if self.lowest is None else f"; others may end from {number(self.lowest)} on, or lower"
-        if self.lowest is not None and self.bound is not None and number(self.lowest) == number(self.bound):
-            below = "; others may end lower"
+        below = "" if self.lowest is None else "; others may end lower"
+        if self.lowest is not None and self.lowest < (self.answer.lower or 0.0):
+            below = f"; others may end from {number(self.lowest)} on, or lower"
         told = "one history" if self.draws == 1 else f"{self.draws} histories that differ in their last bits"
         if self.draws == 1 and self.answer.fall is not None:
             told = "the lowest and the highest of its paths in load steps of several lengths"
