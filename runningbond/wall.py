@@ -438,6 +438,10 @@ def _merged(old: Mapping[Any, Any], new: Mapping[Any, Any], name: str = "") -> d
         before, full_name = merged.get(key), _full_name(name, key)
         if isinstance(key, int) and key not in old:
             raise SceneError(full_name, f"is not there; {name} has {len(old)}, numbered from 0", value)
+        numbered = isinstance(key, str) and key not in old and re.fullmatch(r"(.+?)\[\d+\]", key)
+        if numbered and isinstance(old.get(numbered[1]), Mapping):
+            only = _full_name(name, numbered[1])
+            raise SceneError(full_name, f"is no entry of a list: {only} is one table, whose keys are {only}.…", value)
         if isinstance(value, Mapping) and not isinstance(value.get("kind"), str):  # but a material of that name
             if not isinstance(before, list):
                 merged[key] = _merged(before if isinstance(before, Mapping) else {}, value, full_name)

@@ -311,7 +311,10 @@ def test_a_wall_is_drawn_into_axes_that_are_given() -> None:
             ),
             "load.dead[1] = {'acceleration': [0, -2]}: is not there; load.dead has 1, numbered from 0",
         ),
-        (lambda wall: wall.with_({"load.live[0].direction": "left"}), "load.live[0] = 'a table': is not a key"),
+        (
+            lambda wall: wall.with_({"load.live[0].direction": "left"}),
+            "is no entry of a list: load.live is one table, whose keys are load.live.…",
+        ),
         (
             lambda wall: wall.with_({"load.live": [{"kind": "lateral"}]}).with_({"load.live": {}}),
             "is a list, which is changed as a whole, or by entry, load.live[0]",
