@@ -93,9 +93,9 @@ class History(Action):
         """Time until the record ends [s]."""
         return float(self.time[-1])
 
-    @property
+    @cached_property
     def resolution(self) -> float:
-        """As `interval`."""
+        """As `interval`; a motion asks for it every few steps, and a record may have many samples."""
         return self.interval or float(np.diff(self.time).min() / 2)
 
     @cached_property
@@ -132,8 +132,10 @@ class History(Action):
         now = np.where(begun, self._velocity(np.clip(time, 0.0, self.duration)), 0.0)
         if self.quantity == "displacement":
             return np.where(over, 0.0, now)
+        if not self.holds:
+            return np.asarray(now)
         beyond = np.maximum(0.0, time - self.duration)[..., None] * self._acceleration(self.duration)
-        return np.asarray(now + (beyond if self.holds else 0.0))
+        return np.asarray(now + beyond)
 
     def acceleration(self, time: Array | float) -> Array:
         """Acceleration of the ground ``(…, 2)`` at some times [m/s²]."""

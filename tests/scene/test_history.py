@@ -95,6 +95,21 @@ def test_the_ground_is_at_rest_before_its_record_and_keeps_what_it_came_to() -> 
         assert history.note(2.0).endswith(f"g, and has {2 * first:.4g} m/s at once as the record begins")
 
 
+def test_samples_are_gone_through_once_and_not_at_each_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A motion asks every few steps how finely its record is sampled: of a long one that took longer than the wall."""
+    history = History(np.array([0.0, 0.01, 0.02, 0.03]), np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 0.0]]))
+    plain, gone_through = np.diff, 0
+
+    def counted(values: Any, *rest: Any, **more: Any) -> Any:
+        nonlocal gone_through
+        gone_through += values is history.time
+        return plain(values, *rest, **more)
+
+    monkeypatch.setattr(np, "diff", counted)
+    assert np.allclose([history.resolution for _ in range(3)], 0.005)
+    assert gone_through == 1
+
+
 def test_a_ramp_stays_on_whatever_it_is_of() -> None:
     """An acceleration goes on; a ground that has come to its velocity is accelerated no more."""
     of_velocity = of({"pulse": {**SINE, "kind": "ramp"}, "quantity": "velocity"})
