@@ -52,9 +52,11 @@ class ContactMaterials:
                 raise SceneError(f"{table}.inset", what, material.inset)
         own, self._of_joint = scene.joint_materials, scene.material_of_joint
         self._broken = tuple(map(dry, own))
-        self._all = (*(each if each.is_bonded else dry(each) for each in own), *self._broken)
-        # Alike ones are taken for one, so that there are few rows of points.
-        self._alike = np.array([self._all.index(each) for each in self._all])
+        both = zip(own, self._broken, strict=True)
+        self._all = (*(each if each.is_bonded else broken for each, broken in both), *self._broken)
+        # Alike ones are taken for one, the first, so that there are few rows of points.
+        first: dict[JointMaterial, int] = {}
+        self._alike = np.array([first.setdefault(each, k) for k, each in enumerate(self._all)])
 
     def number(self, contacts: Contacts) -> Indices:
         """Number of the material of each end, ``(n,)``."""

@@ -62,10 +62,12 @@ def block_compliance(scene: Scene) -> float:
     of all joints where none is one. Blocks without a modulus are rigid; zero where joints have no stiffness.
     """
     beds = _beds(scene)
-    materials = [scene.joint_materials[k] for k in np.unique(scene.material_of_joint[beds])]
+    numbers = np.unique(scene.material_of_joint[beds])
+    materials = [scene.joint_materials[k] for k in numbers]
     if not materials or any(each.elasticity is None for each in materials):
         return 0.0
-    normal = np.array([joint_stiffness(each).normal if each in materials else np.inf for each in scene.joint_materials])
+    normal = np.full(len(scene.joint_materials), np.inf)
+    normal[numbers] = [joint_stiffness(each).normal for each in materials]
     young = np.array([np.inf if each.young is None else each.young for each in scene.block_materials])
     low, high = scene.blocks.boxes
     block, length = _upper(scene)[beds], scene.joints.length[beds]
