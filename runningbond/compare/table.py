@@ -69,8 +69,9 @@ def multiplier_sheets(comparison: Comparison) -> list[Sheet]:
     """Printed values and brackets, one table a group of scenes."""
     sheets = []
     for title, names in comparison.groups().items():
-        heads = ["title", *(x if x == CORRECTED else f"printed {x}" for x in comparison.labels(names))]
-        cells = {name: [comparison.scenes[name].title, *_printed(comparison, name, names)] for name in names}
+        labels = comparison.labels(names)
+        heads = ["title", *(x if x == CORRECTED else f"printed {x}" for x in labels)]
+        cells = {name: [comparison.scenes[name].title, *_printed(comparison, name, labels)] for name in names}
         sheets.append(_sheet(comparison, title, heads, cells, answer))
     return sheets
 
@@ -101,8 +102,8 @@ def csv_text(comparison: Comparison) -> str:
     heads = ["scene", "title", "source", "blocks", "model", "unit", *scalars, *(f"printed {label}" for label in labels)]
     rows: list[Sequence[object]] = [heads]
     for source, names in comparison.groups().items():
-        for name, model in product(names, comparison.models):
-            scene, printed, outcome = comparison.scenes[name], comparison.printed(name), comparison.outcome(name, model)
+        for (name, printed), model in product(((x, comparison.printed(x)) for x in names), comparison.models):
+            scene, outcome = comparison.scenes[name], comparison.outcome(name, model)
             values: Mapping[str, object] = {"status": "not run"}
             if outcome is not None:
                 values = outcome.summary()
@@ -120,10 +121,10 @@ def corrected_homo(scene: Scene) -> float:
     return multiplier
 
 
-def _printed(comparison: Comparison, name: str, names: Iterable[str]) -> list[str]:
-    """Values printed for one of some scenes, with the three decimals that papers give; empty where there is none."""
+def _printed(comparison: Comparison, name: str, labels: Iterable[str]) -> list[str]:
+    """Values printed for a scene, by label, with the three decimals that papers give; empty where there is none."""
     values = {x: number(y) if x == CORRECTED else f"{y:.3f}" for x, y in comparison.printed(name).items()}
-    return [values.get(label, "") for label in comparison.labels(names)]
+    return [values.get(label, "") for label in labels]
 
 
 def answer(outcome: Outcome) -> str:

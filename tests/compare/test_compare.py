@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
@@ -22,10 +23,10 @@ import pytest
 from dem.dynamic import dem_dynamic
 from dem.static import dem_static
 from fem_interface.model import fem
-from runningbond.campaigns import run_campaign
+from runningbond.campaigns import Campaign, run_campaign
 from runningbond.campaigns.fingerprint import fingerprint
 from runningbond.commands.command_line import command
-from runningbond.compare import PUBLISHED, published_scene
+from runningbond.compare import PUBLISHED, published_scene, table
 from runningbond.compare.figures import SLENDERNESS, TEXTURES, figure_6_data
 from runningbond.compare.published import FURTHER
 from runningbond.compare.table import corrected_homo
@@ -367,6 +368,25 @@ def test_comparison_writes_every_case_with_printed_values(tmp_path: Path, capsys
         assert all(name in text for name in walls)
         assert "0.1865" in text
     assert (tmp_path / "figure-6.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("write", [table.multiplier_sheets, table.csv_text])
+def test_the_corrected_value_of_a_panel_is_not_worked_out_for_each_other_one_or_model(
+    write: Callable[[table.Comparison], object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once for the labels and once for the value: it is a run of `homog`."""
+    panels = [case.name for case in PUBLISHED if case.name.startswith("panel")]
+    scenes = {name: published_scene(name) for name in panels}
+    published = {case.name: case for case in PUBLISHED if case.name in panels}
+    worked_out = Counter[str]()
+
+    def counted(scene: Scene) -> float:
+        worked_out[scene.title] += 1
+        return corrected_homo(scene)
+
+    monkeypatch.setattr(table, "corrected_homo", counted)
+    write(table.Comparison(scenes, list(MODELS.values()), Campaign(), published))
+    assert set(worked_out.values()) == {2}
 
 
 def test_every_model_is_compared_where_none_is_named(tmp_path: Path) -> None:
