@@ -103,7 +103,47 @@ class LineLoad(Action):
         np.minimum.at(share[:, 0], piece, (at - start) @ run / length**2)
         np.maximum.at(share[:, 1], piece, (at - start) @ run / length**2)
         long = share[:, 1] - share[:, 0] > 3 * reach / length
-        return close[of[long]], share[long]
+        return close[of[long]], self._met_in_crossings(scene, close[of[long]], share[long])
+
+    def _met_in_crossings(self, scene: "Scene", owner: Indices, share: Array) -> Array:
+        """The shares of blocks, ending and beginning at corners and in the joints that the line crosses, ``(n, 2)``.
+
+        Contact reaches beyond a joint, along the line the farther the flatter that crosses it: there it is on both.
+        """
+        crossings = [self._crossings(scene, *one) for one in zip(owner, share, strict=True)]
+        into, out = np.array(crossings).reshape(-1, 2).T
+        first_reaches = (share[:, :1] <= into) & (into <= share[:, 1:])
+        second_reaches = (share[:, 0] <= out[:, None]) & (out[:, None] <= share[:, 1])
+        left, entered = np.nonzero(first_reaches & second_reaches & (owner[:, None] != owner))
+        met = np.array([self._to_corners(scene, *one) for one in zip(owner, share, strict=True)]).reshape(-1, 2)
+        met[left, 1] = met[entered, 0] = (out[left] + into[entered]) / 2
+        return met
+
+    def _to_corners(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
+        """A block's share of the line, as far as the corners that the line passes and not as far as contact reaches."""
+        start, run, reach = np.array(self.start), np.subtract(self.end, self.start), scene.blocks.tolerance
+        length, corner = float(np.hypot(*run)), scene.blocks.polygon(block) - start
+        at = (corner @ run / length**2)[np.abs(corner @ [-run[1], run[0]]) / length <= reach]
+        first, last = (at[np.abs(at - end) <= 3 * reach / length] for end in share)
+        return max(min(first, default=-math.inf), share[0]), min(max(last, default=math.inf), share[1])
+
+    def _crossings(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
+        """Where the line enters and leaves a block as its share of it begins and ends; not a number where it does not.
+
+        An edge is crossed if its ends lie farther than contact reaches on either side of the line.
+        """
+        start, run, reach = np.array(self.start), np.subtract(self.end, self.start), scene.blocks.tolerance
+        length, first = float(np.hypot(*run)), scene.blocks.polygon(block)
+        edge = np.roll(first, -1, axis=0) - first
+        off, rise = (first - start) @ [-run[1], run[0]] / length, edge @ [-run[1], run[0]] / length
+        across = (np.minimum(off, off + rise) < -reach) & (np.maximum(off, off + rise) > reach)
+        off, rise, first, edge = off[across], rise[across], first[across], edge[across]
+        at = (first - off[:, None] / rise[:, None] * edge - start) @ run / length**2
+        # Rounding of the outline that contact reaches to, which has arcs at corners.
+        within = (1 + 1e-6) * reach * np.hypot(*edge.T) / np.abs(rise) / length
+        into = at[(rise < 0) & (np.abs(at - share[0]) <= within)]
+        out = at[(rise > 0) & (np.abs(at - share[1]) <= within)]
+        return min(into, default=math.nan), max(out, default=math.nan)
 
     def _each_part_once(self, scene: "Scene", owner: Indices, share: Array, cuts: Array) -> tuple[Indices, Array]:
         """Cut the line where blocks begin and end, and give each of its parts to one of the blocks there."""

@@ -238,6 +238,49 @@ def test_a_line_load_is_cut_at_the_joints_to_the_last_digit(ends: tuple[float, f
     assert load == pytest.approx(expected, abs=1e-12)
 
 
+@pytest.mark.parametrize("angle", [80.0, 40.0, 10.0, 1.0])
+@pytest.mark.parametrize("along", [True, False])
+def test_a_line_load_that_crosses_a_joint_is_cut_there_however_flat(angle: float, along: bool) -> None:
+    """Half of a line whose middle is on a head joint is on either block, about the middle of its own half.
+
+    Contact reaches along the joint the farther the flatter the line: all of that was on the block that the force
+    presses on, and of a force along the line it was refused as on neither.
+    """
+    run = 0.02 * np.array([np.sin(np.radians(angle)), -np.cos(np.radians(angle))])
+    middle, force = np.array([0.24, 0.03]), 5000 * run if along else np.array([0.0, -100.0])
+    live = {"kind": "line", "from": list(middle - run), "to": list(middle + run), "force": list(force)}
+    scene = panel(load__live=live)
+    load = live_load(scene).reshape(-1, 3)
+    for block, half in ((0, middle - run / 2), (1, middle + run / 2)):
+        arm = half - scene.blocks.centroid[block]
+        expected = 0.02 * np.array([*force, arm[0] * force[1] - arm[1] * force[0]])
+        assert load[block] == pytest.approx(expected, abs=1e-12)
+    assert not load[2:].any()
+
+
+def test_a_line_load_on_slanting_blocks_is_cut_at_their_corners() -> None:
+    """Two blocks on the ground with a slanting joint, a gap, and a third: each has what lies on its top, to rounding.
+
+    Contact reaches beyond a slanting side to one side only, and past a corner beside a gap.
+    """
+    tops = [(0.0, 0.4), (0.4, 0.7), (0.9, 1.3)]
+    outlines = [
+        np.array([[0, 0], [0.2, 0], [0.4, 0.3], [0, 0.3]]),
+        np.array([[0.2, 0], [0.7, 0], [0.7, 0.3], [0.4, 0.3]]),
+        np.array([[0.9, 0], [1.3, 0], [1.3, 0.3], [0.9, 0.3]]),
+        np.array([[0.0, 0.3], [1.3, 0.3], [1.3, 0.5], [0.0, 0.5]]),
+    ]
+    line = LineLoad((0.1, 0.3), (1.2, 0.3), (0.0, -1000.0))
+    load = Load((0.0, -9.81), (Lateral(),), (line,))
+    scene = build_scene(
+        "gap", outlines, thickness=0.1, block=BlockMaterial(1800.0), joint=JointMaterial(0.6), load=load
+    )
+    forces = line.forces(scene)
+    borne = -np.bincount(forces.block, forces.force[:, 1], len(scene.blocks))[:4]
+    under = [1000 * (min(high, 1.2) - max(low, 0.1)) for low, high in tops]
+    assert borne == pytest.approx(np.array([*under, 1100 - sum(under)]), abs=1e-9)
+
+
 @pytest.mark.parametrize("along", [0.0, 800.0, -3000.0, 1e5])
 def test_a_line_load_in_a_bed_joint_is_on_the_block_that_its_part_across_presses_on(along: float) -> None:
     """However inclined it is, as a hair below the joint; inclined ones went to the course above and below by turns."""
