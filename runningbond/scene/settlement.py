@@ -31,7 +31,7 @@ class Settlement(Action):
     Parameters
     ----------
     box
-        Lower left and upper right corner [m]. Ground is cut at its left and right side; what is inside moves.
+        Lower left and upper right corner [m]. Ground is cut at its sides and its top; what is inside moves.
     by
         Displacement [m] at λ = 1.
     rotation_angle
@@ -90,7 +90,9 @@ class Settlement(Action):
         middle = (np.bincount(body, area * scene.blocks.centroid[:, 0]) / np.bincount(body, area))[body]
         bottom, top = (ends[:, 1] for ends in scene.blocks.boxes)
         level = (np.bincount(body, (bottom < high[1]) & (top > low[1])) > 0)[body]
-        moving: Mask = scene.fixed & level & (middle > low[0]) & (middle < high[0])
+        # Ground is cut at the box's top as well: what rises above it is the rest, which may bridge the box.
+        inside = scene.wall | (top < self.box[1][1] + 2 * scene.blocks.tolerance)
+        moving: Mask = scene.fixed & level & inside & (middle > low[0]) & (middle < high[0])
         return moving
 
     def motion(self, scene: "Scene") -> Array:

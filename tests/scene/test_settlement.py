@@ -69,3 +69,18 @@ def test_a_held_block_that_may_crack_moves_whole_or_stays(side: float) -> None:
     assert np.array_equal(pieces, np.flatnonzero(np.isin(cut.part_of, moving)))
     found = [run_model("limit", scene).multiplier for scene in (whole, cut)]
     assert found[0] == pytest.approx(found[1], rel=1e-6)
+
+
+@pytest.mark.parametrize("right", [-0.5, 0.0, 1.0])
+def test_ground_that_rises_above_a_box_stays_where_it_is(right: float, tmp_path: Any) -> None:
+    """A terrace sinks beneath one of two like piers, and bears half of their weight; the bank with the other one stays.
+
+    However far under the bank the box reaches: with its middle in the box the whole ground sank, and bore all of it.
+    """
+    blocks = [box_of(-1000.0, -500.0, -700.0, -200.0), box_of(0.0, 0.0, 300.0, 300.0)]
+    ground = [(-1200, -900), (1500, -900), (1500, 0), (-500, 0), (-500, -500), (-1200, -500)]
+    path = dxf(tmp_path / "wall.dxf", closed(blocks), closed([ground], layer="ground"), ground=False)
+    live = {"kind": "settlement", "box": [[-2.0, -1.0], [right, -0.4]], "by": [0.0, -0.01]}
+    load = {"gravity": 9.81, "live": live}
+    scene = scene_from_dict(tables(thickness=0.2) | {"load": load}, folder=path.parent)
+    assert run_model("limit", scene).multiplier == pytest.approx(0.5, rel=1e-9)
