@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 NOWHERE = np.zeros(0)
 """Shares of a line at which it is cut: none."""
 
+STEEP = 10
+"""Rise of an edge from a line [contact's reach] above which an end on the line says where they cross."""
+
 
 @dataclass(frozen=True)
 class PointLoad(Action):
@@ -112,9 +115,14 @@ class LineLoad(Action):
         """
         crossings = [self._crossings(scene, *one) for one in zip(owner, share, strict=True)]
         into, out = np.array(crossings).reshape(-1, 2).T
+        reach = scene.blocks.tolerance / float(np.hypot(*np.subtract(self.end, self.start)))
         first_reaches = (share[:, :1] <= into) & (into <= share[:, 1:])
         second_reaches = (share[:, 0] <= out[:, None]) & (out[:, None] <= share[:, 1])
         left, entered = np.nonzero(first_reaches & second_reaches & (owner[:, None] != owner))
+        # Of two beside a joint that the line lies in, one may begin in the middle of the other.
+        beyond = (share[left, 1] - out[left]) + (into[entered] - share[entered, 0]) + 3 * reach
+        is_one = np.abs(out[left] - into[entered]) <= beyond
+        left, entered = left[is_one], entered[is_one]
         met = np.array([self._to_corners(scene, *one) for one in zip(owner, share, strict=True)]).reshape(-1, 2)
         met[left, 1] = met[entered, 0] = (out[left] + into[entered]) / 2
         return met
@@ -130,20 +138,23 @@ class LineLoad(Action):
     def _crossings(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
         """Where the line enters and leaves a block as its share of it begins and ends; not a number where it does not.
 
-        An edge is crossed if its ends lie farther than contact reaches on either side of the line.
+        An edge is crossed if its ends lie farther than contact reaches on either side of the line, and a steep one also
+        where it has an end on the line: all edges of a corner that the line passes, where it may only touch the block.
         """
         start, run, reach = np.array(self.start), np.subtract(self.end, self.start), scene.blocks.tolerance
         length, first = float(np.hypot(*run)), scene.blocks.polygon(block)
         edge = np.roll(first, -1, axis=0) - first
         off, rise = (first - start) @ [-run[1], run[0]] / length, edge @ [-run[1], run[0]] / length
-        across = (np.minimum(off, off + rise) < -reach) & (np.maximum(off, off + rise) > reach)
+        low, high = np.minimum(off, off + rise), np.maximum(off, off + rise)
+        across = (low < -reach) & (high > reach)
+        across |= (low <= reach) & (high >= -reach) & (high - low > STEEP * reach)
         off, rise, first, edge = off[across], rise[across], first[across], edge[across]
         at = (first - off[:, None] / rise[:, None] * edge - start) @ run / length**2
         # Rounding of the outline that contact reaches to, which has arcs at corners.
         within = (1 + 1e-6) * reach * np.hypot(*edge.T) / np.abs(rise) / length
         into = at[(rise < 0) & (np.abs(at - share[0]) <= within)]
         out = at[(rise > 0) & (np.abs(at - share[1]) <= within)]
-        return min(into, default=math.nan), max(out, default=math.nan)
+        return max(into, default=math.nan), min(out, default=math.nan)
 
     def _each_part_once(self, scene: "Scene", owner: Indices, share: Array, cuts: Array) -> tuple[Indices, Array]:
         """Cut the line where blocks begin and end, and give each of its parts to one of the blocks there."""

@@ -258,6 +258,26 @@ def test_a_line_load_that_crosses_a_joint_is_cut_there_however_flat(angle: float
     assert not load[2:].any()
 
 
+@pytest.mark.parametrize("angle", [60.0, 20.0, 4.0, 0.5])
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("along", [True, False])
+def test_a_line_load_through_a_corner_that_it_touches_is_cut_there(angle: float, sense: float, along: bool) -> None:
+    """Where a head joint ends at the stone above, a line comes from that beside it and passes the other's corner.
+
+    Contact with that one reaches along the line the farther the flatter that is: a force along it was refused.
+    """
+    corner, run = np.array([0.24, 0.06]), 0.02 * np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+    run[0] *= sense
+    force = 5000 * run if along else np.array([0.0, 100.0])
+    scene = panel(
+        load__live={"kind": "line", "from": list(corner - run), "to": list(corner + run), "force": list(force)}
+    )
+    load = live_load(scene).reshape(-1, 3)[:, :2]
+    halves = [int(scene.blocks.containing(corner + part * run)[0]) for part in (-0.5, 0.5)]
+    assert load[halves] == pytest.approx(0.02 * np.array([force, force]), abs=1e-12)
+    assert np.flatnonzero(load.any(axis=1)).tolist() == sorted(halves)
+
+
 def test_a_line_load_on_slanting_blocks_is_cut_at_their_corners() -> None:
     """Two blocks on the ground with a slanting joint, a gap, and a third: each has what lies on its top, to rounding.
 
