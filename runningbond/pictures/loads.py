@@ -43,7 +43,6 @@ SHORTEST = 0.4
 MANY = 4
 """Forces of one load, and loads along one line, up to which each has a size of its own; of more, if there is room."""
 
-
 ONWARD = 0.5
 """Cosine of the turn up to which a load along a line goes on where another ends."""
 
@@ -63,7 +62,9 @@ class LoadDrawing:
         self.pushes: dict[tuple[bool, float, float], list[str]] = {}
         load = shape.scene.load
         self.largest = {live: _largest(loads) for live, loads in ((False, load.dead), (True, load.live))}
-        self.sizes = self._sizes_along(load.dead, live=False) | self._sizes_along(load.live, live=True)
+        self.sizes = {
+            live: self._sizes_along(loads, live=live) for live, loads in ((False, load.dead), (True, load.live))
+        }
 
     def draw(self) -> None:
         """Draw all loads: along lines first, then at points, and on the whole wall last."""
@@ -242,7 +243,7 @@ class LoadDrawing:
         ends = sorted((tails[0], tails[-1]), key=lambda end: float(end[0]))
         outer = max(tails.mean(axis=0), tips.mean(axis=0), key=lambda end: float(end @ away))
         spots = [Spot(outer, _side(away)), Spot(ends[1], (1, 0.5)), Spot(ends[0], (-1, 0.5))]
-        if text := self.sizes[id(load)]:
+        if text := self.sizes[live][id(load)]:
             self.sketch.label(text, spots, colour)
 
     def _beam(self, load: BeamLoad, live: bool) -> None:

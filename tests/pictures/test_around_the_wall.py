@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
@@ -265,6 +265,14 @@ def test_a_filling_of_many_loads_is_said_once(count: int, said: list[str]) -> No
     assert sorted(labels(figure)) == said
     assert_legible(figure)
     assert arrows(figure)["dead load"] >= 2 * count
+
+
+def test_a_load_that_is_dead_and_live_is_said_as_both() -> None:
+    """One object in Python: times λ where it is live, and as it is where it is dead."""
+    line = LineLoad((0.0, 1.0), (2.0, 1.0), (0.0, -1000.0))
+    scene = scene_from_dict(wall(2.0, 1.0))
+    figure = figure_of(replace(scene, load=Load((0.0, -9.81), (line,), (line,))))
+    assert sorted(labels(figure)) == ["1 kN/m", "λ · 1 kN/m"]
 
 
 def test_pressures_that_have_room_keep_their_sizes() -> None:
