@@ -27,16 +27,12 @@ from .folders import CURVE, GRANITE, HEADS, SANDSTONE, write_folder
 ALL = Features(closes=True, crushes=True, splits=True)
 
 
-def shipped() -> dict[str, MeasuredWall]:
-    return shipped_walls()
-
-
 def one(tmp_path: Path, row: str = GRANITE) -> MeasuredWall:
     return read_folder(write_folder(tmp_path, row))[0]
 
 
 def test_nine_dry_and_four_mortared_walls_are_shipped_with_their_licence_and_two_crack_maps() -> None:
-    walls = shipped()
+    walls = shipped_walls()
     assert len(walls) == 13
     assert [name for name, wall in walls.items() if not wall.is_scored] == ["SW.30.1", "SW.30.2"]
     assert [name for name, wall in walls.items() if wall.cracks] == ["SW.200.1", "WS.250"]
@@ -63,7 +59,7 @@ def test_every_file_of_the_laboratory_is_package_data() -> None:
 def test_rows_become_the_walls_of_the_crack_maps(
     name: str, size: tuple[float, float], courses: int, pressed: float, modes: tuple[str, ...]
 ) -> None:
-    wall = shipped()[name]
+    wall = shipped_walls()[name]
     scene = scene_of(wall, Features(driven=False))
     assert scene.beam is not None
     assert scene.beam.block is not None
@@ -80,13 +76,13 @@ def test_rows_become_the_walls_of_the_crack_maps(
 
 def test_granite_starts_with_whole_blocks_and_sandstone_with_half_ones() -> None:
     for name, lowest in (("WS.100", 5), ("SW.200.1", 6)):
-        scene = scene_of(shipped()[name], Features(driven=False))
+        scene = scene_of(shipped_walls()[name], Features(driven=False))
         own = scene.wall & (scene.blocks.centroid[:, 1] < 0.1 if name[0] == "S" else scene.blocks.centroid[:, 1] < 0.15)
         assert own.sum() == lowest
 
 
 def test_scene_has_the_features_that_it_is_asked_for_and_no_others() -> None:
-    wall = shipped()["WS.250"]
+    wall = shipped_walls()["WS.250"]
     plain, full = scene_of(wall, Features()), scene_of(wall, ALL)
     joint, rich = plain.joint_materials[0], full.joint_materials[0]
     assert (joint.friction, joint.cohesion, joint.compressive_strength, joint.closure) == (0.65, 0.0, None, None)
@@ -105,7 +101,7 @@ def test_joints_get_as_stiff_as_walls_were_measured_to_be_under_their_vertical_l
         start, growth = STONES[stone].stiffness(height, deformable=False)
         for pressure, modulus in STONES[stone].moduli.items():
             assert (start + growth * pressure) * height == pytest.approx(modulus, rel=0.12)
-    given = scene_of(shipped()["WS.250"], Features()).joint_materials[0].elasticity
+    given = scene_of(shipped_walls()["WS.250"], Features()).joint_materials[0].elasticity
     assert isinstance(given, Stiffness)
     assert given.normal == pytest.approx(4722e6 / 0.15, rel=0.01)
     assert given.shear == pytest.approx(given.normal / 2.4)
@@ -181,7 +177,7 @@ def test_wall_without_a_curve_is_pushed_anyway(tmp_path: Path) -> None:
 
 
 def test_scene_of_its_own_is_taken_instead_of_the_row(tmp_path: Path) -> None:
-    wall = shipped()["J4D"]
+    wall = shipped_walls()["J4D"]
     assert wall.scene_file is not None
     row = "other,Monotonic,Mortar,Clay brick,,,,,,,,40,,F"
     folder = write_folder(tmp_path, row)
@@ -228,7 +224,7 @@ def test_joints_of_every_material_have_the_features_that_are_asked_for(rung: Run
 def test_rungs_at_finite_displacements_do_not_say_that_the_line_of_the_load_is_left_out(name: str) -> None:
     """They read it, as a model of the package does that is told to; pages said of all that they did not."""
     rung = LADDER[name]
-    tables = _tables(shipped()["WS.250"], rung.features)
+    tables = _tables(shipped_walls()["WS.250"], rung.features)
     tables["wall"]["height"] = 0.3
     tables["beam"] |= {"height": 0.2, "drive": {"displacement": [2e-5, 0], "at": 0.4}}
     said = run_model(rung.model, scene_from_dict(tables)).message
@@ -238,7 +234,7 @@ def test_rungs_at_finite_displacements_do_not_say_that_the_line_of_the_load_is_l
 @pytest.mark.parametrize(("load", "is_crushed"), [(-2e5, False), (-1.05e7, True)])
 def test_only_what_has_been_crushed_is_said_to_bear_bending_on_its_points(load: float, is_crushed: bool) -> None:
     """Corners that have met other blocks sit as they met: of walls that are nowhere crushed it was said as well."""
-    tables = _tables(shipped()["SW.200.1"], LADDER["rigid-splitting"].features)
+    tables = _tables(shipped_walls()["SW.200.1"], LADDER["rigid-splitting"].features)
     tables["wall"]["height"] = 0.5
     tables["beam"] |= {"height": 0.2, "force": [0, load], "drive": {"displacement": [3e-3, 0], "at": 0.6}}
     outcome = LADDER["rigid-splitting"].model.solve(scene_from_dict(tables), 0.05)
@@ -279,7 +275,7 @@ def test_one_that_is_pushed_again_to_the_same_side_goes_there() -> None:
 
 def test_cyclic_walls_are_pushed_to_both_sides_and_ever_farther() -> None:
     for name in ("WS1.100", "WS1.175", "WS2.100"):
-        wall = shipped()[name]
+        wall = shipped_walls()[name]
         assert wall.is_cyclic
         side = np.sign(np.trim_zeros(wall.path, "b"))
         assert (side[1:] == -side[:-1]).all()
