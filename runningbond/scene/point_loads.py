@@ -92,8 +92,7 @@ class LineLoad(Action):
 
     def _along(self, scene: "Scene") -> tuple[Indices, Array]:
         """Movable blocks that it runs along or through ``(n,)``, from where to where, as shares of it ``(n, 2)``."""
-        start, run = np.array(self.start), np.subtract(self.end, self.start)
-        length, blocks = float(np.hypot(*run)), scene.blocks
+        length, blocks = self._length, scene.blocks
         line = shapely.LineString([self.start, self.end])
         low, high = blocks.boxes
         reach = blocks.tolerance
@@ -103,10 +102,20 @@ class LineLoad(Action):
         pieces, of = shapely.get_parts(common, return_index=True)
         at, piece = shapely.get_coordinates(pieces, return_index=True)
         share = np.column_stack([np.full(len(pieces), np.inf), np.full(len(pieces), -np.inf)])
-        np.minimum.at(share[:, 0], piece, (at - start) @ run / length**2)
-        np.maximum.at(share[:, 1], piece, (at - start) @ run / length**2)
+        place, _ = self._beside(at)
+        np.minimum.at(share[:, 0], piece, place)
+        np.maximum.at(share[:, 1], piece, place)
         long = share[:, 1] - share[:, 0] > 3 * reach / length
         return close[of[long]], self._met_in_crossings(scene, close[of[long]], share[long])
+
+    @property
+    def _length(self) -> float:
+        return float(np.hypot(*np.subtract(self.end, self.start)))
+
+    def _beside(self, points: Array) -> tuple[Array, Array]:
+        """Where points ``(…, 2)`` are along the line, as shares of it, and how far to its left [m], two ``(…)``."""
+        (x, y), from_start = np.subtract(self.end, self.start), points - np.array(self.start)
+        return np.asarray(from_start @ [x, y] / self._length**2), np.asarray(from_start @ [-y, x] / self._length)
 
     def _met_in_crossings(self, scene: "Scene", owner: Indices, share: Array) -> Array:
         """The shares of blocks, ending and beginning at corners and in the joints that the line crosses, ``(n, 2)``.
@@ -115,7 +124,7 @@ class LineLoad(Action):
         """
         crossings = [self._crossings(scene, *one) for one in zip(owner, share, strict=True)]
         into, out = np.array(crossings).reshape(-1, 2).T
-        reach = scene.blocks.tolerance / float(np.hypot(*np.subtract(self.end, self.start)))
+        reach = scene.blocks.tolerance / self._length
         first_reaches = (share[:, :1] <= into) & (into <= share[:, 1:])
         second_reaches = (share[:, 0] <= out[:, None]) & (out[:, None] <= share[:, 1])
         left, entered = np.nonzero(first_reaches & second_reaches & (owner[:, None] != owner))
@@ -129,10 +138,10 @@ class LineLoad(Action):
 
     def _to_corners(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
         """A block's share of the line, as far as the corners that the line passes and not as far as contact reaches."""
-        start, run, reach = np.array(self.start), np.subtract(self.end, self.start), scene.blocks.tolerance
-        length, corner = float(np.hypot(*run)), scene.blocks.polygon(block) - start
-        at = (corner @ run / length**2)[np.abs(corner @ [-run[1], run[0]]) / length <= reach]
-        first, last = (at[np.abs(at - end) <= 3 * reach / length] for end in share)
+        reach = scene.blocks.tolerance
+        place, off = self._beside(scene.blocks.polygon(block))
+        at = place[np.abs(off) <= reach]
+        first, last = (at[np.abs(at - end) <= 3 * reach / self._length] for end in share)
         return max(min(first, default=-math.inf), share[0]), min(max(last, default=math.inf), share[1])
 
     def _crossings(self, scene: "Scene", block: int, share: Array) -> tuple[float, float]:
@@ -141,25 +150,23 @@ class LineLoad(Action):
         An edge is crossed if its ends lie farther than contact reaches on either side of the line, and a steep one also
         where it has an end on the line: all edges of a corner that the line passes, where it may only touch the block.
         """
-        start, run, reach = np.array(self.start), np.subtract(self.end, self.start), scene.blocks.tolerance
-        length, first = float(np.hypot(*run)), scene.blocks.polygon(block)
-        edge = np.roll(first, -1, axis=0) - first
-        off, rise = (first - start) @ [-run[1], run[0]] / length, edge @ [-run[1], run[0]] / length
+        reach = scene.blocks.tolerance
+        place, off = self._beside(scene.blocks.polygon(block))
+        run, rise = (np.roll(each, -1) - each for each in (place, off))  # of each edge
         low, high = np.minimum(off, off + rise), np.maximum(off, off + rise)
         across = (low < -reach) & (high > reach)
         across |= (low <= reach) & (high >= -reach) & (high - low > STEEP * reach)
-        off, rise, first, edge = off[across], rise[across], first[across], edge[across]
-        at = (first - off[:, None] / rise[:, None] * edge - start) @ run / length**2
+        place, off, run, rise = place[across], off[across], run[across], rise[across]
+        at = place - off / rise * run
         # Rounding of the outline that contact reaches to, which has arcs at corners.
-        within = (1 + 1e-6) * reach * np.hypot(*edge.T) / np.abs(rise) / length
+        within = (1 + 1e-6) * reach * np.hypot(run, rise / self._length) / np.abs(rise)
         into = at[(rise < 0) & (np.abs(at - share[0]) <= within)]
         out = at[(rise > 0) & (np.abs(at - share[1]) <= within)]
         return max(into, default=math.nan), min(out, default=math.nan)
 
     def _each_part_once(self, scene: "Scene", owner: Indices, share: Array, cuts: Array) -> tuple[Indices, Array]:
         """Cut the line where blocks begin and end, and give each of its parts to one of the blocks there."""
-        length = float(np.hypot(*np.subtract(self.end, self.start)))
-        close = 3 * scene.blocks.tolerance / length
+        close = 3 * scene.blocks.tolerance / self._length
         cuts = np.unique(np.concatenate([[0.0, 1.0], share.ravel(), cuts]))
         # One block ends as far beyond its neighbour's beginning as contact reaches: the cut is in the middle.
         groups = np.split(cuts, np.flatnonzero(np.diff(cuts) > close) + 1)
@@ -203,21 +210,19 @@ class LineLoad(Action):
 
     def _met(self, edges: Array, reach: float) -> Array:
         """Where it crosses edges ``(n, 2, 2)``, or their ends lie on it, as shares of it ``(k,)``."""
-        start, run = np.array(self.start), np.subtract(self.end, self.start)
-        length = float(np.hypot(*run))
-        off = (edges - start) @ [-run[1], run[0]] / length
+        _, off = self._beside(edges)
         on, (low, high) = np.abs(off) <= reach, np.sort(off).T
         across = (low < -reach) & (high > reach)
         first, last = off[across].T
         at = edges[across, 0] + (first / (first - last))[:, None] * (edges[across, 1] - edges[across, 0])
-        share = (np.concatenate([edges[on], at]) - start) @ run / length**2
+        share, _ = self._beside(np.concatenate([edges[on], at]))
         return np.asarray(share[(share > 0) & (share < 1)])
 
     def _on(self, scene: "Scene", block: Indices, share: Array) -> Forces:
         run = np.subtract(self.end, self.start)
         width = np.diff(share, axis=1)
         at = (share.mean(axis=1)[:, None] + width * np.array([-0.5, 0.5]) / math.sqrt(3)).ravel()
-        size = np.repeat(width.ravel() * float(np.hypot(*run)) / 2, 2)
+        size = np.repeat(width.ravel() * self._length / 2, 2)
         return Forces.on(
             scene,
             block=np.repeat(block, 2),
