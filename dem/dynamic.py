@@ -140,8 +140,8 @@ def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local
     SceneError
         For a scene that is not of this kind.
     """
-    if scene.extras:
-        raise SceneError(scene.extras[0], "is not taken at finite displacements; leave it out")
+    if others := [key for key in scene.extras if key != "tie"]:
+        raise SceneError(others[0], "is not taken at finite displacements; leave it out")
     if not scene.live_forces.on_mass_alone:
         raise SceneError("load.live", "finite displacements need live loads on the blocks' mass")
     run = Run(finite_system(scene), local=local)

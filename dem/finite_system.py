@@ -18,7 +18,7 @@ from runningbond.contacts.rigid_sides import (
     turned_sharp,
 )
 from runningbond.contacts.search import Contacts, find_contacts, position_of, resting
-from runningbond.dynamics import BlockSystem, Interface
+from runningbond.dynamics import BlockSystem, Interface, moving_far
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints import wall_rule
 from runningbond.joints.along import along, gather_along, scatter_along
@@ -40,7 +40,8 @@ def finite_system(scene: Scene) -> BlockSystem:
     check_finite(scene)
     contacts = RigidContacts(scene)
     rigid = np.arange(3 * len(scene.blocks)).reshape(-1, 3)
-    return system_on(scene, contacts.interface_on(contacts.undeformed), rigid, contacts)
+    system = system_on(scene, contacts.interface_on(contacts.undeformed), rigid)
+    return moving_far(system, scene, contacts, scene.dead_forces)
 
 
 class RigidContacts:

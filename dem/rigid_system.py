@@ -8,7 +8,6 @@ from runningbond.dynamics import (
     NOTHING_CARRIED,
     BlockSystem,
     Carried,
-    ContactSearch,
     Interface,
     Restraint,
     force_unit,
@@ -17,7 +16,6 @@ from runningbond.dynamics import (
     rigid_frequency_squared,
     tie_rows,
 )
-from runningbond.dynamics.rig import Rig, TurningLoads
 from runningbond.joints import JointPoints, wall_points, wall_strength
 from runningbond.joints.along import gather_along, scatter_along
 from runningbond.joints.law import KernelLaw
@@ -72,7 +70,7 @@ def with_fictitious_inertia(scene: Scene, system: BlockSystem) -> BlockSystem:
     return replace(system, mass=heavier, interface=interface, inertia_scaling=float(factors.max()))
 
 
-def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: ContactSearch | None = None) -> BlockSystem:
+def system_on(scene: Scene, interface: Interface, rigid: Indices) -> BlockSystem:
     """The rigid blocks of a scene on an interface, with their freedoms where `rigid` ``(nb, 3)`` has them."""
     restraint, mass = _restraint(scene, held_masses(scene))
     dead, live, control = dead_load(scene), live_load(scene), control_row(scene)
@@ -106,9 +104,6 @@ def system_on(scene: Scene, interface: Interface, rigid: Indices, contacts: Cont
         ties=tie_rows(scene.ties, moving, displacement),
         late=rigid[scene.late_pins.block, 1],
         carried=carried,
-        contacts=contacts,
-        rig=None if contacts is None else Rig.of(scene, rigid),
-        turning=None if contacts is None else TurningLoads.of(scene, rigid),
     )
 
 

@@ -21,9 +21,9 @@ from runningbond.dynamics import (
     Interface,
     block_frequency_squared,
     joint_shares,
+    moving_far,
     stable_step,
 )
-from runningbond.dynamics.rig import Rig
 from runningbond.dynamics.run import LOCAL, VISCOUS
 from runningbond.joints.frames import keep_frames
 from runningbond.joints.law import KernelLaw
@@ -45,8 +45,8 @@ def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSys
     """Set up the deformable blocks of a wall to move far; `mass_scaling` as `fem_interface.model.fem` has it."""
     contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, DAMPING, mass_scaling=mass_scaling)
     interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
-    rig = Rig.of(blocks.scene, blocks.wall.rigid)
-    return replace(block_system(blocks.wall, scaled, interface), contacts=contacts, rig=rig)
+    system, (dead, _) = block_system(blocks.wall, scaled, interface), blocks.wall.forces_by_piece
+    return moving_far(system, blocks.scene, contacts, dead, blocks.wall.deformation)
 
 
 HALF = 0.5 + 1e-6

@@ -6,11 +6,12 @@ from functools import cached_property
 import numpy as np
 
 from meshing import WallMesh, wall_mesh
+from runningbond.dynamics.body_points import rigid_body
 from runningbond.joints import Rule, wall_rule
 from runningbond.joints.wall_law import row_of_joint
 from runningbond.scene import Array, Forces, Indices, Scene
 
-from .cracks import Cracks, Pieces, pieces
+from .cracks import Cracks, Pieces, edges_of, pieces
 from .loads import Loads, inner_mass
 from .modes import BENDING, ModeCount
 from .operators import JointElements, PointsOn, joint_elements
@@ -145,6 +146,14 @@ class ModalWall:
         place[there] = (first[template] + at)[:, None] + blocks[template, None] * rows
         return place, first
 
+    @cached_property
+    def forces_by_piece(self) -> tuple[Forces, Forces]:
+        """Dead and live forces of the scene, of loads along lines on every triangle along them.
+
+        At two points of a block they would bend that too little.
+        """
+        return self.scene.forces_by_piece(self.mesh.points[edges_of(self.mesh.triangles)])
+
     def load(self, forces: Forces, loads: Loads = "consistent") -> Array:
         """Modal forces of forces on the blocks, ``(nd,)`` [N]; a moment acts on a block's rotation alone."""
         if loads == "consistent":
@@ -178,6 +187,15 @@ class ModalWall:
         result = np.zeros(self.first[-1] + 1)
         self.split(result)[template][:, row] = np.einsum("c,x,cxm->m", shares[best], direction, shape)
         return result
+
+    def deformation(self, block: int, at: Array) -> tuple[Indices, Array]:
+        """Coordinates ``(m,)`` of a block's deformations, and how far each moves a point of it, ``(m, 2)``."""
+        if self.place[block, 0] < 0:
+            return rigid_body(block, at)
+        rows = np.array([self.displacement_row(block, at, axis) for axis in np.eye(2)])
+        rows[:, self.rigid[block]] = 0.0
+        modes = np.flatnonzero(rows.any(axis=0))
+        return modes, rows[:, modes].T
 
     def control_row(self) -> Array:
         """Displacement of the control point along the live load, ``(nd,)``; see `runningbond.results.Outcome`.

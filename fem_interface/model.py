@@ -247,8 +247,8 @@ def fem_pushover(
     SceneError
         For a scene that is not of this kind.
     """
-    if scene.extras:
-        raise SceneError(scene.extras[0], "is not taken at finite displacements; leave it out")
+    if others := [key for key in scene.extras if key != "tie"]:
+        raise SceneError(others[0], "is not taken at finite displacements; leave it out")
     blocks = node_outline(scene, cells, modes)
     run = Run(finite_system(blocks), local=local)
     held, at, direction = scene.control_point

@@ -107,9 +107,9 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     """
     check_finite(scene)
     ContactMaterials(scene)
-    for key, forces in (("load.live", scene.live_forces), ("load.dead", scene.dead_forces)):
-        if forces.moment.any() or not scene.is_beam[forces.block].all():
-            raise SceneError(key, "finite displacements need loads on the blocks' mass, or on a beam")
+    live = scene.live_forces
+    if live.moment.any() or not scene.is_beam[live.block].all():
+        raise SceneError("load.live", "finite displacements need live loads on the blocks' mass, or on a beam")
     parts = math.ceil((BETWEEN - 1) / cells) if spreads(scene, finite=True) else 1
     wall, outline = modal_wall(scene, cells, modes, trapezoids(parts)), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))

@@ -11,7 +11,7 @@ from runningbond.limit.settlement import largest_displacement, reaction_unit
 from runningbond.scene import Array, Indices
 
 from .block_kernels import ModalJoints, modal_kernels, nodal_tables
-from .cracks import edges_of, motion_of_blocks
+from .cracks import motion_of_blocks
 from .fracture import Energies, fractured
 from .loads import Loads
 from .mass_scaling import ScaledModes, scaled_modes
@@ -65,9 +65,7 @@ def block_system(
 ) -> BlockSystem:
     """The blocks of a wall with scaled modes, under its loads, on an interface."""
     scene, pieces = wall.scene, wall.pieces
-    # A load along a line is on every triangle along it: at two points of a block it would bend that too little.
-    given = scene.forces_by_piece(wall.mesh.points[edges_of(wall.mesh.triangles)])
-    dead, live = (wall.load(forces, loads) for forces in given)
+    dead, live = (wall.load(forces, loads) for forces in wall.forces_by_piece)
     dead[np.isinf(wall.mass)] = live[np.isinf(wall.mass)] = 0.0
     control, carried = wall.control_row(), NOTHING_CARRIED
     if scene.settlement:

@@ -9,7 +9,17 @@ from .inertia import CALMER, beam_note, inertia_factors, inertia_note, largest_s
 from .load_stepping import LoadSteps, load_steps
 from .run import Observer, Run, Unstable, no_observer
 from .state import State
-from .system import NOTHING_CARRIED, BlockSystem, Carried, ContactSearch, Interface, Restraint, force_unit, restrain
+from .system import (
+    NOTHING_CARRIED,
+    BlockSystem,
+    Carried,
+    ContactSearch,
+    Interface,
+    Restraint,
+    force_unit,
+    moving_far,
+    restrain,
+)
 from .ties import tie_rows
 from .time_step import (
     block_frequency_squared,
@@ -47,6 +57,7 @@ __all__ = [
     "largest_scaling",
     "load_steps",
     "mass_factor",
+    "moving_far",
     "no_observer",
     "pushover_curve",
     "put_on_dead_load",

@@ -166,8 +166,8 @@ def _at_constant_loads(
     moved, _, opening, slip, normal, tangential = work
     already, given, most = watch
     at_gather, at_reframe, at_law, at_scatter, at_update = addresses
-    driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[4].size > 0, rig[0].size > 0
-    turns = turning[0].size > 0
+    driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[6].size > 0, rig[0].size > 0
+    turns = turning[2].size > 0
     response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if driven:
         for i in range(live.size):

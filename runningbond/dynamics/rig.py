@@ -4,18 +4,21 @@ The point driven is at p from the beam's centroid. With the beam's rotation θ i
 u_x + p_x (cos θ − 1) − p_y sin θ, and pushes with a moment −(p_x sin θ + p_y cos θ) per unit of horizontal force.
 A dead force F whose line is fixed turns the beam about its centroid, which has gone by u, with −(u_x F_y − u_y F_x).
 
-Dead forces at points of blocks go along with these. At rest, at r from the centroid, they have the moment M = Σ r × F
-and the virial V = Σ r · F; where the block has turned by θ the moment is M cos θ − V sin θ.
+Dead forces at points of blocks go along with these (`body_points`), and do more on their rotations and deformations
+than they do at rest.
 """
 
 import math
+from collections.abc import Callable
 from typing import Literal, NamedTuple, TypeAlias, get_args
 
 import numpy as np
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array, Indices, Scene, SceneError, Unsigned
+from runningbond.scene import Array, Forces, Indices, Scene, SceneError, Unsigned
 from runningbond.scene.ranges import one_of
+
+from .body_points import NO_POINTS, BodyPoints, Points, arm_of
 
 Displacements: TypeAlias = Literal["small", "finite"]
 """Whether equilibrium is that of the undeformed wall, or of the wall as it has moved."""
@@ -50,49 +53,53 @@ NO_RIG = Rig(np.zeros(0, dtype=np.uint64), np.zeros(2), np.zeros(2), np.zeros(1)
 
 
 class TurningLoads(NamedTuple):
-    """Dead forces at points of blocks that turn."""
+    """Dead forces at points of bodies that turn."""
 
-    spin: Unsigned  # (k,) where in the motion the blocks' rotations stand
-    moment: Array  # (k,) about the centroid at rest [N m]
-    virial: Array  # (k,) [N m]
-    more: Array  # (k,) written by the steps: what the moment now is more than at rest [N m]
+    points: BodyPoints  # (n,) where they are
+    force: Array  # (n, 2) [N]
+    # (n + m,) written by the steps: what they now do more than at rest on the rotations, then on the deformations
+    more: Array
     work: Array  # (1,) and the work of that [J]
 
-    @classmethod
-    def of(cls, scene: Scene, rigid: Indices) -> "TurningLoads | None":
-        """Those of a scene, from where the rigid motions of its blocks stand ``(nb, 3)``."""
-        dead = scene.dead_forces
-        arm = dead.at - scene.blocks.centroid[dead.block]
-        moment, virial = np.zeros((2, len(scene.blocks)))
-        np.add.at(moment, dead.block, arm[:, 0] * dead.force[:, 1] - arm[:, 1] * dead.force[:, 0])
-        np.add.at(virial, dead.block, (arm * dead.force).sum(axis=1))
-        turn = np.flatnonzero(((moment != 0) | (virial != 0)) & ~scene.fixed)
-        if not len(turn):
-            return None
-        spin = rigid[turn, 2].astype(np.uint64)
-        return cls(spin, moment[turn], virial[turn], np.zeros(len(turn)), np.zeros(1))
+
+def turning_loads(dead: Forces, points: Callable[[Indices, Array], BodyPoints]) -> TurningLoads | None:
+    """Those of a scene's dead forces, from the `points` that are of blocks ``(n,)`` at places ``(n, 2)`` [m]."""
+    if not len(dead.block):
+        return None
+    on = points(dead.block, dead.at)
+    return TurningLoads(on, np.array(dead.force), np.zeros(len(on.arm) + len(on.mode)), np.zeros(1))
 
 
-NO_TURNING_LOADS = TurningLoads(np.zeros(0, dtype=np.uint64), np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(1))
+NO_TURNING_LOADS = TurningLoads(NO_POINTS, np.zeros((0, 2)), np.zeros(0), np.zeros(1))
 
 
 @kernel
-def turn_loads(loads: tuple[Unsigned, Array, Array, Array, Array], motion: Array, force: Array) -> None:
-    """Add to forces ``(nd,)`` what the moments of turning loads now are more than at rest, and keep it."""
-    spin, moment, virial, more, _ = loads
-    for k in range(spin.size):
-        angle = motion[spin[k]]
-        more[k] = moment[k] * (math.cos(angle) - 1.0) - virial[k] * math.sin(angle)
-        force[spin[k]] += more[k]
+def turn_loads(loads: tuple[Points, Array, Array, Array], motion: Array, force: Array) -> None:
+    """Add to forces ``(nd,)`` what turning loads now do more than at rest, and keep it."""
+    points, push, more, _ = loads
+    rigid, _, arm, start, mode, shape = points
+    n = push.shape[0]
+    for k in range(n):
+        fx, fy = push[k, 0], push[k, 1]
+        x, y, c, s = arm_of(points, k, motion)
+        more[k] = (x - arm[k, 0]) * fy - (y - arm[k, 1]) * fx
+        force[rigid[k, 2]] += more[k]
+        gx, gy = c * fx + s * fy - fx, c * fy - s * fx - fy
+        for i in range(start[k], start[k + 1]):
+            more[n + i] = shape[i, 0] * gx + shape[i, 1] * gy
+            force[mode[i]] += more[n + i]
 
 
 @kernel
-def work_of_turned(loads: tuple[Unsigned, Array, Array, Array, Array], velocity: Array, dt: float) -> float:
+def work_of_turned(loads: tuple[Points, Array, Array, Array], velocity: Array, dt: float) -> float:
     """Work of what was kept [J] in a step at a velocity ``(nd,)``."""
-    spin, _, _, more, work = loads
-    done = 0.0
-    for k in range(spin.size):
-        done += more[k] * dt * velocity[spin[k]]
+    points, push, more, work = loads
+    rigid, _, _, _, mode, _ = points
+    done, n = 0.0, push.shape[0]
+    for k in range(n):
+        done += more[k] * dt * velocity[rigid[k, 2]]
+    for i in range(mode.size):
+        done += more[n + i] * dt * velocity[mode[i]]
     work[0] += done
     return done
 
@@ -119,7 +126,7 @@ def is_finite(displacements: str, model: str, scene: Scene) -> bool:
 def check_finite(scene: Scene) -> None:
     """Refuse, by a `SceneError`, what models do not know of at finite displacements."""
     for key in scene.extras:
-        if key != "load.history" and not ((scene.history or scene.drive_path) and key.startswith("beam")):
+        if key not in ("load.history", "tie") and not ((scene.history or scene.drive_path) and key.startswith("beam")):
             raise SceneError(key, "is not taken at finite displacements; leave it out")
     if not scene.is_beam[scene.pins.block].all():
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')

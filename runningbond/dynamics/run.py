@@ -10,7 +10,8 @@ import numpy as np
 
 from runningbond.contacts.search import Contacts
 from runningbond.joints.law import DAMPED_WORK, FRICTION_WORK
-from runningbond.scene import Array
+from runningbond.results.reactions import resultants
+from runningbond.scene import ANCHOR, Array
 
 from .central_differences import CONTROLS, Control, Watch, step
 from .contact_update import ContactUpdate, contacts_of
@@ -104,7 +105,9 @@ class Run:
         self._advance_modes, self._memory = update_of(system, damping)
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
-        self._turning = tuple(system.turning or NO_TURNING_LOADS)
+        points, *loads = system.turning or NO_TURNING_LOADS
+        self._turning = points.arrays, *loads
+        self._ties = *system.ties[:4], system.ties.ends.arrays, system.ties.length
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
         search = system.contacts
@@ -231,7 +234,7 @@ class Run:
             self._addresses = addresses(self.interface, self._advance_modes, self._memory)
         arrays = (state.motion, state.velocity, state.history, state.damped, state.unbalanced)
         scales = (self.dt, self.local, self._viscosity)
-        ties = (*self.system.ties, state.stretch)
+        ties = (*self._ties, state.stretch)
         frames = (state.bears, self._plastic)
         loads = (self._rig, self._turning)
         every = (self._addresses, *self._arrays, ties, *loads, self._memory, arrays, self._work, frames)
@@ -361,7 +364,7 @@ class Run:
         return search.at_joints(contacts_of(state), np.vstack([none, pulls, none]))[2:4]
 
     def resultants(self, state: State, multiplier: float) -> Array:
-        """Resultants of contacts and loads on each body of a rig, moments about the origin, ``(n, 3)`` [N, N, N m]."""
+        """Resultants of contacts, ties and loads on a rig's bodies, moments about the origin, ``(n, 3)`` [N, N m]."""
         system, live, search = self.system, self.system.live.copy(), self.system.contacts
         if search is None or system.rig is None:
             raise TypeError("resultants are those of a rig at finite displacements")
@@ -372,6 +375,11 @@ class Run:
         total[system.rigid[:, 0] == system.rig.freedom[0], 2] += moment
         at = search.outline.blocks.centroid + state.motion[system.rigid][:, :2]
         total[:, 2] += at[:, 0] * total[:, 1] - at[:, 1] * total[:, 0]
+        ends = system.ties.ends
+        if len(ends.arm):
+            tied, origin = ends.body != ANCHOR, np.zeros((len(total), 2))
+            places, pulls = ends.places(state.motion), system.ties.pulls(state.motion, state.stretch)
+            total += resultants(ends.body[tied], places[tied], pulls[tied], origin)
         return np.asarray(total + search.resultants(contacts_of(state), state.motion, np.array(self.forces(state))))
 
     def ledger(self, state: State, load: Array | None = None) -> Ledger:

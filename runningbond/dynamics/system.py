@@ -18,11 +18,12 @@ from runningbond.contacts.search import Contacts
 from runningbond.joints import PointStrength
 from runningbond.joints.frames import keep_frames
 from runningbond.joints.law import KernelLaw
-from runningbond.scene import Array, Indices, Scene
+from runningbond.scene import Array, Forces, Indices, Scene
 
+from .body_points import BodyPoints, Deformation, body_points, rigid_body
 from .clusters import NO_CLUSTERS, Clusters
-from .rig import Rig, TurningLoads
-from .ties import NO_TIE_ROWS, TieRows
+from .rig import Rig, TurningLoads, turning_loads
+from .ties import NO_TIE_ROWS, TieRows, turned_tie_rows
 
 Kernel: TypeAlias = Callable[..., Any]
 
@@ -256,3 +257,31 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
     inertia = scene.inertial_density * scene.thickness * scene.blocks.area
     force = gravity * inertia if gravity > 0 else each
     return np.asarray(force[block] * np.sqrt(mass / inertia[block]))
+
+
+def moving_far(
+    system: BlockSystem, scene: Scene, contacts: ContactSearch, dead: Forces, deformation: Deformation = rigid_body
+) -> BlockSystem:
+    """The blocks of a scene at finite displacements: on contacts that are found anew, with what turns with them.
+
+    Parameters
+    ----------
+    system
+        The blocks, on their undeformed contacts.
+    dead
+        The scene's dead forces.
+    deformation
+        How blocks deform at a point.
+    """
+    centroid, still = scene.blocks.centroid, int(np.flatnonzero(np.isinf(system.mass))[0])
+
+    def points(block: Indices, at: Array) -> BodyPoints:
+        return body_points(block, at, centroid, system.rigid, still, deformation)
+
+    return replace(
+        system,
+        contacts=contacts,
+        rig=Rig.of(scene, system.rigid),
+        turning=turning_loads(dead, points),
+        ties=turned_tie_rows(system.ties, scene.ties, points),
+    )

@@ -3,7 +3,8 @@
     t = min(max(k (e − e_p) + P, 0), t_y),    e = g · q
 
 with the elongation e, its plastic part e_p, the stiffness k = E A / L, the preload P and the yield force t_y. A tie
-that has yielded, or gone slack, pulls again from e_p on.
+that has yielded, or gone slack, pulls again from e_p on. At finite displacements e is what the distance of its ends is
+more than at rest, and it pulls along the line between them.
 """
 
 import math
@@ -13,10 +14,15 @@ from typing import NamedTuple
 import numpy as np
 
 from runningbond.joints import compiled
-from runningbond.scene import ANCHOR, Array, Mask, Ties, Unsigned
+from runningbond.scene import ANCHOR, Array, Indices, Mask, Ties, Unsigned
+
+from .body_points import NO_POINTS, BodyPoints, Points, arm_of, push_at
 
 STIFFNESS, YIELD, PRELOAD = range(3)
 """Columns of `TieRows.constants`."""
+
+STRAINED = 0.05
+"""Strain up to which ties that have not yielded count in the time step: more than steel bears."""
 
 
 class TieRows(NamedTuple):
@@ -26,6 +32,8 @@ class TieRows(NamedTuple):
     freedom: Unsigned  # (n,) coordinates that stretch a tie
     share: Array  # (n,) elongation per such coordinate
     constants: Array  # (nt, 3) stiffness [N/m], yield force and preload [N]
+    ends: BodyPoints = NO_POINTS  # (2 nt,) at finite displacements, the first ends of all and then the second ones
+    length: Array = np.zeros(0)  # (nt,) distance of the two at rest [m]
 
     def __len__(self) -> int:
         return len(self.constants)
@@ -37,7 +45,20 @@ class TieRows(NamedTuple):
 
     def elongation(self, motion: Array) -> Array:
         """Elongation of each tie in a motion ``(nd,)``, ``(nt,)`` [m]."""
+        if len(self.length):
+            return np.asarray(np.hypot(*self._spans(motion).T) - self.length)
         return np.array([self.share[entries] @ motion[self.freedom[entries]] for entries in self._entries()])
+
+    def _spans(self, motion: Array) -> Array:
+        """From the first end of each to the second, ``(nt, 2)`` [m]."""
+        first, second = np.split(self.ends.places(motion), 2)
+        return np.asarray(second - first)
+
+    def pulls(self, motion: Array, stretch: Array) -> Array:
+        """What they pull their ends with at finite displacements, ``(2 nt, 2)`` [N]; arguments as of `force`."""
+        span = self._spans(motion)
+        pull = (self.force(motion, stretch) / np.hypot(*span.T))[:, None] * span
+        return np.concatenate([pull, -pull])
 
     def force(self, motion: Array, stretch: Array) -> Array:
         """Force in each tie after a motion ``(nd,)`` and a plastic elongation ``(nt,)``, ``(nt,)`` [N]."""
@@ -57,12 +78,29 @@ class TieRows(NamedTuple):
         """
         if not len(self):
             return joints
-        rows = np.zeros((len(self), len(mass)))
-        for row, entries in zip(rows, self._entries(), strict=True):
-            row[self.freedom[entries]] = self.share[entries]
-        root = np.sqrt(self.constants[:, [STIFFNESS]]) * rows / np.sqrt(mass)
+        stiffness, rows = self.constants[:, STIFFNESS], np.zeros((len(self), len(mass)))
+        if len(self.length):
+            tension = np.minimum(self.constants[:, YIELD], STRAINED * stiffness * self.length)
+            self._reaches(rows, tension / stiffness)
+            stiffness = np.maximum(stiffness, tension / self.length)
+        else:
+            for row, entries in zip(rows, self._entries(), strict=True):
+                row[self.freedom[entries]] = self.share[entries]
+        root = np.sqrt(stiffness)[:, None] * rows / np.sqrt(mass)
         own = float(np.linalg.eigvalsh(root @ root.T)[-1])
         return joints * ((1 + math.sqrt(1 + 4 * own / joints)) / 2) ** 2
+
+    def _reaches(self, rows: Array, elongation: Array) -> None:
+        """Add how far each coordinate moves the ends of each tie, whichever way they turn, to rows ``(nt, nd)``.
+
+        Of the two translations one counts, for a tie is along one direction at a time. A tension that stretches it by
+        its `elongation` ``(nt,)`` [m] at most turns a body besides as it pulls on an arm r, with a stiffness of T r.
+        """
+        rigid, _, arm, _, mode, shape, _ = self.ends
+        tie, reach = np.tile(np.arange(len(self)), 2), np.hypot(*arm.T)
+        np.add.at(rows, (tie, rigid[:, 0]), 1.0)
+        np.add.at(rows, (tie, rigid[:, 2]), np.sqrt(reach * (reach + elongation[tie])))
+        np.add.at(rows, (tie[self.ends.point], mode), np.hypot(*shape.T))
 
     def _entries(self) -> list[slice]:
         return [slice(int(a), int(b)) for a, b in zip(self.start, self.start[1:], strict=False)]
@@ -86,22 +124,57 @@ def tie_rows(ties: Ties, moves: Mask, row: Callable[[int, Array, Array], Array])
     return TieRows(start, freedoms, np.concatenate([empty, *share]), constants)
 
 
+def turned_tie_rows(rows: TieRows, ties: Ties, points: Callable[[Indices, Array], BodyPoints]) -> TieRows:
+    """The same ties at finite displacements, from the `points` that are of blocks ``(n,)`` at places ``(n, 2)`` [m]."""
+    if not len(ties):
+        return rows
+    ends = points(ties.block.T.ravel(), ties.ends.swapaxes(0, 1).reshape(-1, 2))
+    return TieRows(*rows[:4], ends, ties.length)
+
+
 NO_TIE_ROWS = TieRows(np.zeros(1, np.uint64), np.zeros(0, np.uint64), np.zeros(0), np.zeros((0, 3)))
 
 
 @compiled.kernel
-def pull(ties: tuple[Unsigned, Unsigned, Array, Array, Array], motion: Array, force: Array) -> None:
+def _tension(constants: Array, stretch: Array, k: int, elongation: float) -> float:
+    """Force of a tie that is so much longer; its plastic elongation is kept."""
+    stiffness, most, preload = constants[k, 0], constants[k, 1], constants[k, 2]
+    tension = stiffness * (elongation - stretch[k]) + preload
+    if tension > most:
+        stretch[k] += (tension - most) / stiffness
+        tension = most
+    pulled: float = max(tension, 0.0)
+    return pulled
+
+
+@compiled.kernel
+def _pull_turned(ends: Points, length: Array, constants: Array, stretch: Array, motion: Array, force: Array) -> None:
+    rigid, centroid = ends[0], ends[1]
+    for k in range(length.size):
+        other = k + length.size
+        one, two = arm_of(ends, k, motion), arm_of(ends, other, motion)
+        dx = centroid[other, 0] + motion[rigid[other, 0]] + two[0] - centroid[k, 0] - motion[rigid[k, 0]] - one[0]
+        dy = centroid[other, 1] + motion[rigid[other, 1]] + two[1] - centroid[k, 1] - motion[rigid[k, 1]] - one[1]
+        distance = math.sqrt(dx * dx + dy * dy)
+        tension = _tension(constants, stretch, k, distance - length[k])
+        if tension > 0.0:
+            fx, fy = tension * dx / distance, tension * dy / distance
+            push_at(ends, k, one, (fx, fy), force)
+            push_at(ends, other, two, (-fx, -fy), force)
+
+
+@compiled.kernel
+def pull(ties: tuple[Unsigned, Unsigned, Array, Array, Points, Array, Array], motion: Array, force: Array) -> None:
     """Add what ties do to modal forces ``(nd,)``; their plastic elongation, the last of the arrays, is kept."""
-    start, freedom, share, constants, stretch = ties
+    start, freedom, share, constants, ends, length, stretch = ties
+    if length.size > 0:
+        _pull_turned(ends, length, constants, stretch, motion, force)
+        return
     for k in range(stretch.size):
-        stiffness, most, preload = constants[k, 0], constants[k, 1], constants[k, 2]
         elongation = 0.0
         for i in range(start[k], start[k + 1]):
             elongation += share[i] * motion[freedom[i]]
-        tension = stiffness * (elongation - stretch[k]) + preload
-        if tension > most:
-            stretch[k] += (tension - most) / stiffness
-            tension = most
+        tension = _tension(constants, stretch, k, elongation)
         if tension > 0.0:
             for i in range(start[k], start[k + 1]):
                 force[freedom[i]] -= tension * share[i]

@@ -106,6 +106,41 @@ def test_dead_loads_at_points_and_lines_turn_with_their_block() -> None:
         assert force_at(outcome, d) == pytest.approx(exact, rel=2e-3)
 
 
+@pytest.mark.parametrize("to", [[-1.0, 0.9], [0.25, -0.02]])
+def test_ties_of_a_block_that_rocks_far_pull_along_the_line_of_their_ends(to: list[float]) -> None:
+    """To an anchor and to the ground: the drive by virtual work, exact at any rotation; the reactions of the ground.
+
+    What an anchor bears the ground does not.
+    """
+    b, h, drive, beam, at = 0.25, 1.0, 0.95, 2e4, [0.0, 0.9]
+    tie = {"from": at, "to": to, "area": 1e-5, "young": 2e9, "yield": 1.5e3}
+    scene = rig(
+        length=2 * b,
+        height=h,
+        beam__force=[0, -beam],
+        beam__drive={"displacement": [0.2, 0], "at": drive},
+        tie=[tie],
+    )
+    outcome, (anchored,) = finite(scene), scene.ties.block[:, 1] < 0
+    assert anchored == (to[1] > 0)
+    for d in (0.05, 0.1, 0.2):
+        theta = brentq(lambda x, d=d: drive * math.sin(x) + b * (1 - math.cos(x)) - d, 0.0, 0.5)
+        turn = np.array([[math.cos(theta), math.sin(theta)], [-math.sin(theta), math.cos(theta)]])
+        place, top = turn @ [-2 * b, at[1]], turn @ [-b, h + 0.05]
+        span = np.array(to) - [2 * b, 0.0] - place
+        longer = math.hypot(*span) - float(scene.ties.length[0])
+        pull = min(1.5e3, longer * float(scene.ties.stiffness[0])) * span / math.hypot(*span)
+        moment = place[0] * pull[1] - place[1] * pull[0] - beam * top[0]
+        exact = moment / (drive * math.cos(theta) + b * math.sin(theta))
+        assert force_at(outcome, d) == pytest.approx(exact, rel=2e-3)
+        # What balances beam, drive and, of a tie to the ground, nothing else.
+        on_ground = np.array([-exact, beam]) - (pull if anchored else 0.0)
+        for name, force in zip(("ground horizontal [N]", "ground vertical [N]"), on_ground, strict=True):
+            assert np.interp(d, outcome.curve[:, 0], column(outcome, name)) == pytest.approx(force, abs=0.01 * beam)
+        known = np.interp(d, outcome.curve[:, 0], column(outcome, "tie 0 [N]"))
+        assert known == pytest.approx(math.hypot(*pull), abs=2.0)  # joints give way by a twentieth of a millimetre
+
+
 def test_a_block_between_level_plates_takes_twice_as_much() -> None:
     """Its force goes from corner to corner: V = N x / y with their distances x = l cos θ − h sin θ and y."""
     length, height, n = 0.3, 0.6, 2e4

@@ -575,7 +575,6 @@ def test_a_support_that_turns_moves_its_wall_with_it() -> None:
 @pytest.mark.parametrize(
     ("extra", "key"),
     [
-        ({"tie": [TIE]}, "tie"),
         ({"beam": {"height": 0.1}}, "beam"),
         ({"load__live": {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}}, "load.live settlement"),
     ],

@@ -16,7 +16,7 @@ from runningbond.models import respond, run_model
 from runningbond.response import critical_scale, follow
 from runningbond.response.critical import RATIO, Search
 from runningbond.response.response import ResponseVerdict
-from runningbond.scene import History, Lateral, Load, Scene, SceneError, Stiffness
+from runningbond.scene import ANCHOR, History, Lateral, LineLoad, Load, Scene, SceneError, Stiffness, Ties
 from runningbond.scene.history import pulse
 from tests.at_length import at_length
 from tests.walls import panel
@@ -76,6 +76,22 @@ def test_ground_that_moves_as_slowly_as_can_be_leaves_the_static_bracket(sense: 
     falls = follow(rest, 1.03 * static.multiplier, rows=50)
     assert falls.verdict == "collapse"
     assert falls.drift[-1] * sense < 0
+
+
+@pytest.mark.parametrize("model", ["dem-dynamic", "fem"])
+def test_a_tie_and_a_floor_hold_a_block_whose_ground_moves_slowly(model: str) -> None:
+    """λ W h = (W + P) b + 2 h T_y: W is pushed, P is borne by the half nearer to the toe, T_y draws back at the top."""
+    b, h, history = 0.25, 1.0, History(*pulse("ramp", -GRAVITY, 2.0), holds=True, interval=0.02)
+    bare = block(b, h, history)
+    weight = GRAVITY * float(bare.mass[0])
+    floor = LineLoad((0.0, 2 * h), (2 * b, 2 * h), (0.0, -0.5 * weight / (2 * b)))
+    ends, numbers = np.array([[[0.0, 2 * h], [-1.0, 2 * h]]]), np.array([[1e-4], [2e11], [0.1 * weight], [0.0]])
+    tied = replace(bare, load=Load(live=(history,), dead=(floor,)), ties=Ties(np.array([[0, ANCHOR]]), ends, *numbers))
+    static = 1.5 * b / h + 2 * 0.1
+    for share, verdict in ((0.97, "stands"), (1.03, "collapse")):
+        response = respond(model, tied.with_block(young=3e10), share * static, rows=50)
+        assert response.verdict == verdict
+        assert response.unaccounted < 0.01
 
 
 @pytest.mark.long

@@ -1,0 +1,147 @@
+"""Points of bodies that turn: ties between them and dead forces at them, against mechanics at large rotations."""
+
+import math
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from dem.dynamic import finite_pushover
+from dem.finite_system import finite_system
+from fem_interface.finite_system import finite_system as deformable_system
+from fem_interface.model import fem_pushover
+from fem_interface.node_outline import node_outline
+from runningbond.dynamics import BlockSystem
+from runningbond.dynamics.rig import turn_loads
+from runningbond.dynamics.ties import TieRows, pull
+from runningbond.scene import Array, Scene
+from tests.dynamics.test_led import block
+
+Blocks: TypeAlias = Callable[[Scene], BlockSystem]
+
+TIES = [
+    {"from": [0.05, 0.05], "to": [-0.4, 0.6], "area": 1e-4, "young": 1e9, "yield": 1e12, "preload": 300.0},
+    {"from": [0.2, 0.02], "to": [0.1, -0.2], "area": 2e-4, "young": 1e9, "yield": 1e12},
+]
+
+
+def rigid(scene: Scene) -> BlockSystem:
+    return finite_system(scene)
+
+
+def deformable(scene: Scene) -> BlockSystem:
+    return deformable_system(node_outline(scene, 2))
+
+
+def turned(system: BlockSystem, seed: int) -> Array:
+    """A motion that takes the block far and round, and deforms it."""
+    motion = np.random.default_rng(seed).normal(0.0, 1.0, len(system.mass))
+    motion[np.isin(np.arange(len(motion)), system.rigid, invert=True)] *= 1e-2
+    motion[np.isinf(system.mass)] = 0.0
+    return motion
+
+
+def is_slope(force: Array, energy: Callable[[Array], float], motion: Array, moving: Array) -> None:
+    """Forces on what moves are the slopes of an energy, by central differences."""
+    step = 1e-6
+    slope = [(energy(motion + step * way) - energy(motion - step * way)) / (2 * step) for way in np.eye(len(motion))]
+    np.testing.assert_allclose(force[moving], np.array(slope)[moving], rtol=1e-6, atol=1e-6 * np.abs(force).max())
+
+
+@pytest.mark.parametrize("blocks", [rigid, deformable])
+@pytest.mark.parametrize("seed", range(4))
+def test_ties_pull_with_the_slope_of_their_energy(blocks: Blocks, seed: int) -> None:
+    """F = −∂/∂q Σ (T² − P²) / 2 k of taut ties, at rotations of a radian."""
+    system = blocks(block(tie=TIES))
+    motion, stretch = turned(system, seed), np.zeros(2)
+    force = np.zeros_like(motion)
+    pull((*system.ties[:4], system.ties.ends.arrays, system.ties.length, stretch), motion, force)
+    assert np.abs(force).max() > 1e4
+    is_slope(force, lambda at: -system.ties.stored(system.ties.force(at, stretch)), motion, np.isfinite(system.mass))
+
+
+@pytest.mark.parametrize("blocks", [rigid, deformable])
+@pytest.mark.parametrize("seed", range(4))
+def test_dead_forces_do_the_work_of_their_points(blocks: Blocks, seed: int) -> None:
+    """What they do on the coordinates is the slope of Σ F · x, of points that turn with the block and deform."""
+    at, forces = np.array([[0.05, 0.06], [0.2, 0.03]]), np.array([[300.0, -400.0], [-50.0, 200.0]])
+    loads = [{"kind": "point", "at": p.tolist(), "force": f.tolist()} for p, f in zip(at, forces, strict=True)]
+    scene = block(load__dead=loads)
+    system, weight = blocks(scene), 9.81 * scene.mass[0]
+    motion, force, turning = turned(system, seed), system.dead.copy(), system.turning
+    assert turning is not None
+    turn_loads((turning.points.arrays, *turning[1:]), motion, force)
+    np.testing.assert_allclose(turning.points.places(np.zeros_like(motion)), at, rtol=1e-12)
+
+    def work(place: Array) -> float:
+        height = place[system.rigid[0, 1]]
+        return float((turning.force * turning.points.places(place)).sum() - weight * height)
+
+    is_slope(force, work, motion, np.isfinite(system.mass))
+
+
+@pytest.mark.parametrize("blocks", [rigid, deformable])
+def test_ties_that_hardly_move_pull_as_at_small_displacements(blocks: Blocks) -> None:
+    """Elongations differ by the square of a motion alone."""
+    system = blocks(block(tie=TIES))
+    way, small = turned(system, 0), TieRows(*system.ties[:4])
+    errors = [np.abs(system.ties.elongation(h * way) - small.elongation(h * way)).max() for h in (1e-3, 1e-4)]
+    assert errors[1] == pytest.approx(1e-2 * errors[0], rel=0.01)
+    assert errors[0] < 1e-4
+
+
+@pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
+@pytest.mark.parametrize(("young", "most"), [(2.1e11, 5.0), (1e8, 1e9)])
+def test_a_block_that_topples_against_a_tie_follows_the_moments_about_its_toe(
+    pushover: Callable[[Scene, float], Array], young: float, most: float
+) -> None:
+    """λ W (height of its middle) = W (arm) + T (arm), with the tie as it has turned, yielded or elastic: to 2e-6.
+
+    The corner above the toe goes by 20 mm; λ falls from .57 to .49 with the one and grows to .43 with the other.
+    """
+    b, h, far = 0.06, 0.24, 0.5
+    tie = {"from": [0.0, h], "to": [-far, h], "area": 1e-6, "young": young, "yield": most}
+    scene = block(b, h, tie=[tie])
+    weight, stiffness = 9.81 * scene.mass[0], scene.ties.stiffness[0]
+
+    def turned_by(angle: float) -> tuple[float, float]:
+        """How far the corner above the toe goes, and λ."""
+        c, s = math.cos(angle), math.sin(angle)
+        about = np.array([[c, s], [-s, c]])
+        middle, end = about @ [-b / 2, h / 2], about @ [-b, h]
+        span = np.array([-far - b, h]) - end
+        length = math.hypot(*span)
+        pull = min(max(stiffness * (length - far), 0.0), most) * span / length
+        moment = end[0] * pull[1] - end[1] * pull[0] - weight * middle[0]
+        return float((about @ [0.0, h])[0]), float(moment / (weight * middle[1]))
+
+    moved, _, multipliers = pushover(scene, 0.02).T
+    meanwhile = (moved[1:] + moved[:-1]) / 2  # multipliers are means since the row before
+    for at, multiplier in zip(meanwhile.tolist(), multipliers[1:].tolist(), strict=True):
+        if at > 5e-3:
+            angle = brentq(lambda angle, at=at: turned_by(angle)[0] - at, 0.0, 0.5)
+            assert multiplier == pytest.approx(turned_by(angle)[1], rel=2e-6)
+
+
+@pytest.mark.parametrize("blocks", [rigid, deformable])
+@pytest.mark.parametrize("seed", range(4))
+def test_no_motion_is_faster_than_the_bound_with_ties_says(blocks: Blocks, seed: int) -> None:
+    """Wherever they have turned, ω² of ties strained by 4 %, from differences of their forces, is below the bound."""
+    system = blocks(block(tie=TIES))
+    motion, moving = turned(system, seed), np.isfinite(system.mass)
+    stretch = system.ties.elongation(motion) - 0.04 * system.ties.length
+
+    def forces(place: Array) -> Array:
+        force = np.zeros_like(place)
+        pull((*system.ties[:4], system.ties.ends.arrays, system.ties.length, stretch), place, force)
+        return force[moving]
+
+    step, ways = 1e-7, np.eye(len(motion))[moving]
+    stiffness = [(forces(motion - step * way) - forces(motion + step * way)) / (2 * step) for way in ways]
+    root = np.sqrt(system.mass[moving])
+    own = float(np.linalg.eigvalsh(np.array(stiffness) / root / root[:, None])[-1])
+    alone = 1e-9 * own  # of joints that are hardly there
+    assert own <= system.ties.frequency_squared(alone, system.mass) * (1 + 1e-6)
+    assert system.ties.frequency_squared(alone, system.mass) < 8 * own
