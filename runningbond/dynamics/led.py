@@ -15,12 +15,12 @@ import numpy as np
 from runningbond.joints import JointPoints
 from runningbond.results import Outcome, Supports, fastest_corner_by_one
 from runningbond.results.outcome import joined, number
-from runningbond.results.reactions import AT_REST, COME_FREE, WORKS
+from runningbond.results.reactions import AT_REST, COME_FREE, UNFELT, WORKS
 from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import fall_under_dead_load, put_on_dead_load
-from .lead import BEAM, LITTLE, Lead, Way, formed, goes_both_ways, shedding
+from .lead import BEAM, LITTLE, Lead, Way, WayRow, formed, goes_both_ways, shedding
 from .run import CALMING, Observer, Run, Unstable
 
 LEAST_STEPS, UNHURRIED, UNHURRIED_FAR = 20_000, 20, 2
@@ -161,6 +161,14 @@ def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Wa
     return replace(outcome, curve=way.curve, path=path, path_columns=columns)
 
 
+def _has_come_free(lead: Lead, row: WayRow) -> bool:
+    """Whether the supports that move bear nothing at a place of a way."""
+    if lead.run.system.contacts is None:
+        return Supports(lead.scene, lead.points, lead.run.system.owner).have_come_free(row.carried, row.tie)
+    borne = np.hypot(*row.carried[:, :2].T)
+    return bool(borne[lead.scene.support_motion.any(axis=1)].max() <= UNFELT * borne.max())
+
+
 def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> Outcome:
     """Verdict on some ways, of which the last one is drawn."""
     way = ways[-1]
@@ -175,8 +183,7 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")
     least, most = _bracket(ways)
     fell = way.verdict == "collapse"
-    supports = Supports(lead.scene, lead.points, lead.run.system.owner)
-    if lead.settles and not fell and supports.have_come_free(way.rows[-1].carried, way.rows[-1].tie):
+    if lead.settles and not fell and _has_come_free(lead, way.rows[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
     if not fell and not formed(outcome.curve, tolerance, settles=lead.settles, still=way.answer - least):

@@ -117,8 +117,9 @@ def is_finite(displacements: str, model: str, scene: Scene) -> bool:
     """Whether displacements are finite; a `SceneError` for unknown ones, and for a scene that is not taken through."""
     key = f"model {model}: displacements"
     finite = one_of(key, displacements, get_args(Displacements)) == "finite"
-    if finite and not scene.drive_path:
-        what = 'must be "small" for this scene; finite ones are followed where beam.drive.displacement leads a wall'
+    if finite and not (scene.drive_path or scene.settlement):
+        what = 'must be "small" for this scene; finite ones are followed where a beam is driven by displacements'
+        what += ", or a support settles"
         raise SceneError(key, what, displacements)
     return finite
 
@@ -126,7 +127,8 @@ def is_finite(displacements: str, model: str, scene: Scene) -> bool:
 def check_finite(scene: Scene) -> None:
     """Refuse, by a `SceneError`, what models do not know of at finite displacements."""
     for key in scene.extras:
-        if key not in ("load.history", "tie") and not ((scene.history or scene.drive_path) and key.startswith("beam")):
+        is_known = key in ("load.history", "tie") or key.startswith("load.live settlement")
+        if not is_known and not ((scene.history or scene.drive_path) and key.startswith("beam")):
             raise SceneError(key, "is not taken at finite displacements; leave it out")
     if not scene.is_beam[scene.pins.block].all():
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')

@@ -364,15 +364,16 @@ class Run:
         return search.at_joints(contacts_of(state), np.vstack([none, pulls, none]))[2:4]
 
     def resultants(self, state: State, multiplier: float) -> Array:
-        """Resultants of contacts, ties and loads on a rig's bodies, moments about the origin, ``(n, 3)`` [N, N m]."""
+        """Resultants of contacts, ties and loads on bodies, moments about the origin, ``(n, 3)`` [N, N m]."""
         system, live, search = self.system, self.system.live.copy(), self.system.contacts
-        if search is None or system.rig is None:
-            raise TypeError("resultants are those of a rig at finite displacements")
-        moment = turn_rig(self._rig, state.motion, live)
+        if search is None:
+            raise TypeError("resultants are those at finite displacements")
+        moment = turn_rig(self._rig, state.motion, live) if system.rig else 0.0
         loads = system.dead + multiplier * live
         turn_loads(self._turning, state.motion, loads)
         total = loads[system.rigid]
-        total[system.rigid[:, 0] == system.rig.freedom[0], 2] += moment
+        if system.rig:
+            total[system.rigid[:, 0] == system.rig.freedom[0], 2] += moment
         at = search.outline.blocks.centroid + state.motion[system.rigid][:, :2]
         total[:, 2] += at[:, 0] * total[:, 1] - at[:, 1] * total[:, 0]
         ends = system.ties.ends

@@ -230,6 +230,7 @@ def run_model(
     notes = [
         outcome.message,
         _moves(model, scene, outcome, parameters.get("collapse")),
+        "" if finite else _led_far(model, scene, outcome),
         _keeps_strength(model, scene),
         _left_out(model, scene, finite),
     ]
@@ -260,6 +261,17 @@ def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
     soft = f"joints are too soft: the wall gives by {height} a block's height elastically, beyond small displacements"
     far = f"at the largest load at rest the wall has moved by {side} its smaller side, beyond small displacements"
     return joined(soft if gives > (FALLEN if collapse is None else collapse) else "", far if moved > FAR else "")
+
+
+def _led_far(model: Model, scene: Scene, outcome: Outcome) -> str:
+    """What is to be said of a wall that is led farther than small displacements go."""
+    if model.is_finite or not scene.is_led or not len(outcome.curve):
+        return ""
+    low, high = scene.blocks.extent(scene.wall)
+    share = float(np.abs(outcome.curve[:, 0]).max() / (high - low).min())
+    led = f"{'the support' if scene.settlement else 'the beam'} goes by {two_digits(100 * share)} %"
+    follows = ', where displacements="finite" follows it' if "displacements" in model.parameters else ""
+    return f"{led} of the wall's smaller side, beyond small displacements{follows}" if share > FAR else ""
 
 
 def _tilted_with_the_ground(scene: Scene) -> str:

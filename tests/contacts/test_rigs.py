@@ -387,7 +387,6 @@ def test_what_leaves_its_joint_slides_on_the_default_material() -> None:
         ({}, "finit", 'did you mean "finite"'),
         ({}, 2, "must be one of"),
         ({"beam__drive": {"force": [1, 0]}}, "finite", 'displacements = .finite.: must be "small" for this scene'),
-        ({"tie": [{"from": [0, 0.1], "to": [3, 0.1], "area": 1e-4, "young": 2e11, "yield": 1e4}]}, "finite", "^tie"),
         ({"joint__cohesion": 1e4}, "finite", "joint.cohesion = 10000"),
         ({"joint__cohesion": 1e4, "joint__fracture_energy_1": 10.0}, "finite", "joint.cohesion"),
         ({"inner_joint": {k: v for k, v in GLUE.items() if "energy" not in k}}, "finite", "inner_joint.cohesion"),

@@ -159,8 +159,6 @@ def test_what_is_not_taken_is_refused(parameters: dict[str, Any], message: str) 
     ("changes", "key"),
     [
         ({"beam__drive": {"force": [1, 0]}}, "model fem: displacements"),
-        ({"load__dead": [{"kind": "moment", "block": 0, "moment": 5.0}]}, "load.dead"),
-        ({"load__dead": [{"kind": "point", "at": [0.4, 0.3], "force": [-5.0, 0.0]}]}, "load.dead"),
         ({"joint__cohesion": 1e4}, "joint.cohesion"),
         ({"inner_joint": GLUE | {"inset": 0.01}}, "inner_joint.inset"),
     ],

@@ -1,0 +1,119 @@
+"""Supports that move so far that walls on them change their shape, against exact solutions."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dem.dynamic import dem_dynamic
+from fem_interface.model import fem
+from runningbond.results import Outcome
+from runningbond.scene import (
+    Array,
+    BlockMaterial,
+    JointMaterial,
+    Load,
+    Scene,
+    Settlement,
+    Stiffness,
+    build_scene,
+)
+from tests.limit.test_limit import rectangle
+
+RISE, SKEW = 0.4, 0.15
+
+
+def on_two_grounds(blocks: list[Array], grounds: list[Array], by: tuple[float, float], **joint: Any) -> Scene:
+    """Blocks on two pieces of ground, of which the right one moves."""
+    left = float(grounds[1][:, 0].min())
+    given: dict[str, Any] = {"friction": 0.8, "elasticity": Stiffness(3e10, 3e10)} | joint
+    return build_scene(
+        "moving support",
+        blocks,
+        thickness=0.2,
+        block=BlockMaterial(2000.0, young=1e12, poisson=0.2),
+        joint=JointMaterial(**given),
+        grounds=grounds,
+        load=Load(live=(Settlement(box=((left - 0.01, -2.0), (5.0, 2.0)), by=by),)),
+    )
+
+
+def arch(spread: float, **joint: Any) -> Scene:
+    """Two blocks of 1 m between skewed abutments, of which the right one goes away."""
+    left = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, RISE], [-SKEW, RISE]])
+    abutment = np.array([[-1.0, -1.0], [0.0, -1.0], [0.0, 0.0], [-SKEW, RISE], [-1.0, RISE]])
+    across = [np.column_stack([2.0 - outline[::-1, 0], outline[::-1, 1]]) for outline in (left, abutment)]
+    return on_two_grounds([left, across[0]], [abutment, across[1]], (spread, 0.0), **joint)
+
+
+def thrust(spread: float, centroid: Array) -> float:
+    """Share of the weight with which two blocks press on a support that has gone so far.
+
+    Each turns about its lower corner at the abutment, and their upper corners bear on each other: with half the span
+    b + s / 2 between them the rise is what the diagonal leaves, and H = W (arm of its middle) / rise.
+    """
+    half = 1.0 + spread / 2
+    rise = math.sqrt(1.0 + RISE**2 - half**2)
+    turn = math.atan2(rise, half) - math.atan2(RISE, 1.0)
+    return float(centroid[0] * math.cos(turn) - centroid[1] * math.sin(turn)) / rise / 2
+
+
+def far(scene: Scene, model: Any = dem_dynamic) -> Outcome:
+    outcome: Outcome = model(scene, 0.01, displacements="finite")
+    assert "finite displacements" in outcome.message, outcome.message
+    return outcome
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_an_arch_on_a_spreading_support_thrusts_as_its_hinges_have_moved(model: Any) -> None:
+    """From .577 of its weight to .72 at a fortieth of the span: to 2e-3; the grounds bear the weight, half each."""
+    scene = arch(0.05)
+    outcome = far(scene, model)
+    for moved, share in outcome.curve:
+        assert share == pytest.approx(thrust(moved, scene.blocks.centroid[0]), rel=2e-3)
+    weight = 9.81 * float(scene.mass[~scene.fixed].sum())
+    known = dict(zip(outcome.path_columns, outcome.path[-1], strict=True))
+    for ground, sense in (("ground 1", 1.0), ("ground 2", -1.0)):
+        assert known[f"{ground} vertical [N]"] == pytest.approx(weight / 2, rel=1e-3)
+        assert known[f"{ground} horizontal [N]"] == pytest.approx(sense * weight * outcome.curve[-1, 1], rel=1e-3)
+
+
+def test_an_arch_falls_once_its_hinges_lie_in_a_line() -> None:
+    """The diagonal of a block is as long as half the span at a spread of 0.154 m; corners are rounded by 2 mm of it.
+
+    At small displacements it never falls, and thrusts as it did.
+    """
+    line = 2 * (math.hypot(1.0, RISE) - 1.0)
+    outcome = far(arch(0.2, inset=0.002))
+    assert "the wall falls beyond" in outcome.message
+    assert 0.85 * line < outcome.curve[-1, 0] < line
+    small = dem_dynamic(arch(0.2, inset=0.002), 0.01)
+    assert small.curve[-1] == pytest.approx([0.2, small.curve[0, 1]], rel=0.02)
+
+
+@pytest.mark.parametrize(("spread", "falls"), [(0.09, False), (0.25, True)])
+def test_a_lintel_falls_from_a_support_that_goes_away_from_under_it(spread: float, falls: bool) -> None:
+    """It lies on 0.1 m at either end, and goes along with one of them until the other has slid from under it."""
+    grounds = [rectangle(-0.5, -0.3, 0.6, 0.3), rectangle(0.9, -0.3, 0.6, 0.3)]
+    outcome = far(on_two_grounds([rectangle(0.0, 0.0, 1.0, 0.2)], grounds, (spread, 0.0)))
+    end = outcome.curve[-1, 0]
+    assert 0.08 < end < 0.22 if falls else end == pytest.approx(spread)
+
+
+def test_a_beam_on_three_supports_comes_free_of_one_that_sinks() -> None:
+    """A block across a pit, on its edges: its middle support sinks from under it, and bears nothing."""
+    grounds = [rectangle(-0.5, -0.5, 0.6, 0.5), rectangle(0.4, -0.5, 0.2, 0.5), rectangle(0.9, -0.5, 0.6, 0.5)]
+    blocks = [rectangle(0.0, 0.0, 1.0, 0.2)]
+    scene = build_scene(
+        "three supports",
+        blocks,
+        thickness=0.2,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.6, elasticity=Stiffness(1e10, 1e10)),
+        grounds=grounds,
+        load=Load(live=(Settlement(box=((0.35, -1.0), (0.65, 0.1)), by=(0.0, -0.05)),)),
+    )
+    outcome = far(scene)
+    assert outcome.status == "unbounded"
+    assert "bears nothing" in outcome.message
