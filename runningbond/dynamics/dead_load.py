@@ -1,7 +1,7 @@
 """The dead load put on a wall: at once, and slowly where that breaks joints, or brings down walls, that it need not.
 
-Preloads of ties come with it. A beam that is held at its height from then on keeps what thrust there is: there the load
-comes slowly as well where joints have slid.
+Preloads of ties come with it. A beam that is held at its height from then on keeps what thrust there is, and ties that
+have drawn blocks along have lost their preload: there the load comes slowly as well where joints have slid.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ HARDLY = 1 / 64
 """As `ELASTIC`, where joints must not slide either: after a quarter at once thrusts were up to two fifths too small."""
 
 SLID = 1e-3
-"""Part of the dead load's work beyond which what friction took of it is no rounding."""
+"""Part of the work of the dead load and of preloads beyond which what friction took of it is no rounding."""
 
 TURNS = 200
 """Turns in which ties are tightened to the rest of their preloads meanwhile."""
@@ -50,15 +50,16 @@ def put_on_dead_load(run: Run, criteria: Criteria, observe: Observer = no_observ
 
     A load that is put on at once overshoots to twice itself, which matters to joints that keep what it does, and to
     walls that sway far: where any joint is damaged, or crushed, or the wall falls, it is loaded again, slowly. Friction
-    remembers too, of which a mechanism asks nothing unless its beam is held at its height: what bore the overshoot then
-    presses too little.
+    remembers too, of which a mechanism asks nothing unless its beam is held at its height, and what bore the overshoot
+    then presses too little; or ties are preloaded, which go slack, and leave blocks apart, as these slide too far.
 
     Raises
     ------
     Unstable
         As of `hold_load`.
     """
-    state, keeps, held = State.at_rest(run.system), keeps_what_it_does(run), len(run.system.late) > 0
+    state, keeps = State.at_rest(run.system), keeps_what_it_does(run)
+    held = len(run.system.late) > 0 or bool(run.system.ties.slack.any())
     unseen = keeps or held
     verdict = settle(run, state, 0.0, criteria, no_observer if unseen else observe, sudden=True)
     # What has fallen may have no contacts left to be broken, or have swayed twice as far as the load alone moves it.
@@ -94,7 +95,7 @@ def _is_broken(run: Run, state: State) -> bool:
 
 def _has_slid(run: Run, state: State) -> bool:
     ledger = run.ledger(state)
-    return ledger.friction > SLID * ledger.external
+    return ledger.friction > SLID * (ledger.external - min(ledger.ties, 0.0))  # what preloads gave is work as well
 
 
 def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: float = ELASTIC) -> UnderDeadLoad:

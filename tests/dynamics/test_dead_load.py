@@ -85,6 +85,24 @@ def test_what_a_preload_and_the_weight_leave_of_a_strength_is_borne(model: Any, 
     assert is_bracketed(model(pulled(share)), 4 * (1 / share - 1))
 
 
+@pytest.mark.parametrize("model", [dem_static, *MODELS])
+def test_a_preload_draws_a_block_no_farther_than_friction_lets_it(model: Any) -> None:
+    """A bar of thrice what friction bears draws a block until it pulls as much as that: put on at once it went slack.
+
+    Models in motion tighten it in 200 turns, and know that pull to two of them.
+    """
+    size = {"width": 0.2, "height": 0.05, "wall__thickness": 0.1, "block__density": DENSITY, "block__young": 1e12}
+    slides = 0.6 * 0.2 * 0.05 * 0.1 * DENSITY * GRAVITY
+    bar = {"from": [0.15, 0.025], "to": [2.0, 0.025], "area": 1e-6, "young": 1e11, "yield": 1e3, "preload": 3 * slides}
+    joint = {"friction": 0.6, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
+    load = {"gravity": GRAVITY, "live": {"kind": "lateral"}}
+    outcome = model(courses([[1]], **size, joint=joint, load=load, tie=[bar]))
+    assert is_bracketed(outcome, 0.6)
+    path = outcome.curve_columns()
+    assert path["tie 0 [N]"][0] == pytest.approx(slides, abs=2 / 200 * 3 * slides)
+    assert path["ground horizontal [N]"][0] == pytest.approx(-path["tie 0 [N]"][0], rel=1e-3)
+
+
 def test_what_preloads_give_is_work_that_the_ledger_is_measured_by() -> None:
     """A bar that pulls a block off its base against nearly all of the live load does nearly all the work there is."""
     strength, weight = 1e5, STRESS * 0.2 * 0.1
