@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
@@ -166,6 +166,8 @@ def admits(slope: float, m: float, mu: float) -> bool:
 
 @settings(max_examples=60, deadline=None)
 @given(mu=st.floats(0.1, 3.0), m=st.floats(0.05, 4.0))
+@example(mu=1.1, m=0.5)  # heads give way first, by little
+@example(mu=1.1, m=4.0)  # beds do, by as little
 def test_the_crack_slope_is_the_steepest_that_blocks_can_follow(mu: float, m: float) -> None:
     """A linear program of the compatible strain rates, below and above; above tan φ = 1 heads forbid m / tan φ."""
     slope = crack_slope(2.0, m, mu)
