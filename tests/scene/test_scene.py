@@ -16,15 +16,18 @@ from hypothesis import strategies as st
 
 from runningbond.scene import (
     Array,
+    Beam,
     BlockMaterial,
     Blocks,
     Bond,
     JointMaterial,
     Lateral,
+    Load,
     Mortar,
     PointLoad,
     SceneError,
     Stiffness,
+    build_scene,
     find_joints,
     read_scene,
     scene_from_dict,
@@ -225,6 +228,29 @@ def test_corners_hold_the_first_course_at_its_ends(kind: str, held: int) -> None
     pins = panel(support__kind=kind).pins
     assert len(pins) == held
     assert set(map(tuple, pins.point.tolist())) == {(0.0, 0.0), (1.44, 0.0)}
+
+
+@pytest.mark.parametrize("higher", [0, 1])
+def test_a_first_course_that_rounding_left_uneven_is_held_at_both_ends(higher: int) -> None:
+    """A millionth of a millimetre between its two blocks: one of them alone was no course."""
+    off = 1e-9 * np.eye(2)[higher]
+    outlines = [np.array([[x, y], [x + 0.4, y], [x + 0.4, 0.2], [x, 0.2]]) for x, y in ((0.0, off[0]), (0.4, off[1]))]
+    scene = build_scene(
+        "uneven",
+        outlines,
+        thickness=0.1,
+        block=BlockMaterial(2000.0),
+        joint=JointMaterial(0.6),
+        load=Load(live=(Lateral(),)),
+        support="pinned-corners",
+    )
+    assert scene.pins.point == pytest.approx(np.array([[0.0, off[0]], [0.0, off[0]], [0.8, off[1]], [0.8, off[1]]]))
+
+
+def test_a_beam_lies_on_what_is_level_of_a_wall_s_top() -> None:
+    """A stone with a chamfered shoulder bears it on its flat alone."""
+    stone = Blocks.from_polygons([np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.2], [0.7, 0.5], [0.0, 0.5]])])
+    assert Beam(height=0.1).outline(stone).tolist() == [[0.0, 0.5], [0.7, 0.5], [0.7, 0.6], [0.0, 0.6]]
 
 
 def test_point_load_is_shared_by_the_blocks_it_touches() -> None:
