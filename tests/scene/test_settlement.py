@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runningbond.models import run_model
-from runningbond.scene import Scene, scene_from_dict
+from runningbond.scene import Scene, SceneError, scene_from_dict
 from tests.walls import panel
 
 from .drafting import box as box_of
@@ -53,6 +53,15 @@ def test_a_block_with_its_middle_on_a_side_of_a_box_stays_on_whichever_side(widt
             scene = panel(wall=size, support__kind="fixed-first-course", load__live=live)
             moving.append(int(scene.support_motion.any(axis=1).sum()))
         assert moving == [number, 7 - number]
+
+
+@pytest.mark.parametrize(("bottom", "top"), [(-1.0, 0.0), (0.3, 1.0)])
+def test_a_box_that_ends_below_held_blocks_or_begins_above_them_moves_none(bottom: float, top: float) -> None:
+    """However far it reaches sideways: what only touches it stays."""
+    size = {"length": 1.6, "height": 0.6, "block_width": 0.4, "block_height": 0.3, "thickness": 0.1}
+    live = {"kind": "settlement", "box": [[0.1, bottom], [9.0, top]], "by": [0.0, -1e-3]}
+    with pytest.raises(SceneError, match="holds no ground that bears a block"):
+        panel(wall=size, support__kind="fixed-first-course", load__live=live)
 
 
 @pytest.mark.parametrize("side", [0.65, 0.75, 0.85, 0.95, 1.05])
