@@ -133,6 +133,20 @@ def test_a_path_has_as_many_rows_as_the_curve() -> None:
         Outcome("wall", "mine", "undecided", curve=np.zeros((2, 2)), path=np.zeros((3, 1)), path_columns=("x",))
 
 
+def test_a_held_block_that_ties_alone_touch_bears_their_pull_about_the_middle_of_their_ends() -> None:
+    """Two rods from a block to a rock apart from it, of 30 and 50 N, whose ends are 0.2 m above one another."""
+    rod, ends = {"from": [0.3, 0.6], "area": 1e-4, "young": 2e11, "yield": 1e3}, np.array([[1.5, 0.15], [1.5, 0.35]])
+    rods = [rod | {"to": end.tolist()} for end in ends]
+    scene = courses([[1, -1, 1], [1]], width=0.6, height=0.4, support__kind="fixed-first-course", tie=rods)
+    supports, pulls = Supports(scene, wall_points(scene)), np.array([30.0, 50.0])
+    reactions = supports.reactions(np.zeros((len(wall_points(scene)), 2)), pulls, 0.0)
+    named = dict(zip(supports.columns, reactions, strict=True))
+    ways = ends - [0.3, 0.6]
+    pull = (pulls / np.hypot(*ways.T))[:, None] * ways
+    assert [named[f"block 1 {way} [N]"] for way in ("horizontal", "vertical")] == pytest.approx(pull.sum(axis=0))
+    assert named["block 1 moment about (1.5, 0.25) [N m]"] == pytest.approx(0.1 * (pull[0, 0] - pull[1, 0]))
+
+
 def test_what_falls_holds_its_pins_with_more_than_forces() -> None:
     """The last row of a wall that fell is in motion: what holds a pinned block then is not known."""
     columns = run_model("dem-dynamic", wall("corners"), 0.1).curve_columns()
