@@ -341,6 +341,34 @@ def test_ground_that_turns_bears_a_block_at_its_far_corner(model: str, about: fl
     assert collapse(model, scene) == pytest.approx((WIDTH / 2 - cut) / (WIDTH - cut), rel=1e-6)
 
 
+@BOTH
+@pytest.mark.parametrize(
+    ("motion", "said"),
+    [
+        ({"by": (0.0, -0.02)}, "the support bears {0:.6g} N of a dead load of {1:.6g} N against its motion"),
+        ({"by": (0.0, 0.02)}, "the support has to be driven along its motion with {1:.6g} N"),
+        (
+            {"rotation_angle": -1.0, "about": (0.0, 0.0)},
+            "the support bears {0:.6g} N of a dead load of {1:.6g} N against its motion, as if where it moves most",
+        ),
+        (
+            {"rotation_angle": 1.0, "about": (0.0, 0.0)},
+            "the support has to be driven along its motion with {2:.6g} N, as if where it moves most",
+        ),
+    ],
+)
+def test_the_reaction_is_told_in_newtons_and_where_if_not_everywhere(
+    model: str, motion: dict[str, Any], said: str
+) -> None:
+    """W (b/2 − c) / (b − c) of ground that sinks from c on; all of W is lifted, and half of it about the other end."""
+    cut = 0.1
+    scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((cut, -1), (2, 0.1)), friction=2.0, **motion)
+    message = run_model(model, scene).message
+    borne = WEIGHT * (WIDTH / 2 - cut) / (WIDTH - cut)
+    assert said.format(borne, WEIGHT, WEIGHT / 2) in message
+    assert ("where it moves most" in message) == ("rotation_angle" in motion)
+
+
 def test_ground_that_turns_about_the_corner_that_bears_brings_nothing_down() -> None:
     scene = on_moving([rectangle(0, 0, WIDTH, HEIGHT)], ((0.1, -1), (2, 0.1)), rotation_angle=1.0, about=(WIDTH, 0.0))
     assert limit(scene).status == "unbounded"
