@@ -76,6 +76,15 @@ def test_published_blocks_are_stiff_and_stone_between_thin_mortar_is_soft() -> N
         assert not asks_others(wall, {"cells": 2})
 
 
+def test_a_beam_is_none_of_the_blocks_that_make_a_wall_soft() -> None:
+    """Nor is what it lies on one of their beds: of another height, it would be as soft as masonry that high."""
+    joint = {"friction": 0.6, "normal_stiffness": 1e10, "shear_stiffness": 4e9}
+    beams: list[dict[str, Any]] = [{}, {"beam": {"height": 0.1}}]
+    alone, under = (courses([[1, 1], [0.5, 1, 0.5]], joint=joint, block__young=2e9, **beam) for beam in beams)
+    assert len(under.joints) > len(alone.joints)
+    assert block_compliance(under) == pytest.approx(block_compliance(alone), rel=1e-12)
+
+
 def test_blocks_are_as_soft_as_those_that_the_wall_has() -> None:
     """A modulus that no block of the wall has asks nobody; one that some have does, wherever it is described."""
     changes: dict[str, Any] = {"wall__thickness": 0.25, "joint": {"friction": 0.6}, "load__live": {"kind": "lateral"}}
