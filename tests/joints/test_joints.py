@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runningbond.joints import gauss, joint_points, joint_stiffness, lobatto, point_strength, wall_rule
+from runningbond.joints.points import trapezoids
 from runningbond.scene import JointMaterial, Joints, Mortar, SceneError, Stiffness
 from tests.walls import panel
 
@@ -26,6 +27,14 @@ def test_rules_integrate_the_polynomials_they_should(n: int) -> None:
 def test_lobatto_points_are_the_joint_ends_and_simpson_its_middle() -> None:
     assert lobatto(2).nodes.tolist() == [-1, 1]
     assert lobatto(3).weights == pytest.approx([1 / 3, 4 / 3, 1 / 3])
+
+
+@pytest.mark.parametrize("parts", [1, 2, 5])
+def test_trapezoids_are_exact_on_each_of_their_equal_parts(parts: int) -> None:
+    """To degree 1, and of x² by (2 / parts)³ / 6 too large on each."""
+    rule = trapezoids(parts)
+    exact = [2.0, 0.0, 2 / 3 + parts * (2 / parts) ** 3 / 6]
+    assert [rule.weights @ rule.nodes**power for power in range(3)] == pytest.approx(exact, abs=1e-15)
 
 
 def test_points_stand_for_the_whole_joint_and_stay_on_it() -> None:
