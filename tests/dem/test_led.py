@@ -17,6 +17,7 @@ from runningbond.limit.settlement import reaction_unit
 from runningbond.models import MODELS, run_model
 from runningbond.pictures.recording import StaticRecorder
 from runningbond.results import Outcome
+from runningbond.results.outcome import number
 from runningbond.scene import (
     Action,
     Array,
@@ -353,7 +354,8 @@ def test_half_a_wall_settles_as_its_mirror_does() -> None:
 def test_support_that_has_hardly_moved_has_shed_no_load_for_good() -> None:
     outcome = dem_static(wall(PORTAL, ground_moves(1.8, 3.0, (0.0, -1e-6))))
     assert (outcome.status, outcome.lower) == ("undecided", None)
-    assert "still sheds load" in outcome.message
+    assert "still sheds load where its settlement ends" in outcome.message
+    assert f"it bears {number(outcome.curve[-1, 1])} at 1e-06 m; " in outcome.message
     assert outcome.upper == pytest.approx(outcome.curve[-1, 1], rel=1e-6)
     assert 1.375 / 3 < outcome.curve[-1, 1] < 0.5
 
@@ -362,7 +364,8 @@ def test_drive_that_ends_in_the_elastic_wall_has_found_no_capacity() -> None:
     outcome = dem_static(under_beam("level", Drive.along((1e-5,), 2.0)))
     assert (outcome.status, outcome.upper) == ("undecided", None)
     assert outcome.lower == pytest.approx(outcome.curve[-1, 1], rel=1e-6)
-    assert "still hardens" in outcome.message
+    reached = f"{number(outcome.curve[-1, 1])} at 1e-05 m"
+    assert f"still hardens where its drive ends, which takes {reached}; " in outcome.message
 
 
 @pytest.mark.parametrize("budget", [5, 40])
