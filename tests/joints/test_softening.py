@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from dem.dynamic import dem_dynamic
+from runningbond.joints.coulomb import IMPACTS
 from runningbond.joints.law import FRICTION_WORK, KernelLaw
 from runningbond.joints.softening import DAMAGE
 from runningbond.joints.wall_law import kernel_law
@@ -73,6 +74,17 @@ def test_area_under_the_slip_branch_is_the_fracture_energy(pressure: float) -> N
         assert 2 * fine - coarse == pytest.approx(80.0, rel=1e-6)
 
 
+@pytest.mark.parametrize("crushes_at", [None, 1e9])
+def test_slip_to_and_fro_wears_cohesion_by_the_length_of_its_way(crushes_at: float | None) -> None:
+    """c (1 − s_p / s_c) with s_c = 2 G_II / c, wherever the point ends: not by how far it is from where it began."""
+    corners = 2e-4 * np.array([0, 1, -1, 1, 0])
+    slip = np.concatenate([np.linspace(a, b, 4000, endpoint=False) for a, b in pairwise(corners)])
+    _, tangential, _ = follow(law(replace(JOINT, compressive_strength=crushes_at)), np.zeros_like(slip), slip)
+    way = np.abs(np.diff(slip - tangential / 4e10)).sum()
+    assert way > 1e-3
+    assert -tangential[-1] == pytest.approx(1e5 * (1 - way * 1e5 / (2 * 80.0)), rel=1e-3)
+
+
 def test_opening_unloads_to_the_origin_and_stays_damaged() -> None:
     path = np.concatenate([np.linspace(0, 1e-4, 500), np.linspace(1e-4, 0, 500), np.linspace(0, 1e-4, 500)])
     normal, _, _ = follow(law(), path, 0 * path)
@@ -87,6 +99,19 @@ def test_a_broken_joint_is_a_dry_one() -> None:
     normal, tangential, _ = follow(law(), opening, slip)
     assert normal[0] == 0
     assert tangential[2:] == pytest.approx(-0.6 * normal[2:])
+
+
+@pytest.mark.parametrize("further", [{}, {"law": IMPACTS}, {"compressive_strength": 1e9}])
+def test_friction_spends_what_is_done_and_not_stored_to_rounding_in_steps_of_any_length(
+    further: dict[str, Any],
+) -> None:
+    """Under a constant pressure: the work of mean shears on each slip, less τ² / 2 k_t; turns within a step too."""
+    dry = kernel_law([JointMaterial(0.6, elasticity=Stiffness(1e11, 4e10), **further)], np.zeros(1, dtype=np.int64))
+    slip = np.append(0.0, np.random.default_rng(1).normal(scale=4e-6, size=200).cumsum())
+    _, tangential, history = follow(dry, np.full(len(slip), -1e-6), slip)
+    assert np.abs(tangential).max() == pytest.approx(0.6 * 1e5)
+    spent = work(tangential, slip) - tangential[-1] ** 2 / (2 * 4e10)
+    assert history[FRICTION_WORK, 0] == pytest.approx(spent, rel=1e-12)
 
 
 @pytest.mark.parametrize("branch", ["linear", "exponential"])
