@@ -85,6 +85,19 @@ def test_slip_to_and_fro_wears_cohesion_by_the_length_of_its_way(crushes_at: flo
     assert -tangential[-1] == pytest.approx(1e5 * (1 - way * 1e5 / (2 * 80.0)), rel=1e-3)
 
 
+@pytest.mark.parametrize("crushes_at", [None, 1e9])
+def test_slip_and_opening_wear_a_joint_by_the_root_of_their_squares(crushes_at: float | None) -> None:
+    """Three tenths of the way in slip, then, unloaded, four tenths in opening: half of its strength is gone."""
+    first, last, worn = 1e5 / 1e11, 2 * 20.0 / 1e5, 0.3 * 2 * 80.0 / 1e5
+    slip = np.append(np.linspace(0, worn + 0.7 * 1e5 / 4e10, 4000), [worn, worn])
+    opening = np.zeros_like(slip)
+    opening[-1] = first + 0.4 * (last - first)
+    normal, _, history = follow(law(replace(JOINT, compressive_strength=crushes_at)), opening, slip)
+    assert history[DAMAGE, 0] == pytest.approx(0.5, rel=1e-3)
+    # On the line from the origin to where as much damage is met in opening alone.
+    assert normal[-1] == pytest.approx(0.5 * 1e5 * opening[-1] / (first + 0.5 * (last - first)), rel=3e-3)
+
+
 def test_opening_unloads_to_the_origin_and_stays_damaged() -> None:
     path = np.concatenate([np.linspace(0, 1e-4, 500), np.linspace(1e-4, 0, 500), np.linspace(0, 1e-4, 500)])
     normal, _, _ = follow(law(), path, 0 * path)
