@@ -56,8 +56,8 @@ def dem_dynamic(
     tolerance, collapse, first_step, budget, observe
         As in `collapse_by_steps`.
     displacements
-        Whether a wall that is led by its beam is followed through finite displacements: blocks turn, slide off their
-        neighbours and come to rest on others, and softening joints break (`finite_system`).
+        Whether a wall that is led, by its beam or by a support, is followed through finite displacements: blocks turn,
+        slide off their neighbours and come to rest on others, and softening joints break (`finite_system`).
 
     Returns
     -------

@@ -95,8 +95,8 @@ def fem(
     energies
         Where the joints' fracture energies come from; without any, joints are perfectly plastic.
     displacements
-        Whether a wall that is led by its beam is followed through finite displacements, as `dem.dynamic.dem_dynamic`
-        follows it. Contacts are then at nodes and, where joints soften, crush or close, at points between them; `rule`,
+        Whether a wall that is led is followed through finite displacements, as `dem.dynamic.dem_dynamic` follows it.
+        Contacts are then at nodes and, where joints soften, crush or close, at points between them; `rule`,
         `points`, `loads` and `energies` are not taken, and blocks crack on their axes.
     tolerance, collapse, first_step, budget, observe
         As in `collapse_by_steps`.

@@ -12,7 +12,7 @@ from .state import PLASTIC_SLIP, State, frames_of, history_free_of_shear
 from .system import BlockSystem, ContactSearch, Interface
 
 SPEED_FACTOR = 2
-"""Times the speed that bodies have, and that loads alone would give them, with which they are taken to move on."""
+"""Times the speed that bodies have, and that loads and ties alone would give them, with which they may move on."""
 
 STEPS_AHEAD = 128
 """Steps of the fastest body within which sides count as near at least: a search takes as long as hundreds of them."""
@@ -31,6 +31,7 @@ class ContactUpdate:
         self._system, self._search = system, search
         loads = (np.abs(system.dead) + np.abs(system.live)) / system.mass
         self._acceleration = self._reach(loads[system.rigid], np.zeros(2))
+        self._drawn = system.ties.accelerations(system.mass, search.outline.reach)
 
     def interface_on(self, contacts: Contacts) -> Interface:
         """The interface on contacts, with a frequency no lower than that of the undeformed wall."""
@@ -53,7 +54,8 @@ class ContactUpdate:
         left = way - self._apart(rigid - contacts.motion.reshape(-1, 3))
         if left < way / 4:
             return 0
-        speed, gain = SPEED_FACTOR * self._travel(state.velocity), SPEED_FACTOR * self._acceleration
+        drawn = float(self._drawn @ self._system.ties.force(state.motion, state.stretch)) if len(self._drawn) else 0.0
+        speed, gain = SPEED_FACTOR * self._travel(state.velocity), SPEED_FACTOR * (self._acceleration + drawn)
         root = np.sqrt(speed**2 + 2 * gain * left)
         time = 2 * left / (speed + root) if root > 0 else np.inf
         return int(np.clip(time / dt, 1, MOST_STEPS))

@@ -64,10 +64,12 @@ class TurningLoads(NamedTuple):
 
 def turning_loads(dead: Forces, points: Callable[[Indices, Array], BodyPoints]) -> TurningLoads | None:
     """Those of a scene's dead forces, from the `points` that are of blocks ``(n,)`` at places ``(n, 2)`` [m]."""
-    if not len(dead.block):
-        return None
     on = points(dead.block, dead.at)
-    return TurningLoads(on, np.array(dead.force), np.zeros(len(on.arm) + len(on.mode)), np.zeros(1))
+    turns = on.arm.any(axis=1) | (np.diff(on.start) > 0)
+    if not turns.any():
+        return None
+    on, force = points(dead.block[turns], dead.at[turns]), dead.force[turns]
+    return TurningLoads(on, force, np.zeros(len(on.arm) + len(on.mode)), np.zeros(1))
 
 
 NO_TURNING_LOADS = TurningLoads(NO_POINTS, np.zeros((0, 2)), np.zeros(0), np.zeros(1))

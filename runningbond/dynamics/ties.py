@@ -65,6 +65,17 @@ class TieRows(NamedTuple):
         k, most, preload = self.constants.T
         return np.asarray(np.clip(k * (self.elongation(motion) - stretch) + preload, 0.0, most))
 
+    def accelerations(self, mass: Array, reach: Array) -> Array:
+        """Acceleration that a newton of each gives points of the blocks at its ends at most, ``(nt,)`` [m/s²].
+
+        From the masses of the modes ``(nd,)`` and how far the blocks' points are from their centroids ``(nb,)`` [m].
+        """
+        if not len(self.length):
+            return np.zeros(0)
+        rigid, arm, body = self.ends.rigid, np.hypot(*self.ends.arm.T), self.ends.body
+        each = 1 / mass[rigid[:, 0]] + arm * reach[body] / mass[rigid[:, 2]]
+        return np.asarray(each.reshape(2, -1).sum(axis=0))
+
     def stored(self, force: Array) -> float:
         """Energy that forces ``(nt,)`` [N] store, beyond what the preloads did [J]."""
         k, _, preload = self.constants.T

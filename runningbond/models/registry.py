@@ -265,7 +265,7 @@ def _moves(model: Model, scene: Scene, outcome: Outcome, collapse: float | None)
 
 def _led_far(model: Model, scene: Scene, outcome: Outcome) -> str:
     """What is to be said of a wall that is led farther than small displacements go."""
-    if model.is_finite or not scene.is_led or not len(outcome.curve):
+    if model.kind != "history" or model.is_finite or not scene.is_led or not len(outcome.curve):
         return ""
     low, high = scene.blocks.extent(scene.wall)
     share = float(np.abs(outcome.curve[:, 0]).max() / (high - low).min())

@@ -8,6 +8,7 @@ import pytest
 
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
+from runningbond.models import run_model
 from runningbond.results import Outcome
 from runningbond.scene import (
     Array,
@@ -117,3 +118,13 @@ def test_a_beam_on_three_supports_comes_free_of_one_that_sinks() -> None:
     outcome = far(scene)
     assert outcome.status == "unbounded"
     assert "bears nothing" in outcome.message
+
+
+@pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
+def test_a_support_that_goes_far_is_said_to_be_beyond_small_displacements(model: str) -> None:
+    """50 mm of an arch of 0.4 m are, 5 mm are not; and who can follow it says how."""
+    far_off, near = (run_model(model, arch(spread)).message for spread in (0.05, 0.005))
+    said = "the support goes by 12 % of the wall's smaller side, beyond small displacements"
+    assert said in far_off
+    assert ('displacements="finite" follows it' in far_off) == (model == "dem-dynamic")
+    assert "beyond" not in near

@@ -145,3 +145,19 @@ def test_no_motion_is_faster_than_the_bound_with_ties_says(blocks: Blocks, seed:
     alone = 1e-9 * own  # of joints that are hardly there
     assert own <= system.ties.frequency_squared(alone, system.mass) * (1 + 1e-6)
     assert system.ties.frequency_squared(alone, system.mass) < 8 * own
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_no_corner_is_drawn_faster_than_ties_are_said_to(seed: int) -> None:
+    """Contacts are sought in time for it, wherever the block has turned; at rest it is no more than thrice too much."""
+    scene = block(tie=TIES)
+    system = finite_system(scene)
+    reach = np.hypot(*(scene.blocks.vertices[:4] - scene.blocks.centroid[0]).T).max()
+    most = system.ties.accelerations(system.mass, np.array([reach, reach]))
+    for motion, least in ((turned(system, seed), 0.0), (np.zeros_like(system.mass), 1 / 3)):
+        force, stretch = np.zeros_like(motion), system.ties.elongation(motion) - 1e-3
+        pull((*system.ties[:4], system.ties.ends.arrays, system.ties.length, stretch), motion, force)
+        drawn = force[:3] / system.mass[:3]
+        fastest = math.hypot(drawn[0], drawn[1]) + abs(drawn[2]) * reach
+        allowed = float(most @ system.ties.force(motion, stretch))
+        assert least * allowed <= fastest <= allowed
