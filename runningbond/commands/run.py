@@ -4,8 +4,10 @@ import json as to_json
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from cyclopts import Parameter
@@ -52,6 +54,7 @@ def run(
     *,
     model: Annotated[str, Parameter(help=f"One of {', '.join(MODELS)}.")],
     tolerance: Tolerance = TOLERANCE,
+    displacements: Literal["small", "finite"] = "small",
     json: Json = False,
     out: Path | None = None,
     draws: Whole | None = None,
@@ -64,6 +67,9 @@ def run(
     ----------
     model
         Name of the model.
+    displacements
+        Whether the wall keeps the shape it was built in, or dem-dynamic or fem follows it as far as a beam that is
+        driven by displacements, or a support that moves, leads it.
     out
         Folder in which to keep the result, its time series for ParaView, its curve with all reactions as a table and
         as a picture, and a picture of its mechanism.
@@ -76,7 +82,7 @@ def run(
     jobs
         Number of processes for draws; -1, the default, is one a core.
     """
-    chosen = find_model(model, "--model")
+    chosen = _through(find_model(model, "--model"), displacements)
     check_tolerance(tolerance, "--tolerance")
     for option, value in (("--scatter", scatter), ("--jobs", jobs)):
         if draws is None and value is not None:
@@ -104,6 +110,18 @@ def run(
     if stopped:
         return STOPPED
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
+
+
+def _through(model: Model, displacements: str) -> Model:
+    """The model, which follows walls that are led through finite displacements if these are asked for."""
+    if displacements == "small":
+        return model
+    if "displacements" not in model.parameters:
+        able = " and ".join(name for name, each in MODELS.items() if "displacements" in each.parameters)
+        raise SceneError(
+            "--displacements", f'must be "small" for {model.name}; {able} follow finite ones', displacements
+        )
+    return replace(model, solve=partial(model.solve, displacements=displacements), is_finite=True)
 
 
 def _progress(model: Model, wall: Scene) -> Progress | None:

@@ -151,7 +151,7 @@ def _path(outcome: Outcome, scene: Scene, run: Run, points: JointPoints, way: Wa
     if run.system.contacts is not None:
         held = carried[:, supports.block]
         held[:, :, 2] -= supports.about[:, 0] * held[:, :, 1] - supports.about[:, 1] * held[:, :, 0]
-        path = np.column_stack([-held.reshape(len(held), -1), tie, works, np.zeros(len(held))])
+        path = np.column_stack([-held.reshape(len(held), -1), tie, works, np.full(len(held), not way.moves)])
     else:
         loads = force if way.moves else np.zeros(len(force))
         path = supports.path(carried, tie, loads, works)["path"]

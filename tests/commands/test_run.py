@@ -276,3 +276,24 @@ def test_what_a_long_run_costs_is_told_on_a_terminal_only(
 def test_one_scene_too_many_is_named(capsys: pytest.CaptureFixture[str]) -> None:
     assert command(["run", "panel-01", "panel-02", "--model", "limit"]) == 2
     assert capsys.readouterr().err == "runningbond: panel-02: is more than this command takes\n"
+
+
+def test_a_support_is_followed_through_finite_displacements_where_they_are_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As by Python's `displacements`; models and walls that know of none are refused, and nothing is written."""
+    live = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -0.01]}
+    wall = str(write_toml(content(**SMALL, load__live=live), tmp_path / "sinks.toml"))
+    out, far = tmp_path / "out", ["--displacements", "finite"]
+    assert command(["run", wall, "--model", "dem-dynamic", *far, "--out", str(out)]) == 0
+    assert "finite displacements" in capsys.readouterr().out
+    kept, _ = load_outcome(out)
+    assert kept.multiplier == pytest.approx(1.0, rel=1e-3)
+    pushed = str(write_toml(content(**SMALL), tmp_path / "pushed.toml"))
+    for scene, model, said in (
+        (wall, "limit", "dem-dynamic and fem follow"),
+        (pushed, "fem", 'must be "small" for this'),
+    ):
+        assert command(["run", scene, "--model", model, *far, "--out", str(tmp_path / "none")]) == 2
+        assert said in capsys.readouterr().err
+        assert not (tmp_path / "none").exists()

@@ -89,6 +89,10 @@ def test_an_arch_falls_once_its_hinges_lie_in_a_line() -> None:
     outcome = far(arch(0.2, inset=0.002))
     assert "the wall falls beyond" in outcome.message
     assert 0.85 * line < outcome.curve[-1, 0] < line
+    left, right = outcome.motion[:2]  # of the last rest: hinges open and nothing else moves
+    assert left[2] < -0.3 < 0.3 < right[2]
+    assert left[1] == pytest.approx(right[1], rel=1e-2)
+    assert outcome.path[:, outcome.path_columns.index("at rest")].all()
     small = dem_dynamic(arch(0.2, inset=0.002), 0.01)
     assert small.curve[-1] == pytest.approx([0.2, small.curve[0, 1]], rel=0.02)
 
