@@ -132,5 +132,8 @@ def check_finite(scene: Scene) -> None:
         is_known = key in ("load.history", "tie") or key.startswith("load.live settlement")
         if not is_known and not ((scene.history or scene.drive_path) and key.startswith("beam")):
             raise SceneError(key, "is not taken at finite displacements; leave it out")
+    if scene.support_motion[:, 2].any():
+        what = "is not taken at finite displacements, where supports go straight; leave it out"
+        raise SceneError("load.live.rotation_angle", what)
     if not scene.is_beam[scene.pins.block].all():
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')

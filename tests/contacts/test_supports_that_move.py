@@ -1,6 +1,7 @@
 """Supports that move so far that walls on them change their shape, against exact solutions."""
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from runningbond.scene import (
     JointMaterial,
     Load,
     Scene,
+    SceneError,
     Settlement,
     Stiffness,
     build_scene,
@@ -122,6 +124,15 @@ def test_a_beam_on_three_supports_comes_free_of_one_that_sinks() -> None:
     outcome = far(scene)
     assert outcome.status == "unbounded"
     assert "bears nothing" in outcome.message
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_supports_that_turn_are_refused(model: Any) -> None:
+    """They would go round, and are carried straight on."""
+    scene = arch(0.05)
+    turns = Settlement(box=((1.99, -2.0), (5.0, 2.0)), by=(0.05, 0.0), rotation_angle=1.0)
+    with pytest.raises(SceneError, match="load.live.rotation_angle: is not taken at finite displacements"):
+        model(replace(scene, load=Load(live=(turns,))), 0.01, displacements="finite")
 
 
 @pytest.mark.parametrize("model", ["dem-static", "dem-dynamic"])
