@@ -88,6 +88,8 @@ def run(
         if draws is None and value is not None:
             raise SceneError(option, "goes with --draws alone", value)
     wall = read_scene(find_scene(scene))
+    if displacements == "finite":
+        _check_led(wall)
     if draws is not None:
         return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
     chosen.check(wall)
@@ -122,6 +124,16 @@ def _through(model: Model, displacements: str) -> Model:
             "--displacements", f'must be "small" for {model.name}; {able} follow finite ones', displacements
         )
     return replace(model, solve=partial(model.solve, displacements=displacements), is_finite=True)
+
+
+def _check_led(wall: Scene) -> None:
+    """Refuse finite displacements of a wall that cannot be followed through them, before anything is run."""
+    from runningbond.dynamics.rig import check_finite
+
+    if wall.history or not wall.is_led:
+        what = 'must be "small" for this scene; finite ones are followed where a beam is driven by displacements, or a'
+        raise SceneError("--displacements", f"{what} support settles", "finite")
+    check_finite(wall)
 
 
 def _progress(model: Model, wall: Scene) -> Progress | None:

@@ -177,7 +177,10 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
     other = -float(outcome.curve[:, 1].min())
     if goes_both_ways(lead.goals) and other > 0 and not lead.settles:
         what += f"; the other way it takes {number(other)}"
-    what += f"; {'small' if lead.run.system.contacts is None else 'finite'} displacements"
+    small = lead.run.system.contacts is None
+    what += f"; {'small' if small else 'finite'} displacements"
+    if lead.settles and not small and not lead.scene.joint.inset:
+        what += ", sharp corners: with a joint.inset they do not slip past each other"
     at = f"{abs(outcome.curve[-1, 0]) if lead.settles else np.abs(outcome.curve[:, 0]).max():.4g} m"
     if way.verdict == "undecided" or len(ways) < 2:
         return replace(outcome, message=f"no answer: beyond {at} it neither rested nor fell; {what}")

@@ -131,7 +131,8 @@ def check_finite(scene: Scene) -> None:
     for key in scene.extras:
         is_known = key in ("load.history", "tie") or key.startswith("load.live settlement")
         if not is_known and not ((scene.history or scene.drive_path) and key.startswith("beam")):
-            raise SceneError(key, "is not taken at finite displacements; leave it out")
+            where = " where a support settles" if key.startswith("beam") and scene.settlement else ""
+            raise SceneError(key, f"is not taken at finite displacements{where}; leave it out")
     if scene.support_motion[:, 2].any():
         what = "is not taken at finite displacements, where supports go straight; leave it out"
         raise SceneError("load.live.rotation_angle", what)

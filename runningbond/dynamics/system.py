@@ -273,7 +273,8 @@ def moving_far(
     deformation
         How blocks deform at a point.
     """
-    centroid, still = scene.blocks.centroid, int(np.flatnonzero(np.isinf(system.mass))[0])
+    centroid = scene.blocks.centroid
+    still = int(system.rigid[scene.fixed.argmax(), 2])  # rotation of what is held; supports may go, and never turn
 
     def points(block: Indices, at: Array) -> BodyPoints:
         return body_points(block, at, centroid, system.rigid, still, deformation)

@@ -270,8 +270,19 @@ def _led_far(model: Model, scene: Scene, outcome: Outcome) -> str:
     low, high = scene.blocks.extent(scene.wall)
     share = float(np.abs(outcome.curve[:, 0]).max() / (high - low).min())
     led = f"{'the support' if scene.settlement else 'the beam'} goes by {two_digits(100 * share)} %"
-    follows = ', where displacements="finite" follows it' if "displacements" in model.parameters else ""
+    follows = "; finite ones follow it" if "displacements" in model.parameters and _may_go_far(scene) else ""
     return f"{led} of the wall's smaller side, beyond small displacements{follows}" if share > FAR else ""
+
+
+def _may_go_far(scene: Scene) -> bool:
+    """Whether a wall that is led can be followed through finite displacements."""
+    from runningbond.dynamics.rig import check_finite
+
+    try:
+        check_finite(scene)
+    except SceneError:
+        return False
+    return True
 
 
 def _tilted_with_the_ground(scene: Scene) -> str:
