@@ -89,7 +89,7 @@ def run(
             raise SceneError(option, "goes with --draws alone", value)
     wall = read_scene(find_scene(scene))
     if displacements == "finite":
-        _check_led(wall)
+        _check_led(chosen, wall)
     if draws is not None:
         return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
     chosen.check(wall)
@@ -126,13 +126,14 @@ def _through(model: Model, displacements: str) -> Model:
     return replace(model, solve=partial(model.solve, displacements=displacements), is_finite=True)
 
 
-def _check_led(wall: Scene) -> None:
+def _check_led(model: Model, wall: Scene) -> None:
     """Refuse finite displacements of a wall that cannot be followed through them, before anything is run."""
-    from runningbond.dynamics.rig import check_finite
+    from runningbond.dynamics.rig import check_finite, is_finite
 
-    if wall.history or not wall.is_led:
-        what = 'must be "small" for this scene; finite ones are followed where a beam is driven by displacements, or a'
-        raise SceneError("--displacements", f"{what} support settles", "finite")
+    try:
+        is_finite("finite", model.name, wall)
+    except SceneError as error:
+        raise SceneError("--displacements", error.remedy, "finite") from None
     check_finite(wall)
 
 
