@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from runningbond.contacts.outline import Outline
 from runningbond.dynamics import (
     CALMER,
     U_CRIT,
@@ -21,17 +20,16 @@ from runningbond.dynamics import (
     collapse_by_steps,
     inertia_note,
     no_observer,
-    pushover_curve,
     with_highest_frequency,
 )
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
+from runningbond.dynamics.push import finite_run
 from runningbond.dynamics.rig import Displacements, is_finite
-from runningbond.dynamics.run import MOVING
 from runningbond.joints.wall_law import with_impacts
 from runningbond.limit import bears_dead_load, given_displacement, is_self_locking, proved_bound
 from runningbond.response import Response, Resting, Vibration, critical_scale, follow, vibration_at_rest
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene, SceneError, check_scene
+from runningbond.scene import Scene, check_scene
 
 from .finite_system import finite_system
 from .rigid_system import contact_points, rigid_system, with_fictitious_inertia
@@ -45,6 +43,7 @@ def dem_dynamic(
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
     displacements: Displacements = "small",
+    distance: float | None = None,
     observe: Observer = no_observer,
 ) -> Outcome:
     """Collapse of a scene by the motion of its rigid blocks; where its ground moves, as `critical_scale` finds it.
@@ -53,11 +52,12 @@ def dem_dynamic(
     ----------
     scene
         The scene; its joints need a stiffness, on which the collapse load hardly depends.
-    tolerance, collapse, first_step, budget, observe
+    tolerance, collapse, first_step, budget, distance, observe
         As in `collapse_by_steps`.
     displacements
-        Whether a wall that is led, by its beam or by a support, is followed through finite displacements: blocks turn,
-        slide off their neighbours and come to rest on others, and softening joints break (`finite_system`).
+        Whether a wall that is led by its beam or by a support, or pushed by live loads on its mass, is followed through
+        finite displacements: blocks turn, slide off their neighbours and come to rest on others, and softening joints
+        break (`finite_system`). A push goes on past its peak.
 
     Returns
     -------
@@ -68,9 +68,9 @@ def dem_dynamic(
     if scene.history:
         return critical_scale(scene, "dem-dynamic", finite_system(with_impacts(scene)), tolerance, observe=observe)
     start = time.perf_counter()
-    finite = is_finite(displacements, "dem-dynamic", scene)
+    finite = is_finite(displacements, "dem-dynamic", scene, distance)
     points = contact_points(scene)
-    run = Run(finite_system(scene), local=MOVING) if finite else quasi_static_run(scene)
+    run = finite_run(finite_system(scene), scene) if finite else quasi_static_run(scene)
     outcome = collapse_by_steps(
         scene,
         "dem-dynamic",
@@ -86,6 +86,7 @@ def dem_dynamic(
         collapse=collapse,
         first_step=first_step,
         budget=budget,
+        distance=distance,
         observe=observe,
     )
     return replace(outcome, seconds=time.perf_counter() - start)
@@ -111,46 +112,3 @@ def dem_vibration(scene: Scene, count: int = 10) -> Vibration:
     """Natural vibrations of a scene's rigid blocks at rest under their dead load."""
     check_scene(scene)
     return vibration_at_rest(scene, Run(rigid_system(scene)), count)
-
-
-def finite_pushover(scene: Scene, distance: float, *, speed: float = 5e-4, local: float = MOVING) -> Array:
-    """Pushover curve of a dry scene at finite displacements, past its peak.
-
-    Blocks turn, slide off their neighbours and come to rest on others. The live load's power is kept constant, and
-    the multiplier follows.
-
-    Parameters
-    ----------
-    scene
-        The scene: dry joints with a stiffness, on a base or a fixed first course.
-    distance, speed
-        As in `pushover_curve`. What moves faster than it falls into place is borne by its inertia: halve the speed
-        until the curve settles. Softer joints allow longer steps.
-    local
-        Local damping; less than at rest, for it drags on what moves.
-
-    Returns
-    -------
-    (n, 3) float
-        Displacement of the control point, and of the corner that has moved farthest, along the live load [m]; and
-        the mean multiplier since the last row.
-
-    Raises
-    ------
-    SceneError
-        For a scene that is not of this kind.
-    """
-    if others := [key for key in scene.extras if key != "tie"]:
-        raise SceneError(others[0], "is not taken at finite displacements; leave it out")
-    if not scene.live_forces.on_mass_alone:
-        raise SceneError("load.live", "finite displacements need live loads on the blocks' mass")
-    run = Run(finite_system(scene), local=local)
-    outline = Outline.of(scene)
-    block, at, direction = scene.control_point
-
-    def measure(motion: Array) -> tuple[float, float]:
-        control = (outline.points(block, np.tile(at, (len(block), 1)), motion) - at) @ direction
-        moved = (outline.corners(motion) - scene.blocks.vertices) @ direction
-        return float(control.mean()), float(moved.max())
-
-    return pushover_curve(run, scene, distance, speed, measure)

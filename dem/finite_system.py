@@ -41,7 +41,7 @@ def finite_system(scene: Scene) -> BlockSystem:
     contacts = RigidContacts(scene)
     rigid = np.arange(3 * len(scene.blocks)).reshape(-1, 3)
     system = system_on(scene, contacts.interface_on(contacts.undeformed), rigid)
-    return moving_far(system, scene, contacts, scene.dead_forces)
+    return moving_far(system, scene, contacts, (scene.dead_forces, scene.live_forces))
 
 
 class RigidContacts:
@@ -53,7 +53,7 @@ class RigidContacts:
         self._gather = gather_sides if self.outline.radius.any() else gather_sharp
         self._points = len(self._rule.nodes) if len(self._rule.nodes) > 2 else 0
         self._scene, self._mass = scene, held_masses(scene)
-        self._reframes = (scene.history is not None or scene.is_led) and self._gather is gather_sharp
+        self._reframes = self._gather is gather_sharp
         undeformed = self.find(np.zeros(3 * len(scene.blocks)), self.outline.margin)
         self.undeformed = replace(undeformed, glued=undeformed.joint >= 0)
 

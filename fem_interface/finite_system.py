@@ -45,8 +45,8 @@ def finite_system(blocks: NodeOutline, *, mass_scaling: bool = True) -> BlockSys
     """Set up the deformable blocks of a wall to move far; `mass_scaling` as `fem_interface.model.fem` has it."""
     contacts, scaled = DeformableContacts(blocks), scaled_modes(blocks.wall, DAMPING, mass_scaling=mass_scaling)
     interface = contacts.interface(contacts.undeformed, scaled, scaled.frequency_squared)
-    system, (dead, _) = block_system(blocks.wall, scaled, interface), blocks.wall.forces_by_piece
-    return moving_far(system, blocks.scene, contacts, dead, blocks.wall.deformation)
+    system, forces = block_system(blocks.wall, scaled, interface), blocks.wall.forces_by_piece
+    return moving_far(system, blocks.scene, contacts, forces, blocks.wall.deformation)
 
 
 HALF = 0.5 + 1e-6

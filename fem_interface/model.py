@@ -22,11 +22,11 @@ from runningbond.dynamics import (
     inertia_note,
     largest_scaling,
     no_observer,
-    pushover_curve,
 )
 from runningbond.dynamics.collapse_load import BUDGET, FIRST_STEP
+from runningbond.dynamics.push import finite_run
 from runningbond.dynamics.rig import Displacements, is_finite
-from runningbond.dynamics.run import CALMING, MOVING
+from runningbond.dynamics.run import CALMING
 from runningbond.joints import JointPoints, Rule, listed_points, wall_points
 from runningbond.joints.wall_law import with_impacts
 from runningbond.joints.wall_points import spread_rule
@@ -70,6 +70,7 @@ def fem(
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
+    distance: float | None = None,
     observe: Observer = no_observer,
 ) -> Outcome:
     """Collapse of a scene by the motion of its deformable blocks; where its ground moves, as `critical_scale` finds it.
@@ -95,10 +96,10 @@ def fem(
     energies
         Where the joints' fracture energies come from; without any, joints are perfectly plastic.
     displacements
-        Whether a wall that is led is followed through finite displacements, as `dem.dynamic.dem_dynamic` follows it.
+        Whether a wall is followed through finite displacements, as `dem.dynamic.dem_dynamic` follows it.
         Contacts are then at nodes and, where joints soften, crush or close, at points between them; `rule`,
         `points`, `loads` and `energies` are not taken, and blocks crack on their axes.
-    tolerance, collapse, first_step, budget, observe
+    tolerance, collapse, first_step, budget, distance, observe
         As in `collapse_by_steps`.
 
     Returns
@@ -112,7 +113,7 @@ def fem(
     words = (("points", points, PointsOn), ("cracks", cracks, Cracks), ("loads", loads, Loads))
     for setting, word, known in (*words, ("energies", energies, Energies)):
         one_of(f"model fem: {setting}", word, get_args(known))
-    finite = bool(scene.history) or is_finite(displacements, "fem", scene)
+    finite = bool(scene.history) or is_finite(displacements, "fem", scene, distance)
     if finite:
         taken = (("rule", rule, None), ("points", points, "elements"), ("cracks", cracks, "joints"))
         for name, value, only in (*taken, ("loads", loads, "consistent"), ("energies", energies, "given")):
@@ -121,7 +122,8 @@ def fem(
     with threadpool_limits(limits=1, user_api="blas"):  # as in `collapse_by_steps`
         if finite:
             blocks = node_outline(with_impacts(scene) if scene.history else scene, cells, modes)
-            wall, run = blocks.wall, Run(finite_system(blocks, mass_scaling=mass_scaling), local=MOVING)
+            wall = blocks.wall
+            run = finite_run(finite_system(blocks, mass_scaling=mass_scaling), scene)
         else:
             if rule is None and energies != "given":
                 rule = spread_rule(cells if points == "elements" else 1)
@@ -146,6 +148,7 @@ def fem(
         collapse=collapse,
         first_step=first_step,
         budget=budget,
+        distance=distance,
         observe=observe,
     )
     if len(outcome.force) and (finite or not listed_points(scene, len(outcome.force))):
@@ -208,59 +211,3 @@ def fem_vibration(scene: Scene, count: int = 10, *, cells: int = 1, modes: ModeC
     check_scene(scene)
     system = system_of(modal_wall(scene, cells, modes), mass_scaling=False)
     return vibration_at_rest(scene, Run(system), count)
-
-
-def fem_pushover(
-    scene: Scene,
-    distance: float,
-    *,
-    cells: int = 1,
-    modes: ModeCount | None = None,
-    speed: float = 5e-4,
-    local: float = MOVING,
-) -> Array:
-    """Pushover curve of a scene's deformable blocks at finite displacements, past its peak.
-
-    Blocks turn, slide off their neighbours and come to rest on others. The live load's power is kept constant, and
-    the multiplier follows. Joints that soften hold the two sides that they glued until they are broken; what touches
-    afterwards is dry.
-
-    Parameters
-    ----------
-    scene
-        The scene, on a base or a fixed first course; its joints need a stiffness and either no cohesion or both
-        fracture energies, its blocks a stiffness unless `modes` is 3.
-    distance
-        Displacement of the control point at which to stop [m].
-    cells, modes
-        As `fem` has them.
-    speed, local
-        As `dem.dynamic.finite_pushover` has them.
-
-    Returns
-    -------
-    (n, 3) float
-        As of `dem.dynamic.finite_pushover`.
-
-    Raises
-    ------
-    SceneError
-        For a scene that is not of this kind.
-    """
-    if others := [key for key in scene.extras if key != "tie"]:
-        raise SceneError(others[0], "is not taken at finite displacements; leave it out")
-    blocks = node_outline(scene, cells, modes)
-    run = Run(finite_system(blocks), local=local)
-    held, at, direction = scene.control_point
-    wall, corners = blocks.wall, blocks.node[blocks.first[:-1]]
-    # How the deformations move the control point, in the frames of the blocks that have it.
-    rows = np.array([[wall.displacement_row(int(b), at, axis) for axis in np.eye(2)] for b in held])
-    rows[:, :, wall.rigid] = 0.0
-    arm = at - scene.blocks.centroid[held]
-
-    def measure(motion: Array) -> tuple[float, float]:
-        control = blocks.placed(held, arm + rows @ motion, motion) - at
-        moved = (blocks.positions(motion)[corners] - scene.blocks.vertices) @ direction
-        return float((control @ direction).mean()), float(moved.max())
-
-    return pushover_curve(run, scene, distance, speed, measure)

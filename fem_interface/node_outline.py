@@ -14,7 +14,7 @@ from runningbond.contacts.outline import Outline
 from runningbond.dynamics.rig import check_finite
 from runningbond.joints.points import trapezoids
 from runningbond.joints.wall_points import BETWEEN, spreads
-from runningbond.scene import Array, Indices, Scene, SceneError
+from runningbond.scene import Array, Indices, Scene
 
 from .block_kernels import NodalTables, nodal_tables
 from .deformable_sides import OutlineNodes, SidePoints, Sides
@@ -103,13 +103,10 @@ def node_outline(scene: Scene, cells: int = 1, modes: ModeCount | None = None) -
     Raises
     ------
     SceneError
-        As of `check_finite`, `ContactMaterials` and `Outline.of`, and for a scene that pushes at a point of a block.
+        As of `check_finite`, `ContactMaterials` and `Outline.of`.
     """
     check_finite(scene)
     ContactMaterials(scene)
-    live = scene.live_forces
-    if live.moment.any() or not scene.is_beam[live.block].all():
-        raise SceneError("load.live", "finite displacements need live loads on the blocks' mass, or on a beam")
     parts = math.ceil((BETWEEN - 1) / cells) if spreads(scene, finite=True) else 1
     wall, outline = modal_wall(scene, cells, modes, trapezoids(parts)), Outline.of(scene)
     on_side = list(_nodes_of_sides(wall))

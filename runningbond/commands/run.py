@@ -55,6 +55,7 @@ def run(
     model: Annotated[str, Parameter(help=f"One of {', '.join(MODELS)}.")],
     tolerance: Tolerance = TOLERANCE,
     displacements: Literal["small", "finite"] = "small",
+    distance: float | None = None,
     json: Json = False,
     out: Path | None = None,
     draws: Whole | None = None,
@@ -69,7 +70,10 @@ def run(
         Name of the model.
     displacements
         Whether the wall keeps the shape it was built in, or dem-dynamic or fem follows it as far as a beam that is
-        driven by displacements, or a support that moves, leads it.
+        driven by displacements, or a support that moves, leads it, or live loads on its mass push it past their peak.
+    distance
+        How far live loads push it [m], read where displacements are; until they have fallen to nothing, or else by the
+        wall's smaller side, where none is given.
     out
         Folder in which to keep the result, its time series for ParaView, its curve with all reactions as a table and
         as a picture, and a picture of its mechanism.
@@ -82,14 +86,14 @@ def run(
     jobs
         Number of processes for draws; -1, the default, is one a core.
     """
-    chosen = _through(find_model(model, "--model"), displacements)
+    chosen = _through(find_model(model, "--model"), displacements, distance)
     check_tolerance(tolerance, "--tolerance")
     for option, value in (("--scatter", scatter), ("--jobs", jobs)):
         if draws is None and value is not None:
             raise SceneError(option, "goes with --draws alone", value)
     wall = read_scene(find_scene(scene))
     if displacements == "finite":
-        _check_led(chosen, wall)
+        _check_led(chosen, wall, distance)
     if draws is not None:
         return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
     chosen.check(wall)
@@ -114,26 +118,29 @@ def run(
     return NO_ANSWER if outcome.status in UNDECIDED else DONE
 
 
-def _through(model: Model, displacements: str) -> Model:
-    """The model, which follows walls that are led through finite displacements if these are asked for."""
+def _through(model: Model, displacements: str, distance: float | None) -> Model:
+    """The model, which follows walls through finite displacements, by a distance, if these are asked for."""
     if displacements == "small":
+        if distance is not None:
+            raise SceneError("--distance", "goes with --displacements finite alone", distance)
         return model
     if "displacements" not in model.parameters:
         able = " and ".join(name for name, each in MODELS.items() if "displacements" in each.parameters)
         raise SceneError(
             "--displacements", f'must be "small" for {model.name}; {able} follow finite ones', displacements
         )
-    return replace(model, solve=partial(model.solve, displacements=displacements), is_finite=True)
+    far = partial(model.solve, displacements=displacements, distance=distance)
+    return replace(model, solve=far, is_finite=True)
 
 
-def _check_led(model: Model, wall: Scene) -> None:
+def _check_led(model: Model, wall: Scene, distance: float | None) -> None:
     """Refuse finite displacements of a wall that cannot be followed through them, before anything is run."""
     from runningbond.dynamics.rig import check_finite, is_finite
 
     try:
-        is_finite("finite", model.name, wall)
+        is_finite("finite", model.name, wall, distance)
     except SceneError as error:
-        raise SceneError("--displacements", error.remedy, "finite") from None
+        raise SceneError(f"--{error.key.split()[-1]}", error.remedy, error.value) from None
     check_finite(wall)
 
 

@@ -11,9 +11,8 @@ t, and the tilt φ of b against a,
 
 Each goes over into the next without a jump, and so does their friction when a corner comes off one block's side and
 its side slides on over another's. Only sharp corners that lie on each other, pressed in by δ, go over with a jump of
-the slip, δ sin φ, of which walls that are led, or whose ground moves, take no notice (`reframe_sharp`). The rates of
-opening and slip are those of the two blocks at the point where they touch: forces there do the work that the jumps say,
-and keep linear and angular momentum.
+the slip, δ sin φ, of which no notice is taken (`reframe_sharp`). The rates of opening and slip are those of the two
+blocks at the point where they touch: forces there do the work that the jumps say, and keep linear and angular momentum.
 """
 
 import math

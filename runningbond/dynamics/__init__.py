@@ -2,7 +2,7 @@
 
 from .collapse import U_CRIT, Criteria, settle
 from .collapse_load import collapse_by_steps
-from .controls import Pushover, drive, pushover_curve, ramp, settled_drive
+from .controls import Pushover, drive, ramp, settled_drive
 from .dead_load import fall_under_dead_load, put_on_dead_load
 from .highest_frequency import with_highest_frequency
 from .inertia import CALMER, beam_note, inertia_factors, inertia_note, largest_scaling
@@ -59,7 +59,6 @@ __all__ = [
     "mass_factor",
     "moving_far",
     "no_observer",
-    "pushover_curve",
     "put_on_dead_load",
     "ramp",
     "restrain",

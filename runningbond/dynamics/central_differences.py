@@ -17,7 +17,7 @@ from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
 from .kernel_calls import advance, gather, reframe, respond, scatter
-from .rig import turn_loads, turn_rig, work_of_turned
+from .rig import turn_live, turn_loads, turn_rig, work_of_turned
 from .ties import pull
 from .update import Modes, StateArrays
 
@@ -159,7 +159,7 @@ def _at_constant_loads(
 ) -> tuple[int, bool, float, float]:
     """The steps of `step` in which loads stay as they are."""
     dt, local, joint_viscosity = scales
-    addresses, geometry, parameters, modes, restraint, ties, rig, turning, memory, state, work, frames = arrays
+    addresses, geometry, parameters, modes, restraint, ties, rig, turning, pushing, memory, state, work, frames = arrays
     _, _, mobility = modes
     motion, velocity, history, _, force = state
     freedom, basis = restraint
@@ -167,7 +167,7 @@ def _at_constant_loads(
     already, given, most = watch
     at_gather, at_reframe, at_law, at_scatter, at_update = addresses
     driven, carried, tied, rigged = control == DRIVEN, control == CARRIED, ties[6].size > 0, rig[0].size > 0
-    turns = turning[2].size > 0
+    turns, pushes = turning[2].size > 0, driven and pushing[2].size > 0
     response, total, worked, multiplier, before, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if driven:
         for i in range(live.size):
@@ -199,6 +199,11 @@ def _at_constant_loads(
                 response += live[rig[0][k]] ** 2 * mobility[rig[0][k]]
         if turns:
             turn_loads(turning, motion, force)
+        if pushes:
+            turn_live(pushing, motion, live)
+            response = 0.0
+            for i in range(live.size):
+                response += live[i] * mobility[i] * live[i]
         if carried:
             pressed = _carry(live, speed, velocity, force)
             total += pressed
@@ -237,9 +242,9 @@ def step(
         speed [1/s] times `live`.
     arrays
         `Addresses` of the kernels; what they are called with: the interface's geometry, the law's parameters, modes;
-        restraint, ties, rig, turning loads; the update's memory, `StateArrays`, `Work` and `Frames`. With a rig, whose
-        freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and acts on nothing
-        else.
+        restraint, ties, rig, turning loads and those that are live; the update's memory, `StateArrays`, `Work` and
+        `Frames`. With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is
+        written to, and acts on nothing else; it is written to where it drives at points that turn as well.
     watch
         The energy is looked at every `LOOK` steps of the state's life; where it does not add up, the steps end.
 
@@ -250,7 +255,7 @@ def step(
         what presses on the carried modes per unit of their motion; the work of all but the constant load.
     """
     rises = speed != 0.0 and control == HELD
-    state, work, _ = arrays[9:]
+    state, work, _ = arrays[10:]
     motion, loaded = state[0], work[1]
     already, given, most = watch
     copy_into(loaded, load)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,7 @@ def collapse_by_steps(
     collapse: float = U_CRIT,
     first_step: float = FIRST_STEP,
     budget: int = BUDGET,
+    distance: float | None = None,
     observe: Observer = no_observer,
 ) -> Outcome:
     """Find the load that brings a wall down.
@@ -101,6 +103,9 @@ def collapse_by_steps(
         halved until it is not, or `HALVINGS` times.
     budget
         Time steps after which a load is left undecided.
+    distance
+        Displacement of the control point [m] to which the live load pushes a wall at finite displacements; by the
+        wall's smaller side where none is given, and no farther than where the multiplier has fallen to nothing.
     observe
         Called with the run, its state and the multiplier every few hundred steps: snapshots are taken here.
 
@@ -119,10 +124,9 @@ def collapse_by_steps(
     try:
         # Second threads of the linear algebra gain nothing on blocks this small, and wait for each other at every step.
         with threadpool_limits(limits=1, user_api="blas"):
-            if scene.is_led:
-                outcome = collapse_of_led(
-                    outcome, scene, run, tolerance, points, point_order, is_self_locking, bears, criteria, observe
-                )
+            if scene.is_led or run.system.contacts is not None:
+                led = partial(collapse_of_led, outcome, scene, run, tolerance, points, point_order)
+                outcome = led(is_self_locking, bears, criteria, observe, distance)
                 return replace(outcome, message=joined(outcome.message, note))
             result, above = LoadSteps(interrupted=True), None
             with suppress(KeyboardInterrupt):

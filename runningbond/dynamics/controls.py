@@ -1,19 +1,13 @@
 """Load controls: a ramp, and work-conjugate displacement control; steps of constant load are in `load_stepping`."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array
 
-from .collapse import U_CRIT, Criteria, settle
 from .run import Run
 from .state import State
-
-CURVE_ROWS, START_ROWS = 4000, 20
-"""Rows of a pushover curve if all bodies move as far as the control point, and those in which they gather speed."""
 
 
 def ramp(run: Run, state: State, start: float, stop: float, steps: int) -> None:
@@ -40,8 +34,14 @@ def drive(run: Run, start: State, distance: float, steps: int, pieces: int = 200
     system, state = run.system, start.copy()
     power = float(distance * np.abs(system.live).sum()) / (steps * run.dt)
     soft = max(1, pieces // 20)
-    pace = (pieces, soft, steps // pieces)
-    curve = _push(run, state, distance, power, pace, lambda motion: (float(system.control @ motion),))
+    rows: list[tuple[float, float]] = []
+    given = run.given(state)
+    for row in range(pieces):
+        multiplier = run.drive(state, power * min(1.0, (row + 1) / soft), steps // pieces, given=given)
+        rows.append((float(system.control @ state.motion), multiplier))
+        if rows[-1][0] >= distance:
+            break
+    curve = np.array(rows)
     return Pushover(curve, float(curve[soft:, 1].max(initial=curve[0, 1])), float("inf"), state)
 
 
@@ -58,56 +58,3 @@ def settled_drive(
         if error <= tolerance * abs(slow.peak):
             break
     return slow
-
-
-def pushover_curve(
-    run: Run, scene: Scene, distance: float, speed: float, measure: Callable[[Array], tuple[float, float]]
-) -> Array:
-    """Pushover curve of a wall from its rest under its weight, at a constant power of the live load.
-
-    Parameters
-    ----------
-    run, scene
-        The blocks, and their wall.
-    distance
-        Displacement of the control point at which to stop [m].
-    speed
-        Mean speed of the blocks along the live load [m/s].
-    measure
-        Displacement of the control point, and of the corner that has moved farthest, in a motion ``(nd,)`` [m].
-
-    Returns
-    -------
-    (n, 3) float
-        What `measure` says, and the mean multiplier since the last row.
-    """
-    state = State.at_rest(run.system)
-    settle(run, state, 0.0, Criteria(collapse=U_CRIT * scene.block_size))
-    steps = max(1, round(distance / (speed * CURVE_ROWS * run.dt)))
-    power = speed * float(np.abs(run.system.live).sum())
-    with threadpool_limits(limits=1, user_api="blas"):  # as in `collapse_by_steps`
-        return _push(run, state, distance, power, (CURVE_ROWS, START_ROWS, steps), measure)
-
-
-def _push(
-    run: Run,
-    state: State,
-    distance: float,
-    power: float,
-    pace: tuple[int, int, int],
-    measure: Callable[[Array], tuple[float, ...]],
-) -> Array:
-    """Push a wall, in place, at a power of the live load at λ = 1 [W], until its first measure is a distance [m].
-
-    The pace is most rows of the curve, those over which the power is brought up, and steps to a row. Returns what is
-    measured of the motion ``(nd,)`` in each row, and the mean multiplier since the last one, ``(n, m + 1)``.
-    """
-    rows, soft, steps = pace
-    curve: list[tuple[float, ...]] = []
-    given = run.given(state)
-    for row in range(rows):
-        multiplier = run.drive(state, power * min(1.0, (row + 1) / soft), steps, given=given)
-        curve.append((*measure(state.motion), multiplier))
-        if curve[-1][0] >= distance:
-            break
-    return np.array(curve)

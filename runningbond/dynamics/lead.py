@@ -117,11 +117,28 @@ class Lead:
     criteria: Criteria
     observe: Observer
     points: JointPoints  # of the joints, in the order of `Run.at_joints`
+    most: float = np.inf  # force beyond which the wall is led no more
+
+    @property
+    def answer(self) -> str:
+        """What the answer of a way is."""
+        share, reaction = "share of the dead load on the support", "largest reaction of the drive along its way"
+        return share if self.settles else reaction
 
     @property
     def settles(self) -> bool:
         """Whether supports are led, not the beam."""
         return self.scene.settlement is not None
+
+    @property
+    def least(self) -> float:
+        """Answer below which brackets need not be relatively narrow: a share of the dead load, or none of a force."""
+        return LITTLE if self.settles else 0.0
+
+    @property
+    def least_work(self) -> float:
+        """Work [J] beside which the energy ledger has to add up, where the loads do less."""
+        return LITTLE * self.run.system.carried.work
 
     @property
     def goals(self) -> Array:
@@ -191,6 +208,20 @@ class Lead:
         (self._settle if self.settles else self._drive)(way, state, speed)
         return state
 
+    def after(self, way: Way) -> "Lead":
+        """How it is led the next time, after a way."""
+        return self
+
+    def apart(self, fast: Way, slow: Way) -> float:
+        """How far curves of two speeds are apart, relative to the answer, where they are told beside it."""
+        return 0.0
+
+    def fall(self, curve: Array) -> str:
+        """How a wall has fallen at the end of its curve ``(n, 2)``."""
+        if self.settles:
+            return f"the wall falls beyond {abs(curve[-1, 0]):.4g} m, this is of its last rest"
+        return f"the wall falls beyond {np.abs(curve[:, 0]).max():.4g} m"
+
     def crushed(self, state: State) -> Array:
         """How far joints have closed for good at their ends [m], ``(nj, 2)``; empty where none crushes."""
         return np.asarray(self.run.at_joints(state)[5, self._ends]) if self._has_caps else np.zeros((0, 2))
@@ -241,12 +272,16 @@ class Lead:
                 seen.append((middle.motion, self.crushed(middle)))
                 if (k + 1) % SEEN == 0:
                     self.observe(run, state, way.rows[-1].force)
-                if self._falls(state):
+                if self.falls(state):
                     way.verdict = "collapse"
                     break
             at = goal
             self.note(way, state, self.moved(state), way.rows[-1].force)
             seen.append((state.motion.copy(), self.crushed(state)))
+        self.conclude(way, peaks, seen)
+
+    def conclude(self, way: Way, peaks: Peaks, seen: list[tuple[Array, Array]]) -> None:
+        """Take the answer of a way from its peaks, and its mechanism from motions and crushing `seen` at its rows."""
         way.calm()
         peak, between, way.unseen, way.resolved = peaks.resolved()
         way.best, way.inertia, way.lasting = peak.state, peak.inertia, peaks.longest.force
@@ -259,19 +294,19 @@ class Lead:
         # The most so far: joints that have parted since have been crushed too.
         way.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)
 
-    def _falls(self, state: State) -> bool:
+    def falls(self, state: State) -> bool:
         """Whether the dead load has come down far, and most of its work is in motion: what is led does little of any.
 
         A beam that nothing bears any more would be followed through the wall and the ground.
         """
         run, system = self.run, self.run.system
         given = run.dead_work(state) - run.dead_work(self.start)
-        if given <= max(COME_DOWN * self._work_of_a_block, run.dt * float(system.dead @ state.velocity) / LAG):
+        if given <= max(COME_DOWN * self.work_of_a_block, run.dt * float(system.dead @ state.velocity) / LAG):
             return False
         return system.kinetic_energy(state.velocity) > IN_MOTION * (1 - run.local) * given
 
     @cached_property
-    def _work_of_a_block(self) -> float:
+    def work_of_a_block(self) -> float:
         """Work of the dead load [J] where all that moves comes down by the size of a block."""
         system = self.run.system
         load = np.where(np.isfinite(system.mass), system.dead, 0.0)[system.rigid[:, :2]]

@@ -1,10 +1,10 @@
-"""Walls that are led: a beam is pushed along a path at a slow speed, or supports are moved from rest to rest.
+"""Walls that are led: a beam along a path at a slow speed, supports from rest to rest, or all blocks by the live load.
 
 The whole way is gone through again at half the speed until its answer settles: the largest reaction of a beam's drive
-along its first move, or the share of the dead load that supports bear at the settlement asked for. It is one of a
-collapse if a mechanism has formed: if over the last tenth of the way it has changed by less than the tolerance, or the
-wall falls. Else the wall still hardens, or the support still sheds or takes up load, where the way ends. A wall at
-rest on a support that bears nothing any more bridges it.
+along its first move, the share of the dead load that supports bear at the settlement asked for, or the largest
+multiplier of a live load that pushes. It is one of a collapse if a mechanism has formed: if over the last tenth of the
+way it has changed by less than the tolerance, or the wall falls. Else the wall still hardens, or the support still
+sheds or takes up load, where the way ends. A wall at rest on a support that bears nothing any more bridges it.
 """
 
 from collections.abc import Callable
@@ -20,13 +20,18 @@ from runningbond.scene import Indices, Scene
 
 from .collapse import Criteria
 from .dead_load import fall_under_dead_load, put_on_dead_load
-from .lead import BEAM, LITTLE, Lead, Way, WayRow, formed, goes_both_ways, shedding
+from .lead import BEAM, Lead, Way, WayRow, formed, goes_both_ways, shedding
+from .push import Push
 from .run import CALMING, Observer, Run, Unstable
 
 LEAST_STEPS, UNHURRIED, UNHURRIED_FAR = 20_000, 20, 2
 """Time steps of the longest leg the first time, where no rate is given, and at least in those of the dead load's rest:
 at small displacements, and at finite ones, whose ways are longer.
 """
+
+LOCKED = 20.0
+"""Live load, in largest dead ones (without weight, in strengths of the strongest joint), up to which a wall is pushed
+that joint forces hold at any."""
 
 UNACCOUNTED = 0.01
 """Share of the work of the loads that may be missing from the energy ledger before a run is not believed."""
@@ -43,8 +48,11 @@ def collapse_of_led(
     bears: Callable[[], bool],
     criteria: Criteria,
     observe: Observer,
+    distance: float | None = None,
 ) -> Outcome:
     """Lead a wall through the displacements of its scene; an outcome so far, and the rest as of `collapse_by_steps`.
+
+    One whose live load pushes it is led by a `distance` [m], where none is given by its smaller side.
 
     Returns
     -------
@@ -66,13 +74,16 @@ def collapse_of_led(
         run = run.held_late(state)
         run.led = True
         lead = Lead(scene, run, state, criteria, observe, points)
-        for speed in _speeds(lead, loaded.rest):
+        if not scene.is_led:
+            lead = _push(lead, distance, LOCKED if is_self_locking() else np.inf)
+        for duration in _durations(lead, loaded.rest):
             ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
-            last = lead.go(way, speed)
+            last = lead.go(way, lead.longest / duration)
+            lead = lead.after(way)
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
             if way.verdict == "undecided":
                 break
-            if _spread(lead, ways) <= tolerance and not _rate(scene):
+            if _settled(lead, ways, tolerance) and not _rate(scene):
                 break
     except KeyboardInterrupt:
         if ways:
@@ -84,7 +95,7 @@ def collapse_of_led(
     # What a support hardly moves does hardly any work. The dead load came on at once, in a motion of no account.
     # Where the way comes back, works nearly cancel: what counts is how far they went.
     gone = float(np.ptp([row.works for row in way.rows], axis=0).sum()) if way.rows else 0.0
-    lost = run.unaccounted(last, max(gone, LITTLE * run.system.carried.work), since=state)
+    lost = run.unaccounted(last, max(gone, lead.least_work), since=state)
     outcome = _arrays(_path(outcome, scene, run, points, way), lead, way, point_order)
     if lost > UNACCOUNTED:
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
@@ -96,19 +107,31 @@ def collapse_of_led(
     return outcome
 
 
+def _push(lead: Lead, distance: float | None, most: float) -> Push:
+    """How a wall is pushed by its live load: a distance [m], and while the load is no more than so many dead ones."""
+    scene, system = lead.scene, lead.run.system
+    low, high = scene.blocks.extent(scene.wall)
+    load = system.measure(system.live) or 1.0
+    given = (lead.scene, lead.run, lead.start, lead.criteria, lead.observe, lead.points)
+    return Push(*given, most / load, distance or float((high - low).min()))
+
+
 def _rate(scene: Scene) -> float | None:
     return None if scene.drive is None else scene.drive.rate
 
 
-def _speeds(lead: Lead, rest: int) -> list[float]:
-    """Speeds to go at one after the other: twice the rate and the rate, or ever slower ones that the budget allows."""
+def _durations(lead: Lead, rest: int) -> list[float]:
+    """Times of the longest leg [s] one after the other: by twice the rate and the rate, or ever longer ones.
+
+    These are as long as the budget allows.
+    """
     if rate := _rate(lead.scene):
-        return [2 * rate, rate]
+        return [lead.longest / (2 * rate), lead.longest / rate]
     legs = float(np.abs(np.diff(lead.goals, prepend=0.0)).sum()) / lead.longest
     unhurried = UNHURRIED if lead.run.system.contacts is None else UNHURRIED_FAR
     steps = max(LEAST_STEPS, unhurried * rest)
     runs = max(2, int(np.log2(max(1.0, lead.criteria.budget / (legs * steps)))) + 1)
-    return [lead.longest / (steps * lead.run.dt * 2**k) for k in range(runs)]
+    return [steps * lead.run.dt * 2**k for k in range(runs)]
 
 
 def _bracket(ways: list[Way]) -> tuple[float, float]:
@@ -131,7 +154,12 @@ def _spread(lead: Lead, ways: list[Way]) -> float:
     if len(ways) < 2:
         return np.inf
     lower, upper = _bracket(ways)
-    return (upper - lower) / max(-lower, upper, LITTLE if lead.settles else 0.0) if upper > lower else 0.0
+    return (upper - lower) / max(-lower, upper, lead.least) if upper > lower else 0.0
+
+
+def _settled(lead: Lead, ways: list[Way], tolerance: float) -> bool:
+    """Whether half the speed would hardly change the answer, nor what else is told."""
+    return _spread(lead, ways) <= tolerance and lead.apart(*ways[-2:]) <= tolerance
 
 
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
@@ -172,8 +200,10 @@ def _has_come_free(lead: Lead, row: WayRow) -> bool:
 def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> Outcome:
     """Verdict on some ways, of which the last one is drawn."""
     way = ways[-1]
-    what = "share of the dead load on the support" if lead.settles else "largest reaction of the drive along its way"
+    what = lead.answer
     what += ", at its rate and at twice that" if _rate(lead.scene) else ", at two speeds"
+    if len(ways) > 1 and (apart := lead.apart(*ways[-2:])):
+        what += f", whose curves are {100 * apart:.2g} % of it apart until half of it is left"
     other = -float(outcome.curve[:, 1].min())
     if goes_both_ways(lead.goals) and other > 0 and not lead.settles:
         what += f"; the other way it takes {number(other)}"
@@ -192,10 +222,13 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
     if not fell and not formed(outcome.curve, tolerance, settles=lead.settles, still=way.answer - least):
         falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
         still = f"the support still {changes}" if lead.settles else "the wall still hardens"
-        message = f"no answer: {still} at the displacement asked for, {at}: {number(way.answer)}; {what}"
+        still = f"{still} at the displacement asked for, {at}"
+        if way.answer > lead.most:
+            still = f"the wall bears more than {LOCKED:g} times its largest dead load"
+        message = f"no answer: {still}: {number(way.answer)}; {what}"
         bounds = (None, most) if falls else (least, None)
         return replace(outcome, lower=bounds[0], upper=bounds[1], message=message)
     if _spread(lead, ways) > tolerance and not _rate(lead.scene):
         return replace(outcome, message=f"no answer: another speed changes it by more than the tolerance; {what}")
-    fall = f"; the wall falls beyond {at}" + (", this is of its last rest" if lead.settles else "") if fell else ""
+    fall = f"; {lead.fall(outcome.curve)}" if fell else ""
     return replace(outcome, status="collapse", multiplier=way.answer, message=what + fall)

@@ -49,11 +49,13 @@ class Peaks:
         Where the way begins.
     steps
         Steps of a row, whole but for rounding.
+    most
+        Most windows in a row: what shakes is told by long ones.
     """
 
-    def __init__(self, start: State, steps: float) -> None:
+    def __init__(self, start: State, steps: float, most: float = np.inf) -> None:
         # Four windows stay four where a time step's last bit makes 199.999 steps of 200.
-        levels = max(1, int(np.log2(max(1.0, round(steps) / WINDOW_STEPS))))
+        levels = max(1, int(np.log2(max(1.0, min(most, round(steps) / WINDOW_STEPS)))))
         self.windows = 2**levels  # of the shortest kind in a row
         self._peaks = [Peak(start) for _ in range(levels + 1)]
         # Force and inertia times steps, and steps, up to the end of each window of the row.

@@ -4,8 +4,8 @@ The point driven is at p from the beam's centroid. With the beam's rotation θ i
 u_x + p_x (cos θ − 1) − p_y sin θ, and pushes with a moment −(p_x sin θ + p_y cos θ) per unit of horizontal force.
 A dead force F whose line is fixed turns the beam about its centroid, which has gone by u, with −(u_x F_y − u_y F_x).
 
-Dead forces at points of blocks go along with these (`body_points`), and do more on their rotations and deformations
-than they do at rest.
+Forces at points of blocks go along with these (`body_points`), and do more on their rotations and deformations than
+they do at rest.
 """
 
 import math
@@ -16,7 +16,7 @@ import numpy as np
 
 from runningbond.joints.compiled import kernel
 from runningbond.scene import Array, Forces, Indices, Scene, SceneError, Unsigned
-from runningbond.scene.ranges import one_of
+from runningbond.scene.ranges import ABOVE_ZERO, one_of
 
 from .body_points import NO_POINTS, BodyPoints, Points, arm_of
 
@@ -53,7 +53,7 @@ NO_RIG = Rig(np.zeros(0, dtype=np.uint64), np.zeros(2), np.zeros(2), np.zeros(1)
 
 
 class TurningLoads(NamedTuple):
-    """Dead forces at points of bodies that turn."""
+    """Forces at points of bodies that turn, dead ones or live ones."""
 
     points: BodyPoints  # (n,) where they are
     force: Array  # (n, 2) [N]
@@ -62,13 +62,13 @@ class TurningLoads(NamedTuple):
     work: Array  # (1,) and the work of that [J]
 
 
-def turning_loads(dead: Forces, points: Callable[[Indices, Array], BodyPoints]) -> TurningLoads | None:
-    """Those of a scene's dead forces, from the `points` that are of blocks ``(n,)`` at places ``(n, 2)`` [m]."""
-    on = points(dead.block, dead.at)
+def turning_loads(forces: Forces, points: Callable[[Indices, Array], BodyPoints]) -> TurningLoads | None:
+    """Those of a scene's forces, from the `points` that are of blocks ``(n,)`` at places ``(n, 2)`` [m]."""
+    on = points(forces.block, forces.at)
     turns = on.arm.any(axis=1) | (np.diff(on.start) > 0)
     if not turns.any():
         return None
-    on, force = points(dead.block[turns], dead.at[turns]), dead.force[turns]
+    on, force = points(forces.block[turns], forces.at[turns]), forces.force[turns]
     return TurningLoads(on, force, np.zeros(len(on.arm) + len(on.mode)), np.zeros(1))
 
 
@@ -90,6 +90,18 @@ def turn_loads(loads: tuple[Points, Array, Array, Array], motion: Array, force: 
         for i in range(start[k], start[k + 1]):
             more[n + i] = shape[i, 0] * gx + shape[i, 1] * gy
             force[mode[i]] += more[n + i]
+
+
+@kernel
+def turn_live(loads: tuple[Points, Array, Array, Array], motion: Array, live: Array) -> None:
+    """Bring a live load ``(nd,)``, of which what was kept is a part, to where its points are now."""
+    points, push, more, _ = loads
+    rigid, mode, n = points[0], points[4], push.shape[0]
+    for k in range(n):
+        live[rigid[k, 2]] -= more[k]
+    for i in range(mode.size):
+        live[mode[i]] -= more[n + i]
+    turn_loads(loads, motion, live)
 
 
 @kernel
@@ -115,14 +127,19 @@ def turn_rig(rig: tuple[Unsigned, Array, Array, Array], motion: Array, live: Arr
     return float(y * force[0] - x * force[1])
 
 
-def is_finite(displacements: str, model: str, scene: Scene) -> bool:
-    """Whether displacements are finite; a `SceneError` for unknown ones, and for a scene that is not taken through."""
+def is_finite(displacements: str, model: str, scene: Scene, distance: float | None = None) -> bool:
+    """Whether displacements are finite.
+
+    A `SceneError` for unknown ones, and for a `distance` [m] of a wall that is not pushed so far by its live load.
+    """
     key = f"model {model}: displacements"
     finite = one_of(key, displacements, get_args(Displacements)) == "finite"
-    if finite and not (scene.drive_path or scene.settlement):
-        what = 'must be "small" for this scene; finite ones are followed where a beam is driven by displacements'
-        what += ", or a support settles"
-        raise SceneError(key, what, displacements)
+    if distance is not None:
+        key = f"model {model}: distance"
+        ABOVE_ZERO.take(key, distance)
+        if not finite or scene.is_led:
+            what = "goes with finite displacements of a wall that its live load pushes alone; leave it out"
+            raise SceneError(key, what, distance)
     return finite
 
 

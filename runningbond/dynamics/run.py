@@ -16,7 +16,7 @@ from runningbond.scene import ANCHOR, Array
 from .central_differences import CONTROLS, Control, Watch, step
 from .contact_update import ContactUpdate, contacts_of
 from .kernel_calls import Addresses, addresses
-from .rig import NO_RIG, NO_TURNING_LOADS, turn_loads, turn_rig
+from .rig import NO_RIG, NO_TURNING_LOADS, turn_live, turn_loads, turn_rig
 from .state import PLASTIC_SLIP, State
 from .system import BlockSystem, Interface
 from .ties import YIELD
@@ -105,8 +105,10 @@ class Run:
         self._advance_modes, self._memory = update_of(system, damping)
         self._given_step = dt
         self._rig = tuple(system.rig or NO_RIG)
-        points, *loads = system.turning or NO_TURNING_LOADS
-        self._turning = points.arrays, *loads
+        self._turning, self._pushing = (
+            (loads.points.arrays, *loads[1:])
+            for loads in (system.turning or NO_TURNING_LOADS, system.pushing or NO_TURNING_LOADS)
+        )
         self._ties = *system.ties[:4], system.ties.ends.arrays, system.ties.length
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
@@ -183,6 +185,8 @@ class Run:
         Unstable
             As soon as the energy that is watched does not add up; the state is left as it is then.
         """
+        if self.system.pushing is not None and (multiplier or rise):
+            raise ValueError("live loads at points of bodies that turn do not stay as they are; they may drive")
         load = dead * self.system.dead + multiplier * self.system.live
         self._advance("held", state, load, rise, steps, given)
 
@@ -210,8 +214,8 @@ class Run:
         if control != "held" and len(system.coupling.freedom):
             raise ValueError("modes that have inertia in common bear a load alone")
         live = system.carried.motion if control == "carried" else system.live
-        if system.rig is not None:
-            live = live.copy()  # it turns with the beam
+        if control != "carried" and (system.rig is not None or system.pushing is not None):
+            live = self._live()  # it turns with the beam, or with blocks
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
             watch = (state.steps, given + state.external - before, state.supplied)
@@ -226,6 +230,12 @@ class Run:
                 raise Unstable(state.steps, self.dt, self.safe_step)
         return total
 
+    def _live(self) -> Array:
+        """The live load of the undeformed wall at λ = 1, to be turned."""
+        if self.system.pushing is not None:
+            self.system.pushing.more[:] = 0.0
+        return self.system.live.copy()
+
     def _take(
         self, number: int, state: State, load: Array, live: Array, speed: float, steps: int, watch: Watch
     ) -> tuple[int, bool, float, float]:
@@ -236,7 +246,7 @@ class Run:
         scales = (self.dt, self.local, self._viscosity)
         ties = (*self._ties, state.stretch)
         frames = (state.bears, self._plastic)
-        loads = (self._rig, self._turning)
+        loads = (self._rig, self._turning, self._pushing)
         every = (self._addresses, *self._arrays, ties, *loads, self._memory, arrays, self._work, frames)
         found: tuple[int, bool, float, float] = step(number, steps, scales, load, live, speed, every, watch)
         for moments in (self.system.rig, self.system.turning):
@@ -365,10 +375,11 @@ class Run:
 
     def resultants(self, state: State, multiplier: float) -> Array:
         """Resultants of contacts, ties and loads on bodies, moments about the origin, ``(n, 3)`` [N, N m]."""
-        system, live, search = self.system, self.system.live.copy(), self.system.contacts
+        system, live, search = self.system, self._live(), self.system.contacts
         if search is None:
             raise TypeError("resultants are those at finite displacements")
         moment = turn_rig(self._rig, state.motion, live) if system.rig else 0.0
+        turn_live(self._pushing, state.motion, live)
         loads = system.dead + multiplier * live
         turn_loads(self._turning, state.motion, loads)
         total = loads[system.rigid]

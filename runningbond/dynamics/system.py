@@ -156,7 +156,8 @@ class BlockSystem:
     carried: Carried = NOTHING_CARRIED  # supports that move
     contacts: ContactSearch | None = None  # how contacts are found anew as bodies move; None at small displacements
     rig: Rig | None = None  # what drives its beam at finite displacements
-    turning: TurningLoads | None = None  # dead loads that turn with its bodies there
+    turning: TurningLoads | None = None  # dead loads that turn with its bodies there,
+    pushing: TurningLoads | None = None  # and live ones
     coupling: Coupling = NOT_COUPLED  # inertia that modes have in common; only where a load alone acts on them
     inertia_scaling: float = 1.0  # largest factor by which bodies have more inertia than they have (`inertia`)
     clusters: Clusters = NO_CLUSTERS  # bodies with more inertia against one another; without live load on them
@@ -260,7 +261,11 @@ def force_unit(scene: Scene, block: Indices, mass: Array, live: Array, strength:
 
 
 def moving_far(
-    system: BlockSystem, scene: Scene, contacts: ContactSearch, dead: Forces, deformation: Deformation = rigid_body
+    system: BlockSystem,
+    scene: Scene,
+    contacts: ContactSearch,
+    forces: tuple[Forces, Forces],
+    deformation: Deformation = rigid_body,
 ) -> BlockSystem:
     """The blocks of a scene at finite displacements: on contacts that are found anew, with what turns with them.
 
@@ -268,8 +273,8 @@ def moving_far(
     ----------
     system
         The blocks, on their undeformed contacts.
-    dead
-        The scene's dead forces.
+    forces
+        The scene's dead and live forces.
     deformation
         How blocks deform at a point.
     """
@@ -283,6 +288,7 @@ def moving_far(
         system,
         contacts=contacts,
         rig=Rig.of(scene, system.rigid),
-        turning=turning_loads(dead, points),
+        turning=turning_loads(forces[0], points),
+        pushing=turning_loads(forces[1], points),
         ties=turned_tie_rows(system.ties, scene.ties, points),
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 from runningbond.pictures.frame import Discretisation, Frame
 from runningbond.results import Outcome
-from runningbond.scene import Array, JointMaterial, Mortar, Scene, SceneError, check_scene, table_of
+from runningbond.scene import JointMaterial, Mortar, Scene, SceneError, check_scene, table_of
 
 if TYPE_CHECKING:
     from runningbond.response import Response  # which needs a compiler
@@ -80,11 +80,10 @@ class Model:
     cost: Cost | None = None  # `advise` runs no model without
     is_finite: bool = False  # leads beams through finite displacements, whatever its settings
     takes: frozenset[str] = frozenset()  # what it can do of `Scene.extras`; scenes with others it refuses by name
-    pushover: Callable[..., Array] | None = None  # curve (n, 3) at finite displacements, of scene, distance [m], speed
     respond: Callable[..., "Response"] | None = None  # response to a motion of the ground, of scene, scale
     colour: str = "0.35"  # how charts draw it,
     marker: str = "*"
-    line: str | tuple[int, tuple[int, ...]] = "-"  # and its pushover curve
+    line: str | tuple[int, tuple[int, ...]] = "-"  # and its curve
 
     def __post_init__(self) -> None:
         for field in ("reads", "parameters", "takes"):

@@ -130,9 +130,8 @@ _EVERY_MODEL = (
     ),
     Model(
         *("dem-dynamic", "rigid blocks in motion", _DEM_DYNAMIC, MOTION, "history"),
-        parameters=(*IN_STEPS, "displacements"),
+        parameters=(*IN_STEPS, "displacements", "distance"),
         cost=Cost(1.0, 1.19, 1.40, weightless=1.2, finer=0.17, start=KERNELS),
-        pushover=partial(_late, "dem.dynamic", "finite_pushover"),
         respond=partial(_late, "dem.dynamic", "dem_response"),
         **_IN_MOTION,
         colour="#349f8a",
@@ -141,9 +140,8 @@ _EVERY_MODEL = (
     ),
     Model(
         *("fem", "deformable blocks in motion", _fem, ELASTIC, "history"),
-        parameters=(*IN_STEPS, *OF_BLOCKS, "displacements"),
+        parameters=(*IN_STEPS, *OF_BLOCKS, "displacements", "distance"),
         cost=Cost(3.2, 1.08, 1.43, weightless=1.4, finer=0.16, start=KERNELS, cracked=10.0),
-        pushover=partial(_late, "fem_interface.model", "fem_pushover"),
         respond=partial(_late, "fem_interface.model", "fem_response"),
         **_IN_MOTION,
         colour="#7e2a55",

@@ -23,8 +23,15 @@ SOFT = 0.05
 FINER = 3
 """Cells of the finer mesh in each of the usual one."""
 
-USUAL: dict[str, Any] = {"cells": 1, "modes": None, "rule": None, "points": "elements", "cracks": "joints"}
-"""Settings of `fem` by which nobody has chosen how blocks deform, and where they touch."""
+USUAL: dict[str, Any] = {
+    "cells": 1,
+    "modes": None,
+    "rule": None,
+    "points": "elements",
+    "cracks": "joints",
+    "displacements": "small",
+}
+"""Settings of `fem` by which nobody has chosen how blocks deform, where they touch, and how far they go."""
 
 Solver: TypeAlias = Callable[[], Outcome]
 

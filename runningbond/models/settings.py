@@ -40,6 +40,7 @@ CHECKS: Mapping[str, Check] = {
     "collapse": ABOVE_ZERO.take,
     "first_step": ABOVE_ZERO.take,
     "budget": whole,
+    "distance": ABOVE_ZERO.take,
     "past": partial(whole, least=0),
     "starts": whole,
     "workers": whole,
@@ -50,10 +51,10 @@ CHECKS: Mapping[str, Check] = {
 }
 """Checks of settings, by their names; others are checked where they are used."""
 
-OPTIONAL = ("programs", "modes", "rule")
+OPTIONAL = ("programs", "modes", "rule", "distance")
 """Settings that may be None as well."""
 
-NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements")
+NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements", "distance")
 """Settings that mean nothing where the ground moves."""
 
 OF_MOTIONS: Mapping[str, Check] = {"rows": whole, "after": AT_LEAST_ZERO.take, "observe": check_observer}

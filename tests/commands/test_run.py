@@ -289,11 +289,28 @@ def test_a_support_is_followed_through_finite_displacements_where_they_are_asked
     assert "finite displacements" in capsys.readouterr().out
     kept, _ = load_outcome(out)
     assert kept.multiplier == pytest.approx(1.0, rel=1e-3)
-    pushed = str(write_toml(content(**SMALL), tmp_path / "pushed.toml"))
-    for scene, model, said in (
-        (wall, "limit", "dem-dynamic and fem follow"),
-        (pushed, "fem", "--displacements = 'finite'"),
+    for model, options, said in (
+        ("limit", far, "dem-dynamic and fem follow"),
+        (
+            "fem",
+            [*far, "--distance", "0.1"],
+            "--distance = 0.1: goes with finite displacements of a wall that",
+        ),
+        ("fem", ["--distance", "0.1"], "--distance = 0.1: goes with --displacements finite alone"),
     ):
-        assert command(["run", scene, "--model", model, *far, "--out", str(tmp_path / "none")]) == 2
+        assert command(["run", wall, "--model", model, *options, "--out", str(tmp_path / "none")]) == 2
         assert said in capsys.readouterr().err
         assert not (tmp_path / "none").exists()
+
+
+def test_a_wall_is_pushed_as_far_as_the_command_line_asks(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As by Python's `distance`, and its curve is kept."""
+    wall, out = str(write_toml(content(**SMALL), tmp_path / "pushed.toml")), tmp_path / "out"
+    far = ["--displacements", "finite", "--distance", "0.002"]
+    assert command(["run", wall, "--model", "dem-dynamic", *far, "--out", str(out)]) == 0
+    assert "largest multiplier along the way" in capsys.readouterr().out
+    kept, _ = load_outcome(out)
+    assert kept.curve[-1, 0] == pytest.approx(0.002, rel=0.01)
+    assert (out / "curve.png").exists()
+    assert command(["run", wall, "--model", "dem-dynamic", *far[:-1], "-1"]) == 2
+    assert "--distance = -1.0: must be a number above 0" in capsys.readouterr().err

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from dem.dynamic import dem_dynamic, finite_pushover
+from dem.dynamic import dem_dynamic
 from dem.finite_system import finite_system
 from runningbond.dynamics import Carried, Run, State
 from runningbond.dynamics.contact_update import contacts_of
@@ -417,8 +417,3 @@ def test_what_is_not_followed_so_far_is_refused(changes: dict[str, Any], displac
 def test_lines_that_are_none_are_refused(changes: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match=message):
         rig(**changes)
-
-
-def test_a_pushover_takes_no_rig() -> None:
-    with pytest.raises(SceneError, match="beam"):
-        finite_pushover(rig(), 0.01)

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dem.dynamic import dem_dynamic, finite_pushover
+from dem.dynamic import dem_dynamic
 from dem.finite_system import finite_system
 from dem.rigid_system import rigid_system
 from dem.static import dem_static
 from fem_interface.cracks import pieces
 from fem_interface.modal_wall import modal_wall
-from fem_interface.model import fem, fem_pushover
+from fem_interface.model import fem
 from fem_interface.system import system_of
 from meshing import wall_mesh
 from runningbond import Wall
@@ -571,38 +571,26 @@ def test_a_support_that_turns_moves_its_wall_with_it() -> None:
 # --- what is refused, and what ends a way --------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
-@pytest.mark.parametrize(
-    ("extra", "key"),
-    [
-        ({"beam": {"height": 0.1}}, "beam"),
-        ({"load__live": {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}}, "load.live settlement"),
-    ],
-)
-def test_finite_displacements_refuse_what_they_do_not_know(pushover: Any, extra: dict[str, Any], key: str) -> None:
-    with pytest.raises(SceneError, match=f"{key}: is not taken at finite displacements"):
-        pushover(block(**extra), 0.01)
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_a_wall_that_is_pushed_far_takes_no_beam(model: Any) -> None:
+    with pytest.raises(SceneError, match="beam: is not taken at finite displacements"):
+        model(block(beam={"height": 0.1}), displacements="finite")
 
 
-def test_a_pushover_of_rigid_blocks_takes_no_live_load_at_a_point() -> None:
-    with pytest.raises(SceneError, match="load.live: finite displacements need live loads on the blocks' mass"):
-        finite_pushover(block(load__live={"kind": "point", "at": [0.0, 0.03], "force": [1, 0]}), 0.01)
-
-
-@pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
-def test_finite_displacements_refuse_joints_of_several_insets(pushover: Any) -> None:
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_finite_displacements_refuse_joints_of_several_insets(model: Any) -> None:
     joints = {"lime": {"friction": 0.7, "mortar": MORTAR, "inset": 0.01}}
     assign = [{"joint": "lime", "box": [[0, 0], [1, 0.01]]}]
     with pytest.raises(SceneError, match="joints.lime.inset = 0.01: finite displacements need one inset"):
-        pushover(block(joints=joints, assign=assign), 0.01)
+        model(block(joints=joints, assign=assign), displacements="finite")
 
 
-@pytest.mark.parametrize("pushover", [finite_pushover, fem_pushover])
-def test_finite_displacements_do_not_forget_what_holds_without_cohesion(pushover: Any) -> None:
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_finite_displacements_do_not_forget_what_holds_without_cohesion(model: Any) -> None:
     """Joints without friction and cohesion may have a tensile strength."""
     scene = block().with_joint(friction=0.0, cohesion=0.0, tensile_strength=1e4)
     with pytest.raises(SceneError, match="joint.tensile_strength = 10000.0: finite displacements need dry joints"):
-        pushover(scene, 0.01)
+        model(scene, displacements="finite")
 
 
 @pytest.mark.parametrize(

@@ -12,5 +12,5 @@ from runningbond.models import MODELS
 def test_what_a_model_imports_when_it_is_wanted_is_there(name: str) -> None:
     """Modules that are slow to import are named by strings, which a type checker does not read."""
     model = MODELS[name]
-    late = [each for each in (model.solve, model.pushover, model.observer, model.progress) if isinstance(each, partial)]
+    late = [each for each in (model.solve, model.observer, model.progress) if isinstance(each, partial)]
     assert all(callable(getattr(import_module(each.args[0]), each.args[1])) for each in late)

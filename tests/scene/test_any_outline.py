@@ -8,9 +8,9 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from dem.dynamic import dem_dynamic, finite_pushover
+from dem.dynamic import dem_dynamic
 from dem.static import dem_static
-from fem_interface.model import fem, fem_pushover
+from fem_interface.model import fem
 from meshing import wall_mesh
 from runningbond.limit import limit, limit_nonassociated
 from runningbond.results import Outcome
@@ -224,8 +224,8 @@ def test_triangles_fill_a_block_and_no_more(cells: int) -> None:
     assert np.bincount(mesh.triangle_block, area) == pytest.approx(scene.blocks.area, rel=1e-9)
 
 
-@pytest.mark.parametrize("model", [finite_pushover, fem_pushover])
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
 def test_finite_displacements_need_convex_blocks(model: Any) -> None:
     for scene in (wall(PORTAL), wall(box(1, 0, 1.5, 1), grounds=[np.array(ELL) * 4 - [0, 1]])):
         with pytest.raises(SceneError, match=r"block [01] at .*: is not convex; finite displacements need convex"):
-            model(scene, 0.1)
+            model(scene, displacements="finite")

@@ -10,7 +10,6 @@ from runningbond.studies.stability.displacements import (
     HEIGHT,
     LOSSES,
     MOVED,
-    SPEEDS,
     TALL,
     THEORY,
     WIDTH,
@@ -26,7 +25,7 @@ Curves = tuple[float, Array, Array, Array]
 
 @pytest.fixture(scope="module")
 def rocking() -> Curves:
-    return curves(*scene_of("block"), SPEEDS[0])
+    return curves(*scene_of("block"))
 
 
 def test_a_block_has_lost_a_share_of_its_resistance_where_theory_says(
@@ -49,7 +48,7 @@ def test_a_block_follows_the_tangent_all_the_way(rocking: Curves) -> None:
     theta = np.arcsin(moved * WIDTH / HEIGHT)
     exact = np.tan(math.atan(0.5) - theta)
     turned = theta > 0.005
-    assert turned.sum() > 500
+    assert turned.sum() > 100
     assert finite[turned] == pytest.approx(exact[turned], rel=2e-4)
     assert small[turned] == pytest.approx(0.5, rel=1e-6)
 
@@ -58,8 +57,8 @@ def test_a_block_follows_the_tangent_all_the_way(rocking: Curves) -> None:
     ("name", "height"), [("W1", 6 * 0.175), pytest.param("W2", 10 * 0.175, marks=pytest.mark.long)]
 )
 def test_a_wall_loses_about_as_much_as_one_block_of_its_height(name: str, height: float) -> None:
-    """To 15 % from a loss of 2 % on; smaller ones are of the size of what the pushing speed adds to λ."""
-    row = measure(name, SPEEDS[0])
+    """To 15 % from a loss of 2 % on."""
+    row = measure(name)
     assert row[TALL] * scene_of(name)[1] == pytest.approx(height)
     for moved, theory in zip(MOVED[1:], THEORY[1:], strict=True):
         assert row[moved] == pytest.approx(row[theory], rel=0.15)

@@ -4,7 +4,6 @@ Each rung is climbed for a reason, and left out for one. `Kind` says what its an
 the climb and what its bracket means.
 """
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -14,7 +13,7 @@ import numpy as np
 from runningbond.draws import Scatter
 from runningbond.models import check_tolerance, run_model
 from runningbond.results import Outcome
-from runningbond.scene import Array, Scene, SceneError
+from runningbond.scene import Scene, SceneError
 
 from .costs import Estimate, short_search
 from .experiment import ModelError, error_of
@@ -22,9 +21,7 @@ from .knowledge import Knowledge, ladder
 from .steps import Step, after_refusal, next_step
 
 TOLERANCE = 0.05  # relative width of the bracket that is asked for where nothing else is
-SPEED, HALVINGS = 0.02, 5  # of the first push, in block sizes a second; how often it is halved until the peak settles
 FARTHER = 3.0  # displacement up to which to push, relative to that of the collapse at small displacements
-SMOOTH = 9  # rows of the curve over which λ is averaged
 
 
 @dataclass(frozen=True)
@@ -130,33 +127,15 @@ def advise(scene: Scene, tolerance: float = TOLERANCE, *, finite: bool = False) 
 
 
 def finite_peak(known: Knowledge, step: Step) -> Outcome:
-    """Peak of the pushover curve at finite displacements, pushed ever slower until it settles.
+    """The wall pushed past its peak at finite displacements.
 
-    Inertia adds to it, and falls at least as fast as speed: it lies as far on either side of the slower push's peak as
-    that from the faster one's, at most. It is settled where that bracket is as narrow as the tolerance, and reaches
-    down to the load above which nothing stands at small displacements.
+    Its bracket reaches down to the load above which nothing stands at small displacements, or inertia has borne it.
     """
     model, scene, tolerance, bound = step.model, known.scene, known.tolerance, known.bound
     assert model is not None
-    assert model.pushover is not None
-    start = time.perf_counter()
-    displacement = max(known.displacement or 0.0, tolerance)
-    distance, speed = FARTHER * displacement * scene.block_size, SPEED * scene.block_size
-    curve = model.pushover(scene, distance, speed=speed)
-    message = "the peak did not settle as the push was slowed"
-    outcome = Outcome(scene.title, step.name or "", "undecided", message=message)
-    for _ in range(HALVINGS):
-        fast, speed = _peak(curve), speed / 2
-        curve = model.pushover(scene, distance, speed=speed)
-        slow = _peak(curve)
-        low, high = slow - abs(fast - slow), slow + abs(fast - slow)
-        if high - low <= tolerance * high and (bound is None or low <= bound):
-            message = "peaks of two pushes at finite displacements, one at half the speed of the other"
-            outcome = replace(outcome, status="collapse", multiplier=slow, lower=low, upper=high, message=message)
-            outcome = replace(outcome, curve=curve[:, [0, 2]])
-            break
-    return replace(outcome, seconds=time.perf_counter() - start)
-
-
-def _peak(curve: Array) -> float:
-    return float(np.convolve(curve[:, 2], np.ones(SMOOTH) / SMOOTH, "valid").max())
+    distance = FARTHER * max(known.displacement or 0.0, tolerance) * scene.block_size
+    outcome = run_model(model, scene, tolerance, displacements="finite", distance=distance)
+    if outcome.status == "collapse" and bound is not None and outcome.lower is not None and outcome.lower > bound:
+        message = f"above the load that no wall bears at small displacements: {outcome.message}"
+        outcome = replace(outcome, status="undecided", multiplier=None, message=message)
+    return replace(outcome, model=step.name or "")

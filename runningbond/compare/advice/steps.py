@@ -127,7 +127,8 @@ def _compliance(known: Knowledge) -> str:
 
 def _enough(known: Knowledge, why: str) -> Step:
     """The answer so far suffices, unless the wall moves so far before that its geometry is another."""
-    finite = next(model for model in known.histories if model.pushover and deforms(model) == known.soft)
+    far = (model for model in known.histories if "displacements" in model.parameters)
+    finite = next(model for model in far if deforms(model) == known.soft)
     if known.finite:
         return Step(finite, f"{why}; finite displacements are asked for", finite=True)
     moved = known.displacement

@@ -38,7 +38,6 @@ PARAMETERS = (  # what is varied, and where; three Lobatto points are Simpson's 
     Parameter("first step", ("dem-static",), {"half": {"first_step": 0.015}, "double": {"first_step": 0.06}}),
     Parameter("first step", IN_MOTION, {"half": {"first_step": 0.025}, "double": {"first_step": 0.1}}),
     Parameter("driven, steps", IN_MOTION, STEPS, expensive=("400,000",)),
-    Parameter("speed", IN_MOTION, {"4 mm/s": {"speed": 4e-3}, "16 mm/s": {"speed": 1.6e-2}}, walls=("turned-block",)),
     Parameter("displacements", IN_MOTION, {"small": {"drive": 100_000}}, walls=("turned-block",)),
     Parameter("modes", ("fem",), MODES, walls=("cell-1e10", "cell-1e11", "cell-1e12")),
     Parameter("modes", ("fem",), {"3": {"modes": 3}}, walls=("cell-shear",)),

@@ -21,7 +21,6 @@ from runningbond.scene import Scene, SceneError, Stiffness
 from .walls import TURNED, Question
 
 DRIVEN = 0.05  # displacement of the control point to which a wall is driven, in block sizes
-SPEED = 1e-3  # speed at which the turned block is pushed where nothing else is said [m/s]
 STEPS, RUNS = 2000, 5  # time steps of a measurement of their cost, and measurements
 SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner
 
@@ -68,20 +67,19 @@ def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: 
     return system_of(modal_wall(scene, **settings), mass_scaling=mass_scaling)
 
 
-def _turned(model: str, scene: Scene, speed: float = SPEED, **settings: Any) -> Answer:
+def _turned(model: str, scene: Scene, **settings: Any) -> Answer:
     """λ of one block that has turned by `TURNED`: read off a parabola through its curve on either side."""
     scene = scene.with_joint(elasticity=Stiffness(SOFT, SOFT))
     system, height = _system(model, scene), scene.lowest_block
-    distance, steps, push = height * np.sin(1.5 * TURNED), None, MODELS[model].pushover
+    distance, steps = height * np.sin(1.5 * TURNED), None
     if "drive" in settings:
         pushed = _drive(system, scene, distance, settings["drive"])
         turned, multiplier, steps = pushed.curve[:, 0] / height, pushed.curve[:, 1], pushed.state.steps
+        turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # a row's λ is the mean since the last row
     else:
-        assert push is not None
-        curve = push(scene, distance, speed=speed)
+        said = MODELS[model].solve(scene, TOLERANCE, displacements="finite", distance=distance)
         # The control point stands above the corner about which the block turns.
-        turned, multiplier = np.arcsin(curve[:, 0] / height), curve[:, 2]
-    turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # a row's λ is the mean since the last row
+        turned, multiplier, steps = np.arcsin(said.curve[:, 0] / height), said.curve[:, 1], said.steps
     near = np.abs(turned - TURNED) < TURNED / 2
     parabola = np.polynomial.Polynomial.fit(turned[near], multiplier[near], 2)
     scatter = f"curve scatters by {float(np.std(multiplier[near] - parabola(turned[near]))):.1e}"

@@ -10,13 +10,13 @@ and walls that turn over about a corner of their base as a whole lose about as m
 
 import math
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from dem.dynamic import finite_pushover
+from dem.dynamic import dem_dynamic
 from dem.static import dem_static
+from runningbond.models import TOLERANCE
 from runningbond.pictures.charts import looks_of
 from runningbond.scene import Array, Mortar, Scene
 from runningbond.studies import Chart, Edge, Part, Row, Rows, Study
@@ -25,10 +25,7 @@ from runningbond.studies.walls import inset_wall, one_block
 LOSSES = (0.01, 0.02, 0.05, 0.1)  # shares of the small-displacement λ whose loss is looked for
 WIDTH, HEIGHT = 0.5, 1.0  # of the block [m]
 SOFTER = 0.1  # modulus of mortar in walls, in the published one: λ past the peak does not mind, the time step does
-SPEEDS = (5e-4, 1.25e-4)  # mean, of blocks along the live load [m/s]; the first shows that the second is slow enough
-LOCAL = 0.1  # local damping: what there is of it drags on blocks that move, and adds to λ
 FARTHEST = 0.25  # displacement to which they are pushed, in block widths
-SMOOTHED, DRAWN = 15, 150  # rows of a curve that are averaged, for blocks that slip are heard, and points of the chart
 WALLS = ("block", "W1", "W2")
 PART, PEAK, TALL = "λ lost past the peak", "λ, small", "height / block width"
 MOVED, THEORY = ([f"u/b at {100 * d:.0f} % lost{whose}" for d in LOSSES] for whose in ("", ", one block"))
@@ -46,18 +43,14 @@ def scene_of(name: str) -> tuple[Scene, float]:
     return scene.with_joint(elasticity=softer), scene.bond.width
 
 
-def curves(scene: Scene, width: float, speed: float) -> tuple[float, Array, Array, Array]:
-    """Push a scene at small and at finite displacements, at a mean speed of its blocks along the live load [m/s].
+def curves(scene: Scene, width: float) -> tuple[float, Array, Array, Array]:
+    """Push a scene at small and at finite displacements.
 
     Returns λ at small displacements in the end, and from the finite curve's peak on u / b and λ of both, ``(n,)``.
     """
     distance = FARTHEST * width
     static = dem_static(scene, collapse=2 * distance / scene.lowest_block).curve
-    curve = finite_pushover(scene, distance, speed=speed, local=LOCAL)
-    # λ is the mean since the last row.
-    window = np.ones(SMOOTHED) / SMOOTHED
-    u = np.convolve((curve[1:, 0] + curve[:-1, 0]) / 2, window, "valid")
-    finite = np.convolve(curve[1:, 2], window, "valid")
+    u, finite = dem_dynamic(scene, TOLERANCE, displacements="finite", distance=distance).curve.T
     peak = int(np.argmax(finite))
     u, finite = u[peak:], finite[peak:]
     return float(static[-1, 1]), u / width, np.interp(u, static[:, 0], static[:, 1]), finite
@@ -75,23 +68,22 @@ def displacement_at(moved: Array, lost: Array, loss: float) -> float:
     return float(np.interp(loss, lost[last : last + 2], moved[last : last + 2]))
 
 
-def measure(name: str, speed: float) -> Row:
+def measure(name: str) -> Row:
     """Where a scene has lost shares of its small-displacement λ."""
     scene, width = scene_of(name)
-    peak, moved, small, finite = curves(scene, width, speed)
+    peak, moved, small, finite = curves(scene, width)
     low, high = scene.blocks.extent(scene.wall)
     tall = float(high[1] - low[1]) / width
     row: Row = {PEAK: peak, TALL: tall}
     for loss, head, theory in zip(LOSSES, MOVED, THEORY, strict=True):
         row |= {head: displacement_at(moved, 1 - finite / small, loss), theory: as_one_block(peak, tall, loss)}
-    drawn = np.unique(np.linspace(0, len(moved) - 1, DRAWN).astype(int))
-    return row | {"moved": moved[drawn].tolist(), "small": small[drawn].tolist(), "finite": finite[drawn].tolist()}
+    return row | {"moved": moved.tolist(), "small": small.tolist(), "finite": finite.tolist()}
 
 
 def fits(rows: Rows) -> list[Edge]:
     """Displacements at which λ is lost: of the block beside (1), of walls as measured, and how far (1) is off there."""
     edges, apart = [], 0.0
-    for row in _slow(rows):
+    for row in rows[PART]:
         for loss, head, theory in zip(LOSSES, MOVED, THEORY, strict=True):
             known = (row[theory], 2e-3) if row["what"] == "block" else ()
             edges.append(Edge(f"u/b at which {row['what']} has lost {100 * loss:.0f} % of λ", row[head], *known))
@@ -99,14 +91,10 @@ def fits(rows: Rows) -> list[Edge]:
     return [*edges, Edge("walls beside one block of their λ and height, off by at most [%]", 100 * apart)]
 
 
-def _slow(rows: Rows) -> list[Row]:
-    return [row for row in rows[PART] if row["speed [m/s]"] == min(SPEEDS)]
-
-
 def _draw(figure: Figure, rows: Rows) -> None:
     curves, losses = figure.subplots(1, 2)
     looks, shares = looks_of(WALLS), np.linspace(0.001, 0.2, 50)
-    for row in _slow(rows):
+    for row in rows[PART]:
         colour, finite, small = looks[row["what"]][0], np.array(row["finite"]), np.array(row["small"])
         curves.plot(row["moved"], finite, color=colour, lw=1.4)
         curves.plot(row["moved"], small, color=colour, lw=1.0, ls="--")
@@ -129,8 +117,8 @@ STUDY = Study(
     "Small displacements: how far a wall may move before λ is no longer that of its undeformed shape",
     trusted="until a share d of λ is lost, at about u = d H / (λ + 1/λ), as by one block of the wall's height H and λ",
     beyond="a model at small displacements says so in its message and goes on at the same λ; "
-    "`dem.dynamic.finite_pushover` gives the curve that falls",
-    parts={PART: Part(("what", "speed [m/s]"), [*product(WALLS, SPEEDS)], measure)},
+    '`displacements = "finite"` gives the curve that falls',
+    parts={PART: Part(("what",), [(what,) for what in WALLS], measure)},
     charts=[
         Chart("λ past its peak at small and at finite displacements, and what is lost between", _draw, size=(9, 4.8))
     ],

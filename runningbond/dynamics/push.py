@@ -1,0 +1,160 @@
+"""How walls are pushed far by their live load: its power is kept as it goes, and the multiplier follows.
+
+The blocks that go farthest go as fast as one another from row to row, whichever they are, so that a push takes as long
+where few of them fall as where all do. It begins slowly, in short rows, for most walls peak at once.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from runningbond.scene import Array, Scene
+
+from .lead import LITTLE, ROWS, SEEN, Lead, Way
+from .peaks import Peaks
+from .run import CALMING, MOVING, Run
+from .state import State
+from .system import BlockSystem
+
+MOST_ROWS = 4
+"""Rows of a push, in those that it takes if no block goes farther than the control point."""
+
+BEYOND = 1.25
+"""How much farther a wall is pushed the next time than it came before it fell: slower, it may fall later."""
+
+SLOWEST, FASTER = 0.01, 1.05
+"""Part of its speed at which a push begins, and how much faster it goes in each row."""
+
+QUICKER = 2.0
+"""How much more power a row may have than the one before, as it turns out how far that moves blocks."""
+
+HALF = 0.5
+"""Part of the largest multiplier down to which a curve is to settle: in the end walls fall one way or another."""
+
+WINDOWS = 4
+"""Most windows of a row whose mean multipliers are looked at: all blocks are pushed, and the push shakes with them."""
+
+
+def finite_run(system: BlockSystem, scene: Scene) -> Run:
+    """The bodies of a scene at finite displacements, damped as what leads them asks for.
+
+    Of what a live load pushes, all is damped that shakes, and nothing drags on what drifts.
+    """
+    return Run(system, local=MOVING) if scene.is_led else Run(system, local=CALMING, damping="combined")
+
+
+@dataclass(frozen=True, eq=False)
+class Push(Lead):
+    """How a wall is pushed, from its rest under the dead load, until its control point has gone a `distance` [m].
+
+    It ends before that where the live load has fallen to nothing: there the wall stands on the brink by itself.
+    """
+
+    distance: float = np.inf
+
+    @property
+    def answer(self) -> str:
+        """What the answer of a way is."""
+        return "largest multiplier along the way"
+
+    @property
+    def least(self) -> float:
+        """Multiplier below which brackets need not be relatively narrow."""
+        system = self.run.system
+        return LITTLE / (system.measure(system.live) or 1.0)
+
+    @property
+    def least_work(self) -> float:
+        """Work [J] beside which the energy ledger has to add up: loads do none where nothing resists them."""
+        return LITTLE * self.work_of_a_block
+
+    @property
+    def goals(self) -> Array:
+        """The distance."""
+        return np.array([self.distance])
+
+    def moved(self, state: State) -> float:
+        """Displacement of the control point along the live load since the rest under the dead load [m]."""
+        return self._control(state.motion) - self._at_rest
+
+    @cached_property
+    def _at_rest(self) -> float:
+        return self._control(self.start.motion)
+
+    def _control(self, motion: Array) -> float:
+        contacts = self.run.system.contacts
+        if contacts is None:
+            raise TypeError("walls are pushed at finite displacements")
+        block, at, direction = self.scene.control_point
+        rigid = self.run.system.motion_of_blocks(motion).ravel()
+        places = contacts.outline.points(block, np.tile(at, (len(block), 1)), rigid)
+        return float(((places - at) @ direction).mean())
+
+    @cached_property
+    def _load(self) -> float:
+        """The live load on all that moves, at λ = 1 [N]; of couples alone, as forces that are a block apart."""
+        system = self.run.system
+        x, y, moment = np.where(np.isfinite(system.mass), system.live, 0.0)[system.rigid].T
+        couples = np.abs(moment) / self.scene.block_sizes[system.owner]
+        return float(np.hypot(x, y).sum() or couples.sum() or 1.0)
+
+    def after(self, way: Way) -> Lead:
+        """As far the next time as the wall came before it fell, and a little farther."""
+        came = abs(way.rows[-1].moved)
+        return replace(self, distance=min(self.distance, BEYOND * came)) if way.verdict == "collapse" and came else self
+
+    def apart(self, fast: Way, slow: Way) -> float:
+        """How far curves of two speeds are apart on the average until half of the answer is left, relative to it."""
+        (at, force), (other, before) = slow.curve.T, fast.curve.T
+        top = int(force.argmax())
+        lost = top + np.flatnonzero(force[top:] < HALF * force[top])
+        told = slice(int(lost[0]) if len(lost) else None)
+        apart = np.abs(np.interp(at[told], np.maximum.accumulate(other), before) - force[told])
+        return float(apart.mean()) / slow.answer if slow.answer > self.least else 0.0
+
+    def fall(self, curve: Array) -> str:
+        """How a wall has fallen at the end of its curve ``(n, 2)``."""
+        (before, above), (after, below) = curve[-2:].tolist()
+        if below > 0:
+            return super().fall(curve)
+        return f"the multiplier falls to nothing at {before + (after - before) * above / (above - below):.4g} m"
+
+    def go(self, way: Way, speed: float) -> State:
+        """Push at a speed of the blocks that go farthest [m/s]; the state at the end."""
+        run, state = self.run, self.start.copy()
+        self.observe(run, state, 0.0)
+        self.note(way, state, 0.0, 0.0)
+        given, seen = run.given(state), [(state.motion.copy(), self.crushed(state))]
+        row_steps = self.distance / (ROWS * speed * run.dt)
+        peaks = Peaks(way.best, row_steps, WINDOWS)
+        steps = max(peaks.windows, round(row_steps))
+        lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows).tolist()
+        most = power = speed * self._load
+        for parts in _parts(peaks.windows):
+            before = state.motion.copy()
+            for window, (part, length) in enumerate(zip(parts, lengths, strict=True), start=1):
+                multiplier = run.drive(state, part * power, length, given=given)
+                peaks.see(multiplier, 0.0, length, state, len(way.rows) + (window > peaks.windows // 2))
+                if window == peaks.windows // 2:
+                    middle = state.copy()
+            # What a row's multiplier is the mean of is there in its middle.
+            self.note(way, middle, self.moved(middle), peaks.mean(peaks.windows))
+            seen.append((middle.motion, self.crushed(middle)))
+            if len(way.rows) % SEEN == 0:
+                self.observe(run, state, way.rows[-1].force)
+            if (parts[0] == 1.0 and way.rows[-1].force <= 0) or self.falls(state):
+                way.verdict = "collapse"
+                break
+            if self.moved(state) >= self.distance or way.rows[-1].force > self.most:
+                break
+            went = run.system.farthest(state.motion - before) / (speed * run.dt * np.dot(parts, lengths))
+            power = min(most, power / max(went, 1 / QUICKER))
+        self.conclude(way, peaks, seen)
+        return state
+
+
+def _parts(windows: int) -> Array:
+    """Part of the speed in each window of each row, ``(rows, windows)``."""
+    row = (np.arange(MOST_ROWS * ROWS * windows) + 0.5) / windows
+    return np.asarray(np.minimum(1.0, SLOWEST * FASTER**row)).reshape(-1, windows)

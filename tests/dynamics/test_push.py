@@ -1,0 +1,142 @@
+"""Walls that live loads push far: blocks about their toes, walls from the load of limit analysis on, what ends them."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from dem.dynamic import dem_dynamic
+from fem_interface.model import fem
+from runningbond.limit import limit_nonassociated
+from runningbond.results import Outcome
+from runningbond.scene import Array, Scene, SceneError
+from tests.dynamics.test_led import block, brackets
+from tests.fem_interface.walls import MORTAR
+from tests.walls import panel
+
+WIDTH, HEIGHT = 0.06, 0.24
+TOE = np.array([WIDTH, 0.0])
+
+
+def about_its_toe(at: Array, angle: float) -> Array:
+    """Where a point of a block is from its toe, about which that has turned clockwise."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.asarray(np.array([[c, s], [-s, c]]) @ (at - TOE))
+
+
+def slender(live: dict[str, Any]) -> Scene:
+    return block(WIDTH, HEIGHT, joint__friction=1.4, load__live=live)
+
+
+def angles(curve: Array, at: Array, way: Array) -> Array:
+    """Rotations at which a point of the block has gone by the displacements of a curve along a direction."""
+    every = np.linspace(0.0, math.atan(WIDTH / HEIGHT) + 0.05, 2000)
+    gone = [(about_its_toe(at, angle) - (at - TOE)) @ way for angle in every]
+    return np.interp(curve[:, 0], gone, every)
+
+
+def follows(outcome: Outcome, exact: Array) -> None:
+    """As exact at every row: to 1 % of the peak while the push gathers speed, and to 2e-4 from there to the brink."""
+    moved, load = outcome.curve.T
+    brackets(outcome, exact[0], 2e-3)
+    given = moved > 1e-5  # before that the joint gives
+    assert load[given] == pytest.approx(exact[given], abs=0.01 * exact[0])
+    steady = moved > 0.2 * moved[-1]
+    assert steady.sum() > 60
+    assert load[steady] == pytest.approx(exact[steady], abs=2e-4 * exact[0])
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_a_block_is_pushed_by_its_weight_until_it_stands_on_its_corner(model: Any) -> None:
+    """λ = tan(α − θ), tan α = b / h, and nothing once the corner above the toe has gone by h sin α."""
+    outcome = model(slender({"kind": "lateral"}), 0.002, displacements="finite")
+    corner, alpha = np.array([WIDTH, HEIGHT]), math.atan(WIDTH / HEIGHT)
+    follows(outcome, np.tan(alpha - angles(outcome.curve, corner, np.array([1.0, 0.0]))))
+    assert f"falls to nothing at {HEIGHT * math.sin(alpha):.4g} m" in outcome.message
+    assert outcome.curve[-1, 1] <= 0
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_a_force_at_a_point_goes_along_with_it(model: Any) -> None:
+    """Pushed at the corner farther from the toe, which rises: λ F (its height) = W (arm of the middle)."""
+    at, middle, way = np.array([0.0, HEIGHT]), np.array([WIDTH / 2, HEIGHT / 2]), np.array([1.0, 0.0])
+    scene = slender({"kind": "point", "at": at.tolist(), "force": way.tolist()})
+    outcome, weight = model(scene, 0.002, displacements="finite"), 9.81 * scene.mass[0]
+    turned = angles(outcome.curve, at, way)
+    exact = [-weight * about_its_toe(middle, angle)[0] / about_its_toe(at, angle)[1] for angle in turned]
+    follows(outcome, np.array(exact))
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_a_couple_is_the_same_however_far_its_block_has_turned(model: Any) -> None:
+    middle = np.array([WIDTH / 2, HEIGHT / 2])
+    scene = slender({"kind": "moment", "at": middle.tolist(), "moment": -1.0})
+    outcome, weight = model(scene, 0.002, displacements="finite"), 9.81 * scene.mass[0]
+    _, at, way = scene.control_point
+    exact = [-weight * about_its_toe(middle, angle)[0] for angle in angles(outcome.curve, at, way)]
+    follows(outcome, np.array(exact))
+
+
+def test_a_wall_peaks_at_the_load_of_limit_analysis_and_bears_less_and_less() -> None:
+    """The smallest that is certified; limit analysis whose slip opens joints has a quarter more."""
+    scene = panel(wall__length=0.36, wall__height=0.36, joint__friction=1.2, joint__mortar=MORTAR)
+    outcome = dem_dynamic(scene, displacements="finite", distance=0.02)
+    exact = limit_nonassociated(scene).multiplier
+    assert exact is not None
+    brackets(outcome, exact, 0.01)
+    peak = int(outcome.curve[:, 1].argmax())
+    assert np.diff(outcome.curve[peak:, 1]).max() < 1e-3 * exact
+    assert outcome.curve[-1, 1] < 0.95 * exact
+
+
+def test_the_ground_bears_the_push_and_the_weight() -> None:
+    scene = panel(wall__length=0.36, wall__height=0.36, joint__mortar=MORTAR)
+    outcome = dem_dynamic(scene, 0.02, displacements="finite", distance=0.01)
+    weight = 9.81 * scene.mass[~scene.fixed].sum()
+    columns = [*outcome.path_columns]
+    along, up = (outcome.path[20:, columns.index(f"ground {way} [N]")] for way in ("horizontal", "vertical"))
+    assert -along == pytest.approx(outcome.curve[20:, 1] * weight, abs=0.1 * weight)  # a moment's, and a row's mean
+    assert -along.mean() == pytest.approx(outcome.curve[20:, 1].mean() * weight, rel=5e-3)
+    assert up.mean() == pytest.approx(weight, rel=5e-3)
+
+
+def test_a_push_ends_where_it_is_asked_to() -> None:
+    """Within a row of a two hundredth of it."""
+    outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=0.004)
+    assert outcome.curve[-1, 0] == pytest.approx(0.004, rel=0.01)
+
+
+def test_a_wall_that_locks_is_not_pushed_through_the_ground() -> None:
+    outcome = dem_dynamic(block(load__live={"kind": "body", "acceleration": [0, -9.81]}), displacements="finite")
+    assert outcome.status == "unbounded", outcome.message
+    assert "more than 20 times its largest dead load" in outcome.message
+    assert abs(outcome.curve[:, 0]).max() < 1e-3
+
+
+def test_what_nothing_resists_falls_under_no_load() -> None:
+    outcome = dem_dynamic(slender({"kind": "lateral"}).with_joint(friction=0.0), displacements="finite")
+    assert outcome.status == "collapse", outcome.message
+    assert outcome.multiplier == pytest.approx(0.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+@pytest.mark.parametrize(
+    ("distance", "settings", "message"),
+    [
+        (0.0, {"displacements": "finite"}, "distance = 0.0: must be a number above 0"),
+        (math.nan, {"displacements": "finite"}, "distance = nan: must be a number above 0"),
+        (0.1, {}, "distance = 0.1: goes with finite displacements of a wall that its live load pushes"),
+    ],
+)
+def test_distances_that_mean_nothing_are_refused(
+    model: Any, distance: float, settings: dict[str, Any], message: str
+) -> None:
+    with pytest.raises(SceneError, match=message):
+        model(slender({"kind": "lateral"}), distance=distance, **settings)
+
+
+def test_a_support_goes_as_far_as_its_scene_says() -> None:
+    live = {"kind": "settlement", "box": [[-1, -1], [1, 0]], "by": [0, -1e-3]}
+    with pytest.raises(SceneError, match="distance = 0.1: goes with"):
+        dem_dynamic(block(load__live=live), displacements="finite", distance=0.1)
