@@ -17,7 +17,7 @@ from runningbond.joints import compiled
 from runningbond.scene import Array, Indices
 
 from .kernel_calls import advance, gather, reframe, respond, scatter
-from .rig import turn_live, turn_loads, turn_rig, work_of_turned
+from .rig import turn_live, turn_loads, turn_rig, turn_supports, work_of_turned
 from .ties import pull
 from .update import Modes, StateArrays
 
@@ -159,7 +159,8 @@ def _at_constant_loads(
 ) -> tuple[int, bool, float, float]:
     """The steps of `step` in which loads stay as they are."""
     dt, local, joint_viscosity = scales
-    addresses, geometry, parameters, modes, restraint, ties, rig, turning, pushing, memory, state, work, frames = arrays
+    addresses, geometry, parameters, modes, restraint, ties, far, memory, state, work, frames = arrays
+    rig, turning, pushing, leaning = far
     _, _, mobility = modes
     motion, velocity, history, _, force = state
     freedom, basis = restraint
@@ -205,6 +206,7 @@ def _at_constant_loads(
             for i in range(live.size):
                 response += live[i] * mobility[i] * live[i]
         if carried:
+            turn_supports(leaning, motion, live)
             pressed = _carry(live, speed, velocity, force)
             total += pressed
             worked -= pressed * speed * dt
@@ -242,9 +244,10 @@ def step(
         speed [1/s] times `live`.
     arrays
         `Addresses` of the kernels; what they are called with: the interface's geometry, the law's parameters, modes;
-        restraint, ties, rig, turning loads and those that are live; the update's memory, `StateArrays`, `Work` and
-        `Frames`. With a rig, whose freedoms say that there is one, the live load turns with the beam (`rig`), is
-        written to, and acts on nothing else; it is written to where it drives at points that turn as well.
+        restraint, ties, what is there at finite displacements; the update's memory, `StateArrays`, `Work` and `Frames`.
+        At finite displacements there are a rig, turning loads, those that are live, and supports that turn. With a rig,
+        whose freedoms say that there is one, the live load turns with the beam (`rig`), is written to, and acts on
+        nothing else; it is written to where it drives at points that turn as well, and the way of supports that turn.
     watch
         The energy is looked at every `LOOK` steps of the state's life; where it does not add up, the steps end.
 
@@ -255,7 +258,7 @@ def step(
         what presses on the carried modes per unit of their motion; the work of all but the constant load.
     """
     rises = speed != 0.0 and control == HELD
-    state, work, _ = arrays[10:]
+    state, work, _ = arrays[8:]
     motion, loaded = state[0], work[1]
     already, given, most = watch
     copy_into(loaded, load)

@@ -23,8 +23,11 @@ MOST_ROWS = 4
 BEYOND = 1.25
 """How much farther a wall is pushed the next time than it came before it fell: slower, it may fall later."""
 
-SLOWEST, FASTER = 0.01, 1.05
-"""Part of its speed at which a push begins, and how much faster it goes in each row."""
+SLOWEST, FASTER, GATHERED = 0.01, 1.05, 0.01
+"""Part of its speed at which a push begins, how much faster it goes in each row, and the part that it gathers at most.
+
+What gathers speed takes a load that holds nothing: it is the smaller the longer that takes, and least at the peak.
+"""
 
 QUICKER = 2.0
 """How much more power a row may have than the one before, as it turns out how far that moves blocks."""
@@ -156,5 +159,7 @@ class Push(Lead):
 
 def _parts(windows: int) -> Array:
     """Part of the speed in each window of each row, ``(rows, windows)``."""
-    row = (np.arange(MOST_ROWS * ROWS * windows) + 0.5) / windows
-    return np.asarray(np.minimum(1.0, SLOWEST * FASTER**row)).reshape(-1, windows)
+    parts = [SLOWEST]
+    while len(parts) < MOST_ROWS * ROWS * windows:
+        parts.append(min(1.0, parts[-1] * FASTER ** (1 / windows), parts[-1] + GATHERED / windows))
+    return np.reshape(parts, (-1, windows))

@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple, TypeAlias, get_args
 import numpy as np
 
 from runningbond.joints.compiled import kernel
-from runningbond.scene import Array, Forces, Indices, Scene, SceneError, Unsigned
+from runningbond.scene import ANCHOR, Array, Forces, Indices, Scene, SceneError, Unsigned
 from runningbond.scene.ranges import ABOVE_ZERO, one_of
 
 from .body_points import NO_POINTS, BodyPoints, Points, arm_of
@@ -118,6 +118,39 @@ def work_of_turned(loads: tuple[Points, Array, Array, Array], velocity: Array, d
     return done
 
 
+class TurningSupports(NamedTuple):
+    """Supports that turn about a point, which goes straight."""
+
+    freedom: Unsigned  # (n, 3) where in the motion their translations and rotations stand
+    arm: Array  # (n, 2) from that point to their centroids at rest [m]
+    rate: Array  # (3,) displacement of the point [m] and rotation [rad] at λ = 1
+
+    @classmethod
+    def of(cls, scene: Scene, rigid: Indices) -> "TurningSupports | None":
+        """Those of a scene, from where the rigid motions of its blocks stand ``(nb, 3)``."""
+        settlement = scene.settlement
+        if settlement is None or not settlement.rotation_angle:
+            return None
+        moving = np.flatnonzero(scene.support_motion.any(axis=1))
+        rate = np.array([*settlement.by, math.radians(settlement.rotation_angle)])
+        arm = scene.blocks.centroid[moving] - settlement.centre
+        return cls(rigid[moving].astype(np.uint64), arm, rate)
+
+
+NO_TURNING_SUPPORTS = TurningSupports(np.zeros((0, 3), dtype=np.uint64), np.zeros((0, 2)), np.zeros(3))
+
+
+@kernel
+def turn_supports(supports: tuple[Unsigned, Array, Array], motion: Array, way: Array) -> None:
+    """Write how supports go on, per unit of λ, from where they have turned to in a motion ``(nd,)``."""
+    freedom, arm, rate = supports
+    for k in range(freedom.shape[0]):
+        spin = motion[freedom[k, 2]]
+        c, s = math.cos(spin), math.sin(spin)
+        way[freedom[k, 0]] = rate[0] - rate[2] * (s * arm[k, 0] + c * arm[k, 1])
+        way[freedom[k, 1]] = rate[1] + rate[2] * (c * arm[k, 0] - s * arm[k, 1])
+
+
 @kernel
 def turn_rig(rig: tuple[Unsigned, Array, Array, Array], motion: Array, live: Array) -> float:
     """Write the live load where the beam is now, and return the moment of a dead force whose line is fixed."""
@@ -150,8 +183,9 @@ def check_finite(scene: Scene) -> None:
         if not is_known and not ((scene.history or scene.drive_path) and key.startswith("beam")):
             where = " where a support settles" if key.startswith("beam") and scene.settlement else ""
             raise SceneError(key, f"is not taken at finite displacements{where}; leave it out")
-    if scene.support_motion[:, 2].any():
-        what = "is not taken at finite displacements, where supports go straight; leave it out"
-        raise SceneError("load.live.rotation_angle", what)
+    turns = scene.support_motion[:, 2] != 0
+    if turns.any() and (scene.ties.block == ANCHOR).any() and (turns | ~scene.fixed).all():
+        what = "is anchored while all of the ground turns, which is not taken at finite displacements; leave it out"
+        raise SceneError("tie", what)
     if not scene.is_beam[scene.pins.block].all():
         raise SceneError("support.kind", 'finite displacements need "base" or "fixed-first-course"')

@@ -16,7 +16,7 @@ from runningbond.scene import ANCHOR, Array
 from .central_differences import CONTROLS, Control, Watch, step
 from .contact_update import ContactUpdate, contacts_of
 from .kernel_calls import Addresses, addresses
-from .rig import NO_RIG, NO_TURNING_LOADS, turn_live, turn_loads, turn_rig
+from .rig import NO_RIG, NO_TURNING_LOADS, NO_TURNING_SUPPORTS, turn_live, turn_loads, turn_rig
 from .state import PLASTIC_SLIP, State
 from .system import BlockSystem, Interface
 from .ties import YIELD
@@ -109,6 +109,7 @@ class Run:
             (loads.points.arrays, *loads[1:])
             for loads in (system.turning or NO_TURNING_LOADS, system.pushing or NO_TURNING_LOADS)
         )
+        self._leaning = tuple(system.leaning or NO_TURNING_SUPPORTS)
         self._ties = *system.ties[:4], system.ties.ends.arrays, system.ties.length
         self.led = False  # whether displacements are prescribed, so that observers find no rest under a load
         self._modes = (system.stiffness, system.viscosity, 1 / system.mass)
@@ -214,7 +215,9 @@ class Run:
         if control != "held" and len(system.coupling.freedom):
             raise ValueError("modes that have inertia in common bear a load alone")
         live = system.carried.motion if control == "carried" else system.live
-        if control != "carried" and (system.rig is not None or system.pushing is not None):
+        if control == "carried":
+            live = live.copy() if system.leaning else live
+        elif system.rig is not None or system.pushing is not None:
             live = self._live()  # it turns with the beam, or with blocks
         for piece in (steps,) if self._update is None else self._pieces(state, steps, self._update):
             before = float(load.dot(state.motion))  # the operator takes twice as long, of each piece
@@ -246,8 +249,8 @@ class Run:
         scales = (self.dt, self.local, self._viscosity)
         ties = (*self._ties, state.stretch)
         frames = (state.bears, self._plastic)
-        loads = (self._rig, self._turning, self._pushing)
-        every = (self._addresses, *self._arrays, ties, *loads, self._memory, arrays, self._work, frames)
+        far = (self._rig, self._turning, self._pushing, self._leaning)
+        every = (self._addresses, *self._arrays, ties, far, self._memory, arrays, self._work, frames)
         found: tuple[int, bool, float, float] = step(number, steps, scales, load, live, speed, every, watch)
         for moments in (self.system.rig, self.system.turning):
             if moments is not None:

@@ -22,7 +22,7 @@ from runningbond.scene import Array, Forces, Indices, Scene
 
 from .body_points import BodyPoints, Deformation, body_points, rigid_body
 from .clusters import NO_CLUSTERS, Clusters
-from .rig import Rig, TurningLoads, turning_loads
+from .rig import Rig, TurningLoads, TurningSupports, turning_loads
 from .ties import NO_TIE_ROWS, TieRows, turned_tie_rows
 
 Kernel: TypeAlias = Callable[..., Any]
@@ -158,6 +158,7 @@ class BlockSystem:
     rig: Rig | None = None  # what drives its beam at finite displacements
     turning: TurningLoads | None = None  # dead loads that turn with its bodies there,
     pushing: TurningLoads | None = None  # and live ones
+    leaning: TurningSupports | None = None  # supports that turn there
     coupling: Coupling = NOT_COUPLED  # inertia that modes have in common; only where a load alone acts on them
     inertia_scaling: float = 1.0  # largest factor by which bodies have more inertia than they have (`inertia`)
     clusters: Clusters = NO_CLUSTERS  # bodies with more inertia against one another; without live load on them
@@ -279,7 +280,7 @@ def moving_far(
         How blocks deform at a point.
     """
     centroid = scene.blocks.centroid
-    still = int(system.rigid[scene.fixed.argmax(), 2])  # rotation of what is held; supports may go, and never turn
+    still = int(system.rigid[(scene.fixed & ~scene.support_motion.any(axis=1)).argmax(), 2])
 
     def points(block: Indices, at: Array) -> BodyPoints:
         return body_points(block, at, centroid, system.rigid, still, deformation)
@@ -289,6 +290,7 @@ def moving_far(
         contacts=contacts,
         rig=Rig.of(scene, system.rigid),
         turning=turning_loads(forces[0], points),
-        pushing=turning_loads(forces[1], points),
+        pushing=None if scene.is_led else turning_loads(forces[1], points),
+        leaning=TurningSupports.of(scene, system.rigid),
         ties=turned_tie_rows(system.ties, scene.ties, points),
     )

@@ -61,6 +61,11 @@ class Settlement(Action):
         if not any(self.by) and not self.rotation_angle:
             raise SceneError("load.live.by", "must move the support, or rotation_angle must turn it", list(self.by))
 
+    @property
+    def centre(self) -> Array:
+        """Point about which it turns [m]."""
+        return np.asarray(np.mean(self.box, axis=0) if self.about is None else self.about, dtype=float)
+
     @classmethod
     def read(cls, table: Table) -> "Settlement":
         """The load of a table with a box, and a displacement or a rotation."""
@@ -97,9 +102,8 @@ class Settlement(Action):
 
     def motion(self, scene: "Scene") -> Array:
         """Motion of each block's centroid [m] and its rotation [rad] at λ = 1, ``(nb, 3)``; zero of what stays."""
-        about = np.mean(self.box, axis=0) if self.about is None else np.array(self.about)
         turn = math.radians(self.rotation_angle)
-        arm = scene.blocks.centroid - about
+        arm = scene.blocks.centroid - self.centre
         motion = np.column_stack(
             [self.by[0] - turn * arm[:, 1], self.by[1] + turn * arm[:, 0], np.full(len(arm), turn)]
         )

@@ -404,7 +404,7 @@ def test_an_arch_unfolds_as_its_three_links() -> None:
         (low, left, _), (high, right, _) = (unfolded(hinge, links, at, spin + step) for step in (-1e-6, 1e-6))
         exact.append((unfolded(hinge, links, at, spin)[2], (high - low) / (right - left)))
     gone, multiplier = np.array(exact).T
-    curve = dem_dynamic(scene, displacements="finite", distance=0.02).curve
+    curve = dem_dynamic(scene, 1e-3, displacements="finite", distance=0.02).curve
     for way in (0.001, 0.005, 0.01, 0.019):
         expected = np.interp(way, gone, multiplier)
         assert np.interp(way, *curve.T) == pytest.approx(expected, rel=1e-3)

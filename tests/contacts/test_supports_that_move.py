@@ -9,6 +9,7 @@ import pytest
 
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
+from runningbond.dynamics import Run, State
 from runningbond.models import run_model
 from runningbond.results import Outcome
 from runningbond.scene import (
@@ -17,7 +18,6 @@ from runningbond.scene import (
     JointMaterial,
     Load,
     Scene,
-    SceneError,
     Settlement,
     Stiffness,
     Tie,
@@ -127,13 +127,43 @@ def test_a_beam_on_three_supports_comes_free_of_one_that_sinks() -> None:
     assert "bears nothing" in outcome.message
 
 
+def leaning(width: float, height: float, **joint: Any) -> Scene:
+    """A block on ground that turns by 10° about a point below and beside it, and another one on ground that stays."""
+    blocks = [rectangle(0.0, 0.0, 0.3, 0.1), rectangle(1.0, 0.0, width, height)]
+    grounds = [rectangle(-0.2, -0.3, 0.7, 0.3), rectangle(0.8, -0.3, 0.7, 0.3)]
+    turns = Settlement(box=((0.79, -2.0), (5.0, 2.0)), rotation_angle=-10.0, about=(0.9, -0.2))
+    return replace(on_two_grounds(blocks, grounds, (0.1, 0.0), **joint), load=Load(live=(turns,)))
+
+
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_supports_that_turn_are_refused(model: Any) -> None:
-    """They would go round, and are carried straight on."""
-    scene = arch(0.05)
-    turns = Settlement(box=((1.99, -2.0), (5.0, 2.0)), by=(0.05, 0.0), rotation_angle=1.0)
-    with pytest.raises(SceneError, match="load.live.rotation_angle: is not taken at finite displacements"):
-        model(replace(scene, load=Load(live=(turns,))), 0.01, displacements="finite")
+@pytest.mark.parametrize(("width", "friction", "tangent"), [(0.06, 0.8, 0.12), (0.4, 0.1, 0.1)])
+def test_a_block_on_ground_that_turns_leans_until_it_topples_or_slides(
+    model: Any, width: float, friction: float, tangent: float
+) -> None:
+    """At tan θ = b / h, or tan φ: its last rest, of some on the way, is the last one below that."""
+    outcome = model(leaning(width, 0.5, friction=friction), 0.05, displacements="finite")
+    assert outcome.status == "collapse", outcome.message
+    assert "the wall falls beyond" in outcome.message
+    share = outcome.curve[:, 0] / (outcome.curve[-1, 0] or 1.0)
+    rests = np.degrees(math.atan(tangent)) / 10.0
+    stages = np.linspace(0.0, 1.0, 21) ** 2
+    assert len(share) == (stages < rests).sum()
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_a_block_goes_round_with_ground_that_turns(model: Any) -> None:
+    """Its centroid about the point that the ground turns about, by 10°: straight on it would come 0.5 % farther."""
+    scene = leaning(0.2, 0.3)
+    seen: list[Array] = []
+
+    def observe(run: Run, state: State, share: float) -> None:
+        seen.append(run.system.motion_of_blocks(state.motion))
+
+    model(scene, 0.05, displacements="finite", observe=observe)
+    arm, c, s = scene.blocks.centroid[1] - (0.9, -0.2), math.cos(math.radians(10)), math.sin(math.radians(10))
+    gone = np.array([[c, s], [-s, c]]) @ arm - arm
+    assert seen[-1][1, 2] == pytest.approx(-math.radians(10), rel=1e-4)
+    assert seen[-1][1, :2] == pytest.approx(gone, rel=1e-4)
 
 
 @pytest.mark.parametrize("order", [1, -1])

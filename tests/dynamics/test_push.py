@@ -37,20 +37,20 @@ def angles(curve: Array, at: Array, way: Array) -> Array:
 
 
 def follows(outcome: Outcome, exact: Array) -> None:
-    """As exact at every row: to 1 % of the peak while the push gathers speed, and to 2e-4 from there to the brink."""
+    """As exact at every row: to the tolerance while the push gathers speed, and to 2e-4 from there to the brink."""
     moved, load = outcome.curve.T
-    brackets(outcome, exact[0], 2e-3)
+    brackets(outcome, exact[0], 5e-3)
     given = moved > 1e-5  # before that the joint gives
-    assert load[given] == pytest.approx(exact[given], abs=0.01 * exact[0])
-    steady = moved > 0.2 * moved[-1]
-    assert steady.sum() > 60
+    assert load[given] == pytest.approx(exact[given], abs=5e-3 * exact[0])
+    steady = moved > 0.6 * moved[-1]
+    assert steady.sum() > 30
     assert load[steady] == pytest.approx(exact[steady], abs=2e-4 * exact[0])
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
 def test_a_block_is_pushed_by_its_weight_until_it_stands_on_its_corner(model: Any) -> None:
     """λ = tan(α − θ), tan α = b / h, and nothing once the corner above the toe has gone by h sin α."""
-    outcome = model(slender({"kind": "lateral"}), 0.002, displacements="finite")
+    outcome = model(slender({"kind": "lateral"}), 0.005, displacements="finite")
     corner, alpha = np.array([WIDTH, HEIGHT]), math.atan(WIDTH / HEIGHT)
     follows(outcome, np.tan(alpha - angles(outcome.curve, corner, np.array([1.0, 0.0]))))
     assert f"falls to nothing at {HEIGHT * math.sin(alpha):.4g} m" in outcome.message
@@ -62,7 +62,7 @@ def test_a_force_at_a_point_goes_along_with_it(model: Any) -> None:
     """Pushed at the corner farther from the toe, which rises: λ F (its height) = W (arm of the middle)."""
     at, middle, way = np.array([0.0, HEIGHT]), np.array([WIDTH / 2, HEIGHT / 2]), np.array([1.0, 0.0])
     scene = slender({"kind": "point", "at": at.tolist(), "force": way.tolist()})
-    outcome, weight = model(scene, 0.002, displacements="finite"), 9.81 * scene.mass[0]
+    outcome, weight = model(scene, 0.005, displacements="finite"), 9.81 * scene.mass[0]
     turned = angles(outcome.curve, at, way)
     exact = [-weight * about_its_toe(middle, angle)[0] / about_its_toe(at, angle)[1] for angle in turned]
     follows(outcome, np.array(exact))
@@ -72,7 +72,7 @@ def test_a_force_at_a_point_goes_along_with_it(model: Any) -> None:
 def test_a_couple_is_the_same_however_far_its_block_has_turned(model: Any) -> None:
     middle = np.array([WIDTH / 2, HEIGHT / 2])
     scene = slender({"kind": "moment", "at": middle.tolist(), "moment": -1.0})
-    outcome, weight = model(scene, 0.002, displacements="finite"), 9.81 * scene.mass[0]
+    outcome, weight = model(scene, 0.005, displacements="finite"), 9.81 * scene.mass[0]
     _, at, way = scene.control_point
     exact = [-weight * about_its_toe(middle, angle)[0] for angle in angles(outcome.curve, at, way)]
     follows(outcome, np.array(exact))
@@ -97,8 +97,8 @@ def test_the_ground_bears_the_push_and_the_weight() -> None:
     columns = [*outcome.path_columns]
     along, up = (outcome.path[20:, columns.index(f"ground {way} [N]")] for way in ("horizontal", "vertical"))
     assert -along == pytest.approx(outcome.curve[20:, 1] * weight, abs=0.1 * weight)  # a moment's, and a row's mean
-    assert -along.mean() == pytest.approx(outcome.curve[20:, 1].mean() * weight, rel=5e-3)
-    assert up.mean() == pytest.approx(weight, rel=5e-3)
+    assert -along.mean() == pytest.approx(outcome.curve[20:, 1].mean() * weight, rel=0.01)
+    assert up.mean() == pytest.approx(weight, rel=0.01)
 
 
 def test_a_push_ends_where_it_is_asked_to() -> None:

@@ -22,6 +22,7 @@ from runningbond.compare import published_scene
 from runningbond.dynamics import BlockSystem, Criteria, Run, State, settle
 from runningbond.dynamics.contact_update import contacts_of
 from runningbond.dynamics.run import LOCAL, VISCOUS
+from runningbond.joints.frames import keep_frames
 from runningbond.joints.law import OPENING_BEFORE
 from runningbond.joints.softening import DAMAGE
 from runningbond.scene import Array, Mortar, Scene, SceneError, Stiffness
@@ -94,11 +95,13 @@ def jumps_on(system: BlockSystem, geometry: Any, motion: Array, n: int) -> Array
 
 
 @pytest.mark.parametrize("inset", [0.0, 0.005])
-def test_blocks_with_three_modes_move_as_rigid_ones(inset: float) -> None:
+def test_blocks_with_three_modes_move_as_rigid_ones(monkeypatch: pytest.MonkeyPatch, inset: float) -> None:
     """The whole motion of a wall that is shaken to pieces, to 1e-9, over 300 steps and several searches.
 
-    Blocks start apart: where corners coincide, rounding decides which of them rests on the other's side.
+    Blocks start apart: where corners coincide, rounding decides which of them rests on the other's side. Nodes slide on
+    as if it did not matter whose side bears.
     """
+    monkeypatch.setattr(dem.finite_system, "reframe_sharp", keep_frames)
     scene = wall(joint__inset=inset)
     blocks = node_outline(scene, 1, 3)
     ours, rigid = finite_system(blocks), dem.finite_system.finite_system(scene)
@@ -285,7 +288,6 @@ def test_a_state_goes_its_own_way_with_its_contacts() -> None:
     [
         ({"joint__cohesion": 1e4}, "joint"),
         ({"support__kind": "corners"}, "support.kind"),
-        ({"load__live": {"kind": "point", "at": [0.24, 0.24], "force": [0.0, -1.0]}}, "load.live"),
     ],
 )
 def test_scenes_of_another_kind_are_refused(changes: dict[str, Any], key: str) -> None:

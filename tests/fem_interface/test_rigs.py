@@ -158,7 +158,7 @@ def test_what_is_not_taken_is_refused(parameters: dict[str, Any], message: str) 
 @pytest.mark.parametrize(
     ("changes", "key"),
     [
-        ({"beam__drive": {"force": [1, 0]}}, "model fem: displacements"),
+        ({"beam__drive": {"force": [1, 0]}}, "beam"),
         ({"joint__cohesion": 1e4}, "joint.cohesion"),
         ({"inner_joint": GLUE | {"inset": 0.01}}, "inner_joint.inset"),
     ],

@@ -7,6 +7,7 @@ import pytest
 
 from runningbond.scene import Array
 from runningbond.studies.stability.displacements import (
+    ALONE,
     HEIGHT,
     LOSSES,
     MOVED,
@@ -25,7 +26,7 @@ Curves = tuple[float, Array, Array, Array]
 
 @pytest.fixture(scope="module")
 def rocking() -> Curves:
-    return curves(*scene_of("block"))
+    return curves(*scene_of("block"), ALONE)
 
 
 def test_a_block_has_lost_a_share_of_its_resistance_where_theory_says(
