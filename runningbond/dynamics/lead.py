@@ -216,6 +216,10 @@ class Lead:
         """How far curves of two speeds are apart, relative to the answer, where they are told beside it."""
         return 0.0
 
+    def failing(self, curve: Array) -> int:
+        """The row of a curve ``(n, 2)`` in which the wall is seen to fail."""
+        return failing(curve)
+
     def fall(self, curve: Array) -> str:
         """How a wall has fallen at the end of its curve ``(n, 2)``."""
         if self.settles:
@@ -289,7 +293,7 @@ class Lead:
             self.note(way, peak.state, self.moved(peak.state), peak.force)
             way.rows.insert(peak.row, way.rows.pop())
             seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
-        row = failing(way.curve)
+        row = self.failing(way.curve)
         way.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
         # The most so far: joints that have parted since have been crushed too.
         way.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)

@@ -116,6 +116,10 @@ class Push(Lead):
         apart = np.abs(np.interp(at[told], np.maximum.accumulate(other), before) - force[told])
         return float(apart.mean()) / slow.answer if slow.answer > self.least else 0.0
 
+    def failing(self, curve: Array) -> int:
+        """The row of a curve ``(n, 2)`` in which the wall is seen to fail: just past the peak, while it is as built."""
+        return min(len(curve) - 1, int(curve[:, 1].argmax()) + SEEN)
+
     def fall(self, curve: Array) -> str:
         """How a wall has fallen at the end of its curve ``(n, 2)``."""
         (before, above), (after, below) = curve[-2:].tolist()

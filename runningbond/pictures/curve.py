@@ -7,7 +7,7 @@ import numpy as np
 
 from runningbond.results import Outcome
 from runningbond.results.reactions import AT_REST
-from runningbond.scene import Array, Scene
+from runningbond.scene import Array, Mask, Scene
 
 from .captions import is_force, load_symbol, multiplier_text, wall_title
 from .charts import bare
@@ -60,7 +60,8 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
         path_effects=[withStroke(linewidth=2.0, foreground="white")],
     )
     _draw_states(axes, scene, outcome)
-    _bend(axes, moved, load)
+    if scene.is_led or _rests(outcome).any():  # of what is pushed far, how it falls is to be seen
+        _bend(axes, moved, load)
     bottom = min(0.0, 1.12 * load.min())
     top = max(-0.05 * bottom, 1.12 * max(load.max(), *levels)) or 1.0
     if scene.settlement:
@@ -78,7 +79,7 @@ def draw_curve(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
 def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
     """States at rest and in a fall; those under motions of the ground, each of its own, have no line between them."""
     moved, load = 1e3 * outcome.curve[:, 0], outcome.curve[:, 1]
-    rests = outcome.curve_columns().get(AT_REST, np.ones(len(load))) == 1
+    rests = _rests(outcome)
     is_led = not rests.any()  # in motion all the way
     rests |= is_led
     held, way = ("stands", ".") if scene.history else ("at rest", "-" if is_led else ".-")
@@ -89,6 +90,11 @@ def _draw_states(axes: "Axes", scene: Scene, outcome: Outcome) -> None:
             axes.plot(moved[last - 1 :], load[last - 1 :], ":", color=FALL, lw=1.0)
         axes.plot(moved[~rests], load[~rests], "x", color=FALL, ms=6, mew=1.5, label="falls")
         axes.legend(frameon=False, fontsize=SMALL_TYPE + 1, loc="lower right")
+
+
+def _rests(outcome: Outcome) -> Mask:
+    """Rows of a curve at which the wall is at rest."""
+    return np.asarray(outcome.curve_columns().get(AT_REST, np.ones(len(outcome.curve))) == 1)
 
 
 def _bend(axes: "Axes", moved: Array, load: Array) -> None:

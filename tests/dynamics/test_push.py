@@ -5,10 +5,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
+from runningbond.joints import wall_points
 from runningbond.limit import limit_nonassociated
+from runningbond.limit.kinematics import jump_operator
+from runningbond.pictures.curve import draw_curve
 from runningbond.results import Outcome
 from runningbond.scene import Array, Scene, SceneError
 from tests.dynamics.test_led import block, brackets
@@ -88,6 +92,12 @@ def test_a_wall_peaks_at_the_load_of_limit_analysis_and_bears_less_and_less() ->
     peak = int(outcome.curve[:, 1].argmax())
     assert np.diff(outcome.curve[peak:, 1]).max() < 1e-3 * exact
     assert outcome.curve[-1, 1] < 0.95 * exact
+    # Its mechanism is that of the wall as built, in which nothing overlaps; its curve falls where all can see it.
+    jumps = jump_operator(wall_points(scene), scene.blocks.centroid).opening @ outcome.motion.ravel()
+    assert jumps.min() > -0.01
+    axes = Figure().add_subplot()
+    draw_curve(axes, scene, outcome)
+    assert axes.get_xscale() == "linear"
 
 
 def test_the_ground_bears_the_push_and_the_weight() -> None:

@@ -22,6 +22,7 @@ from .walls import TURNED, Question
 
 DRIVEN = 0.05  # displacement of the control point to which a wall is driven, in block sizes
 STEPS, RUNS = 2000, 5  # time steps of a measurement of their cost, and measurements
+SETTLED = 1e-4  # by how much of λ half the speed may change the curve of the turned block
 SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner
 
 
@@ -77,7 +78,7 @@ def _turned(model: str, scene: Scene, **settings: Any) -> Answer:
         turned, multiplier, steps = pushed.curve[:, 0] / height, pushed.curve[:, 1], pushed.state.steps
         turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # a row's λ is the mean since the last row
     else:
-        said = MODELS[model].solve(scene, TOLERANCE, displacements="finite", distance=distance)
+        said = MODELS[model].solve(scene, SETTLED, displacements="finite", distance=distance)
         # The control point stands above the corner about which the block turns.
         turned, multiplier, steps = np.arcsin(said.curve[:, 0] / height), said.curve[:, 1], said.steps
     near = np.abs(turned - TURNED) < TURNED / 2
