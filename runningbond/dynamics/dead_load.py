@@ -101,7 +101,8 @@ def _has_slid(run: Run, state: State) -> bool:
 def _slowly(run: Run, criteria: Criteria, observe: Observer, before: int, part: float = ELASTIC) -> UnderDeadLoad:
     """Put on a part of the dead load at once, and the rest evenly."""
     state, system = State.at_rest(run.system), run.system
-    growing = run.of_system(replace(system, dead=np.zeros_like(system.dead), live=system.dead, rig=None))
+    grown = replace(system, dead=np.zeros_like(system.dead), live=system.dead, rig=None, pushing=None)
+    growing = run.of_system(grown)
     shares = np.linspace(part, 1.0, (TURNS if len(system.ties) else 1) + 1)
     _tighten(run, state, (part - 1.0) * system.ties.slack)
     verdict = settle(growing, state, part, criteria, sudden=True)

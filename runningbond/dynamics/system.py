@@ -285,12 +285,13 @@ def moving_far(
     def points(block: Indices, at: Array) -> BodyPoints:
         return body_points(block, at, centroid, system.rigid, still, deformation)
 
+    rig = Rig.of(scene, system.rigid)
     return replace(
         system,
         contacts=contacts,
-        rig=Rig.of(scene, system.rigid),
+        rig=rig,
         turning=turning_loads(forces[0], points),
-        pushing=None if scene.is_led else turning_loads(forces[1], points),
+        pushing=None if rig else turning_loads(forces[1], points),  # a rig turns what drives it
         leaning=TurningSupports.of(scene, system.rigid),
         ties=turned_tie_rows(system.ties, scene.ties, points),
     )

@@ -274,6 +274,19 @@ def test_a_beam_whose_wall_has_been_crushed_falls_and_is_followed_no_further(dis
     assert -10.0 < column(outcome, "beam uplift [m]")[-1] < -0.1
 
 
+def test_a_beam_that_has_turned_is_pushed_where_its_point_is_now() -> None:
+    """By 1 N, with a moment about the origin that is the height of the point."""
+    scene = rig(beam__drive={"displacement": [0.03, 0], "at": 0.6})
+    run, lifted = Run(finite_system(scene)), 1.0
+    assert scene.beam is not None
+    beam = scene.beam.block
+    state = State.at_rest(run.system)
+    state.motion[run.system.rigid[beam]] = 0.0, lifted, 0.5
+    push = run.resultants(state, 1.0)[beam] - run.resultants(state, 0.0)[beam]
+    height = 0.65 + lifted - 0.05 * np.cos(0.5)
+    assert push == pytest.approx([1.0, 0.0, -height], rel=1e-9, abs=1e-9)
+
+
 def test_pushed_the_other_way_a_wall_does_the_same() -> None:
     changes = {"wall__courses": [[1, 1], [0.5, 1, 0.5], [1, 1]], "inner_joint": GLUE}
     outcomes = [
