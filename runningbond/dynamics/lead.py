@@ -87,6 +87,7 @@ class Way:
     unseen: float = 0.0  # what the answer may be larger, for means over windows take from peaks
     inertia: float = 0.0  # and smaller, for bodies that speed up; or either, where motion takes from friction
     crushed: Array = field(default_factory=lambda: np.zeros((0, 2)))  # of joints' ends there [m], closed for good
+    gone: float = 0.0  # how far the blocks that go farthest have gone in each row of a push, in all [m]
     lasting: float = 0.0  # largest mean force over a whole row of a motion
     resolved: bool = True  # whether means over ever shorter parts of its way add next to nothing to the answer
 
@@ -220,6 +221,10 @@ class Lead:
         """The row of a curve ``(n, 2)`` in which the wall is seen to fail."""
         return failing(curve)
 
+    def onward(self, curve: Array) -> Array:
+        """A curve ``(n, 2)`` with its displacement counted towards where walls are to fail."""
+        return curve
+
     def fall(self, curve: Array) -> str:
         """How a wall has fallen at the end of its curve ``(n, 2)``."""
         if self.settles:
@@ -293,7 +298,7 @@ class Lead:
             self.note(way, peak.state, self.moved(peak.state), peak.force)
             way.rows.insert(peak.row, way.rows.pop())
             seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
-        row = self.failing(way.curve)
+        row = self.failing(self.onward(way.curve))
         way.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
         # The most so far: joints that have parted since have been crushed too.
         way.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)

@@ -79,9 +79,9 @@ def collapse_of_led(
         for duration in _durations(lead, loaded.rest):
             ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
             last = lead.go(way, lead.longest / duration)
-            lead = lead.after(way)
+            before, lead = lead, lead.after(way)
             outcome = replace(outcome, steps=(outcome.steps or 0) + last.steps - state.steps)
-            if way.verdict == "undecided":
+            if way.verdict == "undecided" and lead is before:
                 break
             if _settled(lead, ways, tolerance) and not _rate(scene):
                 break
@@ -158,8 +158,9 @@ def _spread(lead: Lead, ways: list[Way]) -> float:
 
 
 def _settled(lead: Lead, ways: list[Way], tolerance: float) -> bool:
-    """Whether half the speed would hardly change the answer, nor what else is told."""
-    return _spread(lead, ways) <= tolerance and lead.apart(*ways[-2:]) <= tolerance
+    """Whether half the speed would hardly change the answer, nor what else is told, of ways that came to their end."""
+    ended = all(way.verdict != "undecided" for way in ways[-2:])
+    return ended and _spread(lead, ways) <= tolerance and lead.apart(*ways[-2:]) <= tolerance
 
 
 def _arrays(outcome: Outcome, lead: Lead, way: Way, point_order: Indices) -> Outcome:
@@ -219,7 +220,7 @@ def _judge(outcome: Outcome, lead: Lead, ways: list[Way], tolerance: float) -> O
     if lead.settles and not fell and _has_come_free(lead, way.rows[-1]):
         return replace(outcome, status="unbounded", message=f"{COME_FREE}; {what}")
     outcome = replace(outcome, lower=least, upper=most)
-    if not fell and not formed(outcome.curve, tolerance, settles=lead.settles, still=way.answer - least):
+    if not fell and not formed(lead.onward(outcome.curve), tolerance, settles=lead.settles, still=way.answer - least):
         falls, changes = shedding(outcome.curve) if lead.settles else (False, "")
         still = f"the support still {changes}" if lead.settles else "the wall still hardens"
         still = f"{still} at the displacement asked for, {at}"

@@ -21,7 +21,7 @@ MOST_ROWS = 4
 """Rows of a push, in those that it takes if no block goes farther than the control point."""
 
 BEYOND = 1.25
-"""How much farther a wall is pushed the next time than it came before it fell: slower, it may fall later."""
+"""How much farther blocks are expected to go the next time than they went before the wall fell: slower, later."""
 
 SLOWEST, FASTER, GATHERED = 0.01, 1.05, 0.01
 """Part of its speed at which a push begins, how much faster it goes in each row, and the part that it gathers at most.
@@ -55,6 +55,7 @@ class Push(Lead):
     """
 
     distance: float = np.inf
+    reach: float = np.inf  # how far the blocks that go farthest are expected to go [m]; the distance, if not known
 
     @property
     def answer(self) -> str:
@@ -74,8 +75,8 @@ class Push(Lead):
 
     @property
     def goals(self) -> Array:
-        """The distance."""
-        return np.array([self.distance])
+        """How far the blocks that go farthest are expected to go."""
+        return np.array([self.distance if np.isinf(self.reach) else self.reach])
 
     def moved(self, state: State) -> float:
         """Displacement of the control point along the live load since the rest under the dead load [m]."""
@@ -103,13 +104,24 @@ class Push(Lead):
         return float(np.hypot(x, y).sum() or couples.sum() or 1.0)
 
     def after(self, way: Way) -> Lead:
-        """As far the next time as the wall came before it fell, and a little farther."""
-        came = abs(way.rows[-1].moved)
-        return replace(self, distance=min(self.distance, BEYOND * came)) if way.verdict == "collapse" and came else self
+        """Expect blocks to go as far the next time as they went before the wall fell, and a little farther.
+
+        Where they went on without either end in sight, as far as the control point needs them to.
+        """
+        if way.verdict == "collapse" and way.gone:
+            return replace(self, reach=min(self.longest, BEYOND * way.gone))
+        if way.verdict == "undecided":
+            came = abs(way.rows[-1].moved) / self.distance
+            return replace(self, reach=way.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
+        return self
+
+    def onward(self, curve: Array) -> Array:
+        """The curve towards the side to which the control point goes in the end: other loads may push it back."""
+        return curve * (np.sign(curve[-1, 0]) or 1.0, 1.0)
 
     def apart(self, fast: Way, slow: Way) -> float:
         """How far curves of two speeds are apart on the average until half of the answer is left, relative to it."""
-        (at, force), (other, before) = slow.curve.T, fast.curve.T
+        (at, force), (other, before) = self.onward(slow.curve).T, self.onward(fast.curve).T
         top = int(force.argmax())
         lost = top + np.flatnonzero(force[top:] < HALF * force[top])
         told = slice(int(lost[0]) if len(lost) else None)
@@ -133,7 +145,7 @@ class Push(Lead):
         self.observe(run, state, 0.0)
         self.note(way, state, 0.0, 0.0)
         given, seen = run.given(state), [(state.motion.copy(), self.crushed(state))]
-        row_steps = self.distance / (ROWS * speed * run.dt)
+        row_steps = self.longest / (ROWS * speed * run.dt)
         peaks = Peaks(way.best, row_steps, WINDOWS)
         steps = max(peaks.windows, round(row_steps))
         lengths = np.diff(np.arange(peaks.windows + 1) * steps // peaks.windows).tolist()
@@ -150,13 +162,16 @@ class Push(Lead):
             seen.append((middle.motion, self.crushed(middle)))
             if len(way.rows) % SEEN == 0:
                 self.observe(run, state, way.rows[-1].force)
+            went = run.system.farthest(state.motion - before)
+            way.gone += went
             if (parts[0] == 1.0 and way.rows[-1].force <= 0) or self.falls(state):
                 way.verdict = "collapse"
                 break
-            if self.moved(state) >= self.distance or way.rows[-1].force > self.most:
+            if abs(self.moved(state)) >= self.distance or way.rows[-1].force > self.most:
                 break
-            went = run.system.farthest(state.motion - before) / (speed * run.dt * np.dot(parts, lengths))
-            power = min(most, power / max(went, 1 / QUICKER))
+            power = min(most, power / max(went / (speed * run.dt * np.dot(parts, lengths)), 1 / QUICKER))
+        else:
+            way.verdict = "undecided"
         self.conclude(way, peaks, seen)
         return state
 

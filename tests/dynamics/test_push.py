@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
+from runningbond import Wall
 from runningbond.joints import wall_points
 from runningbond.limit import limit_nonassociated
 from runningbond.limit.kinematics import jump_operator
@@ -29,7 +30,7 @@ def about_its_toe(at: Array, angle: float) -> Array:
     return np.asarray(np.array([[c, s], [-s, c]]) @ (at - TOE))
 
 
-def slender(live: dict[str, Any]) -> Scene:
+def slender(live: dict[str, Any] | list[dict[str, Any]]) -> Scene:
     return block(WIDTH, HEIGHT, joint__friction=1.4, load__live=live)
 
 
@@ -138,6 +139,48 @@ def test_what_is_crushed_under_its_dead_load_is_pushed_at_a_point_as_well() -> N
     outcome = dem_dynamic(scene, displacements="finite", distance=0.01)
     exact = weight * (WIDTH - weight / (crushing * 0.12)) / 2 / HEIGHT
     assert outcome.multiplier == pytest.approx(exact, rel=0.05)  # on its points joints crush to 3 to 5 %
+
+
+def test_a_load_low_on_a_wall_that_hardly_goes_itself_pushes_to_the_brink() -> None:
+    """A point near the ground goes a twelfth as far as the top does: λ comes to nothing where the block balances."""
+    at = np.array([0.0, 0.05 * HEIGHT])
+    scene = slender({"kind": "point", "at": at.tolist(), "force": [1, 0]}).with_joint(friction=8.0)
+    outcome = dem_dynamic(scene, displacements="finite")
+    brink = (about_its_toe(at, math.atan(WIDTH / HEIGHT)) - (at - TOE))[0]
+    assert outcome.curve[-1, 1] <= 0
+    assert outcome.curve[-1, 0] == pytest.approx(brink, rel=0.01)
+
+
+def test_a_slow_push_that_goes_farther_than_a_fast_one_goes_on_to_its_end() -> None:
+    """Parts of this wall fall one after the other, the later the slower it is pushed."""
+    size = {"block_width": 0.4, "block_height": 0.2, "thickness": 0.2}
+    rows: list[list[float]] = [
+        [1, 1, -1, 1, 1],
+        [0.5, 1, 0.5, -1, 0.5, 1, 0.5],
+        [1, 1, -1, 1, 1],
+        [0.5, 1, 2, 1, 0.5],
+        [1, 1, 1, 1, 1],
+    ]
+    joint = {"friction": 0.65, "inset": 0.01, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
+    outcome = dem_dynamic(Wall.courses(rows, **size, joint=joint, density=2000.0).scene, displacements="finite")
+    assert outcome.curve[-1, 1] <= 0, outcome.message
+    assert "falls to nothing" in outcome.message
+
+
+def test_a_point_that_other_loads_push_back_tells_as_much() -> None:
+    """As the block is pushed by its weight alone, whose λ the load at the point takes a hundredth of."""
+    weight = 9.81 * slender({"kind": "lateral"}).mass[0]
+    back = {"kind": "point", "at": [0.0, HEIGHT], "force": [-0.005 * weight, 0.0]}
+    alone = dem_dynamic(slender({"kind": "lateral"}), displacements="finite")
+    outcome = dem_dynamic(slender([back, {"kind": "lateral"}]), displacements="finite")
+    assert alone.multiplier is not None
+    assert outcome.multiplier == pytest.approx(alone.multiplier / 0.99, rel=2e-3)
+    assert outcome.curve[-1, 0] < 0
+    assert outcome.motion == pytest.approx(alone.motion, abs=0.02)
+    apart = float(outcome.message.split("curves are ")[1].split()[0])
+    assert apart < 1
+    short = dem_dynamic(slender([back, {"kind": "lateral"}]), displacements="finite", distance=0.01)
+    assert short.curve[-1, 0] == pytest.approx(-0.01, rel=0.02)
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
