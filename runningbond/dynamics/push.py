@@ -164,7 +164,7 @@ class Push(Lead):
                 self.observe(run, state, way.rows[-1].force)
             went = run.system.farthest(state.motion - before)
             way.gone += went
-            if (parts[0] == 1.0 and way.rows[-1].force <= 0) or self.falls(state):
+            if (way.rows[-1].force <= 0 and way.answer > self.least) or self.falls(state):
                 way.verdict = "collapse"
                 break
             if abs(self.moved(state)) >= self.distance or way.rows[-1].force > self.most:

@@ -42,14 +42,14 @@ def angles(curve: Array, at: Array, way: Array) -> Array:
 
 
 def follows(outcome: Outcome, exact: Array) -> None:
-    """As exact at every row: to the tolerance while the push gathers speed, and to 2e-4 from there to the brink."""
+    """As exact at every row: to the tolerance while the push gathers speed, and to 5e-4 from there to the brink."""
     moved, load = outcome.curve.T
     brackets(outcome, exact[0], 5e-3)
     given = moved > 1e-5  # before that the joint gives
     assert load[given] == pytest.approx(exact[given], abs=5e-3 * exact[0])
     steady = moved > 0.6 * moved[-1]
     assert steady.sum() > 30
-    assert load[steady] == pytest.approx(exact[steady], abs=2e-4 * exact[0])
+    assert load[steady] == pytest.approx(exact[steady], abs=5e-4 * exact[0])
 
 
 @pytest.mark.parametrize("model", [dem_dynamic, fem])
@@ -116,6 +116,15 @@ def test_a_push_ends_where_it_is_asked_to() -> None:
     """Within a row of a two hundredth of it."""
     outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=0.004)
     assert outcome.curve[-1, 0] == pytest.approx(0.004, rel=0.01)
+
+
+def test_a_wall_that_falls_as_the_push_gathers_speed_is_followed_no_further() -> None:
+    """It leans by a twentieth of the distance: where its load comes to nothing is told all the same."""
+    outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=20 * WIDTH)
+    brink = HEIGHT * math.sin(math.atan(WIDTH / HEIGHT))
+    assert outcome.curve[-1, 0] == pytest.approx(brink, rel=0.02)
+    assert f"falls to nothing at {brink:.4g} m" in outcome.message
+    assert (outcome.curve[:-1, 1] >= 0).all()
 
 
 def test_a_wall_that_locks_is_not_pushed_through_the_ground() -> None:

@@ -22,7 +22,7 @@ from .walls import TURNED, Question
 
 DRIVEN = 0.05  # displacement of the control point to which a wall is driven, in block sizes
 STEPS, RUNS = 2000, 5  # time steps of a measurement of their cost, and measurements
-SETTLED = 1e-4  # by how much of λ half the speed may change the curve of the turned block
+SETTLED = 1e-3  # by how much of λ half the speed may change the curve of the turned block
 SOFT = 1e10  # stiffness of the turned block's joint [Pa/m]; softer ones allow longer steps, and hardly move its corner
 
 
