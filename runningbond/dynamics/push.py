@@ -23,6 +23,9 @@ MOST_ROWS = 4
 BEYOND = 1.25
 """How much farther blocks are expected to go the next time than they went before the wall fell: slower, later."""
 
+LESS = 0.5
+"""Least part of how far they were expected to go: a push that is far too fast throws blocks off, and seems to end."""
+
 SLOWEST, FASTER, GATHERED = 0.01, 1.05, 0.01
 """Part of its speed at which a push begins, how much faster it goes in each row, and the part that it gathers at most.
 
@@ -109,7 +112,7 @@ class Push(Lead):
         Where they went on without either end in sight, as far as the control point needs them to.
         """
         if way.verdict == "collapse" and way.gone:
-            return replace(self, reach=min(self.longest, BEYOND * way.gone))
+            return replace(self, reach=self.longest * min(1.0, max(LESS, BEYOND * way.gone / self.longest)))
         if way.verdict == "undecided":
             came = abs(way.rows[-1].moved) / self.distance
             return replace(self, reach=way.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))

@@ -10,6 +10,8 @@ from matplotlib.figure import Figure
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond import Wall
+from runningbond.dynamics.lead import Way, WayRow
+from runningbond.dynamics.push import Push
 from runningbond.joints import wall_points
 from runningbond.limit import limit_nonassociated
 from runningbond.limit.kinematics import jump_operator
@@ -148,6 +150,28 @@ def test_what_is_crushed_under_its_dead_load_is_pushed_at_a_point_as_well() -> N
     outcome = dem_dynamic(scene, displacements="finite", distance=0.01)
     exact = weight * (WIDTH - weight / (crushing * 0.12)) / 2 / HEIGHT
     assert outcome.multiplier == pytest.approx(exact, rel=0.05)  # on its points joints crush to 3 to 5 %
+
+
+@pytest.mark.parametrize(
+    ("verdict", "gone", "moved", "expected"),
+    [
+        ("collapse", 0.6, 0.6, 0.75),
+        ("collapse", 0.01, 0.01, 0.5),  # thrown off by a push that was far too fast
+        ("collapse", 0.9, 0.01, 1.0),
+        ("stable", 1.0, 1.0, 1.0),
+        ("undecided", 0.8, 0.5, 0.8 * 1.25 / 0.5),
+        ("undecided", 0.8, 0.0, 3.2),
+    ],
+)
+def test_a_push_takes_its_time_for_as_far_as_blocks_are_to_go(
+    verdict: Any, gone: float, moved: float, expected: float
+) -> None:
+    """Not for the way of its control point, which may go anywhere."""
+    nothing: Any = None
+    lead = Push(nothing, nothing, nothing, nothing, nothing, nothing, distance=1.0)
+    rows = [WayRow(moved, 0.0, np.zeros((0, 2)), np.zeros(0), (0.0, 0.0), ())]
+    after = lead.after(Way(nothing, np.zeros(0), True, rows, verdict, gone=gone))
+    assert after.longest == pytest.approx(expected)
 
 
 def test_a_load_low_on_a_wall_that_hardly_goes_itself_pushes_to_the_brink() -> None:
