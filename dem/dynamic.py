@@ -55,9 +55,9 @@ def dem_dynamic(
     tolerance, collapse, first_step, budget, distance, observe
         As in `collapse_by_steps`.
     displacements
-        Whether a wall that is led by its beam or by a support, or pushed by live loads on its mass, is followed through
-        finite displacements: blocks turn, slide off their neighbours and come to rest on others, and softening joints
-        break (`finite_system`). A push goes on past its peak.
+        Whether a wall that is led by its beam or by a support, or pushed by live loads, is followed through finite
+        displacements: blocks turn, slide off their neighbours and come to rest on others, and softening joints break
+        (`finite_system`). A push goes on past its peak.
 
     Returns
     -------

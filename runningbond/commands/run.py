@@ -70,7 +70,7 @@ def run(
         Name of the model.
     displacements
         Whether the wall keeps the shape it was built in, or dem-dynamic or fem follows it as far as a beam that is
-        driven by displacements, or a support that moves, leads it, or live loads on its mass push it past their peak.
+        driven by displacements, or a support that moves, leads it, or live loads push it past their peak.
     distance
         How far live loads push it [m], read where displacements are; until they have fallen to nothing, or else by the
         wall's smaller side, where none is given.
