@@ -181,7 +181,8 @@ def check_finite(scene: Scene) -> None:
     for key in scene.extras:
         is_known = key in ("load.history", "tie") or key.startswith("load.live settlement")
         if not is_known and not ((scene.history or scene.drive_path) and key.startswith("beam")):
-            where = " where a support settles" if key.startswith("beam") and scene.settlement else ""
+            leads = "a support settles" if scene.settlement else "live loads push a wall"
+            where = f" where {leads}" if key.startswith("beam") else ""
             raise SceneError(key, f"is not taken at finite displacements{where}; leave it out")
     turns = scene.support_motion[:, 2] != 0
     if turns.any() and (scene.ties.block == ANCHOR).any() and (turns | ~scene.fixed).all():
