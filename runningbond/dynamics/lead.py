@@ -213,6 +213,10 @@ class Lead:
         """How it is led the next time, after a way."""
         return self
 
+    def kept(self, ways: list[Way]) -> Way:
+        """What is kept of ways of which the last was interrupted."""
+        return ways[-1]
+
     def apart(self, fast: Way, slow: Way) -> float:
         """How far curves of two speeds are apart, relative to the answer, where they are told beside it."""
         return 0.0

@@ -88,7 +88,8 @@ def collapse_of_led(
     except KeyboardInterrupt:
         if ways:
             ways[-1].calm()
-        outcome = _path(outcome, scene, run, points, ways[-1]) if ways and ways[-1].rows else outcome
+            way = lead.kept(ways)
+            outcome = _path(outcome, scene, run, points, way) if way.rows else outcome
         return replace(outcome, message="interrupted: the way so far")
     except Unstable as error:
         return replace(outcome, status="failed", steps=error.steps, message=str(error))

@@ -118,6 +118,10 @@ class Push(Lead):
             return replace(self, reach=way.gone * min(BEYOND / max(came, LITTLE), MOST_ROWS))
         return self
 
+    def kept(self, ways: list[Way]) -> Way:
+        """The last that was gone to its end, if one was: the others begin ever more slowly."""
+        return ways[-2] if len(ways) > 1 else ways[-1]
+
     def onward(self, curve: Array) -> Array:
         """The curve towards the side to which the control point goes in the end: other loads may push it back."""
         return curve * (np.sign(curve[-1, 0]) or 1.0, 1.0)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from dem.dynamic import dem_dynamic
 from fem_interface.model import fem
 from runningbond import Wall
+from runningbond.dynamics import Run, State
 from runningbond.dynamics.lead import Way, WayRow
 from runningbond.dynamics.push import Push
 from runningbond.joints import wall_points
@@ -118,6 +119,21 @@ def test_a_push_ends_where_it_is_asked_to() -> None:
     """Within a row of a two hundredth of it."""
     outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=0.004)
     assert outcome.curve[-1, 0] == pytest.approx(0.004, rel=0.01)
+
+
+def test_ctrl_c_leaves_the_last_push_that_came_to_its_end() -> None:
+    """In the second one, which has hardly begun."""
+    pushes: list[float] = []
+
+    def stop(run: Run, state: State, multiplier: float) -> None:
+        pushes.extend([multiplier] if run.led and multiplier == 0 else [])
+        if len(pushes) == 2:
+            raise KeyboardInterrupt
+
+    outcome = dem_dynamic(slender({"kind": "lateral"}), displacements="finite", distance=0.004, observe=stop)
+    assert (outcome.status, outcome.multiplier) == ("undecided", None)
+    assert "interrupted" in outcome.message
+    assert outcome.curve[-1, 0] == pytest.approx(0.004, rel=0.05)
 
 
 def test_a_wall_that_falls_as_the_push_gathers_speed_is_followed_no_further() -> None:
