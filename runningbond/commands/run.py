@@ -93,7 +93,7 @@ def run(
             raise SceneError(option, "goes with --draws alone", value)
     wall = read_scene(find_scene(scene))
     if displacements == "finite":
-        _check_led(chosen, wall, distance)
+        _check_far(chosen, wall, distance)
     if draws is not None:
         return _draws(wall, chosen, draws, scatter or "bits", tolerance, -1 if jobs is None else jobs, out, json)
     chosen.check(wall)
@@ -133,7 +133,7 @@ def _through(model: Model, displacements: str, distance: float | None) -> Model:
     return replace(model, solve=far, is_finite=True)
 
 
-def _check_led(model: Model, wall: Scene, distance: float | None) -> None:
+def _check_far(model: Model, wall: Scene, distance: float | None) -> None:
     """Refuse finite displacements of a wall that cannot be followed through them, before anything is run."""
     from runningbond.dynamics.rig import check_finite, is_finite
 

@@ -302,7 +302,7 @@ class Lead:
             self.note(way, peak.state, self.moved(peak.state), peak.force)
             way.rows.insert(peak.row, way.rows.pop())
             seen.insert(peak.row, (peak.state.motion, self.crushed(peak.state)))
-        row = self.failing(self.onward(way.curve))
+        row = self.failing(way.curve)
         way.motion = seen[row][0] - seen[max(0, row - SEEN)][0]
         # The most so far: joints that have parted since have been crushed too.
         way.crushed = np.max([crushed for _, crushed in seen[: row + 1]], axis=0)

@@ -9,6 +9,7 @@ sheds or takes up load, where the way ends. A wall at rest on a support that bea
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -60,7 +61,7 @@ def collapse_of_led(
         `curve` has the displacement and the reaction [N], or the share of the dead load, of the whole way. `lower`
         and `upper` lie about the answer as far as the last halving of the speed has changed it.
     """
-    ways = list[Way]()
+    ways, locks = list[Way](), cache(is_self_locking)
     try:
         resting = run if run.system.contacts is None else Run(run.system, local=CALMING)
         loaded = put_on_dead_load(resting, criteria, observe)
@@ -75,7 +76,7 @@ def collapse_of_led(
         run.led = True
         lead = Lead(scene, run, state, criteria, observe, points)
         if not scene.is_led:
-            lead = _push(lead, distance, LOCKED if is_self_locking() else np.inf)
+            lead = _push(lead, distance, LOCKED if locks() else np.inf)
         for duration in _durations(lead, loaded.rest):
             ways.append(way := Way(state, np.zeros_like(state.motion), not lead.settles))
             last = lead.go(way, lead.longest / duration)
@@ -102,7 +103,7 @@ def collapse_of_led(
         return replace(outcome, status="failed", message=f"{lost:.1%} of the work of the loads is unaccounted for")
     outcome = _judge(outcome, lead, ways, tolerance)
     outcome = replace(outcome, message=joined(outcome.message, run.crushing_note(way.best)))
-    if outcome.status == "undecided" and outcome.upper is None and not lead.settles and is_self_locking():
+    if outcome.status == "undecided" and outcome.upper is None and not lead.settles and locks():
         message = f"self-locking: joint forces balance any multiple of it; {outcome.message}"
         return replace(outcome, status="unbounded", message=message)
     return outcome

@@ -163,10 +163,13 @@ def turn_rig(rig: tuple[Unsigned, Array, Array, Array], motion: Array, live: Arr
 def is_finite(displacements: str, model: str, scene: Scene, distance: float | None = None) -> bool:
     """Whether displacements are finite.
 
-    A `SceneError` for unknown ones, and for a `distance` [m] of a wall that is not pushed so far by its live load.
+    A `SceneError` for unknown ones, for finite ones where the ground moves, and for a `distance` [m] of a wall that is
+    not pushed so far by its live load.
     """
     key = f"model {model}: displacements"
     finite = one_of(key, displacements, get_args(Displacements)) == "finite"
+    if finite and scene.history:
+        raise SceneError(key, "is not taken where the ground moves, which walls follow far anyway", displacements)
     if distance is not None:
         key = f"model {model}: distance"
         ABOVE_ZERO.take(key, distance)

@@ -40,7 +40,6 @@ CHECKS: Mapping[str, Check] = {
     "collapse": ABOVE_ZERO.take,
     "first_step": ABOVE_ZERO.take,
     "budget": whole,
-    "distance": ABOVE_ZERO.take,
     "past": partial(whole, least=0),
     "starts": whole,
     "workers": whole,
@@ -51,7 +50,7 @@ CHECKS: Mapping[str, Check] = {
 }
 """Checks of settings, by their names; others are checked where they are used."""
 
-OPTIONAL = ("programs", "modes", "rule", "distance")
+OPTIONAL = ("programs", "modes", "rule")
 """Settings that may be None as well."""
 
 NOT_IN_MOTION = ("collapse", "first_step", "budget", "displacements", "distance")

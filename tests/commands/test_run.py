@@ -314,3 +314,13 @@ def test_a_wall_is_pushed_as_far_as_the_command_line_asks(tmp_path: Path, capsys
     assert (out / "curve.png").exists()
     assert command(["run", wall, "--model", "dem-dynamic", *far[:-1], "-1"]) == 2
     assert "--distance = -1.0: must be a number above 0" in capsys.readouterr().err
+
+
+def test_a_wall_on_moving_ground_is_not_asked_how_far_it_goes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It goes as far as it does, so that neither option would be read."""
+    pulse = {"pulse": {"kind": "sine", "amplitude": 0.4, "period": 0.6}, "quantity": "g"}
+    shaken = str(write_toml(content(**SMALL, load__live=None, load__history=pulse), tmp_path / "shaken.toml"))
+    assert command(["run", shaken, "--model", "dem-dynamic", "--displacements", "finite"]) == 2
+    assert "--displacements = 'finite': is not taken where the ground moves" in capsys.readouterr().err

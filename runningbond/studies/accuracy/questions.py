@@ -71,20 +71,25 @@ def _system(model: str, scene: Scene, *, mass_scaling: bool = True, **settings: 
 def _turned(model: str, scene: Scene, **settings: Any) -> Answer:
     """λ of one block that has turned by `TURNED`: read off a parabola through its curve on either side."""
     scene = scene.with_joint(elasticity=Stiffness(SOFT, SOFT))
-    system, height = _system(model, scene), scene.lowest_block
-    distance, steps = height * np.sin(1.5 * TURNED), None
+    height = scene.lowest_block
+    distance = height * np.sin(1.5 * TURNED)
+    dofs: int | None
+    steps: int | None
     if "drive" in settings:
+        system = _system(model, scene)
         pushed = _drive(system, scene, distance, settings["drive"])
-        turned, multiplier, steps = pushed.curve[:, 0] / height, pushed.curve[:, 1], pushed.state.steps
+        turned, multiplier = pushed.curve[:, 0] / height, pushed.curve[:, 1]
+        dofs, steps = system.freedoms, pushed.state.steps
         turned, multiplier = (turned[1:] + turned[:-1]) / 2, multiplier[1:]  # a row's λ is the mean since the last row
     else:
         said = MODELS[model].solve(scene, SETTLED, displacements="finite", distance=distance)
         # The control point stands above the corner about which the block turns.
-        turned, multiplier, steps = np.arcsin(said.curve[:, 0] / height), said.curve[:, 1], said.steps
+        turned, multiplier = np.arcsin(said.curve[:, 0] / height), said.curve[:, 1]
+        dofs, steps = said.dofs, said.steps
     near = np.abs(turned - TURNED) < TURNED / 2
     parabola = np.polynomial.Polynomial.fit(turned[near], multiplier[near], 2)
     scatter = f"curve scatters by {float(np.std(multiplier[near] - parabola(turned[near]))):.1e}"
-    return Answer("collapse", float(parabola(TURNED)), None, None, system.freedoms, steps, scatter)
+    return Answer("collapse", float(parabola(TURNED)), None, None, dofs, steps, scatter)
 
 
 def _modulus(which: int, model: str, scene: Scene, cells: int = 1, modes: ModeCount | None = None) -> Answer:
