@@ -75,7 +75,7 @@ class SidePoints(NamedTuple):
 
 
 class Sides(NamedTuple):
-    """Sides of blocks, numbered as the corners that they start from.
+    """Sides of blocks, numbered as the corners that they start from; corners are numbered as in `Outline`.
 
     Parameters
     ----------
@@ -84,18 +84,19 @@ class Sides(NamedTuple):
     shares : (nv, 2) float
         Share of each of them at which the arc of the corner touches it.
     extent, straight : (nv,) float
-        Length of the side, and between its arcs [m].
-    successor : (nv,) int
-        Next corner.
-    inset, radius : (nv,) float
-        Distance from the corner at which its arc touches its sides, and the radius of that arc [m].
+        Length of the side, and between its arcs, with what it runs on by [m].
+    ends : (nv, 2) int
+        Corners at its start and at its end.
+    inset, radius : (nc,) float
+        Distance from the corner at which its arc touches its sides, negative behind a re-entrant corner to which a side
+        runs on, and the radius of that arc [m].
     """
 
     outer: Indices
     shares: Array
     extent: Array
     straight: Array
-    successor: Indices
+    ends: Indices
     inset: Array
     radius: Array
 
@@ -190,11 +191,11 @@ def place_nodes(motion: Array, tables: NodalTables, nodes: OutlineNodes, placed:
 @kernel
 def _place_arcs(sides: Sides, facets: Array, arcs: Array) -> None:
     """Write the centres of the arcs at the two ends of each side."""
-    ends, shares, _, _, successor, _, radius = sides
+    outer, shares, _, _, ends, _, radius = sides
     for side in range(arcs.shape[0]):
         for end in range(2):
-            j = ends[side, end]
-            r = radius[successor[side]] if end == 1 else radius[side]
+            j = outer[side, end]
+            r = radius[ends[side, end]]
             along = shares[side, end] / facets[j, 4]
             arcs[side, 2 * end] = facets[j, 0] + along * facets[j, 2] - r * facets[j, 3]
             arcs[side, 2 * end + 1] = facets[j, 1] + along * facets[j, 3] + r * facets[j, 2]
@@ -231,7 +232,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
     """Opening and slip ``(np,)`` of contacts, from motions ``(nd,)``."""
     tables, nodes, points, sides, ends, inwards, _, placed, contact, touched = geometry
     begin, length = nodes.begin, nodes.length
-    outer, shares, extent, straight, successor, inset, radius = sides
+    outer, shares, extent, straight, corners, inset, radius = sides
     facets, arcs = placed.facets, placed.arcs
     place_nodes(motion, tables, nodes, placed)
     _place_arcs(sides, facets, arcs)
@@ -252,7 +253,7 @@ def gather_deformable(motion: Array, geometry: DeformableSides, opening: Array, 
             nx, ny = facets[j, 3], -facets[j, 2]
             away = (x - facets[j, 0]) * nx + (y - facets[j, 1]) * ny
             stretch = length[j] * facets[j, 4]
-            inside = min(moved - inset[side], extent[side] - inset[successor[side]] - moved)
+            inside = min(moved - inset[corners[side, 0]], extent[side] - inset[corners[side, 1]] - moved)
             away = max(away, points.half[point] - inside)
         else:
             # Side e's last corner lies at f's first one where inwards is along the tangent.

@@ -82,7 +82,7 @@ class DeformableContacts:
         facet = np.where(low, self.blocks.first[side + 1] - 1, self.blocks.first[side])
         # An end stands for its side up to half-way from the first point that is far enough inside the arc to bear.
         length = self.blocks.nodes.length[facet] / self.blocks.parts
-        passed = np.floor(self.blocks.sides.inset[corner] / length + HALF)
+        passed = np.floor(np.maximum(self.blocks.sides.inset[corner], 0.0) / length + HALF)
         area = np.minimum(ends.area, self._thickness * (passed + 0.5) * length)
         inner = self._inner(rigid, margin)
         contacts = Contacts(
@@ -123,7 +123,7 @@ class DeformableContacts:
     def _inner(self, rigid: Array, margin: float) -> Contacts:
         """Points inside one of two facing sides that are near the other: of block b's, unless that one is held."""
         outline, first = self.outline, self.blocks.first * self.blocks.parts
-        nodes, points, inset = self.blocks.nodes, self.blocks.points, self.blocks.sides.inset
+        nodes, points, inset = self.blocks.nodes, self.blocks.points, self.blocks.sides.inset[outline.ends]
         owner, after = outline.blocks.owner, outline.blocks.successor
         e, f = facing_sides(outline, rigid, margin)
         of_a = outline.held[owner[e]]
@@ -144,7 +144,7 @@ class DeformableContacts:
         along = ((at - corners[on]) * run).sum(axis=1) / length
         opposed = -(arcs[own, 2:] * arcs[other, 2:]).sum(axis=1)[pair] > np.cos(np.pi / 4)
         # Those that are still to come farther from the other side's corners before they bear are near them only.
-        inside = np.minimum(along - inset[on], length - inset[after[on]] - along)
+        inside = np.minimum(along - inset[on, 0], length - inset[on, 1] - along)
         near = opposed & (np.abs(away) < margin) & (points.half[point] - inside < margin) & self._bearing[point]
         point, pair, on = point[near], pair[near], on[near]
         rows = (len(outline.radius) + point, on, of_a[pair], after[on], e[pair], f[pair])
@@ -158,10 +158,11 @@ class DeformableContacts:
     def _bearing(self) -> Mask:
         """Which points along sides are half-way to the next one inside the arcs of their side's corners."""
         (facet, share, half), nodes, sides = self.blocks.points, self.blocks.nodes, self.blocks.sides
-        side = np.repeat(np.arange(len(sides.inset)), np.diff(self.blocks.first))[facet]
-        far_end = sides.extent[side] - sides.inset[sides.successor[side]]
+        side = np.repeat(np.arange(len(sides.extent)), np.diff(self.blocks.first))[facet]
+        near_end, far_end = (sides.inset[sides.ends[side, end]] for end in (0, 1))
         along = nodes.begin[facet] + share * nodes.length[facet]
-        return np.asarray(np.minimum(along - sides.inset[side], far_end - along) > 2 * HALF * half)
+        inside = np.minimum(along - near_end, sides.extent[side] - far_end - along)
+        return np.asarray(inside > 2 * HALF * half)
 
     def geometry(self, contacts: Contacts) -> DeformableSides:
         """The arrays that `gather_deformable` and `scatter_deformable` share, with buffers of their own."""

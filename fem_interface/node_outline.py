@@ -146,12 +146,13 @@ def _points(length: Array, parts: int) -> SidePoints:
 
 def _sides(outline: Outline, first: Indices, length: Array) -> Sides:
     """The sides, from the first outline node of each and the lengths of the facets."""
-    successor = outline.blocks.successor.astype(np.int64)
     inset = np.where(outline.radius > 0, outline.radius * np.tan(outline.exterior / 2), 0.0)
+    at_end = outline.ends >= len(outline.length)
+    inset[outline.ends[at_end]] = -outline.run_on[at_end]
     outer = np.column_stack([first[:-1], first[1:] - 1])
-    shares = np.column_stack([inset, -inset[successor]]) / length[outer] + [0.0, 1.0]
-    extent = outline.straight + inset + inset[successor]
-    return Sides(outer, shares, extent, outline.straight.copy(), successor, inset, outline.radius.copy())
+    shares = inset[outline.ends] * [1.0, -1.0] / length[outer] + [0.0, 1.0]
+    extent = outline.straight + inset[outline.ends].sum(axis=1)
+    return Sides(outer, shares, extent, outline.straight.copy(), outline.ends.copy(), inset, outline.radius.copy())
 
 
 def _tables(wall: ModalWall, node: Indices) -> tuple[Indices, list[Array]]:

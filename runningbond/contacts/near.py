@@ -51,11 +51,14 @@ def near_sides(
 
 @kernel
 def reaches(pairs: Indices, first: Indices, corners: Array, normals: Array, reach: NDArray[np.float64]) -> None:
-    """Write how far pairs of blocks ``(n, 2)`` overlap along any of their sides' normals, at least ``(n,)`` [m]."""
+    """Write how far pairs ``(n, 2)`` of convex parts overlap along any of their sides' normals, at least ``(n,)`` [m].
+
+    Part i has the rows ``first[i]`` up to ``first[i + 1]`` of the corners and of the normals of the sides from them.
+    """
     for pair in range(reach.size):
         least = np.inf
-        for block in pairs[pair]:
-            for side in range(first[block], first[block + 1]):
+        for part in pairs[pair]:
+            for side in range(first[part], first[part + 1]):
                 low, high = -np.inf, np.inf
                 for of in pairs[pair]:
                     nearest, farthest = np.inf, -np.inf

@@ -7,6 +7,7 @@ import numpy as np
 
 from runningbond.scene import Array, Blocks, Indices, Joints, Mask, Scene, SceneError
 
+from .reentrant import ConvexParts, RunOn
 from .rigid_sides import Corners, Placed, place_outline
 
 MARGIN = 0.02
@@ -21,15 +22,23 @@ FLAT = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """Blocks with rounded corners: arcs that touch their two sides an inset away from the corner."""
+    """Blocks with rounded corners: arcs that touch their two sides an inset away from the corner.
+
+    Sides are numbered as the corners of the blocks that they start from. After those come the ends of sides that run on
+    behind re-entrant corners (`reentrant`), as corners that no side starts from.
+    """
 
     blocks: Blocks  # the blocks, undeformed
-    radius: Array  # (nv,) radius of each corner's arc [m]
-    centre: Array  # (nv, 2) its centre, from the centroid of its block [m]
-    normal: Array  # (nv, 2) outward normal of the side that starts at the corner
-    length: Array  # (nv,) length of that side [m],
-    straight: Array  # (nv,) and between its arcs
-    exterior: Array  # (nv,) angle by which the outline turns at the corner [rad]
+    parts: ConvexParts  # what they are made of
+    radius: Array  # (nc,) radius of each corner's arc [m]
+    centre: Array  # (nc, 2) its centre, from the centroid of its block [m]
+    side: Indices  # (nc,) side that starts at the corner, or that runs on to it
+    exterior: Array  # (nc,) angle by which the outline turns at the corner, 0 at what runs on [rad]
+    normal: Array  # (nv, 2) outward normal of each side
+    length: Array  # (nv,) its length [m],
+    straight: Array  # (nv,) and between its arcs, with what it runs on by
+    ends: Indices  # (nv, 2) corners at its start and at its end
+    run_on: Array  # (nv, 2) how far it runs on there [m]
     thickness: float  # out-of-plane thickness [m]
     held: Mask  # (nb,) blocks between which nothing can happen
     # (nj,) number of the two sides of each joint of the undeformed wall, ascending (`side_pair`), and (nj,) its joint
@@ -43,12 +52,9 @@ class Outline:
         Raises
         ------
         SceneError
-            If a block, or the ground, is not convex, or the inset takes up a whole side.
+            If the inset takes up a whole side.
         """
         blocks = scene.blocks
-        if not blocks.convex.all():
-            name = blocks.name(int(np.argmin(blocks.convex)))
-            raise SceneError(name, "is not convex; finite displacements need convex blocks and a convex ground")
         start, after = blocks.vertices, blocks.successor
         side = start[after] - start
         length = np.hypot(*side.T)
@@ -63,10 +69,17 @@ class Outline:
         straight = length - inset - inset[after]
         if (straight < 0).any():
             raise SceneError("joint.inset", "must be less than half the shortest side of a block", scene.joint.inset)
-        centre = start + inset[:, None] * run - radius[:, None] * normal - blocks.centroid[blocks.owner]
+        centre = start + inset[:, None] * run - radius[:, None] * normal
+        own, behind = np.arange(len(after)), RunOn.of(blocks, run)
+        of_corner, none = np.concatenate([own, behind.side]), np.zeros(len(behind.side))
+        centre = np.concatenate([centre, behind.point]) - blocks.centroid[blocks.owner[of_corner]]
+        corners = np.concatenate([radius, none]), centre, of_corner, np.concatenate([exterior, none])
+        ends, runs_on = np.column_stack([own, after]), np.zeros((len(own), 2))
+        ends[behind.side, behind.end], runs_on[behind.side, behind.end] = len(own) + np.arange(len(none)), behind.far
+        sides = normal, length, straight + runs_on.sum(axis=1), ends, runs_on
         joined = _joined_sides(blocks, normal, length, scene.joints)
-        corners = (radius, centre, normal, length, straight, exterior)
-        return cls(blocks, *corners, scene.thickness, scene.fixed, joined, scene.joints)
+        parts = ConvexParts.of(blocks, normal)
+        return cls(blocks, parts, *corners, *sides, scene.thickness, scene.fixed, joined, scene.joints)
 
     @property
     def margin(self) -> float:
@@ -91,8 +104,8 @@ class Outline:
     def corner_arrays(self) -> Corners:
         """The arrays from which kernels place the outline."""
         blocks = self.blocks
-        freedom = (3 * blocks.owner).astype(np.uint64)
-        return Corners(blocks.centroid.copy(), freedom, self.centre.copy(), self.normal.copy())
+        freedom = (3 * blocks.owner[self.side]).astype(np.uint64)
+        return Corners(blocks.centroid.copy(), freedom, self.centre.copy(), self.normal[self.side])
 
     def placed(self, motion: Array) -> Placed:
         """Blocks and arcs in space after a motion ``(3 nb,)``."""
@@ -103,6 +116,13 @@ class Outline:
     def corners(self, motion: Array) -> Array:
         """Corners after a motion ``(3 nb,)``, ``(nv, 2)`` [m]."""
         return self.points(self.blocks.owner, self.blocks.vertices, motion)
+
+    def ends_of_sides(self, motion: Array) -> Array:
+        """Both ends of each side after a motion ``(3 nb,)``, with what it runs on by, ``(nv, 2, 2)`` [m]."""
+        corners = self.corners(motion)
+        ends, runs_on = np.stack([corners, corners[self.blocks.successor]], axis=1), self.run_on > 0
+        ends[runs_on] = self.placed(motion).arcs[self.ends[runs_on], :2]
+        return ends
 
     def points(self, block: Indices, at: Array, motion: Array) -> Array:
         """Points of blocks, given on the undeformed wall, after a motion ``(3 nb,)``, ``(n, 2)`` [m]."""

@@ -18,6 +18,9 @@ FASTEST_OPENING = math.sqrt(5)
 DEEP = 0.1
 """Depth of an end, in margins of the outline, from which on it is asked whether its blocks reach as deep."""
 
+SAME_ANGLE = 1e-9
+"""Difference of two angles that is rounding [rad]."""
+
 LEAST_OVERLAP = 1e-6
 """Least overlap of two sides for which their contact has a stiffness, in lengths of the shorter one."""
 
@@ -121,8 +124,7 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     None of those left out touches before some block has moved by half the margin.
     """
     e, f = facing_sides(outline, motion, FASTEST_OPENING * margin)
-    blocks, after = outline.blocks, outline.blocks.successor
-    owner = blocks.owner
+    owner = outline.blocks.owner
     spin = motion[2::3]
     swing = np.arctan2(*outline.normal.T[::-1])
     tilt = swing[e] + np.pi - swing[f]
@@ -130,8 +132,9 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     tilt = np.mod(tilt + turned + np.pi, 2 * np.pi) - np.pi - turned
     joint = outline.joint_of(e, f)
     area = _area(outline, e, f, joint, motion)
-    low = np.column_stack([after[e], f, e, after[f], e, f])
-    high = np.column_stack([e, after[f], after[e], f, e, f])
+    (first_e, last_e), (first_f, last_f) = outline.ends[e].T, outline.ends[f].T
+    low = np.column_stack([last_e, first_f, first_e, last_f, e, f])
+    high = np.column_stack([first_e, last_f, last_e, first_f, e, f])
     n = len(e)
     both = Contacts(
         motion.copy(),
@@ -147,26 +150,36 @@ def find_contacts(outline: Outline, motion: Array, margin: float) -> Contacts:
     close = np.abs(opening) < FASTEST_OPENING * margin
     near = np.tile(close[:n] | close[n:], 2)
     near[near] = ~_past_each_other(outline, both.chosen(near), opening[near], motion)
-    # A corner rests on a side with that of its own two sides which faces it; its arc belongs half to each. A flat one
-    # rests with both, each of which stands for its own area.
-    corner, _ = resting(outline, both, motion)
-    lean = -both.inwards * np.tile(tilt + turned, 2)
-    near &= np.abs(lean) <= np.maximum(outline.exterior[corner] / 2, FLAT)
+    near &= _with_the_side_that_faces(outline, both, np.abs(np.tile(tilt + turned, 2)), motion)
     # One that is there for the sake of another, which it is not now, might be anywhere: as sides turn across each
     # other it would go from far away to far inside at once.
     there = near & close
     return both.chosen(near & np.tile(there[:n] | there[n:], 2))
 
 
+def _with_the_side_that_faces(outline: Outline, contacts: Contacts, lean: Array, motion: Array) -> Mask:
+    """Whether corners rest on a side with that of their own two which faces it; sides lean by ``(n,)`` [rad] on it.
+
+    The arc of a corner belongs half to each. A flat corner rests with both, each of which stands for its own area.
+    """
+    (corner, side), e = resting(outline, contacts, motion), contacts.ends[:, 4].astype(np.int64)
+    exterior, own = outline.exterior[corner], outline.side[corner]
+    angle = np.arctan2(*outline.normal.T[::-1]) + motion[2::3][outline.blocks.owner]
+    # From the bisector of the corner to the side, in the same numbers for both sides, or at 45° neither might face it.
+    off = np.mod(angle[own] - exterior / 2 - angle[side], 2 * np.pi) - np.pi
+    at_start = (contacts.inwards < 0) == (side != e)
+    faces: Mask = np.where(at_start, off <= 0, off > 0) & (lean <= exterior / 2 + SAME_ANGLE)
+    return faces | (lean <= FLAT)
+
+
 def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motion: Array) -> Mask:
-    """Ends that lie deeper than their two blocks reach into each other along the normal of any side, ``(n,)``.
+    """Ends that lie deeper than parts of their blocks reach into each other along the normal of any side, ``(n,)``.
 
     Such a block has come by the end of the other one's side, and is below it without having gone through it. A sharp
     corner there would take that end for the one that it is coming out at (`sharp_opening`).
     """
-    blocks, found = outline.blocks, np.zeros(len(contacts), dtype=bool)
-    corners, arcs = outline.corners(motion), outline.placed(motion).arcs
-    normals = arcs[:, 2:]
+    parts, found, placed = outline.parts, np.zeros(len(contacts), dtype=bool), outline.placed(motion)
+    arcs, normals = placed.arcs, placed.arcs[:, 2:]
     v, w, _, _, e, f = contacts.ends.astype(np.int64).T
     apart, side = arcs[v, :2] - arcs[w, :2], resting(outline, contacts, motion)[1]
     normal = np.where((side == f)[:, None], normals[f], -normals[e])
@@ -178,7 +191,11 @@ def _past_each_other(outline: Outline, contacts: Contacts, opening: Array, motio
     deep = np.where(beside, far, DEEP * outline.margin)
     asked = np.flatnonzero(depth > deep)
     reach = np.empty(len(asked))
-    reaches(blocks.owner[np.column_stack([e, f])[asked]], blocks.first, corners, normals, reach)
+    cosine, sine = placed.blocks[:2, outline.blocks.owner[parts.corner]]
+    x, y = parts.normal.T
+    turned = np.column_stack([cosine * x - sine * y, sine * x + cosine * y])
+    pairs = parts.of_side[np.column_stack([e, f])[asked]]
+    reaches(pairs, parts.first, outline.corners(motion)[parts.corner], turned, reach)
     # Nor may those come in that are beneath a side, and deeper than blocks go before contacts are sought again.
     inside = (opening < 0) | (~beside & (depth > contacts.margin))
     found[asked] = reach < np.where(inside, depth / 2, 0.0)[asked]
@@ -223,13 +240,14 @@ def _area(outline: Outline, e: Indices, f: Indices, joint: Indices, motion: Arra
 
     Half the joint's that they made on the undeformed wall. Sides that meet later have half of what they overlap now,
     at least `LEAST_OVERLAP`, at most half the shorter one, which is what running bond gives them from the start: as a
-    block slides from one onto another, the share of that one grows.
+    block slides from one onto another, the share of that one grows. What sides run on by counts as theirs, or a corner
+    in a notch would have nothing to lean on.
     """
-    length, joints = outline.length, outline.joints.length
-    corners, after = outline.corners(motion), outline.blocks.successor
-    along = (corners[after[f]] - corners[f]) / length[f, None]
-    first, last = (((corners[end] - corners[f]) * along).sum(axis=1) for end in (after[e], e))
-    overlap = np.minimum(last, length[f]) - np.maximum(first, 0.0)
+    length, joints, ends = outline.length, outline.joints.length, outline.ends_of_sides(motion)
+    reach = length + outline.run_on.sum(axis=1)
+    along = (ends[f, 1] - ends[f, 0]) / reach[f, None]
+    first, last = (((ends[e, end] - ends[f, 0]) * along).sum(axis=1) for end in (1, 0))
+    overlap = np.minimum(last, reach[f]) - np.maximum(first, 0.0)
     shorter = np.minimum(length[e], length[f])
     later = np.clip(overlap, LEAST_OVERLAP * shorter, shorter / 2)
     shared: Array = np.where(joint >= 0, joints[joint], later) if len(joints) else later

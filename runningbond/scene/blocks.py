@@ -111,12 +111,20 @@ class Blocks:
 
     @cached_property
     def convex(self) -> Mask:
-        """Blocks whose corners all turn left, to within the contact tolerance, and once round, ``(nb,)``."""
-        turn, along, scale = self._turns
-        reflex = np.logical_or.reduceat(turn < -CONTACT_TOLERANCE * scale, self.first[:-1])
+        """Blocks without re-entrant corners that go round once, ``(nb,)``."""
+        turn, along, _ = self._turns
+        reflex = np.logical_or.reduceat(self.reentrant, self.first[:-1])
         # A polygon that winds twice has only left turns, and yet crosses itself.
         twice = np.add.reduceat(np.arctan2(turn, along), self.first[:-1]) > 3 * np.pi
         return frozen(~(reflex | twice), np.bool_)
+
+    @cached_property
+    def reentrant(self) -> Mask:
+        """Corners that turn right, by more than the contact tolerance, ``(nv,)``."""
+        turn, _, scale = self._turns
+        turns_right = np.empty(len(turn), dtype=np.bool_)
+        turns_right[self.successor] = turn < -CONTACT_TOLERANCE * scale
+        return frozen(turns_right, np.bool_)
 
     @property
     def _turns(self) -> tuple[Array, Array, Array]:

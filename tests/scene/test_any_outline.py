@@ -222,10 +222,3 @@ def test_triangles_fill_a_block_and_no_more(cells: int) -> None:
     area = (u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]) / 2
     assert (area > 0).all()
     assert np.bincount(mesh.triangle_block, area) == pytest.approx(scene.blocks.area, rel=1e-9)
-
-
-@pytest.mark.parametrize("model", [dem_dynamic, fem])
-def test_finite_displacements_need_convex_blocks(model: Any) -> None:
-    for scene in (wall(PORTAL), wall(box(1, 0, 1.5, 1), grounds=[np.array(ELL) * 4 - [0, 1]])):
-        with pytest.raises(SceneError, match=r"block [01] at .*: is not convex; finite displacements need convex"):
-            model(scene, displacements="finite")

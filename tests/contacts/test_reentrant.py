@@ -1,0 +1,188 @@
+"""Blocks that are not convex at finite displacements: corners in notches, interlocked stones, convex parts."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from dem.dynamic import dem_dynamic
+from dem.finite_system import finite_system
+from fem_interface.model import fem
+from runningbond.contacts.outline import Outline
+from runningbond.contacts.reentrant import ConvexParts
+from runningbond.contacts.search import find_contacts, jumps
+from runningbond.limit import limit_nonassociated
+from runningbond.response import follow
+from runningbond.response.resting import Resting
+from runningbond.scene import (
+    Array,
+    BlockMaterial,
+    Blocks,
+    History,
+    JointMaterial,
+    Lateral,
+    Load,
+    Mortar,
+    Scene,
+    build_scene,
+)
+from runningbond.scene.history import pulse
+from tests.dynamics.test_led import brackets
+from tests.dynamics.test_push import angles, follows
+from tests.scene.test_any_outline import ELL, PORTAL, TEE, box, stars
+
+MORTAR = Mortar(1e9, 0.2, 0.01)
+LATERAL = Lateral((1.0, 0.0))
+
+
+def stones(*outlines: Any, friction: float, inset: float = 0.0, live: Any = LATERAL, grounds: Any = None) -> Scene:
+    return build_scene(
+        "stones",
+        [np.array(outline, dtype=float) for outline in outlines],
+        grounds=grounds,
+        thickness=0.1,
+        block=BlockMaterial(2000.0, 1e10),
+        joint=JointMaterial(friction, elasticity=MORTAR, inset=inset),
+        load=Load(live=(live,)),
+    )
+
+
+@given(stars())
+def test_blocks_are_cut_into_convex_parts_that_share_no_area(star: Array) -> None:
+    """All corners are the block's, and each of its sides is one of a part, as long as it was."""
+    blocks = Blocks.from_polygons([np.array(box(60.0, 60.0, 61.0, 61.0)), star])
+    parts = ConvexParts.of(blocks, np.zeros_like(blocks.vertices))
+    rings = [parts.corner[start:stop] for start, stop in zip(parts.first[:-1], parts.first[1:], strict=True)]
+    cut = Blocks.from_polygons([blocks.vertices[ring] for ring in rings])
+    assert cut.convex.all()
+    assert (len(cut) == 2) == bool(blocks.convex.all())
+    owner = blocks.owner[[ring[0] for ring in rings]]
+    assert np.bincount(owner, cut.area) == pytest.approx(blocks.area, rel=1e-9)
+    for side, part in enumerate(parts.of_side):
+        at = np.flatnonzero(rings[part] == side)
+        assert np.roll(rings[part], -1)[at] == [blocks.successor[side]]
+
+
+FORMS = [np.array(outline, dtype=float) for outline in (ELL, PORTAL, TEE)]
+
+
+def beside(inset: float, forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float]) -> Any:
+    """Two stones that are not convex, turned, one of them at a place from the other's; their outline and motion."""
+    scene = stones(FORMS[forms[0]], FORMS[forms[1]] + [3.0, 0.0], friction=0.6, inset=inset)
+    one, other = np.flatnonzero(scene.wall)
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[one], motion[other] = (0.0, 9.0, turned[0]), (*at, turned[1])
+    motion[other, :2] += scene.blocks.centroid[one] + [0.0, 9.0] - scene.blocks.centroid[other]
+    return scene, Outline.of(scene), motion
+
+
+def polygons(scene: Scene, outline: Outline, motion: Array) -> list[shapely.Polygon]:
+    corners, first = outline.corners(motion.ravel()), scene.blocks.first
+    return [shapely.Polygon(corners[first[k] : first[k + 1]]) for k in range(len(scene.blocks))]
+
+
+SOMEWHERE = {
+    "forms": st.tuples(st.integers(0, 2), st.integers(0, 2)),
+    "at": st.tuples(st.floats(-1.2, 1.2), st.floats(-1.2, 1.2)),
+    "turned": st.tuples(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1)),
+}
+
+
+@given(**SOMEWHERE, margin=st.floats(0.005, 0.2))
+@settings(max_examples=200)
+@pytest.mark.parametrize("inset", [0.0, 0.02])
+def test_stones_that_are_apart_do_not_press_on_each_other(
+    inset: float, forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float], margin: float
+) -> None:
+    """Above, beside, or one in the other's notch."""
+    scene, outline, motion = beside(inset, forms, at, turned)
+    one, other = np.array(polygons(scene, outline, motion))[scene.wall]
+    if one.distance(other) > 1e-3:
+        contacts = find_contacts(outline, motion.ravel(), margin)
+        opening, _ = jumps(outline, contacts, motion.ravel())
+        assert opening.min(initial=0.0) > -1e-9
+
+
+@given(**SOMEWHERE, deep=st.floats(1e-7, 1e-5))
+@settings(max_examples=200)
+def test_a_corner_that_goes_into_a_side_bears_as_deep_as_it_is(
+    forms: tuple[int, int], at: tuple[float, float], turned: tuple[float, float], deep: float
+) -> None:
+    """Of stones brought together on the shortest line between them, a corner of one to the middle of a side."""
+    scene, outline, motion = beside(0.0, forms, at, turned)
+    (one, other), numbers = np.array(polygons(scene, outline, motion))[scene.wall], np.flatnonzero(scene.wall)
+    start, stop = shapely.get_coordinates(shapely.shortest_line(other, one))
+    apart = np.hypot(*(stop - start))
+    away = [
+        shapely.distance(shapely.MultiPoint(shapely.get_coordinates(each)), shapely.Point(end))
+        for each, end in ((other, start), (one, stop))
+    ]
+    if apart > 1e-3 and max(away) > 0.01:
+        motion[numbers[1], :2] += (stop - start) * (1 + deep / apart)
+        contacts = find_contacts(outline, motion.ravel(), outline.margin)
+        opening, _ = jumps(outline, contacts, motion.ravel())
+        assert -opening.min() == pytest.approx(deep, abs=1e-10)
+
+
+@pytest.mark.parametrize(("model", "slope"), [(dem_dynamic, 30), (dem_dynamic, 45), (dem_dynamic, 60), (fem, 45)])
+def test_a_block_with_its_toe_in_a_notch_topples_as_it_would_on_rough_ground(model: Any, slope: float) -> None:
+    """λ = tan(α − θ): floor and slope of the notch hold a corner that friction alone would let slide at λ = 0.1."""
+    width, height = 0.06, 0.24
+    away = width + 0.1 / math.tan(math.radians(slope))
+    notched = np.array([(-1, -0.3), (2, -0.3), (2, 0.1), (away, 0.1), (width, 0.0), (-1, 0)])
+    scene = stones(box(0, 0, width, height), friction=0.1, grounds=[notched])
+    outcome = model(scene, 0.005, displacements="finite")
+    alpha, corner = math.atan(width / height), np.array([width, height])
+    follows(outcome, np.tan(alpha - angles(outcome.curve, corner, np.array([1.0, 0.0]))))
+
+
+@pytest.mark.parametrize("model", [dem_dynamic, fem])
+def test_a_portal_topples_about_the_toe_of_its_leg(model: Any) -> None:
+    """λ = tan(α − θ), tan α being the arm of its centroid over the height of that."""
+    side = 0.2
+    scene = stones(side * np.array(PORTAL), friction=2.0)
+    outcome = model(scene, 0.005, displacements="finite")
+    x, y = scene.blocks.centroid[scene.wall][0]
+    turned = np.arcsin(outcome.curve[:, 0] / side)  # the upper corner above the toe goes by as much
+    follows(outcome, np.tan(math.atan2(side - x, y) - turned))
+
+
+def interlocked(cells: list[str], **keys: Any) -> Scene:
+    """Stones of cells of 0.3 by 0.2 m, the rows from above, each letter a stone."""
+    places = [
+        (letter, column, len(cells) - row) for row, line in enumerate(cells) for column, letter in enumerate(line)
+    ]
+    boxes = [(letter, shapely.box(0.3 * x, 0.2 * y, 0.3 * x + 0.3, 0.2 * y + 0.2)) for letter, x, y in places]
+    unions = [shapely.union_all([cell for of, cell in boxes if of == letter]) for letter in sorted(set("".join(cells)))]
+    rings = [shapely.geometry.polygon.orient(shapely.simplify(union, 0)).exterior for union in unions]
+    return stones(*[np.array(ring.coords)[:-1] for ring in rings], **keys)
+
+
+# Ells and a tee that hold on to one another.
+WALL = ["eff", "eef", "cdd", "ccd", "aab"]
+
+
+@pytest.mark.long
+def test_interlocked_stones_peak_at_the_lowest_load_that_limit_analysis_certifies() -> None:
+    scene = interlocked(WALL, friction=0.6)
+    lowest, outcome = limit_nonassociated(scene), dem_dynamic(scene, 0.01, displacements="finite")
+    assert lowest.lower is not None
+    brackets(outcome, lowest.lower, 2e-3)
+
+
+@pytest.mark.parametrize(("scale", "verdict"), [(2.0, "stands"), (3.0, "collapse")])
+def test_interlocked_stones_that_are_shaken_never_lie_in_one_another(scale: float, verdict: str) -> None:
+    """The ledger closes to a hundredth, and stones overlap by the give of their joints alone."""
+    time, values = pulse("half-sine", 0.8 * 9.81, 0.5)
+    scene = interlocked(WALL, friction=1.5, live=History(time, values))
+    response = follow(Resting.of(scene, "dem-dynamic", finite_system(scene)), scale, after=0.5)
+    assert response.verdict == verdict
+    assert response.unaccounted < 0.01
+    bodies = polygons(scene, Outline.of(scene), np.ascontiguousarray(response.motion))
+    common = [one.intersection(other) for k, one in enumerate(bodies) for other in bodies[:k]]
+    wide = [2 * part.area / part.length for each in common for part in shapely.get_parts(each) if part.area > 0]
+    assert max(wide) < 1e-4
