@@ -151,6 +151,45 @@ class Wall:
         return cls._built("courses", {"courses": courses, **block}, keys)
 
     @classmethod
+    def outlines(
+        cls,
+        outlines: Sequence[Any],
+        ground: Sequence[Any] | None = None,
+        *,
+        thickness: float,
+        units: str = "m",
+        heal: float | None = None,
+        **keys: Any,
+    ) -> "Wall":
+        """A wall of stones as they are, with the keys of `running_bond`.
+
+        Parameters
+        ----------
+        outlines
+            Simple polygons, each the corners of a stone, ``(n, 2)``; blocks have their numbers.
+        ground
+            Polygons of the ground. Without any a flat strip is laid under the lowest stones if the support needs one.
+        thickness
+            Of the wall [m].
+        units
+            Of the corners: ``"mm"``, ``"cm"``, ``"m"``, ``"in"`` or ``"ft"``.
+        heal
+            Gaps and overlaps up to this are closed [m].
+        keys
+            As of `running_bond`.
+
+        Examples
+        --------
+        >>> arch = [[(0, 0), (1, 0), (1, 0.4), (-0.15, 0.4)], [(2, 0), (1, 0), (1, 0.4), (2.15, 0.4)]]
+        >>> left = [(-1, -1), (0, -1), (0, 0), (-0.15, 0.4), (-1, 0.4)]
+        >>> sides = [left, [(2 - x, y) for x, y in left]]
+        >>> Wall.outlines(arch, sides, thickness=0.2, density=2000.0, friction=0.8)
+        <Wall 'outlines': 2 blocks, 2.3 × 0.4 m>
+        """
+        given = {"outlines": outlines, "ground": ground, "thickness": thickness}
+        return cls._built("outlines", {**given, "units": None if units == "m" else units, "heal": heal}, keys)
+
+    @classmethod
     def _built(cls, title: str, wall: dict[str, Any], keys: dict[str, Any]) -> "Wall":
         table_of = TABLE_OF | dict.fromkeys(("first_course", "ends", "course_heights"), "wall")
         tables: list[dict[str, Any]] = []

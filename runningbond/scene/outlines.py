@@ -78,6 +78,13 @@ def read_outlines(wall: Table, folder: Path, thickness: float, block_names: Sequ
         path, heal = folder / wall.text("drawing"), wall.optional_number("heal", ABOVE_ZERO)
         drawing = read_drawing(path, wall.choice("units", METRES), heal, thickness=thickness)
         return Outlines(drawing.blocks, drawing.grounds, layers=drawing.layers, notes=drawing.notes)
+    if "outlines" in wall:
+        from .drawings import METRES, listed_outlines
+
+        blocks, grounds = wall.outlines("outlines"), wall.outlines("ground") if "ground" in wall else []
+        scale, heal = METRES[wall.choice("units", METRES, "m")], wall.optional_number("heal", ABOVE_ZERO)
+        listed = listed_outlines(blocks, grounds, scale, heal)
+        return Outlines(listed.blocks, listed.grounds, notes=listed.notes)
     width = wall.number("block_width", ABOVE_ZERO)
     heights = _course_heights(wall)
     bond = Bond(width, float(heights[0])) if heights is not None and np.ptp(heights) <= ALIKE * heights[0] else None
@@ -126,13 +133,14 @@ def _number_of_courses(wall: Table, bond: Bond | None, heights: Array | None) ->
 
 
 def _refuse_mixed_descriptions(wall: Table) -> None:
-    """A wall is a drawing, a list of courses, or a length and height; the keys of two of them do not mix."""
+    """A wall is a drawing, outlines, courses, or a length and height; the keys of two of them do not mix."""
     by_size = ("length", "height", "first_course", "ends")
     bonded = ("block_width", "block_height", "course_heights", "opening")
     for description, strangers in (
-        ("drawing", ("courses", *by_size, *bonded)),
-        ("courses", ("units", "heal", *by_size)),
-        ("length", ("units", "heal")),
+        ("drawing", ("outlines", "ground", "courses", *by_size, *bonded)),
+        ("outlines", ("courses", *by_size, *bonded)),
+        ("courses", ("ground", "units", "heal", *by_size)),
+        ("length", ("ground", "units", "heal")),
     ):
         if description in wall:
             for key in strangers:
@@ -141,4 +149,6 @@ def _refuse_mixed_descriptions(wall: Table) -> None:
                     raise SceneError(f"wall.{key}", what)
             return
     if not any(key in wall for key in by_size):
-        raise SceneError("wall", "must say what its blocks are: by length and height, by courses, or by a drawing")
+        raise SceneError(
+            "wall", "must say what its blocks are: by length and height, by courses, by outlines, or by a drawing"
+        )

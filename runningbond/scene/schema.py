@@ -38,6 +38,7 @@ STRENGTH = {"cohesion": 1e5, "tensile_strength": 5e4, "inset": 0.0, "fracture_en
 CRUSHING = {"compressive_strength": 1e6, "compressive_fracture_energy": 1e4, "cap_shear": 9.0, "peak_closure": 1e-5}
 SPRINGS = {"normal_stiffness": 1e9, "shear_stiffness": 1e9, "closure": {"growth": 1e4, "stiffest": 1e10}}
 BLOCKS = {"block_width": 0.4, "thickness": 0.2}
+STONE, SOIL = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.2]], [[-1.0, -0.2], [1.0, -0.2], [1.0, 0.0], [-1.0, 0.0]]
 TIE = {"from": [0.1, 0.5], "to": [9.0, 0.5], "area": 1e-4, "young": 2e11, "yield": 1e4}
 PULSE = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 1.0}, "quantity": "g", "scale": 1.0}
 PLAIN: Schema = {
@@ -120,6 +121,7 @@ SCENES: tuple[Schema, ...] = (
     {"load": {"gravity": 9.81, "history": PULSE}},
     {"load": {"gravity": 9.81, "history": {"file": "record.at2"}}},  # there is no such file, nor
     {"wall": {"thickness": 0.2, "drawing": "wall.dxf", "units": "mm", "heal": 0.001}},  # such a drawing,
+    {"wall": {"thickness": 0.2, "outlines": [STONE], "ground": [SOIL], "units": "m", "heal": 0.001}},
     {"assign": [{"block": "block", "layer": "OAK"}, {"joint": "joint", "layer": "OAK"}]},  # and layers without one
 )
 """What is read: tables in place of those of `PLAIN`."""

@@ -7,6 +7,8 @@ from typing import Any, ClassVar
 from .errors import SceneError
 from .ranges import Range, one_of, ranges_of, vector
 
+OUTLINES = "a list of outlines, each a list of corners [x, y]"
+
 
 class Table:
     """A TOML table being read: its full name, empty for the file's top level, and what the file holds under that."""
@@ -127,6 +129,19 @@ class Table:
             except SceneError:
                 raise SceneError(f"{self.key(key)}[{i}]", "must be a list of finite numbers", row) from None
         return rows
+
+    def outlines(self, key: str) -> list[list[tuple[float, float]]]:
+        """A list of outlines, each a list of corners."""
+        value, key = self.required(key, OUTLINES), self.key(key)
+        if not isinstance(value, list) or not value:
+            raise SceneError(key, f"must be {OUTLINES}", value)
+        return [self._outline(f"{key}[{k}]", outline) for k, outline in enumerate(value)]
+
+    @staticmethod
+    def _outline(key: str, corners: Any) -> list[tuple[float, float]]:
+        if not isinstance(corners, list) or len(corners) < 3:
+            raise SceneError(key, "must be an outline, a list of three corners or more, each [x, y]", corners)
+        return [vector(f"{key}[{k}]", corner) for k, corner in enumerate(corners)]
 
     def finish(self) -> None:
         """Refuse keys that have no meaning."""

@@ -96,7 +96,7 @@ CRUSHING: list[tuple[dict[str, Any], str]] = [
         ({"color": "red"}, "color = 'red': is not a key of a scene file"),
         ({"load__live__angle": 3}, "load.live.angle = 3: is not a key of [load.live], which has kind, direction"),
         ({"wall__thickness": None}, "wall.thickness: is missing; it must be a number above 0"),
-        (FREE, "wall: must say what its blocks are: by length and height, by courses, or by a drawing"),
+        (FREE, "wall: must say what its blocks are: by length and height, by courses, by outlines, or by a drawing"),
         ({"wall__length": None}, "wall.length: is missing"),
         ({"materials": {"": {"density": 700.0}}}, "materials.: must have a name, by which [[assign]] knows it"),
         ({"joints": {" ": {"friction": 0.7}}}, "joints. : must have a name, by which [[assign]] knows it"),

@@ -23,7 +23,7 @@ ROOT = Path(__file__).parents[2]
 FILES = sorted(path for room in ("runningbond", "examples") for path in (ROOT / room).rglob("*.toml"))
 SCHEMA = scene_schema()
 
-READERS = {"value", "required", "table", "optional_table", "tables_by_name", "list_of_tables", "number"}
+READERS = {"outlines", "value", "required", "table", "optional_table", "tables_by_name", "list_of_tables", "number"}
 READERS |= {"optional_number", "text", "choice", "vector", "rows"}
 IN_PYTHON_ALONE = {"law"}
 CHOSEN = {"between", "blocks", "layer"}

@@ -1,9 +1,11 @@
-"""Blocks from a drawing: DXF curves or a COMPAS assembly, closed, cut into chords and healed."""
+"""Blocks from a drawing, DXF curves or a COMPAS assembly, closed, cut into chords and healed; or as listed."""
 
 import re
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import shapely
@@ -35,6 +37,9 @@ GROUND_LAYERS = ("ground", "soil", "support", "base", "terrain")
 """Names of layers, in letters of any case, that hold pieces of the ground and nothing else."""
 
 
+Corners: TypeAlias = Sequence[tuple[float, float]]
+
+
 @dataclass(frozen=True, eq=False)
 class Drawing:
     """What a drawing holds.
@@ -44,7 +49,7 @@ class Drawing:
     blocks : list of (n, 2) float
         Outlines of the wall's blocks [m], counter-clockwise.
     layers
-        Layer of each block; none for an assembly.
+        Layer of each block; none for an assembly and for listed outlines.
     grounds : list of (n, 2) float
         Outlines of the ground [m].
     notes
@@ -100,12 +105,25 @@ def read_drawing(path: Path, units: str, heal: float | None = None, *, thickness
         notes += more
     if not blocks:
         raise SceneError(KEY, "is an assembly of supports; it needs at least one block", str(path))
+    return _healed(Drawing(blocks, tuple(layers), grounds, tuple(notes)), heal)
+
+
+def listed_outlines(blocks: Sequence[Corners], grounds: Sequence[Corners], scale: float, heal: float | None) -> Drawing:
+    """What a scene file lists, in units of `scale` [m], cleaned and healed as a drawing is."""
+    outlines = [np.array(corners) * scale for corners in (*blocks, *grounds)]
+    names = [f"wall.{key}[{k}]" for key, of in (("outlines", blocks), ("ground", grounds)) for k in range(len(of))]
+    cleaned, spikes = _cleaned(outlines, names)
+    return _healed(Drawing(cleaned[: len(blocks)], (), cleaned[len(blocks) :], (spikes,) if spikes else ()), heal)
+
+
+def _healed(drawing: Drawing, heal: float | None) -> Drawing:
+    """A drawing whose gaps and overlaps up to a width [m] are closed, and what there is to say of those left."""
+    outlines, count, notes = [*drawing.blocks, *drawing.grounds], len(drawing.blocks), drawing.notes
     if heal is not None:
-        joined, note = healed([*blocks, *grounds], heal)
-        blocks, grounds = joined[: len(blocks)], joined[len(blocks) :]
-        notes += [note] if note else []
-    said = (missed_joints([*blocks, *grounds], heal or 0.0), _slivers([*blocks, *grounds]))
-    return Drawing(blocks, tuple(layers), grounds, (*notes, *(note for note in said if note)))
+        outlines, note = healed(outlines, heal)
+        notes = (*notes, note) if note else notes
+    said = (missed_joints(outlines, heal or 0.0), _slivers(outlines))
+    return Drawing(outlines[:count], drawing.layers, outlines[count:], (*notes, *(note for note in said if note)))
 
 
 def _outlines(space: ModelSpace) -> tuple[list[Array], list[str], list[str], list[str]]:

@@ -1,0 +1,83 @@
+"""Walls of stones that a file or a script lists, corner by corner."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import runningbond as rb
+from runningbond.campaigns.fingerprint import fingerprint
+from runningbond.scene import SceneError
+from tests.scene.drafting import BRICKS, GROUND, closed, dxf
+
+THICK: dict[str, Any] = {"thickness": 0.2, "density": 1800.0, "friction": 0.6}
+TABLES: dict[str, Any] = {
+    "title": "outlines",
+    "block": {"density": 1800.0},
+    "joint": {"friction": 0.6},
+    "support": {"kind": "base"},
+    "load": {"gravity": 9.81, "live": {"kind": "lateral"}},
+}
+
+
+def test_listed_stones_are_the_wall_that_is_drawn_of_them(tmp_path: Path) -> None:
+    """In mm, with their ground; rings may end where they began, run either way, and have corners within a side."""
+    dxf(tmp_path / "wall.dxf", closed())
+    drawn = rb.Wall({**TABLES, "wall": {"drawing": "wall.dxf", "units": "mm", "thickness": 0.2}}, tmp_path)
+    untidy = [np.array([*brick[::-1], brick[-1]]) for brick in BRICKS]
+    untidy[0] = np.insert(np.array(BRICKS[0]), 1, [100.0, 0.0], axis=0)
+    listed = rb.Wall.outlines(untidy, [GROUND], units="mm", **THICK)
+    assert fingerprint(listed.scene, "limit", 0.01) == fingerprint(drawn.scene, "limit", 0.01)
+    listed.to_toml(tmp_path / "listed.toml")
+    assert fingerprint(rb.read(tmp_path / "listed.toml").scene, "limit", 0.01) == fingerprint(
+        listed.scene, "limit", 0.01
+    )
+
+
+def test_stones_have_the_numbers_that_they_are_listed_by() -> None:
+    order = [4, 0, 6, 2, 1, 5, 3]
+    stones = [np.array(BRICKS[k]) / 1000 for k in order]
+    wall = rb.Wall.outlines(stones, **THICK)
+    assert wall.scene.blocks.centroid[: len(order)] == pytest.approx(np.array([each.mean(axis=0) for each in stones]))
+    heavier = wall.with_(materials={"lead": {"density": 11340.0}}, assign=[{"block": "lead", "blocks": [2]}])
+    assert np.argmax(heavier.scene.mass[: len(order)] / heavier.scene.blocks.area[: len(order)]) == 2
+
+
+def test_stones_without_ground_stand_on_a_strip_under_the_lowest() -> None:
+    wall = rb.Wall.outlines(BRICKS, units="mm", **THICK)
+    low, high = wall.scene.blocks.extent(wall.scene.fixed)
+    assert high[1] == pytest.approx(0.0)
+    assert low[0] < 0.0 < 0.4 < high[0]
+    assert rb.Wall.outlines(BRICKS, [GROUND], units="mm", **THICK).run("limit").multiplier == pytest.approx(
+        wall.run("limit").multiplier, rel=1e-6
+    )
+
+
+def test_gaps_of_listed_stones_are_healed_as_those_of_drawn_ones_are() -> None:
+    apart = [np.array(brick) + [0.4 * k, 0.0] for k, brick in enumerate(BRICKS[:2])]
+    wall = rb.Wall.outlines(apart, units="mm", heal=0.001, **THICK)
+    assert sorted(wall.scene.joints.length) == pytest.approx([0.1, 0.2, 0.2], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"outlines": []}, "wall.outlines = []: must be a list of outlines"),
+        ({"outlines": 3}, "wall.outlines = 3: must be a list of outlines"),
+        ({"outlines": [[[0, 0], [1, 0]]]}, r"wall.outlines[0] = [[0, 0], [1, 0]]: must be an outline"),
+        ({"outlines": [[[0, 0], [1, 0], [1, "x"]]]}, "wall.outlines[0][2] = [1, 'x']: must be a pair"),
+        ({"outlines": [[[0, 0], [1, 1], [1, 0], [0, 1]]]}, "wall.outlines[0]: crosses itself at (0.5, 0.5) m"),
+        ({"ground": []}, "wall.ground = []: must be a list of outlines"),
+        ({"ground": [[[0, 0]]]}, "wall.ground[0] = [[0, 0]]: must be an outline"),
+        ({"units": "km"}, "wall.units = 'km': must be one of"),
+        ({"length": 2.0}, "wall.length: does not go with wall.outlines"),
+        ({"courses": [[1]]}, "wall.courses: does not go with wall.outlines"),
+        ({"drawing": "wall.dxf"}, "wall.outlines: does not go with wall.drawing"),
+    ],
+)
+def test_outlines_of_no_wall_are_refused(keys: dict[str, Any], message: str) -> None:
+    wall = {"outlines": [[[0, 0], [1, 0], [1, 1], [0, 1]]], "thickness": 0.2, **keys}
+    with pytest.raises(SceneError) as refused:
+        rb.Wall({**TABLES, "wall": wall})
+    assert str(refused.value).startswith(message)
