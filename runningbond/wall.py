@@ -336,7 +336,7 @@ class Wall:
         from .models import respond
         from .pictures.response import DrawnResponse
 
-        return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)))
+        return DrawnResponse(**vars(respond(model, self.scene, scale, **settings)), wall=self.scene)
 
     def plot(self, axes: "Axes | None" = None) -> "Axes":
         """Draw the wall with its support and loads into axes, or a figure of its own where none are given.

@@ -22,6 +22,7 @@ from .terminal import DONE, NO_ANSWER, Json, SceneName, Together, progress_line,
 
 if TYPE_CHECKING:
     from runningbond.response import Response
+    from runningbond.scene import Scene
 
 
 def respond(
@@ -68,7 +69,7 @@ def respond(
         if is_used:
             remove_older(out, record=True)
         if len(response.time):
-            _keep(response, out)
+            _keep(response, wall, out)
             if not json:
                 written = (*RESPONSE_FILES, *(f"{kind}.pvd" for kind in KINDS), MACRO)
                 print("\n".join(str(out / name) for name in written))
@@ -78,12 +79,12 @@ def respond(
     return NO_ANSWER if response.verdict == "undecided" else DONE
 
 
-def _keep(response: "Response", out: Path) -> None:
-    """Write a response as a table, and draw it."""
+def _keep(response: "Response", wall: "Scene", out: Path) -> None:
+    """Write a response of a wall as a table, and draw both."""
     from runningbond.pictures.captions import to_png
     from runningbond.pictures.response import response_figure
 
     columns, (series, chart) = response.columns(), RESPONSE_FILES
     rows = [[float(x) for x in row] for row in zip(*columns.values(), strict=True)]
     write_atomically(out / series, csv_lines([list(columns), *rows]).encode())
-    write_atomically(out / chart, to_png(response_figure(response)))
+    write_atomically(out / chart, to_png(response_figure(response, wall)))

@@ -129,6 +129,12 @@ def paint_mechanism(axes: "Axes", shape: DeformedShape, width: float) -> None:
     axes.plot(*shape.crosses.T, ms=max(3.6 * width, 2.0), mew=0.3 * width, **CROSS)
 
 
+def paint_blocks(axes: "Axes", shape: DeformedShape, width: float) -> None:
+    """Draw the blocks by their materials where they move to, over the undeformed wall; lines of joints so wide [pt]."""
+    _draw_ghost(axes, shape.scene, width)
+    _draw_blocks(axes, shape, block_colours(shape.scene), 0.5 * width)
+
+
 def _mechanism(scene: Scene, outcome: Outcome) -> tuple[DeformedShape, Caption, Array]:
     """What is drawn of an outcome: its shape, its caption, and its resultants where blocks are large enough."""
     from matplotlib.lines import Line2D

@@ -1,18 +1,26 @@
-"""The response of a wall to a motion of its ground as a chart: ground, drift, base shear and energies over time."""
+"""The response of a wall to a motion of its ground: ground, drift, base shear and energies over time, and the wall."""
 
 import textwrap
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from runningbond.response import ENERGIES, Response
+from runningbond.scene import Scene
 
 from .captions import to_png, to_svg
 from .charts import bare
+from .deformed_shape import DeformedShape
+from .moved_wall import draw_moved, extent_around, moved_shape
 from .style import CHART_COLOURS, DARK, SMALL_TYPE, TYPE
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure, SubFigure
+
+WALLS = 2.4
+"""Height of the drawings of the wall [in]."""
 
 LETTERS = 112
 """Letters in a line of the title."""
@@ -21,11 +29,34 @@ SPENT = dict(zip(("kinetic", "stored", "friction", "damped"), (*CHART_COLOURS[:3
 """What energy becomes, and its colour."""
 
 
-def response_figure(response: Response) -> "Figure":
-    """Draw the acceleration of the ground, the drift of the top, the base shear, and what became of the energy."""
+def response_figure(response: Response, scene: Scene) -> "Figure":
+    """Draw what the ground did and what became of its wall: over time, and the wall as it gave way and as it lies."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(6.4, 6.4), layout="constrained", dpi=200)
+    figure = Figure(figsize=(6.4, 6.4 + WALLS), layout="constrained", dpi=200)
+    charts, walls = figure.subfigures(2, 1, squeeze=False, height_ratios=(6.4, WALLS)).ravel()
+    _draw_charts(charts, response)
+    shapes = shapes_of(response, scene)
+    extent = extent_around(list(shapes.values()))
+    for axes, (name, shape) in zip(np.ravel(walls.subplots(1, len(shapes))), shapes.items(), strict=True):
+        draw_moved(axes, shape, extent)
+        larger = f", displacements × {shape.scale:.2g}" if shape.scale > 1 else ""
+        axes.set_title(f"{name}{larger}", fontsize=SMALL_TYPE + 1)
+    verdict = textwrap.wrap(f"λ = {response.scale:g}: {response.message.split(';')[0]}", LETTERS)
+    title = "\n".join([*textwrap.wrap(response.scene, LETTERS), *verdict])
+    figure.suptitle(title, fontsize=TYPE, parse_math=False)
+    return figure
+
+
+def shapes_of(response: Response, scene: Scene) -> dict[str, DeformedShape]:
+    """The wall as it gave way, where it fell, and as it is in the end, by what they are called."""
+    states = {"as it gives way": response.shape} if response.verdict == "collapse" else {}
+    states |= {f"after {response.time[-1]:.3g} s": response.motion}
+    return {name: moved_shape(scene, motion) for name, motion in states.items()}
+
+
+def _draw_charts(figure: "SubFigure", response: Response) -> None:
+    """Draw the acceleration of the ground, the drift of the top, the base shear, and what became of the energy."""
     ground, drift, shear, energy = figure.subplots(4, 1, sharex=True, height_ratios=(1, 1.5, 1, 1.7))
     time = response.time
     lines = (
@@ -51,17 +82,28 @@ def response_figure(response: Response) -> "Figure":
     if len(fallen):
         drift.axvline(time[fallen[0]], color=CHART_COLOURS[3], lw=0.9, ls="--", label="first block falls")
         drift.legend(frameon=False, fontsize=SMALL_TYPE)
-    verdict = textwrap.wrap(f"λ = {response.scale:g}: {response.message.split(';')[0]}", LETTERS)
-    title = "\n".join([*textwrap.wrap(response.scene, LETTERS), *verdict])
-    figure.suptitle(title, fontsize=TYPE, parse_math=False)
-    return figure
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class DrawnResponse(Response):
-    """What `Wall.respond` returns: a response, and its chart in notebooks; none where the wall was not shaken."""
+    """What `Wall.respond` returns: a response and its wall, with a chart in notebooks; none where it was not shaken."""
+
+    wall: Scene = field(kw_only=True)
+
+    def plot(self, axes: "Axes | None" = None) -> "Axes":
+        """Draw the wall as it lies in the end into axes, or a figure of its own where none are given."""
+        if axes is None:
+            from matplotlib.pyplot import figure
+
+            axes = figure(layout="constrained").gca()
+        shape = moved_shape(self.wall, self.motion)
+        draw_moved(axes, shape, extent_around([shape]))
+        larger = f", displacements × {shape.scale:.2g}" if shape.scale > 1 else ""
+        axes.set_title(f"{self.line.split(';')[0]}{larger}", fontsize=TYPE, parse_math=False)
+        return axes
 
     def _repr_svg_(self) -> str | None:
-        return to_svg(response_figure(self)).decode() if len(self.time) else None
+        return to_svg(response_figure(self, self.wall)).decode() if len(self.time) else None
 
     def _repr_png_(self) -> bytes | None:
-        return to_png(response_figure(self)) if len(self.time) else None
+        return to_png(response_figure(self, self.wall)) if len(self.time) else None

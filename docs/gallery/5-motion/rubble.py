@@ -5,7 +5,6 @@ Rubble that is shaken
 Stones are given corner by corner, as a survey has them, and need not be convex: here cells of a crooked grid, joined.
 """
 
-import matplotlib.pyplot as plt
 import numpy as np
 import shapely
 
@@ -22,9 +21,4 @@ stones = [shapely.union_all(shapely.polygons(np.stack(rings, axis=-1))[cells == 
 motion = {"pulse": {"kind": "sine", "amplitude": 1.0, "period": 1.2}, "quantity": "g"}
 solid = {"thickness": 0.5, "density": 2400.0, "friction": 0.7, "normal_stiffness": 1e9, "shear_stiffness": 4e8}
 wall = rb.Wall.outlines([each.exterior.coords[:] for each in stones], **solid, history=motion)
-response, blocks, axes = wall.respond("dem-dynamic", after=1.2), wall.scene.blocks, plt.figure().gca()
-for block, (u, v, turn) in enumerate(response.motion):
-    middle, corners = blocks.centroid[block] @ [1, 1j], blocks.polygon(block) @ [1, 1j]
-    moved = middle + u + 1j * v + (corners - middle) * np.exp(1j * turn)
-    axes.fill(moved.real, moved.imag, facecolor="0.85", edgecolor="0.2")
-axes.set(aspect="equal", xlim=(-1, 5), ylim=(-0.1, 2.1), title=f"{response.verdict} at {response.time[-1]:.2f} s")
+wall.respond("dem-dynamic", after=1.2).plot()

@@ -1,0 +1,53 @@
+"""A wall as a motion of its ground has left it: blocks where they lie, over the wall as it was built."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from runningbond.results.mechanism import turned
+from runningbond.scene import Array, Scene
+
+from .annotations import axes_size
+from .captions import show_extent
+from .deformed_shape import DeformedShape, Extent, farthest_motion, series_scale
+from .flat import line_width, paint_blocks
+from .style import HELD
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BESIDE, AIR = 0.75, 0.04
+"""How far beside and above a wall it is drawn what has come off it, and the air around all, in sizes of the wall."""
+
+
+def moved_shape(scene: Scene, motion: Array) -> DeformedShape:
+    """Blocks after a motion ``(nb, 3)`` [m, m, rad]: as far as they are, or farther where that would not be seen."""
+    shape = DeformedShape.of_rigid_blocks(scene, motion, np.zeros(len(scene.joints), dtype=np.int64), 0.0)
+    own, blocks = scene.wall[scene.blocks.owner], scene.blocks
+    displacement = turned(blocks, blocks.owner, blocks.vertices, motion)[own]
+    scale = series_scale(scene.size, farthest_motion(displacement))
+    return replace(shape, displacement=displacement, scale=scale)
+
+
+def draw_moved(axes: "Axes", shape: DeformedShape, extent: Extent) -> None:
+    """Draw a wall as it lies into axes that show a part of the plane."""
+    from matplotlib.collections import PolyCollection
+
+    scene = shape.scene
+    show_extent(axes, extent)
+    ground = [scene.blocks.polygon(int(block)) for block in np.flatnonzero(~scene.wall)]
+    axes.add_collection(PolyCollection(ground, facecolors=[HELD], edgecolors="none", zorder=0), autolim=False)
+    paint_blocks(axes, shape, line_width(scene, extent, axes_size(axes)))
+
+
+def extent_around(shapes: list[DeformedShape]) -> Extent:
+    """What shows all of a wall's shapes but for blocks that have come far off it."""
+    scene = shapes[0].scene
+    (left, bottom), (right, top) = scene.blocks.extent(scene.wall)
+    far = BESIDE * scene.size
+    placed = np.concatenate([shape.placed for shape in shapes])
+    low = np.maximum(np.minimum([left, bottom], placed.min(axis=0)), [left - far, bottom])
+    high = np.minimum(np.maximum([right, top], placed.max(axis=0)), [right + far, top + far])
+    air = AIR * scene.size
+    return float(low[0] - air), float(high[0] + air), float(low[1] - air), float(high[1] + air)

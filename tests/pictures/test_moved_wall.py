@@ -1,0 +1,68 @@
+"""Pictures of walls as a motion of their ground has left them."""
+
+import math
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+
+import runningbond as rb
+from runningbond.pictures.moved_wall import BESIDE, extent_around, moved_shape
+from runningbond.pictures.response import response_figure
+
+mpl.use("Agg")
+BLOCK: dict[str, Any] = {"block_width": 0.25, "block_height": 1.0, "thickness": 0.2, "density": 2000.0}
+SPRINGS = {"friction": 0.8, "normal_stiffness": 1e8, "shear_stiffness": 4e7}
+
+
+def shaken(amplitude: float) -> rb.Wall:
+    pulse = {"pulse": {"kind": "half-sine", "amplitude": amplitude, "period": 1.0}, "quantity": "g"}
+    return rb.Wall.courses([[1]], **BLOCK, **SPRINGS, history=pulse)
+
+
+def test_a_block_is_drawn_where_it_lies() -> None:
+    """A quarter of a turn to the right about its foot: on its side, as large as it is."""
+    scene = shaken(0.1).scene
+    middle, foot = scene.blocks.centroid[0], scene.blocks.extent(0)[0] + [0.25, 0.0]
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[0] = *(foot + [middle[1] - foot[1], foot[0] - middle[0]] - middle), -math.pi / 2
+    shape = moved_shape(scene, motion)
+    low, high = shape.placed.min(axis=0), shape.placed.max(axis=0)
+    assert shape.scale == 1.0
+    assert [*low, *high] == pytest.approx([foot[0], foot[1], foot[0] + 1.0, foot[1] + 0.25])
+
+
+def test_what_hardly_moves_is_drawn_larger_and_what_flies_off_left_out() -> None:
+    scene = shaken(0.1).scene
+    motion = np.zeros((len(scene.blocks), 3))
+    motion[0, 0] = 1e-4
+    assert moved_shape(scene, motion).scale > 100
+    assert moved_shape(scene, 0 * motion).scale == 1.0
+    motion[0, 0] = 50.0
+    left, right, _, _ = extent_around([moved_shape(scene, motion)])
+    (start, _), (end, _) = scene.blocks.extent(scene.wall)
+    assert right - end < (BESIDE + 0.1) * scene.size
+    assert start - left < 0.1 * scene.size
+
+
+@pytest.mark.parametrize(("amplitude", "verdict", "walls"), [(0.2, "stands", 1), (1.0, "collapse", 2)])
+def test_a_response_shows_its_wall_as_it_gives_way_and_as_it_lies(amplitude: float, verdict: str, walls: int) -> None:
+    wall = shaken(amplitude)
+    response = wall.respond("dem-dynamic")
+    assert response.verdict == verdict
+    drawn = [axes for axes in response_figure(response, wall.scene).axes if axes.collections and not axes.lines]
+    assert len(drawn) == walls
+    assert "displacements ×" in drawn[0].get_title()
+    (block,) = [each for each in response.plot().collections if isinstance(each, PolyCollection) and each.zorder == 2]
+    shape = moved_shape(wall.scene, response.motion)
+    assert np.asarray(block.get_paths()[0].vertices)[:4] == pytest.approx(shape.placed)
+
+
+def test_a_wall_that_falls_by_itself_is_drawn_as_it_was_built() -> None:
+    leaning = shaken(0.1).with_({"load.gravity": [9.0, -3.0]})
+    response = leaning.respond("dem-dynamic")
+    assert response.verdict == "infeasible"
+    assert response.plot().get_title().startswith("infeasible: collapses under its dead load")
+    assert response._repr_png_() is None
