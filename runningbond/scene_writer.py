@@ -33,7 +33,9 @@ def _value(value: Any, name: str) -> str:
         inner = (f"{_key(key)} = {_value(item, f'{name}.{key}')}" for key, item in value.items())
         return "{ " + ", ".join(inner) + " }"
     if isinstance(value, list):
-        return "[" + ", ".join(_value(item, name) for item in value) + "]"
+        items = [_value(item, name) for item in value]
+        outlines = any(isinstance(corner, list) for item in value if isinstance(item, list) for corner in item)
+        return "[\n" + "".join(f"    {item},\n" for item in items) + "]" if outlines else f"[{', '.join(items)}]"
     if isinstance(value, (bool, int, float, str)):
         # JSON's words are TOML's, but for one control character and for the range of floats, which no scene has.
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

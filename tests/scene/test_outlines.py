@@ -30,6 +30,7 @@ def test_listed_stones_are_the_wall_that_is_drawn_of_them(tmp_path: Path) -> Non
     listed = rb.Wall.outlines(untidy, [GROUND], units="mm", **THICK)
     assert fingerprint(listed.scene, "limit", 0.01) == fingerprint(drawn.scene, "limit", 0.01)
     listed.to_toml(tmp_path / "listed.toml")
+    assert (tmp_path / "listed.toml").read_text().count("\n    [[") == len(BRICKS) + 1  # each on a line of its own
     assert fingerprint(rb.read(tmp_path / "listed.toml").scene, "limit", 0.01) == fingerprint(
         listed.scene, "limit", 0.01
     )
